@@ -1,0 +1,93 @@
+//! The coarse mesh: closed, oriented, all quads, and every vertex knows its tracing point.
+//!
+//! ```text
+//!        3 ───────── 2      ring of the child (corners 3, 2)
+//!      ╱ │         ╱ │
+//!     ●  │  lateral  │ ──▶ path: y runs from corner 0 to 3, x from corner 0 to 1
+//!      ╲ │         ╲ │
+//!        0 ───────── 1      ring of the parent (corners 0, 1)
+//! ```
+
+use glam::{DVec3, Vec3};
+
+/// A closed mesh of quad patches. Closed by index: every edge is shared by exactly two patches, in
+/// opposite directions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoarseMesh {
+    /// What to add to every position to get the tracing's own coordinates (µm).
+    pub origin: DVec3,
+    /// Corners of patches.
+    pub vertices: Vec<Vertex>,
+    /// Tracing points; those of a soma stand for one vertex each.
+    pub tracing: Vec<TracingPoint>,
+    /// Quads.
+    pub patches: Vec<Patch>,
+}
+
+/// A corner of patches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vertex {
+    /// Position (µm, relative to the mesh's origin).
+    pub position: Vec3,
+    /// Unit normal of the surface, outwards.
+    pub normal: Vec3,
+    /// Index of its tracing point.
+    pub tracing: u32,
+}
+
+/// What a tracing point is for the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Role {
+    /// One ring between two others.
+    #[default]
+    Ordinary,
+    /// The last ring of a neurite, closed by a cap.
+    End,
+    /// Three or more tubes meet.
+    Joint,
+    /// A vertex of a soma: `center` is the soma's, `radius` the distance from it.
+    Soma,
+    /// The ring where a neurite leaves the soma.
+    Insertion,
+}
+
+/// A traced centre with what the surface needs of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TracingPoint {
+    /// Centre (µm, relative to the mesh's origin).
+    pub center: Vec3,
+    /// Radius (µm).
+    pub radius: f32,
+    /// Unit orientation: the direction of the path here.
+    pub tangent: Vec3,
+    /// What it is for the surface.
+    pub role: Role,
+    /// SWC type of the section.
+    pub kind: i32,
+    /// The file's own number of the sample.
+    pub sample: i32,
+    /// Section: that of the morphology plus one; 0 for the soma.
+    pub section: i32,
+}
+
+/// What a patch covers, and so how it is refined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum PatchKind {
+    /// A quarter of a tube: edge 0–1 on the parent's ring, 3–2 on the child's.
+    Lateral,
+    /// The end of a tube: all corners on one ring.
+    Cap,
+    /// Part of a soma.
+    Soma,
+}
+
+/// A quad, counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patch {
+    /// Indices of vertices.
+    pub corners: [u32; 4],
+    /// What it covers.
+    pub kind: PatchKind,
+}

@@ -1,0 +1,117 @@
+//! Surfaces of triangles and quads, whole in memory or made block by block.
+
+use glam::{DVec3, Vec3};
+
+/// A vertex of a surface with the attributes that are exported.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceVertex {
+    /// Position (µm, relative to the surface's origin).
+    pub position: Vec3,
+    /// Unit normal, outwards.
+    pub normal: Vec3,
+    /// SWC type.
+    pub kind: i32,
+    /// The file's own number of the tracing point.
+    pub point: i32,
+    /// Section: that of the morphology plus one; 0 for the soma.
+    pub section: i32,
+    /// Radius (µm) of the tracing there.
+    pub radius: f32,
+}
+
+/// Faces, counter-clockwise seen from outside; indices count from the surface's first vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Faces {
+    /// Triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Quads.
+    pub quads: Vec<[u32; 4]>,
+}
+
+/// A surface that is made block by block, so that a writer needs memory for one block and not for
+/// all. Equal calls give equal blocks; blocks may be asked for in any order, from any thread.
+pub trait Surface: Sync {
+    /// What to add to every position to get the tracing's own coordinates (µm).
+    fn origin(&self) -> DVec3;
+    /// Number of vertices of all blocks.
+    fn vertex_count(&self) -> usize;
+    /// Number of triangles of all blocks.
+    fn triangle_count(&self) -> usize;
+    /// Number of quads of all blocks.
+    fn quad_count(&self) -> usize;
+    /// Number of blocks of vertices.
+    fn vertex_blocks(&self) -> usize;
+    /// Appends the vertices of one block to `out`.
+    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>);
+    /// Number of blocks of faces.
+    fn face_blocks(&self) -> usize;
+    /// Appends the faces of one block to `out`.
+    fn faces(&self, block: usize, out: &mut Faces);
+}
+
+/// A surface whole in memory.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SurfaceMesh {
+    /// What to add to every position to get the tracing's own coordinates (µm).
+    pub origin: DVec3,
+    /// Vertices.
+    pub vertices: Vec<SurfaceVertex>,
+    /// Faces.
+    pub faces: Faces,
+}
+
+/// Vertices or faces in one block of a [`SurfaceMesh`].
+const BLOCK: usize = 1 << 16;
+
+impl SurfaceMesh {
+    /// Collects all blocks of a surface.
+    pub fn collect(surface: &impl Surface) -> Self {
+        let mut mesh = Self { origin: surface.origin(), ..Self::default() };
+        mesh.vertices.reserve(surface.vertex_count());
+        mesh.faces.triangles.reserve(surface.triangle_count());
+        mesh.faces.quads.reserve(surface.quad_count());
+        for block in 0..surface.vertex_blocks() {
+            surface.vertices(block, &mut mesh.vertices);
+        }
+        for block in 0..surface.face_blocks() {
+            surface.faces(block, &mut mesh.faces);
+        }
+        mesh
+    }
+}
+
+impl Surface for SurfaceMesh {
+    fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    fn triangle_count(&self) -> usize {
+        self.faces.triangles.len()
+    }
+
+    fn quad_count(&self) -> usize {
+        self.faces.quads.len()
+    }
+
+    fn vertex_blocks(&self) -> usize {
+        self.vertices.len().div_ceil(BLOCK)
+    }
+
+    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
+        out.extend_from_slice(self.vertices.chunks(BLOCK).nth(block).unwrap_or_default());
+    }
+
+    fn face_blocks(&self) -> usize {
+        self.faces.triangles.len().max(self.faces.quads.len()).div_ceil(BLOCK)
+    }
+
+    fn faces(&self, block: usize, out: &mut Faces) {
+        let Faces { triangles, quads } = &self.faces;
+        out.triangles.extend_from_slice(triangles.chunks(BLOCK).nth(block).unwrap_or_default());
+        out.quads.extend_from_slice(quads.chunks(BLOCK).nth(block).unwrap_or_default());
+    }
+}
