@@ -1,1 +1,29 @@
-//! Placeholder, replaced at once.
+//! Refinement of a coarse mesh: one integer level per edge, one conforming closed surface.
+//!
+//! A pure function of the coarse mesh and its **levels**. Levels live on tracing points or come
+//! from an error; an **edge** takes its level from its own two ends only, so that two patches
+//! beside it always agree, and any mixture of levels gives a closed mesh without cracks or
+//! T-junctions. A patch is a grid as fine as its finest sides; on a coarser side the grid's outer
+//! row snaps to the edge's own vertices, and what becomes empty is left out.
+//!
+//! ```text
+//!   ┌──┬──┬──┬──┐   finer side, level 4
+//!   ├──┼──┼──┼──┤
+//!   │╲ │ ╱│╲ │ ╱│
+//!   └─────┴─────┘   coarser side, level 2
+//! ```
+//!
+//! This is the reference for the shaders: plain arrays in, no allocation per patch.
+#![forbid(unsafe_code)]
+
+mod coarse_surface;
+mod evaluate;
+mod level;
+mod options;
+mod plan;
+mod refinement;
+
+pub use coarse_surface::CoarseSurface;
+pub use level::HIGHEST_LEVEL;
+pub use options::{Caps, Levels, Path, RefineOptions};
+pub use refinement::Refinement;

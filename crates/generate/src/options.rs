@@ -1,0 +1,57 @@
+//! What the generation can be told.
+
+use neurotess_morphology::NeuriteKind;
+
+/// How the soma is rebuilt.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SomaMethod {
+    /// A sphere deformed towards the neurites by linear elasticity.
+    #[default]
+    Fem,
+    /// The sphere as it is, neurites growing out of it.
+    Sphere,
+    /// LiveMesh's radius function: circle near the centre, tube far out, cubic between.
+    Profile,
+    /// No soma: every neurite is closed by itself.
+    None,
+}
+
+/// The tetrahedral sphere that is deformed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SphereKind {
+    /// The paper's: an octahedron split by edges; level 3 has 258 surface vertices.
+    Octahedron,
+    /// A cube's six faces on the sphere, level × level quads each.
+    #[default]
+    Cube,
+}
+
+/// Choices for [`generate`](crate::generate).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GenerateOptions {
+    /// How the soma is rebuilt.
+    pub soma: SomaMethod,
+    /// Poisson ratio ν of the soma's material, 0 to 0.49.
+    pub poisson: f64,
+    /// Factor on the soma's radius, greater than 0.
+    pub soma_scale: f64,
+    /// Type of the sphere.
+    pub sphere: SphereKind,
+    /// Resolution of the sphere: octahedron 3 to 5, cube 4 to 32; `None`: what fits the neurites.
+    pub sphere_level: Option<u32>,
+    /// Kinds of neurites to keep; `None`: all.
+    pub kinds: Option<Vec<NeuriteKind>>,
+}
+
+impl Default for GenerateOptions {
+    fn default() -> Self {
+        Self {
+            soma: SomaMethod::Fem,
+            poisson: 0.3,
+            soma_scale: 1.0,
+            sphere: SphereKind::Cube,
+            sphere_level: None,
+            kinds: None,
+        }
+    }
+}

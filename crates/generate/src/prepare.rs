@@ -1,0 +1,267 @@
+//! Mends the tracing before it is meshed: radii, coincident points, what lies inside the soma.
+//!
+//! Every mending is counted and reported with the first sample concerned; none is silent.
+
+use glam::DVec3;
+
+use crate::skeleton::{NONE, Node, Root, Skeleton};
+use crate::warning::Warnings;
+
+/// Radius (µm) of last resort.
+const FALLBACK_RADIUS: f64 = 0.5;
+/// Points nearer to their parent than this share of the larger radius are one point.
+const COINCIDENT: f64 = 1e-3;
+
+/// Replaces radii that are no radii by what the path around them says.
+pub(crate) fn mend_radii(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+    let good = |r: f64| r.is_finite() && r > 0.0;
+    if skeleton.nodes.iter().all(|n| good(n.radius)) {
+        return;
+    }
+    let fallback = median(
+        skeleton
+            .nodes
+            .iter()
+            .map(|n| n.radius)
+            .filter(|&r| good(r))
+            .collect(),
+    )
+    .unwrap_or(FALLBACK_RADIUS);
+    let count = skeleton.nodes.len();
+    // Nearest good radius and its distance: towards the root, and towards the ends.
+    let mut up: Vec<Option<(f64, f64)>> = vec![None; count];
+    let mut down: Vec<Option<(f64, f64)>> = vec![None; count];
+    let length = |s: &Skeleton, i: usize| {
+        s.nodes[i]
+            .center
+            .distance(s.nodes[s.nodes[i].parent as usize].center)
+    };
+    for i in 0..count {
+        let node = skeleton.nodes[i];
+        up[i] = if good(node.radius) {
+            Some((node.radius, 0.0))
+        } else if node.parent == NONE {
+            None
+        } else {
+            up[node.parent as usize].map(|(r, d)| (r, d + length(skeleton, i)))
+        };
+    }
+    for i in (0..count).rev() {
+        let node = skeleton.nodes[i];
+        if good(node.radius) {
+            down[i] = Some((node.radius, 0.0));
+        }
+        if node.parent == NONE {
+            continue;
+        }
+        if let Some((r, d)) = down[i] {
+            let d = d + length(skeleton, i);
+            let parent = &mut down[node.parent as usize];
+            if parent.is_none_or(|(_, other)| d < other) {
+                *parent = Some((r, d));
+            }
+        }
+    }
+    for i in 0..count {
+        if good(skeleton.nodes[i].radius) {
+            continue;
+        }
+        skeleton.nodes[i].radius = match (up[i], down[i]) {
+            (Some((a, da)), Some((b, db))) if da + db > 0.0 => (a * db + b * da) / (da + db),
+            (Some((r, _)), _) | (None, Some((r, _))) => r,
+            (None, None) => fallback,
+        };
+        warnings.add(
+            "radius_mended",
+            Some(skeleton.nodes[i].sample),
+            "radius was zero, negative or no number: taken from its neighbours",
+        );
+    }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// Merges points that coincide with their parent. The larger radius stays, except at a fork, whose
+/// repetition in a child carries the child's own radius.
+pub(crate) fn merge_coincident(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+    let children = skeleton.children();
+    let mut keep = vec![true; skeleton.nodes.len()];
+    let mut stands_for: Vec<u32> = (0..skeleton.nodes.len() as u32).collect();
+    for i in 0..skeleton.nodes.len() {
+        let node = skeleton.nodes[i];
+        if node.parent == NONE {
+            continue;
+        }
+        let parent = stands_for[node.parent as usize];
+        let before = *skeleton.node(parent);
+        let larger = before.radius.max(node.radius);
+        if node.center.distance(before.center) >= COINCIDENT * larger {
+            continue;
+        }
+        keep[i] = false;
+        stands_for[i] = parent;
+        if children.of(node.parent).len() == 1 {
+            skeleton.nodes[parent as usize].radius = larger;
+        }
+        warnings.add(
+            "coincident_points",
+            Some(node.sample),
+            "point coincides with its parent: merged",
+        );
+    }
+    skeleton.retain(&keep);
+}
+
+/// A soma's sphere as the neurites meet it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+    /// Farthest distance of a first ring, in radii.
+    pub(crate) reach: f64,
+}
+
+/// Leaves out what a neurite traces inside its soma: its leading points, or all of it. A fork just
+/// outside goes too, as its ring would cut the soma; its branches become neurites.
+pub(crate) fn leave_out_inside(
+    skeleton: &mut Skeleton,
+    balls: &[Option<Ball>],
+    warnings: &mut Warnings,
+) {
+    let children = skeleton.children();
+    let count = skeleton.nodes.len();
+    let mut keep = vec![true; count];
+    // The soma that a node may still be inside of: all nodes before it were.
+    let mut leading: Vec<Option<u32>> = vec![None; count];
+    let mut dropped_roots = 0;
+    for i in 0..count {
+        let node = skeleton.nodes[i];
+        let soma = match node.root {
+            Root::Soma(soma) if node.parent == NONE => Some(soma),
+            _ if node.parent != NONE => leading[node.parent as usize],
+            _ => None,
+        };
+        let Some((soma, ball)) = soma.and_then(|s| Some((s, balls[s as usize]?))) else {
+            continue;
+        };
+        let distance = node.center.distance(ball.center);
+        let fork = children.of(i as u32).len() > 1;
+        let margin = if fork {
+            node.radius.min(0.5 * ball.radius)
+        } else {
+            0.02 * ball.radius
+        };
+        if distance < ball.radius + margin {
+            keep[i] = false;
+            leading[i] = Some(soma);
+            dropped_roots += usize::from(children.of(i as u32).is_empty());
+            warnings.add(
+                "inside_soma",
+                Some(node.sample),
+                "point lies inside the soma: left out of the mesh",
+            );
+        }
+    }
+    if dropped_roots > 0 {
+        warnings.add_many(
+            "neurite_inside_soma",
+            dropped_roots,
+            "branch ends inside the soma: left out of the mesh",
+        );
+    }
+    skeleton.retain(&keep);
+}
+
+/// Gives every neurite of a soma its first ring: its first point where that is near and plain, else
+/// a point of our own on the ray to it.
+pub(crate) fn insert_first_rings(
+    skeleton: &mut Skeleton,
+    balls: &[Option<Ball>],
+    warnings: &mut Warnings,
+) {
+    let children = skeleton.children();
+    let mut nodes: Vec<Node> = Vec::with_capacity(skeleton.nodes.len() + 64);
+    let mut new_index = vec![NONE; skeleton.nodes.len()];
+    for (i, node) in skeleton.nodes.iter().enumerate() {
+        let mut node = *node;
+        if node.parent != NONE {
+            node.parent = new_index[node.parent as usize];
+        }
+        let ball = match node.root {
+            Root::Soma(soma) if node.parent == NONE => balls[soma as usize].map(|b| (soma, b)),
+            _ => None,
+        };
+        let Some((soma, ball)) = ball else {
+            node.root = Root::Free;
+            new_index[i] = nodes.len() as u32;
+            nodes.push(node);
+            continue;
+        };
+        let offset = node.center - ball.center;
+        let (distance, reach) = (offset.length(), ball.reach * ball.radius);
+        let direction = offset.try_normalize().unwrap_or(DVec3::Y);
+        let branches = children.of(i as u32).len();
+        if distance <= reach && branches == 1 {
+            node.root = Root::Insertion(soma);
+            new_index[i] = nodes.len() as u32;
+            nodes.push(node);
+            continue;
+        }
+        let at = match branches {
+            0 if distance <= reach => distance,
+            0 | 1 => reach,
+            _ => reach.min(ball.radius + 0.4 * (distance - ball.radius)),
+        };
+        let ring = nodes.len() as u32;
+        let center = ball.center + direction * at;
+        nodes.push(Node {
+            center,
+            root: Root::Insertion(soma),
+            ..node
+        });
+        node.root = Root::Free;
+        node.parent = ring;
+        if branches == 0 && distance - at < node.radius {
+            node.center = center + direction * node.radius;
+            warnings.add(
+                "one_point_neurite",
+                Some(node.sample),
+                "neurite of one point on the soma: lengthened by its radius",
+            );
+        } else if distance > 2.0 * ball.radius {
+            warnings.add(
+                "far_from_soma",
+                Some(node.sample),
+                "neurite starts more than a radius away from the soma: bridged",
+            );
+        }
+        new_index[i] = nodes.len() as u32;
+        nodes.push(node);
+    }
+    skeleton.nodes = nodes;
+}
+
+/// Gives a free tree of one point a second one, so that it becomes a short rod.
+pub(crate) fn lengthen_single_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+    let children = skeleton.children();
+    for i in 0..skeleton.nodes.len() {
+        let node = skeleton.nodes[i];
+        if node.parent == NONE && node.root == Root::Free && children.of(i as u32).is_empty() {
+            let half = DVec3::Y * (0.5 * node.radius);
+            skeleton.nodes[i].center -= half;
+            skeleton.nodes.push(Node {
+                center: node.center + half,
+                parent: i as u32,
+                ..node
+            });
+            warnings.add(
+                "one_point_tree",
+                Some(node.sample),
+                "tree of a single point: drawn as a rod of its radius",
+            );
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The tracing as a forest of nodes that the following steps mend.
+//!
+//! Parents stand before their children at all times, so that every step is a sweep over an array
+//! and no tree is too deep.
+
+use glam::DVec3;
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
+
+/// No node.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// A point on its way to become a tracing point. µm, relative to the morphology's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Node {
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+    /// Index of the parent, [`NONE`] for a root.
+    pub(crate) parent: u32,
+    /// What a root hangs on.
+    pub(crate) root: Root,
+    /// The file's own number of the sample.
+    pub(crate) sample: i64,
+    /// SWC type.
+    pub(crate) kind: i32,
+    /// Section of the morphology plus one.
+    pub(crate) section: i32,
+}
+
+/// What a root hangs on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Root {
+    /// Nothing, or it is no root.
+    Free,
+    /// A soma, whose surface the neurite has yet to reach or to leave.
+    Soma(u32),
+    /// A soma; the node is the neurite's first ring on it.
+    Insertion(u32),
+}
+
+/// All nodes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Skeleton {
+    pub(crate) nodes: Vec<Node>,
+}
+
+/// Children of every node, in order.
+pub(crate) struct Children {
+    start: Vec<u32>,
+    list: Vec<u32>,
+}
+
+impl Children {
+    pub(crate) fn of(&self, node: u32) -> &[u32] {
+        let node = node as usize;
+        &self.list[self.start[node] as usize..self.start[node + 1] as usize]
+    }
+}
+
+impl Skeleton {
+    /// Nodes of the kinds asked for. A tree whose parent is of another kind becomes free.
+    pub(crate) fn new(morphology: &Morphology, kinds: Option<&[NeuriteKind]>) -> Self {
+        let kept = |kind: NeuriteKind| kinds.is_none_or(|kinds| kinds.contains(&kind));
+        let mut new_index = vec![NONE; morphology.points.len()];
+        let mut nodes = Vec::with_capacity(morphology.points.len());
+        for (id, section) in morphology.sections.iter().enumerate() {
+            if !kept(section.kind) {
+                continue;
+            }
+            let (mut parent, root) = match section.attachment {
+                Attachment::Section(parent) => {
+                    let last = morphology.sections[parent.index()].end as usize - 1;
+                    (new_index[last], Root::Free)
+                }
+                Attachment::Soma { soma, .. } => (NONE, Root::Soma(soma)),
+                Attachment::Free => (NONE, Root::Free),
+            };
+            for point in section.range() {
+                let traced = morphology.points[point];
+                new_index[point] = nodes.len() as u32;
+                nodes.push(Node {
+                    center: traced.position.as_dvec3(),
+                    radius: f64::from(traced.radius),
+                    parent,
+                    root: if parent == NONE { root } else { Root::Free },
+                    sample: morphology.sample_ids.get(point).copied().unwrap_or(-1),
+                    kind: section.kind.0,
+                    section: id as i32 + 1,
+                });
+                parent = new_index[point];
+            }
+        }
+        Self { nodes }
+    }
+
+    pub(crate) fn node(&self, index: u32) -> &Node {
+        &self.nodes[index as usize]
+    }
+
+    /// Lists the children of every node.
+    pub(crate) fn children(&self) -> Children {
+        let mut start = vec![0_u32; self.nodes.len() + 1];
+        for node in self.nodes.iter().filter(|n| n.parent != NONE) {
+            start[node.parent as usize + 1] += 1;
+        }
+        for i in 1..start.len() {
+            start[i] += start[i - 1];
+        }
+        let mut fill = start.clone();
+        let mut list = vec![0; *start.last().unwrap_or(&0) as usize];
+        for (index, node) in self.nodes.iter().enumerate() {
+            if node.parent != NONE {
+                let slot = &mut fill[node.parent as usize];
+                list[*slot as usize] = index as u32;
+                *slot += 1;
+            }
+        }
+        Children { start, list }
+    }
+
+    /// How far the path moves if an ordinary node is left out (µm).
+    ///
+    /// # Panics
+    /// If the node has no parent or no child.
+    pub(crate) fn sideways(&self, children: &Children, node: u32) -> f64 {
+        let here = self.node(node).center;
+        let before = self.node(self.node(node).parent).center;
+        let after = self.node(children.of(node)[0]).center;
+        let axis = after - before;
+        let t = ((here - before).dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0);
+        here.distance(before + axis * t)
+    }
+
+    /// Leaves nodes out. Their children move to the nearest kept ancestor, or become roots of the
+    /// kind that the tree's root was.
+    pub(crate) fn retain(&mut self, keep: &[bool]) {
+        if keep.iter().all(|&k| k) {
+            return;
+        }
+        // Where children of a node attach: itself if kept, else where it would have attached.
+        let mut stands_for: Vec<(u32, Root)> = Vec::with_capacity(self.nodes.len());
+        let mut kept = Vec::with_capacity(self.nodes.len());
+        for (index, node) in self.nodes.iter().enumerate() {
+            let (parent, root) = if node.parent == NONE {
+                (NONE, node.root)
+            } else {
+                stands_for[node.parent as usize]
+            };
+            if keep[index] {
+                stands_for.push((kept.len() as u32, Root::Free));
+                kept.push(Node {
+                    parent,
+                    root,
+                    ..*node
+                });
+            } else {
+                // A soma's ring that is left out leaves the neurite without one.
+                let root = match root {
+                    Root::Insertion(soma) => Root::Soma(soma),
+                    other => other,
+                };
+                stands_for.push((parent, root));
+            }
+        }
+        self.nodes = kept;
+    }
+
+    /// Brings parents before children again after links were changed, depth first.
+    pub(crate) fn reorder(&mut self) {
+        // Lists of children do not depend on the order of nodes.
+        let children = self.children();
+        let mut order = Vec::with_capacity(self.nodes.len());
+        let mut stack: Vec<u32> = (0..self.nodes.len() as u32)
+            .rev()
+            .filter(|&i| self.nodes[i as usize].parent == NONE)
+            .collect();
+        while let Some(node) = stack.pop() {
+            order.push(node);
+            stack.extend(children.of(node).iter().rev());
+        }
+        let mut new_index = vec![NONE; self.nodes.len()];
+        for (new, &old) in order.iter().enumerate() {
+            new_index[old as usize] = new as u32;
+        }
+        self.nodes = order
+            .iter()
+            .map(|&old| {
+                let node = self.nodes[old as usize];
+                let parent = if node.parent == NONE {
+                    NONE
+                } else {
+                    new_index[node.parent as usize]
+                };
+                Node { parent, ..node }
+            })
+            .collect();
+    }
+
+    /// Turns free trees whose root has two children round, so that they start at an end.
+    pub(crate) fn start_free_trees_at_an_end(&mut self) {
+        let children = self.children();
+        let mut changed = false;
+        for root in 0..self.nodes.len() as u32 {
+            let node = *self.node(root);
+            if node.parent != NONE || node.root != Root::Free || children.of(root).len() != 2 {
+                continue;
+            }
+            let mut path = vec![root];
+            let mut here = children.of(root)[0];
+            loop {
+                path.push(here);
+                match children.of(here) {
+                    [] => break,
+                    [first, ..] => here = *first,
+                }
+            }
+            // A fork on the way becomes a fork of the turned tree: nothing is lost.
+            for link in path.windows(2) {
+                self.nodes[link[0] as usize].parent = link[1];
+            }
+            self.nodes[here as usize].parent = NONE;
+            changed = true;
+        }
+        if changed {
+            self.reorder();
+        }
+    }
+}

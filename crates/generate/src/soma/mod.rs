@@ -1,0 +1,324 @@
+//! Somata: a sphere deformed towards its neurites.
+//!
+//! **Theory.** García-Cantero et al. 2017: every neurite takes a quad of a tetrahedral sphere; the
+//! quad's corners move to the neurite's first ring and the rest follows by static linear
+//! elasticity. Where we depart from it: the pull is solved on the canonical sphere, along the
+//! radius only, so that one factorisation serves all cells; turning and widening the quads is a
+//! warp of directions applied to the result ([`warp`]), which cannot fold.
+//!
+//! **Practice.** [`Reference`] is made once per (sphere, level, ν) and kept; [`rebuild`] per soma.
+//!
+//! A soma is accepted if it is star-shaped about its centre (every corner of every quad turns
+//! outwards), which excludes folds and self-intersections alike.
+
+pub(crate) mod elasticity;
+mod profile;
+pub(crate) mod seats;
+pub(crate) mod sphere;
+mod warp;
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use glam::{DMat3, DVec3};
+
+use crate::{SomaMethod, SphereKind};
+use elasticity::Elasticity;
+use seats::{Insertion, Seats};
+use sphere::Sphere;
+use warp::Warp;
+
+/// A soma's surface in µm.
+pub(crate) struct SomaSurface {
+    /// Positions of all vertices, those of the rings included.
+    pub(crate) vertices: Vec<DVec3>,
+    /// Quads that are left, counter-clockwise seen from outside.
+    pub(crate) quads: Vec<[u32; 4]>,
+    /// The four vertices of each neurite's first ring, counter-clockwise about its direction.
+    pub(crate) rings: Vec<[u32; 4]>,
+    /// The insertions as they were in the end: direction, distance and radius.
+    pub(crate) insertions: Vec<Insertion>,
+    /// Rings made smaller to find room, or to avoid folds.
+    pub(crate) shrunk: usize,
+    /// Rings moved off their neurite's direction by more than a degree.
+    pub(crate) turned: usize,
+    /// Neurites whose quad was more than 1.5 quad widths away before the warp.
+    pub(crate) misfits: usize,
+    /// Tetrahedra turned inside out, and whether a fold had to be accepted.
+    pub(crate) inverted: usize,
+    /// Corners of quads that turn inwards; zero unless every remedy failed.
+    pub(crate) folded: usize,
+    /// Neurites that found no seat at all.
+    pub(crate) dropped: Vec<usize>,
+}
+
+/// What is asked of a soma.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SomaRequest {
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+    pub(crate) method: SomaMethod,
+    pub(crate) poisson: f64,
+    pub(crate) kind: SphereKind,
+    pub(crate) level: Option<u32>,
+}
+
+/// A sphere with its factored stiffness.
+struct Reference {
+    sphere: Sphere,
+    elasticity: Option<Elasticity>,
+}
+
+/// Rebuilds a soma: rings of the neurites at the given insertions, joined by a smooth surface.
+pub(crate) fn rebuild(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurface {
+    let mut insertions = insertions.to_vec();
+    let (mut shrunk, turned) = seats::make_room(&mut insertions);
+    let mut level = request
+        .level
+        .unwrap_or_else(|| fitting_level(request.kind, &insertions));
+    let (lowest, highest) = level_range(request.kind);
+    level = level.clamp(lowest, highest);
+    for attempt in 0.. {
+        let reference = reference(request.kind, level, request.poisson);
+        let last = attempt >= 6;
+        if let Some(seats) = seats::assign(&reference.sphere, &insertions) {
+            let mut surface = deform(request, &reference, &seats, &insertions);
+            surface.shrunk = shrunk;
+            surface.turned = turned;
+            if (surface.folded == 0 && surface.inverted == 0) || last {
+                return surface;
+            }
+        } else if level == highest {
+            // More neurites than quads: the thinnest go.
+            return without_thinnest(request, &insertions);
+        }
+        // Remedies in turn: a finer sphere, then smaller rings.
+        if request.level.is_none() && level < highest && attempt % 2 == 0 {
+            level = (level
+                + if request.kind == SphereKind::Cube {
+                    2
+                } else {
+                    1
+                })
+            .min(highest);
+        } else {
+            insertions.iter_mut().for_each(|i| i.radius *= 0.85);
+            shrunk = insertions.len();
+        }
+        if last && level < highest {
+            level += 1;
+        }
+    }
+    unreachable!("the loop ends with its last attempt")
+}
+
+fn without_thinnest(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurface {
+    let mut order: Vec<usize> = (0..insertions.len()).collect();
+    order.sort_by(|&a, &b| insertions[b].radius.total_cmp(&insertions[a].radius));
+    let (kept, dropped) = order.split_at(insertions.len() * 3 / 4);
+    let mut kept = kept.to_vec();
+    kept.sort_unstable();
+    let subset: Vec<Insertion> = kept.iter().map(|&k| insertions[k]).collect();
+    let mut surface = rebuild(request, &subset);
+    let mut rings = vec![[0; 4]; insertions.len()];
+    let mut all = insertions.to_vec();
+    for (slot, &k) in kept.iter().enumerate() {
+        rings[k] = surface.rings[slot];
+        all[k] = surface.insertions[slot];
+    }
+    let inner = surface.dropped.iter().map(|&slot| kept[slot]);
+    surface.dropped = dropped.iter().copied().chain(inner).collect();
+    surface.rings = rings;
+    surface.insertions = all;
+    surface
+}
+
+fn level_range(kind: SphereKind) -> (u32, u32) {
+    match kind {
+        SphereKind::Octahedron => (3, 5),
+        SphereKind::Cube => (4, 20),
+    }
+}
+
+/// Level at which a quad takes about the angle of the median ring, with quads enough for all.
+fn fitting_level(kind: SphereKind, insertions: &[Insertion]) -> u32 {
+    if kind == SphereKind::Octahedron {
+        return 3;
+    }
+    let mut angles: Vec<f64> = insertions.iter().map(Insertion::angle).collect();
+    angles.sort_by(f64::total_cmp);
+    let median = angles.get(angles.len() / 2).copied().unwrap_or(0.15);
+    let fit = (std::f64::consts::FRAC_PI_4 * std::f64::consts::SQRT_2 / median).round();
+    let room = (4.0 * insertions.len() as f64).sqrt().ceil();
+    fit.clamp(6.0, 10.0).max(room) as u32
+}
+
+/// Spheres that are kept for later somata: (kind, level, ν in bits).
+type Kept = HashMap<(SphereKind, u32, u64), Arc<Reference>>;
+
+fn reference(kind: SphereKind, level: u32, poisson: f64) -> Arc<Reference> {
+    static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+    let mut kept = KEPT
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let kept = kept.get_or_insert_default();
+    // ν slides in the editor: do not keep every value that it passed.
+    if kept.len() > 32 {
+        kept.clear();
+    }
+    let make = || {
+        let sphere = Sphere::new(kind, level);
+        let elasticity = Elasticity::new(&sphere, poisson.clamp(0.0, 0.49));
+        Arc::new(Reference { sphere, elasticity })
+    };
+    Arc::clone(
+        kept.entry((kind, level, poisson.to_bits()))
+            .or_insert_with(make),
+    )
+}
+
+/// Pulls, warps and judges.
+fn deform(
+    request: &SomaRequest,
+    reference: &Reference,
+    seats: &Seats,
+    insertions: &[Insertion],
+) -> SomaSurface {
+    let sphere = &reference.sphere;
+    let warp = Flow::new(sphere, seats, insertions);
+    let pulled = match request.method {
+        SomaMethod::Fem => pull(request, reference, seats, insertions),
+        SomaMethod::Sphere | SomaMethod::Profile | SomaMethod::None => sphere.nodes.clone(),
+    };
+    let mut nodes: Vec<DVec3> = pulled.iter().map(|&x| warp.apply(x)).collect();
+    if request.method == SomaMethod::Profile {
+        profile::apply(&mut nodes[..sphere.surface], request.radius, insertions);
+    }
+    let rings: Vec<[u32; 4]> = seats.quads.iter().map(|&q| sphere.quads[q]).collect();
+    for (ring, goals) in rings.iter().zip(&warp.rings) {
+        for (&vertex, &goal) in ring.iter().zip(goals) {
+            nodes[vertex as usize] = goal / request.radius;
+        }
+    }
+    let taken: Vec<bool> = {
+        let mut taken = vec![false; sphere.quads.len()];
+        seats.quads.iter().for_each(|&q| taken[q] = true);
+        taken
+    };
+    let left = sphere
+        .quads
+        .iter()
+        .zip(&taken)
+        .filter(|(_, taken)| !**taken)
+        .map(|(q, _)| *q);
+    let quads: Vec<[u32; 4]> = left.collect();
+    let inverted = if request.method == SomaMethod::Fem {
+        sphere
+            .tetrahedra
+            .iter()
+            .filter(|t| sphere::volume(&nodes, **t) <= 0.0)
+            .count()
+    } else {
+        0
+    };
+    let folded = sphere
+        .quads
+        .iter()
+        .map(|q| inward_corners(&nodes, *q))
+        .sum();
+    let width = 2.0 * std::f64::consts::PI.sqrt() / (sphere.quads.len() as f64).sqrt();
+    SomaSurface {
+        vertices: nodes[..sphere.surface]
+            .iter()
+            .map(|&x| request.center + x * request.radius)
+            .collect(),
+        quads,
+        rings,
+        insertions: insertions.to_vec(),
+        shrunk: 0,
+        turned: 0,
+        misfits: usize::from(seats.worst > 1.5 * width),
+        inverted,
+        folded,
+        dropped: Vec::new(),
+    }
+}
+
+/// Corners of a quad at which it does not turn outwards as seen from the centre.
+fn inward_corners(nodes: &[DVec3], quad: [u32; 4]) -> usize {
+    let p = |i: usize| nodes[quad[i % 4] as usize];
+    (0..4)
+        .filter(|&i| p(i + 3).dot(p(i).cross(p(i + 1))) <= 0.0)
+        .count()
+}
+
+/// The elastic answer, on the canonical sphere of radius 1, to pulling each seat's corners out to
+/// where its ring's corners are.
+fn pull(
+    request: &SomaRequest,
+    reference: &Reference,
+    seats: &Seats,
+    insertions: &[Insertion],
+) -> Vec<DVec3> {
+    let sphere = &reference.sphere;
+    let mut prescribed = Vec::with_capacity(4 * insertions.len());
+    for (&quad, insertion) in seats.quads.iter().zip(insertions) {
+        let reach = insertion.distance.hypot(insertion.radius) / request.radius;
+        for vertex in sphere.quads[quad] {
+            prescribed.push((vertex, sphere.nodes[vertex as usize] * (reach - 1.0)));
+        }
+    }
+    let solved = reference
+        .elasticity
+        .as_ref()
+        .and_then(|e| e.solve(&prescribed));
+    let Some(displacement) = solved else {
+        return sphere.nodes.clone();
+    };
+    sphere
+        .nodes
+        .iter()
+        .zip(displacement)
+        .map(|(&x, u)| x + u)
+        .collect()
+}
+
+/// Rotation and warp together, and the rings' corners in µm about the soma's centre.
+struct Flow {
+    rotation: DMat3,
+    warp: Option<Warp>,
+    rings: Vec<[DVec3; 4]>,
+}
+
+/// Steps of the flow: more changes the result by less than a hundredth of a quad.
+const FLOW_STEPS: usize = 6;
+
+impl Flow {
+    fn new(sphere: &Sphere, seats: &Seats, insertions: &[Insertion]) -> Self {
+        let (mut from, mut to, mut rings) = (Vec::new(), Vec::new(), Vec::new());
+        for (&quad, insertion) in seats.quads.iter().zip(insertions) {
+            let corners = sphere.quads[quad].map(|v| sphere.nodes[v as usize]);
+            let corners = warp::rotate(seats.rotation, corners);
+            let goals = warp::ring_directions(insertion.direction, insertion.angle(), corners);
+            from.extend(corners);
+            to.extend(goals);
+            let reach = insertion.distance.hypot(insertion.radius);
+            rings.push(goals.map(|goal| goal * reach));
+        }
+        let width = 2.5 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
+        let warp = Warp::new(&from, &to, width.max(0.45), FLOW_STEPS);
+        Self {
+            rotation: seats.rotation,
+            warp,
+            rings,
+        }
+    }
+
+    fn apply(&self, point: DVec3) -> DVec3 {
+        let point = self.rotation * point;
+        match (&self.warp, point.try_normalize()) {
+            (Some(warp), Some(direction)) => warp.apply(direction) * point.length(),
+            _ => point,
+        }
+    }
+}

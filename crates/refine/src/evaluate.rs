@@ -1,0 +1,315 @@
+//! The refined surface as a function: edges, patches, normals.
+//!
+//! **Theory.** García-Cantero et al. 2017, eq. 1 and 2: a point of a tube is `v = c + r n̂`, with the
+//! centre c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
+//! renormalised so that the tube does not pinch. We interpolate the offsets d = v − c of the four
+//! corners and divide by the length of the interpolated unit normals,
+//!
+//! `v(x, y) = c(y) + Σ wᵢ dᵢ / |Σ wᵢ n̂ᵢ|`,
+//!
+//! which is the same for circles and makes a quarter of an ellipse where a joint's vertices lie
+//! at different distances. Somata are bilinearly blended Coons patches over four cubics made from
+//! the corners' positions and normals (Vlachos et al., Curved PN triangles, 2001, for the cubics).
+//!
+//! **Conformity.** A point of an edge depends on the edge alone: two corners and their tracing
+//! points, always taken in the edge's own direction. So faces that share an edge agree to the bit.
+
+use glam::Vec3;
+use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+
+use crate::{Caps, Path, RefineOptions};
+
+/// How an edge runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EdgeKind {
+    /// Around a tracing point.
+    Ring,
+    /// Along the path, from the parent's ring to the child's.
+    Along,
+    /// Over a soma.
+    Soma,
+}
+
+/// A point of a curve or surface with its derivative.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Jet {
+    pub(crate) position: Vec3,
+    pub(crate) derivative: Vec3,
+}
+
+/// A corner with what its edges need to know.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corner {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    /// Centre of its tracing point.
+    pub(crate) center: Vec3,
+    /// From the centre to the corner.
+    pub(crate) offset: Vec3,
+    /// Unit direction of the offset.
+    pub(crate) radial: Vec3,
+    pub(crate) tangent: Vec3,
+    pub(crate) role: Role,
+}
+
+impl Corner {
+    pub(crate) fn new(mesh: &CoarseMesh, vertex: u32) -> Self {
+        let vertex = &mesh.vertices[vertex as usize];
+        let tracing = &mesh.tracing[vertex.tracing as usize];
+        let offset = vertex.position - tracing.center;
+        Self {
+            position: vertex.position,
+            normal: vertex.normal,
+            center: tracing.center,
+            offset,
+            radial: offset.normalize_or(vertex.normal),
+            tangent: tracing.tangent,
+            role: tracing.role,
+        }
+    }
+
+    /// Normal that the soma's cubics leave the corner across: at a ring that of the tube, so that
+    /// the soma runs smoothly into the neurite.
+    fn soma_normal(&self) -> Vec3 {
+        if self.role == Role::Soma {
+            self.normal
+        } else {
+            self.radial
+        }
+    }
+}
+
+/// Centre line between two tracing points, y ∈ [0, 1].
+pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
+    let way = b.center - a.center;
+    if path == Path::Linear {
+        return Jet {
+            position: a.center * (1.0 - y) + b.center * y,
+            derivative: way,
+        };
+    }
+    let (m0, m1) = hermite_tangents(a, b);
+    let (y2, y3) = (y * y, y * y * y);
+    let position = a.center * (2.0 * y3 - 3.0 * y2 + 1.0)
+        + m0 * (y3 - 2.0 * y2 + y)
+        + b.center * (3.0 * y2 - 2.0 * y3)
+        + m1 * (y3 - y2);
+    let derivative =
+        way * (6.0 * y - 6.0 * y2) + m0 * (3.0 * y2 - 4.0 * y + 1.0) + m1 * (3.0 * y2 - 2.0 * y);
+    Jet {
+        position,
+        derivative,
+    }
+}
+
+/// Tangents of the centre line: the orientations times the segment's length, so that it makes no
+/// loops; the segment itself at a joint, whose tubes have no direction in common.
+pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
+    let way = b.center - a.center;
+    let length = way.length();
+    let tangent = |corner: &Corner| {
+        if corner.role == Role::Joint {
+            way
+        } else {
+            corner.tangent * length
+        }
+    };
+    (tangent(a), tangent(b))
+}
+
+/// `A / |B|` and its derivative.
+fn over_length(a: Vec3, a_dot: Vec3, b: Vec3, b_dot: Vec3) -> Jet {
+    let inverse = 1.0 / b.length().max(1e-3);
+    let derivative = a_dot * inverse - a * (b.dot(b_dot) * inverse * inverse * inverse);
+    Jet {
+        position: a * inverse,
+        derivative,
+    }
+}
+
+fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
+    a * (1.0 - t) + b * t
+}
+
+/// A point of an edge, t ∈ [0, 1] from `a` to `b`.
+pub(crate) fn edge(kind: EdgeKind, a: &Corner, b: &Corner, path: Path, t: f32) -> Jet {
+    match kind {
+        EdgeKind::Ring => {
+            let offset = over_length(
+                mix(a.offset, b.offset, t),
+                b.offset - a.offset,
+                mix(a.radial, b.radial, t),
+                b.radial - a.radial,
+            );
+            Jet {
+                position: a.center + offset.position,
+                ..offset
+            }
+        }
+        EdgeKind::Along => {
+            let center = center_line(a, b, path, t);
+            let offset = over_length(
+                mix(a.offset, b.offset, t),
+                b.offset - a.offset,
+                mix(a.radial, b.radial, t),
+                b.radial - a.radial,
+            );
+            Jet {
+                position: center.position + offset.position,
+                derivative: center.derivative + offset.derivative,
+            }
+        }
+        EdgeKind::Soma => cubic(soma_controls(a, b), t),
+    }
+}
+
+/// Control points of a soma edge.
+pub(crate) fn soma_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
+    let way = b.position - a.position;
+    let leave = |normal: Vec3| (way - normal * way.dot(normal)) / 3.0;
+    [
+        a.position,
+        a.position + leave(a.soma_normal()),
+        b.position - leave(b.soma_normal()),
+        b.position,
+    ]
+}
+
+fn cubic([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Jet {
+    let s = 1.0 - t;
+    let position =
+        p0 * (s * s * s) + p1 * (3.0 * s * s * t) + p2 * (3.0 * s * t * t) + p3 * (t * t * t);
+    let derivative =
+        (p1 - p0) * (3.0 * s * s) + (p2 - p1) * (6.0 * s * t) + (p3 - p2) * (3.0 * t * t);
+    Jet {
+        position,
+        derivative,
+    }
+}
+
+/// Normal on an edge: that of the corners, made perpendicular to the edge's own direction. Depends
+/// on the edge alone, so both faces beside it have it.
+pub(crate) fn edge_normal(a: &Corner, b: &Corner, derivative: Vec3, t: f32) -> Vec3 {
+    let along = derivative.normalize_or_zero();
+    let normal = mix(a.normal, b.normal, t);
+    (normal - along * normal.dot(along)).normalize_or(normal.normalize_or(Vec3::Y))
+}
+
+/// A patch ready to be evaluated inside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchShape {
+    pub(crate) kind: PatchKind,
+    pub(crate) corners: [Corner; 4],
+    /// Per side: how it runs, and whether it runs against the patch's coordinate.
+    pub(crate) sides: [(EdgeKind, bool); 4],
+}
+
+/// Corners at the start and end of each side, along the patch's coordinates: sides 0 and 2 along x
+/// at y = 0 and 1, sides 1 and 3 along y at x = 1 and 0.
+pub(crate) const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
+
+impl PatchShape {
+    /// A point inside with its normal, x and y ∈ (0, 1).
+    pub(crate) fn interior(&self, options: &RefineOptions, x: f32, y: f32) -> (Vec3, Vec3) {
+        match self.kind {
+            PatchKind::Lateral => self.lateral(options.path, x, y),
+            PatchKind::Soma => self.coons(x, y),
+            PatchKind::Cap => self.cap(options.caps, x, y),
+        }
+    }
+
+    fn lateral(&self, path: Path, x: f32, y: f32) -> (Vec3, Vec3) {
+        let [a, b, c, d] = &self.corners;
+        let blend = |f: fn(&Corner) -> Vec3| {
+            let (near, far) = (mix(f(a), f(b), x), mix(f(d), f(c), x));
+            let across = mix(f(b) - f(a), f(c) - f(d), y);
+            (mix(near, far, y), across, far - near)
+        };
+        let (offset, offset_x, offset_y) = blend(|k| k.offset);
+        let (radial, radial_x, radial_y) = blend(|k| k.radial);
+        let center = center_line(a, d, path, y);
+        let around = over_length(offset, offset_x, radial, radial_x);
+        let along = over_length(offset, offset_y, radial, radial_y);
+        let normal = around
+            .derivative
+            .cross(center.derivative + along.derivative);
+        let outwards = radial.normalize_or(a.normal);
+        // A sharp bend folds the surface over; light it as the tube that it is part of.
+        let normal = normal.normalize_or(outwards);
+        let normal = if normal.dot(outwards) > 0.0 {
+            normal
+        } else {
+            outwards
+        };
+        (center.position + around.position, normal)
+    }
+
+    fn side(&self, side: usize, t: f32) -> Jet {
+        let (from, to) = SIDES[side];
+        let (a, b) = (&self.corners[from], &self.corners[to]);
+        let (kind, reversed) = self.sides[side];
+        if reversed {
+            let jet = edge(kind, b, a, Path::Hermite, 1.0 - t);
+            Jet {
+                derivative: -jet.derivative,
+                ..jet
+            }
+        } else {
+            edge(kind, a, b, Path::Hermite, t)
+        }
+    }
+
+    /// Bilinearly blended Coons patch.
+    fn coons(&self, x: f32, y: f32) -> (Vec3, Vec3) {
+        let [near, right, far, left] = [
+            self.side(0, x),
+            self.side(1, y),
+            self.side(2, x),
+            self.side(3, y),
+        ];
+        let [a, b, c, d] = self.corners.map(|k| k.position);
+        let position = mix(near.position, far.position, y) + mix(left.position, right.position, x)
+            - mix(mix(a, b, x), mix(d, c, x), y);
+        let by_x = mix(near.derivative, far.derivative, y) + right.position
+            - left.position
+            - mix(b - a, c - d, y);
+        let by_y = mix(left.derivative, right.derivative, x) + far.position
+            - near.position
+            - mix(d - a, c - b, x);
+        let mean = self
+            .corners
+            .iter()
+            .map(|k| k.normal)
+            .sum::<Vec3>()
+            .normalize_or(Vec3::Y);
+        (position, by_x.cross(by_y).normalize_or(mean))
+    }
+
+    /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the
+    /// distance from the disk's centre.
+    fn cap(&self, caps: Caps, x: f32, y: f32) -> (Vec3, Vec3) {
+        let (flat, _) = self.coons(x, y);
+        let [a, b, _, d] = &self.corners;
+        let tangent = a.tangent;
+        let outwards = (b.offset - a.offset).cross(d.offset - a.offset);
+        let axis = if outwards.dot(tangent) < 0.0 {
+            -tangent
+        } else {
+            tangent
+        };
+        if caps == Caps::Flat {
+            return (flat, axis);
+        }
+        let radius = a.offset.length();
+        let across = flat - a.center;
+        let share = (across.length() / radius.max(f32::MIN_POSITIVE)).min(1.0);
+        let angle = share * std::f32::consts::FRAC_PI_2;
+        let stretch = if share > 1e-4 {
+            angle.sin() / share
+        } else {
+            std::f32::consts::FRAC_PI_2
+        };
+        let dome = across * stretch + axis * (radius * angle.cos());
+        (a.center + dome, dome.normalize_or(axis))
+    }
+}

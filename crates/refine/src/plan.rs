@@ -1,0 +1,280 @@
+//! Which vertex is where: edges with their levels, and the numbers of all refined vertices.
+//!
+//! Vertices are numbered so: the coarse mesh's own, then the inner ones of every edge in the edge's
+//! direction, then the inner ones of every patch row by row. Memory is for the coarse mesh only,
+//! whatever the level.
+
+use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
+
+use crate::evaluate::{Corner, EdgeKind, SIDES};
+use crate::level::{HIGHEST_LEVEL, edge_level};
+use crate::{Caps, Levels, RefineOptions};
+
+/// An edge of the coarse mesh.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    /// Where it starts and ends in its own direction: along the path, else from the lower index.
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+    pub(crate) kind: EdgeKind,
+    pub(crate) level: u8,
+    /// Number of its first inner vertex.
+    pub(crate) first: u32,
+}
+
+/// All edges, and where patches find theirs and their inner vertices.
+pub(crate) struct Plan {
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) patch_edges: Vec<[u32; 4]>,
+    /// Number of the first inner vertex of each patch, and one past the last of all.
+    pub(crate) patch_first: Vec<u32>,
+    pub(crate) triangles: usize,
+    pub(crate) quads: usize,
+}
+
+/// The grid of a patch: cells and the levels of its four sides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grid {
+    pub(crate) nx: u32,
+    pub(crate) ny: u32,
+    levels: [u32; 4],
+}
+
+impl Plan {
+    pub(crate) fn new(mesh: &CoarseMesh, levels: &Levels<'_>, options: &RefineOptions) -> Self {
+        let (mut edges, patch_edges) = find_edges(mesh);
+        let mut next = mesh.vertices.len() as u32;
+        for edge in &mut edges {
+            let ends = [edge.from, edge.to]
+                .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
+            let [(a, ta), (b, tb)] = &ends;
+            edge.level = edge_level(levels, options.path, edge.kind, (a, *ta), (b, *tb)) as u8;
+            edge.first = next;
+            next += u32::from(edge.level) - 1;
+        }
+        let mut plan = Self {
+            edges,
+            patch_edges,
+            patch_first: Vec::new(),
+            triangles: 0,
+            quads: 0,
+        };
+        plan.patch_first.reserve(mesh.patches.len() + 1);
+        for patch in 0..mesh.patches.len() {
+            let grid = plan.grid(mesh, options, patch);
+            plan.patch_first.push(next);
+            next += (grid.nx - 1) * (grid.ny - 1);
+            let (triangles, quads) = grid.face_counts(options.quads);
+            plan.triangles += triangles;
+            plan.quads += quads;
+        }
+        plan.patch_first.push(next);
+        plan
+    }
+
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.patch_first.last().map_or(0, |&n| n as usize)
+    }
+
+    pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {
+        let levels = self.patch_edges[patch].map(|e| u32::from(self.edges[e as usize].level));
+        let (mut nx, mut ny) = (levels[0].max(levels[2]), levels[1].max(levels[3]));
+        if mesh.patches[patch].kind == PatchKind::Cap && options.caps == Caps::Round {
+            // A half sphere turns by 180° where the ring's side turns by 90°.
+            let finer = |n: u32| if n > 1 { (2 * n).min(HIGHEST_LEVEL) } else { 1 };
+            (nx, ny) = (finer(nx.max(ny)), finer(nx.max(ny)));
+        }
+        Grid { nx, ny, levels }
+    }
+
+    /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those of
+    /// its edge: where the edge has fewer, several columns share one.
+    pub(crate) fn vertex(
+        &self,
+        corners: [u32; 4],
+        patch: usize,
+        grid: &Grid,
+        i: u32,
+        j: u32,
+    ) -> u32 {
+        let side = if j == 0 {
+            0
+        } else if j == grid.ny {
+            2
+        } else if i == 0 {
+            3
+        } else if i == grid.nx {
+            1
+        } else {
+            return self.patch_first[patch] + (j - 1) * (grid.nx - 1) + i - 1;
+        };
+        let (place, count) = if side % 2 == 0 {
+            (i, grid.nx)
+        } else {
+            (j, grid.ny)
+        };
+        let level = grid.levels[side];
+        let place = snap(place, count, level);
+        let (start, end) = SIDES[side];
+        if place == 0 {
+            return corners[start];
+        }
+        if place == level {
+            return corners[end];
+        }
+        let edge = &self.edges[self.patch_edges[patch][side] as usize];
+        let place = if edge.from == corners[start] {
+            place
+        } else {
+            level - place
+        };
+        edge.first + place - 1
+    }
+
+    /// Appends the faces of a patch.
+    pub(crate) fn faces(
+        &self,
+        mesh: &CoarseMesh,
+        options: &RefineOptions,
+        patch: usize,
+        out: &mut Faces,
+    ) {
+        let corners = mesh.patches[patch].corners;
+        let grid = self.grid(mesh, options, patch);
+        let fans = mesh.patches[patch].kind != PatchKind::Lateral;
+        let at = |i: u32, j: u32| self.vertex(corners, patch, &grid, i, j);
+        for j in 0..grid.ny {
+            for i in 0..grid.nx {
+                let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                // Diagonals run towards the patch's corners on round patches, else all one way.
+                let falling = fans && ((2 * i < grid.nx) != (2 * j < grid.ny));
+                cell(quad, falling, options.quads, out);
+            }
+        }
+    }
+}
+
+/// Place on an edge of `level` parts that is nearest to place i of n; every place is hit if
+/// level ≤ n.
+fn snap(i: u32, n: u32, level: u32) -> u32 {
+    (2 * i * level + n) / (2 * n)
+}
+
+fn cell(quad: [u32; 4], falling: bool, quads: bool, out: &mut Faces) {
+    let [a, b, c, d] = quad;
+    let whole = a != b && b != c && c != d && d != a;
+    if quads && whole {
+        out.quads.push(quad);
+        return;
+    }
+    let pair = if falling {
+        [[a, b, d], [b, c, d]]
+    } else {
+        [[a, b, c], [a, c, d]]
+    };
+    for [p, q, r] in pair {
+        if p != q && q != r && r != p {
+            out.triangles.push([p, q, r]);
+        }
+    }
+}
+
+impl Grid {
+    /// Triangles and quads. Every step of a side that snapping makes empty takes one triangle away.
+    fn face_counts(&self, quads: bool) -> (usize, usize) {
+        let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);
+        let empty: usize = self
+            .levels
+            .iter()
+            .zip([nx, ny, nx, ny])
+            .map(|(&l, n)| n - l as usize)
+            .sum();
+        let triangles = 2 * nx * ny - empty;
+        if !quads {
+            return (triangles, 0);
+        }
+        let steps = |side: usize, n: u32, place: u32| {
+            snap(place, n, self.levels[side]) != snap(place + 1, n, self.levels[side])
+        };
+        let mut whole = 0;
+        for j in 0..self.ny {
+            for i in 0..self.nx {
+                let kept = (j > 0 || steps(0, self.nx, i))
+                    && (j + 1 < self.ny || steps(2, self.nx, i))
+                    && (i > 0 || steps(3, self.ny, j))
+                    && (i + 1 < self.nx || steps(1, self.ny, j));
+                whole += usize::from(kept);
+            }
+        }
+        (triangles - 2 * whole, whole)
+    }
+}
+
+/// Numbers the edges and lists those of every patch, by counting half-edges per lower vertex: no
+/// hashing, no sorting beyond a vertex's own few.
+fn find_edges(mesh: &CoarseMesh) -> (Vec<Edge>, Vec<[u32; 4]>) {
+    let ends = |patch: usize, side: usize| {
+        let corners = mesh.patches[patch].corners;
+        (corners[SIDES[side].0], corners[SIDES[side].1])
+    };
+    let mut start = vec![0_u32; mesh.vertices.len() + 1];
+    for patch in 0..mesh.patches.len() {
+        for side in 0..4 {
+            let (a, b) = ends(patch, side);
+            start[a.min(b) as usize + 1] += 1;
+        }
+    }
+    for i in 1..start.len() {
+        start[i] += start[i - 1];
+    }
+    let mut fill = start.clone();
+    let mut half_edges = vec![(0_u32, 0_u32); 4 * mesh.patches.len()];
+    for patch in 0..mesh.patches.len() {
+        for side in 0..4 {
+            let (a, b) = ends(patch, side);
+            let slot = &mut fill[a.min(b) as usize];
+            half_edges[*slot as usize] = (a.max(b), (4 * patch + side) as u32);
+            *slot += 1;
+        }
+    }
+    let mut edges = Vec::with_capacity(2 * mesh.patches.len());
+    let mut patch_edges = vec![[0_u32; 4]; mesh.patches.len()];
+    for v in 0..mesh.vertices.len() {
+        let bucket = &mut half_edges[start[v] as usize..start[v + 1] as usize];
+        bucket.sort_unstable();
+        let mut last = u32::MAX;
+        for &(high, half) in bucket.iter() {
+            let (patch, side) = (half as usize / 4, half as usize % 4);
+            if high != last {
+                edges.push(describe(mesh, patch, side));
+                last = high;
+            }
+            patch_edges[patch][side] = edges.len() as u32 - 1;
+        }
+    }
+    (edges, patch_edges)
+}
+
+fn describe(mesh: &CoarseMesh, patch: usize, side: usize) -> Edge {
+    let Patch { corners, kind } = mesh.patches[patch];
+    let (a, b) = (corners[SIDES[side].0], corners[SIDES[side].1]);
+    let tracing = |v: u32| mesh.vertices[v as usize].tracing;
+    let around = tracing(a) == tracing(b) && mesh.tracing[tracing(a) as usize].role != Role::Soma;
+    let kind = match kind {
+        _ if around => EdgeKind::Ring,
+        PatchKind::Soma => EdgeKind::Soma,
+        PatchKind::Lateral | PatchKind::Cap => EdgeKind::Along,
+    };
+    let (from, to) = if kind == EdgeKind::Along {
+        (a, b)
+    } else {
+        (a.min(b), a.max(b))
+    };
+    Edge {
+        from,
+        to,
+        kind,
+        level: 1,
+        first: 0,
+    }
+}

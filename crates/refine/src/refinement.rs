@@ -1,0 +1,248 @@
+//! The refined surface, made block by block from the coarse mesh.
+
+use glam::{DVec3, Vec3};
+use neurotess_mesh::{CoarseMesh, Faces, Surface, SurfaceVertex, TracingPoint};
+use rayon::prelude::*;
+
+use crate::evaluate::{Corner, PatchShape, SIDES, edge, edge_normal};
+use crate::plan::{Edge, Plan};
+use crate::{Levels, RefineOptions};
+
+/// A coarse mesh with levels. Holds no refined vertex: a [`Surface`] whose blocks are evaluated when
+/// they are asked for, so memory does not grow with the level.
+pub struct Refinement<'m> {
+    mesh: &'m CoarseMesh,
+    options: RefineOptions,
+    plan: Plan,
+}
+
+/// Coarse vertices, edges or patches in one block.
+const BLOCK: usize = 4096;
+
+impl<'m> Refinement<'m> {
+    /// Plans the refinement of a closed mesh.
+    ///
+    /// Levels outside 1 to 64 are clamped. [`Levels::PerPoint`] takes missing points as level 1.
+    pub fn new(mesh: &'m CoarseMesh, levels: &Levels<'_>, options: &RefineOptions) -> Self {
+        Self {
+            mesh,
+            options: *options,
+            plan: Plan::new(mesh, levels, options),
+        }
+    }
+
+    /// Number of edges of the refined surface.
+    pub fn edge_count(&self) -> usize {
+        // Closed: every edge has two faces.
+        (3 * self.plan.triangles + 4 * self.plan.quads) / 2
+    }
+
+    /// Volume (µm³) and area (µm²) of the refined surface; evaluates all of it, on all cores.
+    pub fn volume_and_area(&self) -> (f64, f64) {
+        let center = self
+            .mesh
+            .vertices
+            .first()
+            .map_or(Vec3::ZERO, |v| v.position);
+        let blocks = self.mesh.patches.len().div_ceil(BLOCK);
+        let sums: Vec<(f64, f64)> = (0..blocks)
+            .into_par_iter()
+            .map(|block| {
+                let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
+                let mut faces = Faces::default();
+                let mut sum = (0.0, 0.0);
+                let mut positions = Vec::new();
+                for patch in block * BLOCK..end {
+                    self.measure_patch(patch, center, &mut faces, &mut positions, &mut sum);
+                }
+                sum
+            })
+            .collect();
+        sums.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1))
+    }
+
+    fn measure_patch(
+        &self,
+        patch: usize,
+        center: Vec3,
+        faces: &mut Faces,
+        positions: &mut Vec<(u32, DVec3)>,
+        sum: &mut (f64, f64),
+    ) {
+        let grid = self.plan.grid(self.mesh, &self.options, patch);
+        let corners = self.mesh.patches[patch].corners;
+        positions.clear();
+        let mut add = |index: u32, p: Vec3| positions.push((index, (p - center).as_dvec3()));
+        for v in corners {
+            add(v, self.mesh.vertices[v as usize].position);
+        }
+        for e in self.plan.patch_edges[patch] {
+            let edge = &self.plan.edges[e as usize];
+            for k in 1..u32::from(edge.level) {
+                add(edge.first + k - 1, self.edge_vertex(edge, k).position);
+            }
+        }
+        let shape = self.shape(patch);
+        let first = self.plan.patch_first[patch];
+        for j in 1..grid.ny {
+            for i in 1..grid.nx {
+                let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
+                let index = first + (j - 1) * (grid.nx - 1) + i - 1;
+                add(index, shape.interior(&self.options, x, y).0);
+            }
+        }
+        positions.sort_unstable_by_key(|&(index, _)| index);
+        let at = |index: u32| {
+            let found = positions.binary_search_by_key(&index, |&(i, _)| i);
+            found.map_or(DVec3::ZERO, |i| positions[i].1)
+        };
+        faces.triangles.clear();
+        faces.quads.clear();
+        self.plan.faces(self.mesh, &self.options, patch, faces);
+        let halves = faces
+            .quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        for [a, b, c] in faces.triangles.iter().copied().chain(halves) {
+            let [a, b, c] = [a, b, c].map(at);
+            let cross = (b - a).cross(c - a);
+            sum.0 += a.dot(cross) / 6.0;
+            sum.1 += 0.5 * cross.length();
+        }
+    }
+
+    fn shape(&self, patch: usize) -> PatchShape {
+        let corners = self.mesh.patches[patch].corners;
+        let sides = [0, 1, 2, 3].map(|side: usize| {
+            let edge = &self.plan.edges[self.plan.patch_edges[patch][side] as usize];
+            (edge.kind, edge.from != corners[SIDES[side].0])
+        });
+        let kind = self.mesh.patches[patch].kind;
+        PatchShape {
+            kind,
+            corners: corners.map(|v| Corner::new(self.mesh, v)),
+            sides,
+        }
+    }
+
+    fn tracing(&self, vertex: u32) -> &TracingPoint {
+        &self.mesh.tracing[self.mesh.vertices[vertex as usize].tracing as usize]
+    }
+
+    fn coarse_vertex(&self, index: usize) -> SurfaceVertex {
+        let vertex = &self.mesh.vertices[index];
+        let tracing = self.tracing(index as u32);
+        attributed(vertex.position, vertex.normal, tracing, tracing.radius)
+    }
+
+    /// Inner vertex k of an edge, 0 < k < level.
+    fn edge_vertex(&self, plan: &Edge, k: u32) -> SurfaceVertex {
+        let (a, b) = (
+            Corner::new(self.mesh, plan.from),
+            Corner::new(self.mesh, plan.to),
+        );
+        let t = k as f32 / f32::from(plan.level);
+        let jet = edge(plan.kind, &a, &b, self.options.path, t);
+        let normal = edge_normal(&a, &b, jet.derivative, t);
+        let (ta, tb) = (self.tracing(plan.from), self.tracing(plan.to));
+        let radius = ta.radius * (1.0 - t) + tb.radius * t;
+        attributed(jet.position, normal, if t < 0.5 { ta } else { tb }, radius)
+    }
+
+    fn patch_vertices(&self, patch: usize, out: &mut Vec<SurfaceVertex>) {
+        let grid = self.plan.grid(self.mesh, &self.options, patch);
+        if grid.nx < 2 || grid.ny < 2 {
+            return;
+        }
+        let shape = self.shape(patch);
+        let corners = self.mesh.patches[patch].corners;
+        let tracing = corners.map(|v| self.tracing(v));
+        let radii = tracing.map(|t| t.radius);
+        for j in 1..grid.ny {
+            let y = j as f32 / grid.ny as f32;
+            for i in 1..grid.nx {
+                let x = i as f32 / grid.nx as f32;
+                let (position, normal) = shape.interior(&self.options, x, y);
+                let nearest =
+                    tracing[usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5))];
+                let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)
+                    + (radii[3] * (1.0 - x) + radii[2] * x) * y;
+                out.push(attributed(position, normal, nearest, radius));
+            }
+        }
+    }
+}
+
+fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32) -> SurfaceVertex {
+    let TracingPoint {
+        kind,
+        sample,
+        section,
+        ..
+    } = *tracing;
+    SurfaceVertex {
+        position,
+        normal,
+        kind,
+        point: sample,
+        section,
+        radius,
+    }
+}
+
+impl Surface for Refinement<'_> {
+    fn origin(&self) -> DVec3 {
+        self.mesh.origin
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.plan.vertex_count()
+    }
+
+    fn triangle_count(&self) -> usize {
+        self.plan.triangles
+    }
+
+    fn quad_count(&self) -> usize {
+        self.plan.quads
+    }
+
+    fn vertex_blocks(&self) -> usize {
+        [
+            self.mesh.vertices.len(),
+            self.plan.edges.len(),
+            self.mesh.patches.len(),
+        ]
+        .map(|n| n.div_ceil(BLOCK))
+        .iter()
+        .sum()
+    }
+
+    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
+        let range = |block: usize, count: usize| block * BLOCK..((block + 1) * BLOCK).min(count);
+        let (corners, edges) = (self.mesh.vertices.len(), self.plan.edges.len());
+        let (corner_blocks, edge_blocks) = (corners.div_ceil(BLOCK), edges.div_ceil(BLOCK));
+        if block < corner_blocks {
+            out.extend(range(block, corners).map(|v| self.coarse_vertex(v)));
+        } else if block < corner_blocks + edge_blocks {
+            for edge in &self.plan.edges[range(block - corner_blocks, edges)] {
+                out.extend((1..u32::from(edge.level)).map(|k| self.edge_vertex(edge, k)));
+            }
+        } else {
+            for patch in range(block - corner_blocks - edge_blocks, self.mesh.patches.len()) {
+                self.patch_vertices(patch, out);
+            }
+        }
+    }
+
+    fn face_blocks(&self) -> usize {
+        self.mesh.patches.len().div_ceil(BLOCK)
+    }
+
+    fn faces(&self, block: usize, out: &mut Faces) {
+        let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
+        for patch in block * BLOCK..end {
+            self.plan.faces(self.mesh, &self.options, patch, out);
+        }
+    }
+}
