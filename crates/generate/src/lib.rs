@@ -9,6 +9,7 @@ mod options;
 mod prepare;
 mod skeleton;
 mod soma;
+mod somata;
 mod thin;
 mod warning;
 
@@ -21,10 +22,7 @@ use neurotess_mesh::CoarseMesh;
 use neurotess_morphology::Morphology;
 
 use assemble::Assembly;
-use prepare::Ball;
-use skeleton::{Root, Skeleton};
-use soma::seats::Insertion;
-use soma::{SomaRequest, SomaSurface};
+use skeleton::Skeleton;
 use warning::Warnings;
 
 /// A coarse mesh and what there is to say about it.
@@ -60,9 +58,11 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
     prepare::mend_radii(&mut skeleton, &mut warnings);
     prepare::merge_coincident(&mut skeleton, &mut warnings);
-    let balls = balls(morphology, &skeleton, options, &mut warnings);
+    let mut balls = somata::balls(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &balls, &mut warnings);
-    prepare::insert_first_rings(&mut skeleton, &balls, &mut warnings);
+    let clock = Instant::now();
+    let built = somata::build(&mut skeleton, &mut balls, options, &mut warnings);
+    let soma_seconds = clock.elapsed().as_secs_f64();
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
     thin::merge_close_forks(&mut skeleton, &mut warnings);
@@ -73,25 +73,17 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     fork::clear_the_way(&mut skeleton, &mut warnings);
     let orientations = thin::uncross_rings(&mut skeleton, &balls, &mut warnings);
 
-    let clock = Instant::now();
-    let built = build_somata(morphology, &mut skeleton, &balls, options, &mut warnings);
-    let soma_seconds = clock.elapsed().as_secs_f64();
-    let mut orientations = orientations;
-    for (surface, nodes, _) in built.iter().flatten() {
-        for (&node, insertion) in nodes.iter().zip(&surface.insertions) {
-            orientations[node as usize] = insertion.direction;
-        }
-    }
     let mut assembly = Assembly::new(&skeleton, &orientations);
+    let rings = somata::ring_nodes(&skeleton, morphology.somata.len());
     let mut somata = Vec::new();
-    for (index, soma) in built.iter().enumerate() {
-        if let (Some((surface, nodes, report)), Some(ball)) = (soma, balls[index]) {
+    for (index, (soma, nodes)) in built.iter().zip(rings).enumerate() {
+        if let (Some(soma), Some(ball)) = (soma, balls[index]) {
             let sample = morphology.somata[index]
                 .samples
                 .first()
                 .map_or(-1, |s| s.id);
-            assembly.soma(surface, ball.center, sample, nodes);
-            somata.push(*report);
+            assembly.soma(&soma.surface, ball.center, sample, &nodes);
+            somata.push(soma.report);
         }
     }
     let mut mesh = assembly.finish();
@@ -101,197 +93,5 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
         somata,
         warnings: warnings.into_vec(),
         soma_seconds,
-    }
-}
-
-/// The sphere of each soma that is to be meshed.
-fn balls(
-    morphology: &Morphology,
-    skeleton: &Skeleton,
-    options: &GenerateOptions,
-    warnings: &mut Warnings,
-) -> Vec<Option<Ball>> {
-    let reach = match options.soma {
-        SomaMethod::Fem => FEM_REACH,
-        SomaMethod::Sphere => 1.0,
-        SomaMethod::Profile => PROFILE_REACH,
-        SomaMethod::None => return vec![None; morphology.somata.len()],
-    };
-    let ball = |(index, soma): (usize, &neurotess_morphology::Soma)| {
-        let mut radius = f64::from(soma.radius);
-        if !(radius.is_finite() && radius > 0.0) {
-            radius = radius_from_neurites(skeleton, index as u32, soma.center.as_dvec3());
-            warnings.add(
-                "soma_radius_mended",
-                soma.samples.first().map(|s| s.id),
-                "soma has no radius: taken from where its neurites start",
-            );
-        }
-        Some(Ball {
-            center: soma.center.as_dvec3(),
-            radius: radius * options.soma_scale,
-            reach,
-        })
-    };
-    morphology.somata.iter().enumerate().map(ball).collect()
-}
-
-/// Farthest first ring of an elastic soma, in radii: beyond, the pull inverts tetrahedra. Chosen by
-/// eye among 1.2 to 1.6: farther ones look like stars.
-const FEM_REACH: f64 = 1.35;
-/// LiveMesh's: the tube has its own radius from 1.5 R on.
-const PROFILE_REACH: f64 = 1.5;
-
-/// A radius for a soma that has none: half-way to the nearest start of a neurite, and no thinner
-/// than the thickest of them.
-fn radius_from_neurites(skeleton: &Skeleton, soma: u32, center: glam::DVec3) -> f64 {
-    let starts = skeleton.nodes.iter().filter(|n| n.root == Root::Soma(soma));
-    let (mut nearest, mut thickest) = (f64::INFINITY, 0.0_f64);
-    for start in starts {
-        nearest = nearest.min(start.center.distance(center));
-        thickest = thickest.max(start.radius);
-    }
-    let half = if nearest.is_finite() {
-        0.5 * nearest
-    } else {
-        0.0
-    };
-    half.min(10.0).max(1.5 * thickest).max(0.5)
-}
-
-/// A soma's surface, the nodes of its rings, and its figures.
-type BuiltSoma = (SomaSurface, Vec<u32>, SomaReport);
-
-fn build_somata(
-    morphology: &Morphology,
-    skeleton: &mut Skeleton,
-    balls: &[Option<Ball>],
-    options: &GenerateOptions,
-    warnings: &mut Warnings,
-) -> Vec<Option<BuiltSoma>> {
-    let mut rings: Vec<Vec<u32>> = vec![Vec::new(); morphology.somata.len()];
-    for (index, node) in skeleton.nodes.iter().enumerate() {
-        if let Root::Insertion(soma) = node.root {
-            rings[soma as usize].push(index as u32);
-        }
-    }
-    balls
-        .iter()
-        .zip(rings)
-        .map(|(ball, nodes)| {
-            let ball = (*ball)?;
-            let insertions: Vec<Insertion> = nodes
-                .iter()
-                .map(|&n| insertion(skeleton.node(n), &ball))
-                .collect();
-            let request = SomaRequest {
-                center: ball.center,
-                radius: ball.radius,
-                method: options.soma,
-                poisson: options.poisson,
-                kind: options.sphere,
-                level: options.sphere_level,
-            };
-            let mut surface = soma::rebuild(&request, &insertions);
-            report_soma(&surface, warnings);
-            let nodes = keep_seated(skeleton, &mut surface, nodes, &ball);
-            let report = measure_soma(&surface, ball.radius);
-            Some((surface, nodes, report))
-        })
-        .collect()
-}
-
-fn insertion(node: &skeleton::Node, ball: &Ball) -> Insertion {
-    let offset = node.center - ball.center;
-    Insertion {
-        direction: offset.try_normalize().unwrap_or(glam::DVec3::Y),
-        distance: offset.length(),
-        radius: node.radius,
-    }
-}
-
-/// Puts the rings' nodes where the soma has them. Neurites without a seat become free.
-fn keep_seated(
-    skeleton: &mut Skeleton,
-    surface: &mut SomaSurface,
-    nodes: Vec<u32>,
-    ball: &Ball,
-) -> Vec<u32> {
-    let mut seated = Vec::with_capacity(nodes.len());
-    let (mut rings, mut insertions) = (Vec::new(), Vec::new());
-    for (slot, node) in nodes.into_iter().enumerate() {
-        let insertion = surface.insertions[slot];
-        let target = &mut skeleton.nodes[node as usize];
-        if surface.dropped.contains(&slot) {
-            target.root = Root::Free;
-            continue;
-        }
-        target.center = ball.center + insertion.direction * insertion.distance;
-        target.radius = insertion.radius;
-        seated.push(node);
-        rings.push(surface.rings[slot]);
-        insertions.push(insertion);
-    }
-    (surface.rings, surface.insertions) = (rings, insertions);
-    seated
-}
-
-fn report_soma(surface: &SomaSurface, warnings: &mut Warnings) {
-    warnings.add_many(
-        "ring_shrunk",
-        surface.shrunk,
-        "neurite too thick for its place on the soma: its first ring was made smaller",
-    );
-    warnings.add_many(
-        "ring_moved",
-        surface.turned,
-        "neurites crowd on the soma: the first ring was moved aside",
-    );
-    warnings.add_many(
-        "seat_far",
-        surface.misfits,
-        "no free place on the soma within 1.5 quads of a neurite: the surface was warped towards it",
-    );
-    warnings.add_many(
-        "no_seat",
-        surface.dropped.len(),
-        "more neurites than the soma has places for: left unattached",
-    );
-    warnings.add_many(
-        "soma_folded",
-        surface.folded,
-        "corner of the soma's surface turns inwards: try --soma sphere or a larger --soma-scale",
-    );
-    warnings.add_many(
-        "soma_inverted",
-        surface.inverted,
-        "tetrahedron of the soma turned inside out: the surface is valid all the same",
-    );
-}
-
-/// Volume and area of a soma's surface, and of the sphere that it was.
-fn measure_soma(surface: &SomaSurface, radius: f64) -> SomaReport {
-    use std::f64::consts::PI;
-    let center = surface.vertices.first().copied().unwrap_or_default();
-    let quad = |q: &[u32; 4]| {
-        let [a, b, c, d] = q.map(|v| surface.vertices[v as usize] - center);
-        let (left, right) = ((b - a).cross(c - a), (c - a).cross(d - a));
-        (
-            0.5 * (left.length() + right.length()),
-            (a.dot(left) + a.dot(right)) / 6.0,
-        )
-    };
-    let (mut area, mut volume) = (0.0, 0.0);
-    for q in &surface.quads {
-        let (a, v) = quad(q);
-        area += a;
-        volume += v;
-    }
-    volume += surface.rings.iter().map(|ring| quad(ring).1).sum::<f64>();
-    SomaReport {
-        volume,
-        area,
-        sphere_volume: 4.0 / 3.0 * PI * radius.powi(3),
-        sphere_area: 4.0 * PI * radius * radius,
     }
 }

@@ -78,38 +78,43 @@ pub(crate) fn rebuild(request: &SomaRequest, insertions: &[Insertion]) -> SomaSu
         .unwrap_or_else(|| fitting_level(request.kind, &insertions));
     let (lowest, highest) = level_range(request.kind);
     level = level.clamp(lowest, highest);
-    for attempt in 0.. {
+    // Remedies in turn: a finer sphere, then smaller rings. A nearer ring is the caller's.
+    for attempt in 0..ATTEMPTS {
         let reference = reference(request.kind, level, request.poisson);
-        let last = attempt >= 6;
         if let Some(seats) = seats::assign(&reference.sphere, &insertions) {
             let mut surface = deform(request, &reference, &seats, &insertions);
-            surface.shrunk = shrunk;
-            surface.turned = turned;
-            if (surface.folded == 0 && surface.inverted == 0) || last {
+            (surface.shrunk, surface.turned) = (shrunk, turned);
+            if surface.sound() || attempt + 1 == ATTEMPTS {
                 return surface;
             }
-        } else if level == highest {
-            // More neurites than quads: the thinnest go.
+        } else if level == highest || request.level.is_some() {
             return without_thinnest(request, &insertions);
         }
-        // Remedies in turn: a finer sphere, then smaller rings.
-        if request.level.is_none() && level < highest && attempt % 2 == 0 {
-            level = (level
-                + if request.kind == SphereKind::Cube {
-                    2
-                } else {
-                    1
-                })
-            .min(highest);
+        if request.level.is_none() && level < highest {
+            level = (level + finer(request.kind)).min(highest);
         } else {
             insertions.iter_mut().for_each(|i| i.radius *= 0.85);
             shrunk = insertions.len();
         }
-        if last && level < highest {
-            level += 1;
-        }
     }
-    unreachable!("the loop ends with its last attempt")
+    without_thinnest(request, &insertions)
+}
+
+/// Tries before a surface with folds is handed back.
+const ATTEMPTS: usize = 3;
+
+fn finer(kind: SphereKind) -> u32 {
+    match kind {
+        SphereKind::Octahedron => 1,
+        SphereKind::Cube => 3,
+    }
+}
+
+impl SomaSurface {
+    /// No fold and no tetrahedron inside out.
+    pub(crate) fn sound(&self) -> bool {
+        self.folded == 0 && self.inverted == 0
+    }
 }
 
 fn without_thinnest(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurface {
