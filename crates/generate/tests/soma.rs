@@ -1,0 +1,150 @@
+//! The soma as users see it: counts, volume against ν, alternatives, awkward neurites.
+
+use glam::{Vec3, vec3};
+use neurotess_generate::{GenerateOptions, Generated, SomaMethod, SphereKind, generate};
+use neurotess_mesh::{PatchKind, Role};
+use neurotess_morphology::{
+    Attachment, Morphology, NeuriteKind, Point, Section, Soma, SomaKind, SomaSample,
+};
+
+/// A soma of radius 5 µm with straight neurites in the given directions.
+fn cell(directions: &[Vec3], start: f32, radius: f32) -> Morphology {
+    let mut m = Morphology::default();
+    let sample = SomaSample { id: 1, position: Vec3::ZERO, radius: 5.0, parent: None };
+    m.somata.push(Soma {
+        kind: SomaKind::Point,
+        samples: vec![sample],
+        center: Vec3::ZERO,
+        radius: 5.0,
+    });
+    for direction in directions {
+        let direction = direction.normalize_or(Vec3::X);
+        let first = m.points.len() as u32;
+        for step in 0_i64..4 {
+            let position = direction * (start + 4.0 * step as f32);
+            m.points.push(Point { position, radius });
+            m.sample_ids.push(i64::from(first) + step + 2);
+        }
+        let end = m.points.len() as u32;
+        let attachment = Attachment::Soma { soma: 0, sample: 0 };
+        m.sections.push(Section { kind: NeuriteKind(3), attachment, first, end });
+    }
+    m
+}
+
+fn five() -> [Vec3; 5] {
+    [
+        vec3(0.0, 1.0, 0.1),
+        vec3(1.0, -0.4, 0.3),
+        vec3(-1.0, -0.3, 0.4),
+        vec3(0.1, -0.5, -1.0),
+        vec3(0.2, -0.6, 1.0),
+    ]
+}
+
+fn codes(generated: &Generated) -> Vec<&str> {
+    generated.warnings.iter().map(|w| w.code).collect()
+}
+
+#[test]
+fn paper_soma_has_502_triangles_with_five_neurites() {
+    let options = GenerateOptions {
+        sphere: SphereKind::Octahedron,
+        sphere_level: Some(3),
+        ..GenerateOptions::default()
+    };
+    let mesh = generate(&cell(&five(), 6.5, 0.5), &options).mesh;
+    let quads = mesh.patches.iter().filter(|p| p.kind == PatchKind::Soma).count();
+    assert_eq!(2 * quads, 502);
+    let on_soma = mesh.tracing.iter().filter(|t| t.role == Role::Soma).count();
+    assert_eq!(on_soma + 4 * 5, 258);
+}
+
+/// The paper's figure 3: the higher ν, the less the soma swells.
+#[test]
+fn volume_falls_as_poissons_ratio_rises() {
+    for sphere in [SphereKind::Octahedron, SphereKind::Cube] {
+        let mut last = f64::INFINITY;
+        for poisson in [0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49] {
+            let options = GenerateOptions { poisson, sphere, ..GenerateOptions::default() };
+            let generated = generate(&cell(&five(), 6.5, 0.5), &options);
+            assert_eq!(codes(&generated), [""; 0]);
+            let report = generated.somata[0];
+            let share = report.volume / report.sphere_volume;
+            println!("{sphere:?} ν {poisson}: volume {share:.3} of the sphere's");
+            assert!(share < last, "{sphere:?} ν {poisson}: {share} after {last}");
+            assert!((0.9..1.4).contains(&share));
+            last = share;
+        }
+    }
+}
+
+#[test]
+fn rings_have_the_neurites_radius_and_plane() {
+    let mesh = generate(&cell(&five(), 6.5, 0.7), &GenerateOptions::default()).mesh;
+    let rings: Vec<_> = mesh.tracing.iter().filter(|t| t.role == Role::Insertion).collect();
+    assert_eq!(rings.len(), 5);
+    for (index, tracing) in mesh.tracing.iter().enumerate() {
+        if tracing.role != Role::Insertion {
+            continue;
+        }
+        let corners: Vec<_> =
+            mesh.vertices.iter().filter(|v| v.tracing == index as u32).collect();
+        assert_eq!(corners.len(), 4);
+        for corner in corners {
+            let offset = corner.position - tracing.center;
+            assert!((offset.length() - 0.7).abs() < 1e-5);
+            assert!(offset.dot(tracing.tangent).abs() < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn soma_scale_scales_the_soma() {
+    let volume = |soma_scale| {
+        let options = GenerateOptions { soma_scale, ..GenerateOptions::default() };
+        generate(&cell(&five(), 6.5, 0.5), &options).somata[0].sphere_volume
+    };
+    assert!((volume(0.5) / volume(1.0) - 0.125).abs() < 1e-9);
+}
+
+#[test]
+fn alternatives_differ_as_they_should() {
+    let volume = |soma| {
+        let options = GenerateOptions { soma, ..GenerateOptions::default() };
+        let report = generate(&cell(&five(), 7.5, 0.5), &options).somata.first().copied();
+        report.map(|r| r.volume / r.sphere_volume)
+    };
+    let (sphere, profile) = (volume(SomaMethod::Sphere), volume(SomaMethod::Profile));
+    assert!(sphere.is_some_and(|v| (0.93..1.001).contains(&v)), "{sphere:?}");
+    assert!(profile > sphere, "{profile:?} {sphere:?}");
+    assert_eq!(volume(SomaMethod::None), None);
+}
+
+#[test]
+fn crowded_and_thick_neurites_fold_nothing() {
+    let crowd: Vec<Vec3> =
+        (0..24).map(|i| vec3((i % 5) as f32 * 0.1, 1.0, (i / 5) as f32 * 0.1)).collect();
+    for radius in [0.3, 1.0, 4.0] {
+        let generated = generate(&cell(&crowd, 6.0, radius), &GenerateOptions::default());
+        let codes = codes(&generated);
+        assert!(!codes.contains(&"soma_folded"), "radius {radius}: {codes:?}");
+        assert!(!codes.contains(&"soma_inverted"), "radius {radius}: {codes:?}");
+        assert!(codes.contains(&"ring_shrunk"), "radius {radius}: {codes:?}");
+    }
+}
+
+#[test]
+fn far_first_points_are_bridged_and_inner_ones_left_out() {
+    let far = generate(&cell(&five(), 40.0, 0.5), &GenerateOptions::default());
+    assert!(codes(&far).contains(&"far_from_soma"));
+    let inside = generate(&cell(&five(), 1.0, 0.5), &GenerateOptions::default());
+    let warning = inside.warnings.iter().find(|w| w.code == "inside_soma").unwrap();
+    assert_eq!((warning.count, warning.sample), (10, Some(2)));
+}
+
+#[test]
+fn empty_morphology_gives_an_empty_mesh() {
+    let generated = generate(&Morphology::default(), &GenerateOptions::default());
+    assert!(generated.mesh.patches.is_empty());
+}

@@ -1,0 +1,78 @@
+//! Whatever the tree and whatever the levels: closed, oriented, Euler 2, finite.
+mod common;
+
+use common::{Twig, assert_closed, grow};
+use neurotess_generate::{GenerateOptions, SomaMethod, generate};
+use neurotess_mesh::{Surface, SurfaceMesh};
+use neurotess_refine::{Caps, CoarseSurface, Levels, Path, RefineOptions, Refinement};
+use proptest::prelude::*;
+
+fn twig() -> impl Strategy<Value = Twig> {
+    (0..12_usize, any::<u64>(), 1..9_usize, 0.01_f32..6.0, 0.0_f32..3.0, 0.05_f32..3.0).prop_map(
+        |(parent, seed, points, step, wild, radius)| Twig { parent, seed, points, step, wild, radius },
+    )
+}
+
+fn refined(
+    mesh: &neurotess_mesh::CoarseMesh,
+    levels: &Levels<'_>,
+    options: &RefineOptions,
+    what: &str,
+) -> SurfaceMesh {
+    let refinement = Refinement::new(mesh, levels, options);
+    let surface = SurfaceMesh::collect(&refinement);
+    assert_eq!(surface.vertices.len(), refinement.vertex_count(), "{what}");
+    assert_eq!(surface.faces.triangles.len(), refinement.triangle_count(), "{what}");
+    assert_eq!(surface.faces.quads.len(), refinement.quad_count(), "{what}");
+    assert_closed(&surface, what);
+    for vertex in &surface.vertices {
+        assert!(vertex.position.is_finite(), "{what}");
+        assert!((vertex.normal.length() - 1.0).abs() < 1e-3, "{what}: normal {}", vertex.normal);
+    }
+    surface
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 96, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_trees_at_random_levels_are_closed(
+        twigs in prop::collection::vec(twig(), 1..14),
+        soma in prop::option::of(0.2_f32..12.0),
+        seed in any::<u64>(),
+        method in 0..4_usize,
+        quads in any::<bool>(),
+        linear in any::<bool>(),
+        flat in any::<bool>(),
+    ) {
+        let morphology = grow(&twigs, soma);
+        let soma =
+            [SomaMethod::Fem, SomaMethod::Sphere, SomaMethod::Profile, SomaMethod::None][method];
+        let generated = generate(&morphology, &GenerateOptions { soma, ..Default::default() });
+        let mesh = &generated.mesh;
+        assert_closed(&SurfaceMesh::collect(&CoarseSurface::new(mesh, true)), "coarse");
+        let options = RefineOptions {
+            path: if linear { Path::Linear } else { Path::Hermite },
+            caps: if flat { Caps::Flat } else { Caps::Round },
+            quads,
+        };
+        refined(mesh, &Levels::Homogeneous(1), &options, "level 1");
+        refined(mesh, &Levels::Homogeneous(3), &options, "level 3");
+        // Neighbours as unlike as 1 and 64.
+        let mixed: Vec<u8> = (0..mesh.tracing.len() as u64)
+            .map(|i| [1, 2, 3, 5, 8, 17][((seed ^ (i * 0x9e37_79b9)) >> 7) as usize % 6])
+            .collect();
+        refined(mesh, &Levels::PerPoint(&mixed), &options, "mixed levels");
+        refined(mesh, &Levels::MaxError(0.05), &options, "by error");
+    }
+}
+
+#[test]
+fn levels_1_and_64_side_by_side_are_closed() {
+    let twigs: Vec<Twig> = (0..5)
+        .map(|i| Twig { parent: i / 2, seed: i as u64, points: 3, step: 3.0, wild: 0.4, radius: 1.0 })
+        .collect();
+    let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default()).mesh;
+    let levels: Vec<u8> = (0..mesh.tracing.len()).map(|i| if i % 2 == 0 { 1 } else { 64 }).collect();
+    refined(&mesh, &Levels::PerPoint(&levels), &RefineOptions::default(), "1 and 64");
+}
