@@ -92,7 +92,11 @@ pub(crate) fn build(
         let built: Vec<Option<BuiltSoma>> = balls
             .iter()
             .zip(rings)
-            .map(|(ball, nodes)| Some(build_one(&mut tried, (*ball)?, &nodes, options)))
+            .zip(&nearer)
+            .map(|((ball, nodes), &nearer)| {
+                let last = nearer + 1 == REACHES.len();
+                Some(build_one(&mut tried, (*ball)?, &nodes, options, last))
+            })
             .collect();
         let mut again = false;
         for (index, soma) in built.iter().enumerate() {
@@ -140,6 +144,7 @@ fn build_one(
     ball: Ball,
     nodes: &[u32],
     options: &GenerateOptions,
+    at_any_price: bool,
 ) -> BuiltSoma {
     let insertions: Vec<Insertion> = nodes
         .iter()
@@ -152,6 +157,7 @@ fn build_one(
         poisson: options.poisson,
         kind: options.sphere,
         level: options.sphere_level,
+        at_any_price,
     };
     let mut surface = soma::rebuild(&request, &insertions);
     keep_seated(skeleton, &mut surface, nodes, &ball);
@@ -210,7 +216,7 @@ fn warn(surface: &SomaSurface, warnings: &mut Warnings) {
     warnings.add_many(
         "soma_folded",
         surface.folded,
-        "corner of the soma's surface turns inwards: try --soma sphere or a larger --soma-scale",
+        "quad of the soma's surface faces inwards: try --soma sphere or a larger --soma-scale",
     );
     warnings.add_many(
         "soma_inverted",

@@ -8,8 +8,7 @@
 //!
 //! **Practice.** [`Reference`] is made once per (sphere, level, ν) and kept; [`rebuild`] per soma.
 //!
-//! A soma is accepted if it is star-shaped about its centre (every corner of every quad turns
-//! outwards), which excludes folds and self-intersections alike.
+//! A soma is accepted if it is star-shaped about its centre (every quad faces outwards), which excludes folds and self-intersections alike.
 
 pub(crate) mod elasticity;
 mod profile;
@@ -44,9 +43,9 @@ pub(crate) struct SomaSurface {
     pub(crate) turned: usize,
     /// Neurites whose quad was more than 1.5 quad widths away before the warp.
     pub(crate) misfits: usize,
-    /// Tetrahedra turned inside out, and whether a fold had to be accepted.
+    /// Tetrahedra turned inside out.
     pub(crate) inverted: usize,
-    /// Corners of quads that turn inwards; zero unless every remedy failed.
+    /// Quads that face inwards; zero unless every remedy failed.
     pub(crate) folded: usize,
     /// Neurites that found no seat at all.
     pub(crate) dropped: Vec<usize>,
@@ -61,6 +60,8 @@ pub(crate) struct SomaRequest {
     pub(crate) poisson: f64,
     pub(crate) kind: SphereKind,
     pub(crate) level: Option<u32>,
+    /// Whether neurites may be left unattached to avoid folds.
+    pub(crate) at_any_price: bool,
 }
 
 /// A sphere with its factored stiffness.
@@ -70,38 +71,43 @@ struct Reference {
 }
 
 /// Rebuilds a soma: rings of the neurites at the given insertions, joined by a smooth surface.
-pub(crate) fn rebuild(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurface {
-    let mut insertions = insertions.to_vec();
-    let (mut shrunk, turned) = seats::make_room(&mut insertions);
+///
+/// Remedies against folds, in turn: a finer sphere with the rings farther apart, smaller rings. A
+/// nearer ring is the caller's to try.
+pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurface {
+    let finest = finest_fitting(request.kind);
     let mut level = request
         .level
-        .unwrap_or_else(|| fitting_level(request.kind, &insertions));
-    let (lowest, highest) = level_range(request.kind);
-    level = level.clamp(lowest, highest);
-    // Remedies in turn: a finer sphere, then smaller rings. A nearer ring is the caller's.
+        .unwrap_or_else(|| fitting_level(request.kind, wanted));
     for attempt in 0..ATTEMPTS {
+        let mut insertions = wanted.to_vec();
+        if attempt + 1 == ATTEMPTS {
+            insertions.iter_mut().for_each(|i| i.radius *= 0.7);
+        }
+        let gap = seats::LEAST_GAP * f64::from(2_u32.pow(attempt));
+        let (shrunk, turned) = seats::make_room(&mut insertions, gap);
+        let shrunk = if attempt + 1 == ATTEMPTS {
+            wanted.len()
+        } else {
+            shrunk
+        };
         let reference = reference(request.kind, level, request.poisson);
         if let Some(seats) = seats::assign(&reference.sphere, &insertions) {
             let mut surface = deform(request, &reference, &seats, &insertions);
             (surface.shrunk, surface.turned) = (shrunk, turned);
-            if surface.sound() || attempt + 1 == ATTEMPTS {
+            if surface.sound() || (attempt + 1 == ATTEMPTS && !request.at_any_price) {
                 return surface;
             }
-        } else if level == highest || request.level.is_some() {
-            return without_thinnest(request, &insertions);
         }
-        if request.level.is_none() && level < highest {
-            level = (level + finer(request.kind)).min(highest);
-        } else {
-            insertions.iter_mut().for_each(|i| i.radius *= 0.85);
-            shrunk = insertions.len();
+        if request.level.is_none() && level < finest {
+            level = (level + finer(request.kind)).min(finest);
         }
     }
-    without_thinnest(request, &insertions)
+    without_thinnest(request, wanted)
 }
 
 /// Tries before a surface with folds is handed back.
-const ATTEMPTS: usize = 3;
+const ATTEMPTS: u32 = 3;
 
 fn finer(kind: SphereKind) -> u32 {
     match kind {
@@ -120,7 +126,8 @@ impl SomaSurface {
 fn without_thinnest(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurface {
     let mut order: Vec<usize> = (0..insertions.len()).collect();
     order.sort_by(|&a, &b| insertions[b].radius.total_cmp(&insertions[a].radius));
-    let (kept, dropped) = order.split_at(insertions.len() * 3 / 4);
+    let (kept, dropped) =
+        order.split_at((insertions.len() * 7 / 8).min(insertions.len().saturating_sub(1)));
     let mut kept = kept.to_vec();
     kept.sort_unstable();
     let subset: Vec<Insertion> = kept.iter().map(|&k| insertions[k]).collect();
@@ -138,10 +145,11 @@ fn without_thinnest(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurf
     surface
 }
 
-fn level_range(kind: SphereKind) -> (u32, u32) {
+/// Finest sphere that is tried without being asked for: beyond, a first soma takes seconds.
+fn finest_fitting(kind: SphereKind) -> u32 {
     match kind {
-        SphereKind::Octahedron => (3, 5),
-        SphereKind::Cube => (4, 20),
+        SphereKind::Octahedron => 4,
+        SphereKind::Cube => 14,
     }
 }
 
@@ -155,7 +163,7 @@ fn fitting_level(kind: SphereKind, insertions: &[Insertion]) -> u32 {
     let median = angles.get(angles.len() / 2).copied().unwrap_or(0.15);
     let fit = (std::f64::consts::FRAC_PI_4 * std::f64::consts::SQRT_2 / median).round();
     let room = (4.0 * insertions.len() as f64).sqrt().ceil();
-    fit.clamp(6.0, 10.0).max(room) as u32
+    fit.clamp(6.0, 10.0).max(room).min(14.0) as u32
 }
 
 /// Spheres that are kept for later somata: (kind, level, ν in bits).
@@ -226,11 +234,7 @@ fn deform(
     } else {
         0
     };
-    let folded = sphere
-        .quads
-        .iter()
-        .map(|q| inward_corners(&nodes, *q))
-        .sum();
+    let folded = sphere.quads.iter().filter(|q| folded(&nodes, **q)).count();
     let width = 2.0 * std::f64::consts::PI.sqrt() / (sphere.quads.len() as f64).sqrt();
     SomaSurface {
         vertices: nodes[..sphere.surface]
@@ -249,12 +253,14 @@ fn deform(
     }
 }
 
-/// Corners of a quad at which it does not turn outwards as seen from the centre.
-fn inward_corners(nodes: &[DVec3], quad: [u32; 4]) -> usize {
-    let p = |i: usize| nodes[quad[i % 4] as usize];
-    (0..4)
-        .filter(|&i| p(i + 3).dot(p(i).cross(p(i + 1))) <= 0.0)
-        .count()
+/// Whether a quad is folded as seen from the centre: neither of its diagonals halves it into two
+/// triangles that both face outwards.
+fn folded(nodes: &[DVec3], quad: [u32; 4]) -> bool {
+    let [a, b, c, d] = quad.map(|v| nodes[v as usize]);
+    let outwards = |p: DVec3, q: DVec3, r: DVec3| p.dot(q.cross(r)) > 0.0;
+    let first = outwards(a, b, c) && outwards(a, c, d);
+    let second = outwards(a, b, d) && outwards(b, c, d);
+    !first && !second
 }
 
 /// The elastic answer, on the canonical sphere of radius 1, to pulling each seat's corners out to

@@ -28,21 +28,22 @@ impl Insertion {
 const WIDEST: f64 = 0.6;
 /// Free angle between two rings, as a share of the sum of their own.
 const GAP: f64 = 1.25;
-/// Least free angle between two rings (radians).
-const LEAST_GAP: f64 = 0.05;
+/// Free angle between two rings, however thin (radians).
+pub(crate) const LEAST_GAP: f64 = 0.05;
 /// A crowded ring is made smaller down to this share before directions give way.
 const SMALLEST: f64 = 0.55;
 
 /// Makes rings small enough, and moves their directions apart, until none touch. Returns how many
-/// were made smaller and how many turned by more than a degree.
-pub(crate) fn make_room(insertions: &mut [Insertion]) -> (usize, usize) {
+/// were made smaller and how many turned by more than a degree. `gap`: free angle between two rings
+/// besides their own share (radians).
+pub(crate) fn make_room(insertions: &mut [Insertion], gap: f64) -> (usize, usize) {
     let wanted = insertions.to_vec();
     for insertion in insertions.iter_mut() {
         insertion.radius = insertion.radius.min(insertion.distance * WIDEST.tan());
     }
-    shrink_crowded(insertions);
+    shrink_crowded(insertions, gap);
     for _ in 0..200 {
-        if !push_apart(insertions) {
+        if !push_apart(insertions, gap) {
             break;
         }
     }
@@ -56,21 +57,21 @@ pub(crate) fn make_room(insertions: &mut [Insertion]) -> (usize, usize) {
     (smaller.count(), turned.count())
 }
 
-fn needed(a: &Insertion, b: &Insertion) -> f64 {
-    GAP * (a.angle() + b.angle()) + LEAST_GAP
+fn needed(a: &Insertion, b: &Insertion, gap: f64) -> f64 {
+    GAP * (a.angle() + b.angle()) + gap
 }
 
 fn between(a: &Insertion, b: &Insertion) -> f64 {
     a.direction.angle_between(b.direction)
 }
 
-fn shrink_crowded(insertions: &mut [Insertion]) {
+fn shrink_crowded(insertions: &mut [Insertion], gap: f64) {
     let factors: Vec<f64> = (0..insertions.len())
         .map(|i| {
             let others = (0..insertions.len()).filter(|&j| j != i);
             let room = others.map(|j| {
                 let (a, b) = (&insertions[i], &insertions[j]);
-                between(a, b) / needed(a, b)
+                between(a, b) / needed(a, b, gap)
             });
             room.fold(1.0, f64::min).max(SMALLEST)
         })
@@ -80,12 +81,12 @@ fn shrink_crowded(insertions: &mut [Insertion]) {
     }
 }
 
-fn push_apart(insertions: &mut [Insertion]) -> bool {
+fn push_apart(insertions: &mut [Insertion], gap: f64) -> bool {
     let mut moved = false;
     for i in 0..insertions.len() {
         for j in i + 1..insertions.len() {
             let (a, b) = (insertions[i], insertions[j]);
-            let lack = needed(&a, &b) - between(&a, &b);
+            let lack = needed(&a, &b, gap) - between(&a, &b);
             if lack <= 1e-6 {
                 continue;
             }
@@ -149,6 +150,11 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Seats>
         .collect();
     let mut order: Vec<usize> = (0..insertions.len()).collect();
     order.sort_by(|&a, &b| insertions[b].angle().total_cmp(&insertions[a].angle()));
+    let seatable: Vec<bool> = sphere
+        .quads
+        .iter()
+        .map(|q| square_enough(sphere, *q))
+        .collect();
     let mut best: Option<Seats> = None;
     let mut best_cost = f64::INFINITY;
     for trial in 0..ROTATIONS {
@@ -157,9 +163,10 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Seats>
             .iter()
             .map(|i| rotation.transpose() * i.direction)
             .collect();
-        let Some(quads) = greedy(sphere, &centers, &order, &local) else {
+        let Some(mut quads) = greedy(sphere, &centers, &seatable, &order, &local) else {
             continue;
         };
+        exchange(&centers, &local, &mut quads);
         let errors = quads
             .iter()
             .zip(&local)
@@ -180,6 +187,7 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Seats>
 fn greedy(
     sphere: &Sphere,
     centers: &[DVec3],
+    seatable: &[bool],
     order: &[usize],
     directions: &[DVec3],
 ) -> Option<Vec<usize>> {
@@ -189,7 +197,10 @@ fn greedy(
         let mut nearest = (f64::NEG_INFINITY, usize::MAX);
         for (q, center) in centers.iter().enumerate() {
             let near = center.dot(directions[k]);
-            if near > nearest.0 && sphere.quads[q].iter().all(|&v| !taken[v as usize]) {
+            if near > nearest.0
+                && seatable[q]
+                && sphere.quads[q].iter().all(|&v| !taken[v as usize])
+            {
                 nearest = (near, q);
             }
         }
@@ -198,6 +209,33 @@ fn greedy(
         quads[k] = nearest.1;
     }
     Some(quads)
+}
+
+/// Lets pairs of insertions swap quads where that brings both together nearer.
+fn exchange(centers: &[DVec3], directions: &[DVec3], quads: &mut [usize]) {
+    let cost = |q: usize, k: usize| centers[q].angle_between(directions[k]).powi(2);
+    for _ in 0..8 {
+        let mut swapped = false;
+        for i in 0..quads.len() {
+            for j in i + 1..quads.len() {
+                let now = cost(quads[i], i) + cost(quads[j], j);
+                if cost(quads[j], i) + cost(quads[i], j) < now - 1e-12 {
+                    quads.swap(i, j);
+                    swapped = true;
+                }
+            }
+        }
+        if !swapped {
+            return;
+        }
+    }
+}
+
+/// Whether no corner of a quad is nearly straight: the octahedron's six vertices join two quads
+/// there that have 180° each, and a ring cannot be made of such.
+fn square_enough(sphere: &Sphere, quad: [u32; 4]) -> bool {
+    let p = |i: usize| sphere.nodes[quad[i % 4] as usize];
+    (0..4).all(|i| (p(i + 1) - p(i)).angle_between(p(i + 3) - p(i)) < 2.4)
 }
 
 /// A fixed low-discrepancy set of rotations; the first is none (Shoemake, Uniform random rotations,
@@ -240,7 +278,7 @@ mod tests {
         let mut crowd: Vec<Insertion> = (0..12)
             .map(|i| insertion(DVec3::new(0.02 * f64::from(i), 1.0, 0.0), 0.2))
             .collect();
-        let (smaller, turned) = make_room(&mut crowd);
+        let (smaller, turned) = make_room(&mut crowd, LEAST_GAP);
         assert!(smaller > 0 && turned > 0);
         for i in 0..crowd.len() {
             for j in 0..i {
