@@ -1,10 +1,10 @@
 //! The refined surface, made block by block from the coarse mesh.
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Faces, Surface, SurfaceVertex, TracingPoint};
+use neurotess_mesh::{CoarseMesh, Faces, Role, Surface, SurfaceVertex, TracingPoint};
 use rayon::prelude::*;
 
-use crate::evaluate::{Corner, PatchShape, SIDES, edge, edge_normal};
+use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
 use crate::plan::{Edge, Plan};
 use crate::{Levels, RefineOptions};
 
@@ -146,7 +146,13 @@ impl<'m> Refinement<'m> {
         let normal = edge_normal(&a, &b, jet.derivative, t);
         let (ta, tb) = (self.tracing(plan.from), self.tracing(plan.to));
         let radius = ta.radius * (1.0 - t) + tb.radius * t;
-        attributed(jet.position, normal, if t < 0.5 { ta } else { tb }, radius)
+        let nearest = if t < 0.5 { ta } else { tb };
+        attributed(
+            jet.position,
+            normal,
+            on_soma(plan.kind, [ta, tb], nearest),
+            radius,
+        )
     }
 
     fn patch_vertices(&self, patch: usize, out: &mut Vec<SurfaceVertex>) {
@@ -157,6 +163,7 @@ impl<'m> Refinement<'m> {
         let shape = self.shape(patch);
         let corners = self.mesh.patches[patch].corners;
         let tracing = corners.map(|v| self.tracing(v));
+        let soma = tracing.into_iter().find(|t| t.role == Role::Soma);
         let radii = tracing.map(|t| t.radius);
         for j in 1..grid.ny {
             let y = j as f32 / grid.ny as f32;
@@ -167,10 +174,27 @@ impl<'m> Refinement<'m> {
                     tracing[usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5))];
                 let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)
                     + (radii[3] * (1.0 - x) + radii[2] * x) * y;
-                out.push(attributed(position, normal, nearest, radius));
+                out.push(attributed(
+                    position,
+                    normal,
+                    soma.unwrap_or(nearest),
+                    radius,
+                ));
             }
         }
     }
+}
+
+/// A soma's edges belong to the soma up to the neurite's ring, so that colours change there.
+fn on_soma<'t>(
+    kind: EdgeKind,
+    ends: [&'t TracingPoint; 2],
+    nearest: &'t TracingPoint,
+) -> &'t TracingPoint {
+    let soma = ends
+        .into_iter()
+        .find(|t| kind == EdgeKind::Soma && t.role == Role::Soma);
+    soma.unwrap_or(nearest)
 }
 
 fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32) -> SurfaceVertex {

@@ -8,9 +8,22 @@ use neurotess_refine::{Caps, CoarseSurface, Levels, Path, RefineOptions, Refinem
 use proptest::prelude::*;
 
 fn twig() -> impl Strategy<Value = Twig> {
-    (0..12_usize, any::<u64>(), 1..9_usize, 0.01_f32..6.0, 0.0_f32..3.0, 0.05_f32..3.0).prop_map(
-        |(parent, seed, points, step, wild, radius)| Twig { parent, seed, points, step, wild, radius },
+    (
+        0..12_usize,
+        any::<u64>(),
+        1..9_usize,
+        0.01_f32..6.0,
+        0.0_f32..3.0,
+        0.05_f32..3.0,
     )
+        .prop_map(|(parent, seed, points, step, wild, radius)| Twig {
+            parent,
+            seed,
+            points,
+            step,
+            wild,
+            radius,
+        })
 }
 
 fn refined(
@@ -22,12 +35,20 @@ fn refined(
     let refinement = Refinement::new(mesh, levels, options);
     let surface = SurfaceMesh::collect(&refinement);
     assert_eq!(surface.vertices.len(), refinement.vertex_count(), "{what}");
-    assert_eq!(surface.faces.triangles.len(), refinement.triangle_count(), "{what}");
+    assert_eq!(
+        surface.faces.triangles.len(),
+        refinement.triangle_count(),
+        "{what}"
+    );
     assert_eq!(surface.faces.quads.len(), refinement.quad_count(), "{what}");
     assert_closed(&surface, what);
     for vertex in &surface.vertices {
         assert!(vertex.position.is_finite(), "{what}");
-        assert!((vertex.normal.length() - 1.0).abs() < 1e-3, "{what}: normal {}", vertex.normal);
+        assert!(
+            (vertex.normal.length() - 1.0).abs() < 1e-3,
+            "{what}: normal {}",
+            vertex.normal
+        );
     }
     surface
 }
@@ -70,9 +91,23 @@ proptest! {
 #[test]
 fn levels_1_and_64_side_by_side_are_closed() {
     let twigs: Vec<Twig> = (0..5)
-        .map(|i| Twig { parent: i / 2, seed: i as u64, points: 3, step: 3.0, wild: 0.4, radius: 1.0 })
+        .map(|i| Twig {
+            parent: i / 2,
+            seed: i as u64,
+            points: 3,
+            step: 3.0,
+            wild: 0.4,
+            radius: 1.0,
+        })
         .collect();
     let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default()).mesh;
-    let levels: Vec<u8> = (0..mesh.tracing.len()).map(|i| if i % 2 == 0 { 1 } else { 64 }).collect();
-    refined(&mesh, &Levels::PerPoint(&levels), &RefineOptions::default(), "1 and 64");
+    let levels: Vec<u8> = (0..mesh.tracing.len())
+        .map(|i| if i % 2 == 0 { 1 } else { 64 })
+        .collect();
+    refined(
+        &mesh,
+        &Levels::PerPoint(&levels),
+        &RefineOptions::default(),
+        "1 and 64",
+    );
 }

@@ -24,7 +24,10 @@ fn cell(seed: u64) -> CoarseMesh {
 }
 
 fn surface(mesh: &CoarseMesh, levels: Levels<'_>, path: Path) -> SurfaceMesh {
-    let options = RefineOptions { path, ..RefineOptions::default() };
+    let options = RefineOptions {
+        path,
+        ..RefineOptions::default()
+    };
     SurfaceMesh::collect(&Refinement::new(mesh, &levels, &options))
 }
 
@@ -70,7 +73,11 @@ fn farthest(fine: &SurfaceMesh, coarse: &SurfaceMesh) -> f32 {
         .map(|t| {
             let t = t.map(|i| coarse.vertices[i as usize].position);
             let center = (t[0] + t[1] + t[2]) / 3.0;
-            (t, center, t.iter().map(|p| p.distance(center)).fold(0.0, f32::max))
+            (
+                t,
+                center,
+                t.iter().map(|p| p.distance(center)).fold(0.0, f32::max),
+            )
         })
         .collect();
     fine.vertices
@@ -78,7 +85,11 @@ fn farthest(fine: &SurfaceMesh, coarse: &SurfaceMesh) -> f32 {
         .step_by(41)
         .map(|v| {
             triangles.iter().fold(f32::MAX, |best, (t, center, reach)| {
-                if v.position.distance(*center) - reach > best { best } else { best.min(distance(v.position, *t)) }
+                if v.position.distance(*center) - reach > best {
+                    best
+                } else {
+                    best.min(distance(v.position, *t))
+                }
             })
         })
         .fold(0.0, f32::max)
@@ -92,7 +103,10 @@ fn adaptive_error_is_kept() {
         for error in [0.2, 0.05, 0.01] {
             let adaptive = surface(&mesh, Levels::MaxError(error), Path::Hermite);
             let measured = farthest(&finest, &adaptive);
-            assert!(measured <= error, "seed {seed}: {measured} µm for {error} µm");
+            assert!(
+                measured <= error,
+                "seed {seed}: {measured} µm for {error} µm"
+            );
             assert!(adaptive.faces.triangles.len() < finest.faces.triangles.len() / 4);
         }
     }
@@ -126,31 +140,54 @@ fn normals_are_those_of_the_surface() {
     let mut faces = vec![Vec3::ZERO; refined.vertices.len()];
     for t in &refined.faces.triangles {
         let [a, b, c] = t.map(|i| refined.vertices[i as usize].position);
-        t.iter().for_each(|&i| faces[i as usize] += (b - a).cross(c - a));
+        t.iter()
+            .for_each(|&i| faces[i as usize] += (b - a).cross(c - a));
     }
     let mut angles: Vec<f32> = refined
         .vertices
         .iter()
         .zip(&faces)
-        .map(|(v, n)| v.normal.angle_between(n.normalize_or(v.normal)).to_degrees())
+        .map(|(v, n)| {
+            v.normal
+                .angle_between(n.normalize_or(v.normal))
+                .to_degrees()
+        })
         .collect();
     angles.sort_by(f32::total_cmp);
     let median = angles[angles.len() / 2];
     let most = angles[angles.len() * 95 / 100];
-    assert!(median < 2.0 && most < 15.0, "median {median}°, 95 % {most}°");
+    assert!(
+        median < 2.0 && most < 15.0,
+        "median {median}°, 95 % {most}°"
+    );
 }
 
 /// A straight cone's lateral area and volume are those of the frustum.
 #[test]
 fn smooth_neurite_has_the_area_of_its_frusta() {
-    let twig = Twig { parent: 0, seed: 3, points: 40, step: 3.0, wild: 0.05, radius: 0.5 };
+    let twig = Twig {
+        parent: 0,
+        seed: 3,
+        points: 40,
+        step: 3.0,
+        wild: 0.05,
+        radius: 0.5,
+    };
     let morphology = grow(&[twig], None);
     let mesh = generate(&morphology, &GenerateOptions::default()).mesh;
-    let options = RefineOptions { path: Path::Linear, ..RefineOptions::default() };
+    let options = RefineOptions {
+        path: Path::Linear,
+        ..RefineOptions::default()
+    };
     let refinement = Refinement::new(&mesh, &Levels::Homogeneous(8), &options);
     let (volume, area) = refinement.volume_and_area();
     let (mut frusta_volume, mut frusta_area) = (0.0, 0.0);
-    let cap = |r: f64| (2.0 / 3.0 * std::f64::consts::PI * r.powi(3), std::f64::consts::TAU * r * r);
+    let cap = |r: f64| {
+        (
+            2.0 / 3.0 * std::f64::consts::PI * r.powi(3),
+            std::f64::consts::TAU * r * r,
+        )
+    };
     for pair in morphology.points.windows(2) {
         let (r, s) = (f64::from(pair[0].radius), f64::from(pair[1].radius));
         let h = f64::from(pair[0].position.distance(pair[1].position));
@@ -162,6 +199,12 @@ fn smooth_neurite_has_the_area_of_its_frusta() {
         frusta_volume += v;
         frusta_area += a;
     }
-    assert!((volume / frusta_volume - 1.0).abs() < 0.01, "{volume} for {frusta_volume}");
-    assert!((area / frusta_area - 1.0).abs() < 0.01, "{area} for {frusta_area}");
+    assert!(
+        (volume / frusta_volume - 1.0).abs() < 0.01,
+        "{volume} for {frusta_volume}"
+    );
+    assert!(
+        (area / frusta_area - 1.0).abs() < 0.01,
+        "{area} for {frusta_area}"
+    );
 }

@@ -41,9 +41,9 @@ fn along(direction: DVec3, insertion: &Insertion, radius: f64) -> f64 {
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
         if inside(middle) {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     low

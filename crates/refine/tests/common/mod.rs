@@ -36,14 +36,31 @@ fn direction(state: &mut u64) -> Vec3 {
 
 /// Grows a tree as told; `soma`: its radius, or none.
 pub(crate) fn grow(twigs: &[Twig], soma: Option<f32>) -> Morphology {
-    let mut m = Morphology { name: "random".into(), ..Morphology::default() };
+    let mut m = Morphology {
+        name: "random".into(),
+        ..Morphology::default()
+    };
     if let Some(radius) = soma {
-        let sample = SomaSample { id: 1, position: Vec3::ZERO, radius, parent: None };
+        let sample = SomaSample {
+            id: 1,
+            position: Vec3::ZERO,
+            radius,
+            parent: None,
+        };
         let samples = vec![sample];
-        m.somata.push(Soma { kind: SomaKind::Point, samples, center: Vec3::ZERO, radius });
+        m.somata.push(Soma {
+            kind: SomaKind::Point,
+            samples,
+            center: Vec3::ZERO,
+            radius,
+        });
     }
     // Sections must stand depth first: gather children first.
-    let parent = |i: usize| (i > 0).then(|| twigs[i].parent % (i + 1)).filter(|&p| p < i);
+    let parent = |i: usize| {
+        (i > 0)
+            .then(|| twigs[i].parent % (i + 1))
+            .filter(|&p| p < i)
+    };
     let mut stack: Vec<(usize, Attachment, Vec3)> = Vec::new();
     for i in (0..twigs.len()).rev().filter(|&i| parent(i).is_none()) {
         let mut state = twigs[i].seed;
@@ -66,11 +83,19 @@ pub(crate) fn grow(twigs: &[Twig], soma: Option<f32>) -> Morphology {
             at += heading * twig.step * twig.radius;
             let radius = twig.radius * (1.0 + 0.5 * random(&mut state));
             m.sample_ids.push(m.points.len() as i64 + 2);
-            m.points.push(Point { position: at, radius });
+            m.points.push(Point {
+                position: at,
+                radius,
+            });
         }
         let id = SectionId(m.sections.len() as u32);
         let end = m.points.len() as u32;
-        m.sections.push(Section { kind: NeuriteKind(3), attachment, first, end });
+        m.sections.push(Section {
+            kind: NeuriteKind(3),
+            attachment,
+            first,
+            end,
+        });
         for child in (i + 1..twigs.len()).rev().filter(|&c| parent(c) == Some(i)) {
             stack.push((child, Attachment::Section(id), at));
         }
@@ -86,14 +111,23 @@ pub(crate) fn assert_closed(mesh: &SurfaceMesh, what: &str) {
     let mut next_at: HashMap<(u32, u32), u32> = HashMap::new();
     for face in &faces {
         for k in 0..face.len() {
-            let (before, here, after) = (face[k], face[(k + 1) % face.len()], face[(k + 2) % face.len()]);
+            let (before, here, after) = (
+                face[k],
+                face[(k + 1) % face.len()],
+                face[(k + 2) % face.len()],
+            );
             assert_ne!(before, here, "{what}: face with an empty side");
             let double = next_at.insert((here, before), after).is_some();
-            assert!(!double, "{what}: two faces use side {before}–{here} in one direction");
+            assert!(
+                !double,
+                "{what}: two faces use side {before}–{here} in one direction"
+            );
         }
     }
-    let sides: HashSet<(u32, u32)> =
-        faces.iter().flat_map(|f| (0..f.len()).map(|k| (f[k], f[(k + 1) % f.len()]))).collect();
+    let sides: HashSet<(u32, u32)> = faces
+        .iter()
+        .flat_map(|f| (0..f.len()).map(|k| (f[k], f[(k + 1) % f.len()])))
+        .collect();
     for &(a, b) in &sides {
         assert!(sides.contains(&(b, a)), "{what}: side {a}–{b} is open");
     }
@@ -126,7 +160,10 @@ pub(crate) fn assert_closed(mesh: &SurfaceMesh, what: &str) {
     }
     for face in &faces {
         for pair in face.windows(2) {
-            let (a, b) = (root(&mut group, pair[0] as usize), root(&mut group, pair[1] as usize));
+            let (a, b) = (
+                root(&mut group, pair[0] as usize),
+                root(&mut group, pair[1] as usize),
+            );
             group[a] = b;
         }
     }

@@ -20,9 +20,9 @@ fn element_stiffness_is_symmetric() {
     let sphere = Sphere::new(SphereKind::Octahedron, 2);
     for &t in &sphere.tetrahedra {
         let blocks = element(&sphere.nodes, t, 0.3);
-        for i in 0..4 {
-            for j in 0..4 {
-                assert!(blocks[i][j].transpose().abs_diff_eq(blocks[j][i], 1e-13));
+        for (i, row) in blocks.iter().enumerate() {
+            for (j, block) in row.iter().enumerate() {
+                assert!(block.transpose().abs_diff_eq(blocks[j][i], 1e-13));
             }
         }
     }
