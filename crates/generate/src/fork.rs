@@ -134,8 +134,13 @@ pub(crate) fn clear_the_way(skeleton: &mut Skeleton, warnings: &mut Warnings) {
             let around = neighbours(&children, skeleton, fork);
             let tubes = tubes(skeleton, &children, fork, &around);
             // Where the tubes would part if their rings left them room.
-            let free: Vec<Neighbour> =
-                tubes.iter().map(|t| Neighbour { length: f64::INFINITY, ..*t }).collect();
+            let free: Vec<Neighbour> = tubes
+                .iter()
+                .map(|t| Neighbour {
+                    length: f64::INFINITY,
+                    ..*t
+                })
+                .collect();
             let joint = Joint::new(skeleton.node(fork).radius, &free);
             for (i, &n) in around.iter().enumerate() {
                 let node = skeleton.node(n);

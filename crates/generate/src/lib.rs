@@ -11,6 +11,7 @@ mod skeleton;
 mod soma;
 mod somata;
 mod thin;
+mod uncross;
 mod warning;
 
 pub use options::{GenerateOptions, SomaMethod, SphereKind};
@@ -71,7 +72,7 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     thin::space_points(&mut skeleton, &mut warnings);
     fork::split_crowded(&mut skeleton, &mut warnings);
     fork::clear_the_way(&mut skeleton, &mut warnings);
-    let orientations = thin::uncross_rings(&mut skeleton, &balls, &mut warnings);
+    let orientations = uncross::uncross_rings(&mut skeleton, &balls, &mut warnings);
 
     let mut assembly = Assembly::new(&skeleton, &orientations);
     let rings = somata::ring_nodes(&skeleton, morphology.somata.len());

@@ -125,9 +125,7 @@ impl Skeleton {
         let here = self.node(node).center;
         let before = self.node(self.node(node).parent).center;
         let after = self.node(children.of(node)[0]).center;
-        let axis = after - before;
-        let t = ((here - before).dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0);
-        here.distance(before + axis * t)
+        off_segment(here, before, after)
     }
 
     /// Leaves nodes out. Their children move to the nearest kept ancestor, or become roots of the
@@ -224,4 +222,11 @@ impl Skeleton {
             self.reorder();
         }
     }
+}
+
+/// Distance of a point from a segment.
+pub(crate) fn off_segment(point: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let axis = to - from;
+    let t = ((point - from).dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0);
+    point.distance(from + axis * t)
 }

@@ -85,8 +85,9 @@ fn lame_error(level: u32) -> f64 {
     let (slope, inverse) = (1.0 / (1.0 - a.powi(3)), -a.powi(3) / (1.0 - a.powi(3)));
     let sphere = Sphere::new(SphereKind::Octahedron, level);
     let elasticity = Elasticity::new(&sphere, 0.3).unwrap();
-    let surface: Vec<(u32, DVec3)> =
-        (0..sphere.surface).map(|i| (i as u32, sphere.nodes[i])).collect();
+    let surface: Vec<(u32, DVec3)> = (0..sphere.surface)
+        .map(|i| (i as u32, sphere.nodes[i]))
+        .collect();
     let moved = elasticity.solve(&surface).unwrap();
     let errors: Vec<f64> = sphere
         .nodes
@@ -103,7 +104,10 @@ fn lame_error(level: u32) -> f64 {
 fn radial_expansion_converges_to_lames_solution() {
     let (coarse, fine) = (lame_error(2), lame_error(3));
     let order = (coarse / fine).log2();
-    assert!(order > 1.4 && fine < 0.01, "errors {coarse}, {fine}: order {order}");
+    assert!(
+        order > 1.4 && fine < 0.01,
+        "errors {coarse}, {fine}: order {order}"
+    );
 }
 
 /// As above, a halving further: a quarter of a minute.

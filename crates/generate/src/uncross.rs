@@ -1,0 +1,215 @@
+//! Rings that would cross are turned, or their points left out.
+//!
+//! Ring j must lie in front of ring i's plane and ring i behind ring j's. For circles in planes
+//! across oᵢ and oⱼ, with L·e the way from i to j, that is `L e·oⱼ > rᵢ sin γ` and
+//! `L e·oᵢ > rⱼ sin γ`, γ the angle between the two orientations.
+//!
+//! Work is local: a pair is looked at again only when one of its rings was turned or got a new
+//! neighbour, so the cost follows the number of bad bends and not the size of the cell.
+
+use glam::DVec3;
+
+use crate::prepare::Ball;
+use crate::skeleton::{Children, NONE, Root, Skeleton};
+use crate::warning::Warnings;
+
+/// Times that a ring is turned before its point is left out.
+const MOST_TURNS: u8 = 3;
+/// A point is left out only if the path moves by less than this share of its radius.
+const MOST_MOVED: f64 = 2.0;
+
+/// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
+/// of every node that is left, along the path.
+pub(crate) fn uncross_rings(
+    skeleton: &mut Skeleton,
+    balls: &[Option<Ball>],
+    warnings: &mut Warnings,
+) -> Vec<DVec3> {
+    let children = skeleton.children();
+    let mut work = Work::new(skeleton, &children, balls);
+    let mut pending: Vec<u32> = (0..work.parent.len() as u32)
+        .rev()
+        .filter(|&j| work.crosses(j))
+        .collect();
+    let (mut left_out, mut accepted) = (0, 0);
+    while let Some(j) = pending.pop() {
+        if !work.keep[j as usize] || !work.crosses(j) {
+            continue;
+        }
+        let i = work.parent[j as usize];
+        if work.turn(i, j) {
+            pending.extend(
+                [work.child[j as usize], i, j]
+                    .into_iter()
+                    .filter(|&n| n != NONE),
+            );
+            continue;
+        }
+        let (cost, node) = [i, j]
+            .map(|n| (work.cost(n), n))
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap_or((f64::INFINITY, i));
+        if cost < MOST_MOVED * work.skeleton.node(node).radius {
+            left_out += 1;
+            pending.extend(work.leave_out(node).into_iter().filter(|&n| n != NONE));
+        } else {
+            accepted += 1;
+        }
+    }
+    warnings.add_many(
+        "sharp_bend",
+        left_out,
+        "bend tighter than the radius: point left out of the mesh",
+    );
+    warnings.add_many(
+        "rings_cross",
+        accepted,
+        "path folds back more sharply than its radius allows: the surface crosses itself",
+    );
+    let Work {
+        keep, orientations, ..
+    } = work;
+    skeleton.retain(&keep);
+    orientations
+        .into_iter()
+        .zip(keep)
+        .filter_map(|(o, keep)| keep.then_some(o))
+        .collect()
+}
+
+/// Links and orientations as they change.
+struct Work<'a> {
+    skeleton: &'a Skeleton,
+    children: &'a Children,
+    balls: &'a [Option<Ball>],
+    keep: Vec<bool>,
+    parent: Vec<u32>,
+    /// The only child, or [`NONE`] at forks and ends.
+    child: Vec<u32>,
+    orientations: Vec<DVec3>,
+    turns: Vec<u8>,
+}
+
+impl<'a> Work<'a> {
+    fn new(skeleton: &'a Skeleton, children: &'a Children, balls: &'a [Option<Ball>]) -> Self {
+        let count = skeleton.nodes.len();
+        let only = |i: u32| match children.of(i) {
+            [only] => *only,
+            _ => NONE,
+        };
+        let mut work = Self {
+            skeleton,
+            children,
+            balls,
+            keep: vec![true; count],
+            parent: skeleton.nodes.iter().map(|n| n.parent).collect(),
+            child: (0..count as u32).map(only).collect(),
+            orientations: Vec::new(),
+            turns: vec![0; count],
+        };
+        work.orientations = (0..count as u32).map(|i| work.orientation(i)).collect();
+        work
+    }
+
+    fn direction(&self, from: u32, to: u32) -> Option<DVec3> {
+        (self.skeleton.node(to).center - self.skeleton.node(from).center).try_normalize()
+    }
+
+    /// Paper's orientation: the sum of the unit directions in and out; at an end the one there is;
+    /// at a fork the sum of the children's directions; at a soma's ring that away from the soma.
+    fn orientation(&self, i: u32) -> DVec3 {
+        let node = self.skeleton.node(i);
+        if let Root::Insertion(soma) = node.root
+            && let Some(ball) = self.balls[soma as usize]
+            && let Some(outwards) = (node.center - ball.center).try_normalize()
+        {
+            return outwards;
+        }
+        let parent = Some(self.parent[i as usize]).filter(|&p| p != NONE);
+        let incoming = parent.and_then(|p| self.direction(p, i));
+        let sum = match self.child[i as usize] {
+            NONE => self
+                .children
+                .of(i)
+                .iter()
+                .filter_map(|&c| self.direction(i, c))
+                .sum(),
+            child => {
+                let outgoing = self.direction(i, child).unwrap_or(DVec3::ZERO);
+                outgoing + incoming.unwrap_or(DVec3::ZERO)
+            }
+        };
+        let sum: DVec3 = sum;
+        if sum.length() > 0.1 {
+            return sum.try_normalize().unwrap_or(DVec3::Y);
+        }
+        incoming.or(sum.try_normalize()).unwrap_or(DVec3::Y)
+    }
+
+    fn fork(&self, i: u32) -> bool {
+        self.children.of(i).len() > 1
+    }
+
+    /// Whether the rings of a node and its parent cross; forks have no ring of their own.
+    fn crosses(&self, j: u32) -> bool {
+        let i = self.parent[j as usize];
+        if i == NONE || self.fork(i) || self.fork(j) {
+            return false;
+        }
+        let (a, b) = (self.skeleton.node(i), self.skeleton.node(j));
+        let (oi, oj) = (self.orientations[i as usize], self.orientations[j as usize]);
+        let way = b.center - a.center;
+        let sin = if oi.dot(oj) < 0.0 {
+            1.0
+        } else {
+            oi.cross(oj).length()
+        };
+        let clear = |ahead: f64, radius: f64| ahead > 1.05 * radius * sin;
+        !clear(way.dot(oj), a.radius) || !clear(way.dot(oi), b.radius)
+    }
+
+    /// Turns the rings of a pair half-way towards the segment between them; false if neither may.
+    fn turn(&mut self, i: u32, j: u32) -> bool {
+        let Some(way) = self.direction(i, j) else {
+            return false;
+        };
+        let mut turned = false;
+        for n in [i, j] {
+            let slot = n as usize;
+            if self.parent[slot] != NONE && !self.fork(n) && self.turns[slot] < MOST_TURNS {
+                self.orientations[slot] = (self.orientations[slot] + way)
+                    .try_normalize()
+                    .unwrap_or(way);
+                self.turns[slot] += 1;
+                turned = true;
+            }
+        }
+        turned
+    }
+
+    /// How far the path moves if a node is left out (µm); infinite for those that may not be.
+    fn cost(&self, n: u32) -> f64 {
+        let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
+        if parent == NONE || child == NONE {
+            return f64::INFINITY;
+        }
+        let center = |n: u32| self.skeleton.node(n).center;
+        crate::skeleton::off_segment(center(n), center(parent), center(child))
+    }
+
+    /// Leaves an ordinary node out; returns the nodes whose pair with their parent has changed.
+    fn leave_out(&mut self, n: u32) -> [u32; 4] {
+        let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
+        self.keep[n as usize] = false;
+        self.parent[child as usize] = parent;
+        if self.child[parent as usize] == n {
+            self.child[parent as usize] = child;
+        }
+        for around in [parent, child] {
+            self.turns[around as usize] = 0;
+            self.orientations[around as usize] = self.orientation(around);
+        }
+        [self.child[child as usize], parent, child, NONE]
+    }
+}
