@@ -170,10 +170,6 @@ fn crowded_and_thick_neurites_fold_nothing() {
             !codes.contains(&"soma_folded"),
             "radius {radius}: {codes:?}"
         );
-        assert!(
-            !codes.contains(&"soma_inverted"),
-            "radius {radius}: {codes:?}"
-        );
         assert!(!codes.contains(&"no_seat"), "radius {radius}: {codes:?}");
     }
 }

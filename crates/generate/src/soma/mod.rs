@@ -95,7 +95,9 @@ pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurfac
         if let Some(seats) = seats::assign(&reference.sphere, &insertions) {
             let mut surface = deform(request, &reference, &seats, &insertions);
             (surface.shrunk, surface.turned) = (shrunk, turned);
-            if surface.sound() || (attempt + 1 == ATTEMPTS && !request.at_any_price) {
+            let last = attempt + 1 == ATTEMPTS;
+            let enough = !request.at_any_price || surface.folded == 0;
+            if surface.sound() || (last && enough) {
                 return surface;
             }
         }
@@ -317,7 +319,7 @@ impl Flow {
             rings.push(goals.map(|goal| goal * reach));
         }
         let width = 2.5 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
-        let warp = Warp::new(&from, &to, width.max(0.45), FLOW_STEPS);
+        let warp = Warp::new(&from, &to, width, FLOW_STEPS);
         Self {
             rotation: seats.rotation,
             warp,
