@@ -1,9 +1,49 @@
 //! Model 2 of neurotess: the **coarse mesh** of quad **patches**, and the **surfaces** refined from
 //! it. No morphology and no GPU: what a face shows of the cell travels as attributes.
+//!
+//! A [`CoarseMesh`] or a [`SurfaceMesh`] is judged by its indices ([`topology`]), by what it
+//! encloses ([`measure`]) and by whether it crosses itself ([`self_intersections`]); [`check`] does
+//! all three. Surfaces go to files with [`write()`], block by block, and come back with [`read()`].
+//!
+//! ```
+//! use neurotess_mesh::{Format, SurfaceMesh, SurfaceVertex, check, read_bytes, write};
+//!
+//! let at = |x: f32, y: f32, z: f32| SurfaceVertex {
+//!     position: [x, y, z].into(),
+//!     ..SurfaceVertex::default()
+//! };
+//! let mut mesh = SurfaceMesh::default();
+//! mesh.vertices = vec![at(0., 0., 0.), at(1., 0., 0.), at(0., 1., 0.), at(0., 0., 1.)];
+//! mesh.faces.triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+//! let mut file = std::io::Cursor::new(Vec::new());
+//! write(&mesh, Format::Ply, &mut file)?;
+//! let report = check(&read_bytes(&file.into_inner(), Format::Ply)?);
+//! assert!(report.closed && report.oriented && report.self_intersections == 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
+mod bvh;
+mod check;
 mod coarse;
+mod crossing;
+mod forest;
+mod format;
+mod intersect;
+mod measure;
+mod read;
 mod surface;
+mod topology;
+mod weld;
+mod write;
 
+pub use check::{Report, check};
 pub use coarse::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
+pub use format::{Format, UnknownFormat};
+pub use intersect::self_intersections;
+pub use measure::{Measure, measure, measure_surface};
+pub use read::{Place, ReadError, read, read_bytes};
 pub use surface::{Faces, Surface, SurfaceMesh, SurfaceVertex};
+pub use topology::{Topology, topology};
+pub use weld::merge_identical;
+pub use write::{WriteError, write};

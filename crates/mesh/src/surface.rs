@@ -66,7 +66,10 @@ const BLOCK: usize = 1 << 16;
 impl SurfaceMesh {
     /// Collects all blocks of a surface.
     pub fn collect(surface: &impl Surface) -> Self {
-        let mut mesh = Self { origin: surface.origin(), ..Self::default() };
+        let mut mesh = Self {
+            origin: surface.origin(),
+            ..Self::default()
+        };
         mesh.vertices.reserve(surface.vertex_count());
         mesh.faces.triangles.reserve(surface.triangle_count());
         mesh.faces.quads.reserve(surface.quad_count());
@@ -106,12 +109,18 @@ impl Surface for SurfaceMesh {
     }
 
     fn face_blocks(&self) -> usize {
-        self.faces.triangles.len().max(self.faces.quads.len()).div_ceil(BLOCK)
+        self.faces
+            .triangles
+            .len()
+            .max(self.faces.quads.len())
+            .div_ceil(BLOCK)
     }
 
     fn faces(&self, block: usize, out: &mut Faces) {
         let Faces { triangles, quads } = &self.faces;
-        out.triangles.extend_from_slice(triangles.chunks(BLOCK).nth(block).unwrap_or_default());
-        out.quads.extend_from_slice(quads.chunks(BLOCK).nth(block).unwrap_or_default());
+        out.triangles
+            .extend_from_slice(triangles.chunks(BLOCK).nth(block).unwrap_or_default());
+        out.quads
+            .extend_from_slice(quads.chunks(BLOCK).nth(block).unwrap_or_default());
     }
 }

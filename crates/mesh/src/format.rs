@@ -1,0 +1,81 @@
+//! File formats of surfaces.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+/// A file format of surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Stanford polygon file, binary; normals and attributes.
+    Ply,
+    /// Wavefront, text; normals.
+    Obj,
+    /// Stereolithography, binary; triangles without shared vertices.
+    Stl,
+    /// glTF 2.0, binary; triangles, normals and attributes.
+    Glb,
+    /// Object file format, text.
+    Off,
+    /// VTK unstructured grid, XML with raw binary data; normals and attributes.
+    Vtu,
+}
+
+/// No format has this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown mesh format '{0}': use ply, obj, stl, glb, off or vtu")]
+pub struct UnknownFormat(pub String);
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 6] = [
+        Self::Ply,
+        Self::Obj,
+        Self::Stl,
+        Self::Glb,
+        Self::Off,
+        Self::Vtu,
+    ];
+
+    /// The extension of files, without a dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::Glb => "glb",
+            Self::Off => "off",
+            Self::Vtu => "vtu",
+        }
+    }
+
+    /// The format that a path's extension names, in either case; `gltf` is read as GLB.
+    pub fn from_extension(path: &Path) -> Result<Self, UnknownFormat> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        extension.parse()
+    }
+
+    /// Whether files of this format can hold quads.
+    pub fn has_quads(self) -> bool {
+        !matches!(self, Self::Stl | Self::Glb)
+    }
+}
+
+impl FromStr for Format {
+    type Err = UnknownFormat;
+
+    fn from_str(name: &str) -> Result<Self, UnknownFormat> {
+        let lower = name.to_ascii_lowercase();
+        let found = Self::ALL
+            .into_iter()
+            .find(|format| format.extension() == lower);
+        let found = found.or((lower == "gltf").then_some(Self::Glb));
+        found.ok_or_else(|| UnknownFormat(name.to_owned()))
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.extension())
+    }
+}

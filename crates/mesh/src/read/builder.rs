@@ -1,0 +1,132 @@
+//! A mesh as it is read.
+
+use glam::DVec3;
+
+use super::{Place, ReadError, malformed};
+use crate::{Faces, SurfaceMesh, SurfaceVertex};
+
+/// Collects vertices and faces.
+pub(super) struct Builder {
+    positions: Vec<DVec3>,
+    vertices: Vec<SurfaceVertex>,
+    faces: Faces,
+    /// Vertices and faces that a file of this size may hold: formats with references (glTF, VTU)
+    /// could name the same bytes again and again.
+    limit: usize,
+    /// The highest index that a face named.
+    highest: Option<(u32, Place)>,
+}
+
+/// Coordinates beyond are refused, so that differences stay finite in 32 bits.
+const FARTHEST: f64 = 1e37;
+
+/// Vertices and faces for each byte of a file, at most; a plain file has far less than one.
+const PER_BYTE: usize = 8;
+
+impl Builder {
+    pub(super) fn new(file_bytes: usize) -> Self {
+        Self {
+            positions: Vec::new(),
+            vertices: Vec::new(),
+            faces: Faces::default(),
+            limit: file_bytes.saturating_mul(PER_BYTE).min(u32::MAX as usize),
+            highest: None,
+        }
+    }
+
+    pub(super) fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Adds a vertex; its position is `position`, the other attributes are those of `vertex`.
+    pub(super) fn vertex(
+        &mut self,
+        at: Place,
+        position: DVec3,
+        vertex: SurfaceVertex,
+    ) -> Result<(), ReadError> {
+        if !position.abs().cmple(DVec3::splat(FARTHEST)).all() {
+            let found = format!("coordinates {position}");
+            return Err(malformed(at, found, "finite numbers, none beyond 1e37"));
+        }
+        self.room(self.positions.len(), at)?;
+        self.positions.push(position);
+        self.vertices.push(vertex);
+        Ok(())
+    }
+
+    /// Adds a face of three corners or more.
+    pub(super) fn face(&mut self, at: Place, corners: &[u32]) -> Result<(), ReadError> {
+        if let Some(&highest) = corners.iter().max()
+            && self.highest.is_none_or(|(before, _)| highest > before)
+        {
+            self.highest = Some((highest, at));
+        }
+        match *corners {
+            [a, b, c] => self.faces.triangles.push([a, b, c]),
+            [a, b, c, d] => self.faces.quads.push([a, b, c, d]),
+            [first, _, ref rest @ ..] if !rest.is_empty() => {
+                let fan = corners[1..]
+                    .windows(2)
+                    .map(|pair| [first, pair[0], pair[1]]);
+                self.faces.triangles.extend(fan);
+            }
+            _ => {
+                let found = format!("a face of {} corners", corners.len());
+                return Err(malformed(at, found, "three or more"));
+            }
+        }
+        self.room(self.faces.triangles.len().max(self.faces.quads.len()), at)
+    }
+
+    fn room(&self, count: usize, at: Place) -> Result<(), ReadError> {
+        if count < self.limit {
+            return Ok(());
+        }
+        let what = "a mesh this much larger than its file".to_owned();
+        Err(ReadError::Unsupported {
+            at,
+            what,
+            remedy: "write its parts into the file one by one",
+        })
+    }
+
+    /// The mesh, with an origin if the positions need one.
+    pub(super) fn finish(mut self) -> Result<SurfaceMesh, ReadError> {
+        let vertices = self.positions.len();
+        if let Some((index, at)) = self
+            .highest
+            .filter(|(index, _)| *index as usize >= vertices)
+        {
+            return Err(ReadError::BadIndex {
+                at,
+                index,
+                vertices,
+            });
+        }
+        let exact = self.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
+        let origin = if exact {
+            DVec3::ZERO
+        } else {
+            centre(&self.positions)
+        };
+        for (vertex, position) in self.vertices.iter_mut().zip(&self.positions) {
+            vertex.position = (position - origin).as_vec3();
+        }
+        Ok(SurfaceMesh {
+            origin,
+            vertices: self.vertices,
+            faces: self.faces,
+        })
+    }
+}
+
+/// The centre of the bounds, rounded to whole micrometres.
+fn centre(positions: &[DVec3]) -> DVec3 {
+    let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = positions
+        .iter()
+        .copied()
+        .fold(DVec3::NEG_INFINITY, DVec3::max);
+    (low * 0.5 + high * 0.5).round()
+}

@@ -1,0 +1,146 @@
+//! Readers of surfaces, for judging any mesh.
+//!
+//! Whatever a file claims, memory grows with the bytes that are there: counts in headers are
+//! believed only when the data follow. Polygons of more than four corners become fans of triangles;
+//! attributes that our writers write are read back, others are skipped.
+
+mod base64;
+mod builder;
+mod glb;
+mod lines;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+mod vtu;
+mod xml;
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use crate::{Format, SurfaceMesh, UnknownFormat};
+
+/// Where in a file something is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line, from 1 on.
+    Line(usize),
+    /// An offset in bytes.
+    Byte(usize),
+    /// No place in particular.
+    File,
+}
+
+/// Why a surface could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file could not be opened or read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The extension names no format.
+    #[error(transparent)]
+    Format(#[from] UnknownFormat),
+    /// The file breaks the rules of its format.
+    #[error("{at}: {found}: expected {expected}")]
+    Malformed {
+        /// Where.
+        at: Place,
+        /// What is there.
+        found: String,
+        /// What the format wants.
+        expected: &'static str,
+    },
+    /// The file ends too early.
+    #[error(
+        "{at}: the file ends within {what}: it was cut off or its header is wrong, get it anew"
+    )]
+    Truncated {
+        /// Where the data should be.
+        at: Place,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A face names a vertex that is not there.
+    #[error(
+        "{at}: a face names vertex {index} (counted from 0), but there are {vertices} vertices: \
+         export the mesh anew"
+    )]
+    BadIndex {
+        /// The face.
+        at: Place,
+        /// The highest index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// The file is sound, perhaps, but holds something that we do not read.
+    #[error("{at}: {what} is not supported: {remedy}")]
+    Unsupported {
+        /// Where.
+        at: Place,
+        /// What is there.
+        what: String,
+        /// The way out.
+        remedy: &'static str,
+    },
+}
+
+impl ReadError {
+    /// Where in the file, if that is known.
+    pub fn place(&self) -> Place {
+        match self {
+            Self::Io(_) | Self::Format(_) => Place::File,
+            Self::Malformed { at, .. }
+            | Self::Truncated { at, .. }
+            | Self::BadIndex { at, .. }
+            | Self::Unsupported { at, .. } => *at,
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+            Self::File => f.write_str("file"),
+        }
+    }
+}
+
+/// Reads a mesh; the extension names the format (`gltf` too, if it embeds its data).
+///
+/// The origin is zero if all coordinates are numbers of 32 bits, else near the centre of the
+/// bounds.
+pub fn read(path: &Path) -> Result<SurfaceMesh, ReadError> {
+    let format = Format::from_extension(path)?;
+    read_bytes(&std::fs::read(path)?, format)
+}
+
+/// Reads a mesh from the bytes of a file; see [`read`].
+pub fn read_bytes(bytes: &[u8], format: Format) -> Result<SurfaceMesh, ReadError> {
+    match format {
+        Format::Ply => ply::read(bytes),
+        Format::Obj => obj::read(bytes),
+        Format::Stl => stl::read(bytes),
+        Format::Glb => glb::read(bytes),
+        Format::Off => off::read(bytes),
+        Format::Vtu => vtu::read(bytes),
+    }
+}
+
+/// A [`ReadError::Malformed`].
+fn malformed(at: Place, found: impl Into<String>, expected: &'static str) -> ReadError {
+    ReadError::Malformed {
+        at,
+        found: found.into(),
+        expected,
+    }
+}
+
+/// The beginning of what stands in a file, for a message.
+fn shown(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]);
+    format!("'{}'", text.trim().escape_debug())
+}

@@ -1,0 +1,90 @@
+//! OFF with its variants: `[ST][C][N]OFF`, whose extra numbers are skipped, and colours of faces.
+
+use glam::DVec3;
+
+use super::builder::Builder;
+use super::lines::{Lines, number, whole, words};
+use super::{ReadError, malformed, shown};
+use crate::{SurfaceMesh, SurfaceVertex};
+
+pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
+    let mut mesh = Builder::new(bytes.len());
+    let mut lines = Lines::new(bytes);
+    let first = data_line(&mut lines, "the keyword")?;
+    let mut counts = words(first).peekable();
+    // The keyword may be missing: `8 6 12` alone is a valid header.
+    if counts
+        .peek()
+        .is_some_and(|word| !word.iter().all(u8::is_ascii_digit))
+    {
+        keyword(counts.next().unwrap_or_default(), &lines)?;
+    }
+    if counts.peek() == Some(&&b"BINARY"[..]) {
+        let (at, what) = (lines.place(), "binary OFF".to_owned());
+        return Err(ReadError::Unsupported {
+            at,
+            what,
+            remedy: "write it as text, or as PLY",
+        });
+    }
+    let mut counts: Vec<&[u8]> = counts.collect();
+    if counts.is_empty() {
+        counts = words(data_line(&mut lines, "the counts")?).collect();
+    }
+    let at = lines.place();
+    let vertices: u64 = whole(counts.first().copied(), at)?;
+    let faces: u64 = whole(counts.get(1).copied(), at)?;
+
+    for _ in 0..vertices {
+        let mut words = words(data_line(&mut lines, "the vertices")?);
+        let mut next = || number(words.next(), lines.place());
+        let position = DVec3::new(next()?, next()?, next()?);
+        mesh.vertex(lines.place(), position, SurfaceVertex::default())?;
+    }
+    let mut corners = Vec::new();
+    for _ in 0..faces {
+        let mut words = words(data_line(&mut lines, "the faces")?);
+        let at = lines.place();
+        let count: usize = whole(words.next(), at)?;
+        corners.clear();
+        for _ in 0..count {
+            corners.push(whole(words.next(), at)?);
+        }
+        mesh.face(at, &corners)?;
+    }
+    mesh.finish()
+}
+
+fn keyword(word: &[u8], lines: &Lines<'_>) -> Result<(), ReadError> {
+    let at = lines.place();
+    let Some(prefix) = word.strip_suffix(b"OFF") else {
+        return Err(malformed(
+            at,
+            shown(word),
+            "the keyword OFF, COFF, NOFF or STOFF",
+        ));
+    };
+    if prefix.iter().any(|letter| b"4n".contains(letter)) {
+        let what = format!("{} (points of more than three dimensions)", shown(word));
+        return Err(ReadError::Unsupported {
+            at,
+            what,
+            remedy: "write it in three dimensions",
+        });
+    }
+    Ok(())
+}
+
+/// The next line with something on it, without its comment.
+fn data_line<'a>(lines: &mut Lines<'a>, what: &'static str) -> Result<&'a [u8], ReadError> {
+    for line in lines.by_ref() {
+        let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
+        if words(line).next().is_some() {
+            return Ok(line);
+        }
+    }
+    Err(ReadError::Truncated {
+        at: lines.place(),
+        what,
+    })
+}

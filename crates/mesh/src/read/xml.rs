@@ -1,0 +1,73 @@
+//! As much XML as VTK's files use: tags with attributes.
+
+use super::{Place, ReadError, malformed};
+
+/// A tag.
+pub(super) struct Tag<'a> {
+    /// Its name, with a `/` in front if it closes.
+    pub(super) name: &'a str,
+    attributes: &'a str,
+    /// Offset of the byte after it.
+    pub(super) end: usize,
+}
+
+impl<'a> Tag<'a> {
+    /// The next tag at or after an offset; comments and declarations are skipped.
+    pub(super) fn next(bytes: &'a [u8], mut from: usize) -> Result<Option<Self>, ReadError> {
+        loop {
+            let Some(start) = find(bytes, from, b"<") else {
+                return Ok(None);
+            };
+            let cut = ReadError::Truncated {
+                at: Place::Byte(start),
+                what: "a tag",
+            };
+            if bytes[start..].starts_with(b"<!--") {
+                from = find(bytes, start + 4, b"-->").ok_or(cut)? + 3;
+                continue;
+            }
+            let end = find(bytes, start, b">").ok_or(cut)?;
+            let inside = &bytes[start + 1..end];
+            from = end + 1;
+            if inside.starts_with(b"?") || inside.starts_with(b"!") {
+                continue;
+            }
+            let Ok(inside) = std::str::from_utf8(inside) else {
+                return Err(malformed(Place::Byte(start), "a tag", "text in UTF-8"));
+            };
+            let inside = inside.strip_suffix('/').unwrap_or(inside);
+            let (name, attributes) = inside
+                .split_once(|c: char| c.is_ascii_whitespace())
+                .unwrap_or((inside, ""));
+            return Ok(Some(Self {
+                name,
+                attributes,
+                end: from,
+            }));
+        }
+    }
+
+    /// The value of an attribute.
+    pub(super) fn get(&self, name: &str) -> Option<&'a str> {
+        let mut rest = self.attributes;
+        loop {
+            let (key, after) = rest.split_once('=')?;
+            let after = after.trim_start();
+            let quote = after.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+            let (value, left) = after[1..].split_once(quote)?;
+            if key.trim() == name {
+                return Some(value);
+            }
+            rest = left;
+        }
+    }
+}
+
+/// Where a pattern stands at or after an offset.
+pub(super) fn find(bytes: &[u8], from: usize, pattern: &[u8]) -> Option<usize> {
+    let rest = bytes.get(from..)?;
+    let found = rest
+        .windows(pattern.len())
+        .position(|window| window == pattern)?;
+    Some(from + found)
+}

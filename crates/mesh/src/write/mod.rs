@@ -1,0 +1,293 @@
+//! Writers of surfaces.
+//!
+//! **Practice.** A surface is made group by group: some blocks at a time, in parallel, each encoded
+//! where it is made, then written in order. What is held at a time is two groups a thread, so the
+//! surface may be far larger than memory. Sizes are known beforehand, therefore arrays that a
+//! format wants one after the other are written side by side, each from its own place in the file;
+//! that is what `Seek` is for.
+
+mod glb;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+mod vtu;
+
+use std::io::{self, Seek, SeekFrom, Write};
+use std::ops::Range;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::{Faces, Format, Surface, SurfaceVertex};
+
+/// Why a surface could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The file or stream failed.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// Indices have 32 bits in these formats.
+    #[error(
+        "the surface has {0} vertices, files hold at most 4294967295: lower the level, or write \
+         several files"
+    )]
+    TooManyVertices(usize),
+    /// The format counts in 32 bits.
+    #[error(
+        "the surface needs {size} {unit}, {format} holds at most 4294967295: write ply or vtu, or \
+         lower the level"
+    )]
+    TooLarge {
+        /// The format.
+        format: Format,
+        /// How many would be needed.
+        size: u64,
+        /// Of what: bytes or triangles.
+        unit: &'static str,
+    },
+    /// A bug of the surface: its blocks hold not what it announced.
+    #[error("the surface announced {announced} {what} but its blocks hold {found}")]
+    Inconsistent {
+        /// Vertices, triangles or quads.
+        what: &'static str,
+        /// The count asked for beforehand.
+        announced: usize,
+        /// The count over all blocks.
+        found: usize,
+    },
+}
+
+/// Writes a surface from the current position of `out` on; coordinates are position + origin (µm).
+///
+/// | format | encoding | positions | attributes | quads |
+/// | --- | --- | --- | --- | --- |
+/// | PLY | binary, little endian | f32; f64 if the origin is not zero | all | kept |
+/// | OBJ | text | shortest that reads back exactly | normals | kept |
+/// | STL | binary | f32 | facet normals | split |
+/// | GLB | binary | f32, the origin is the node's translation | all | split |
+/// | OFF | text | shortest that reads back exactly | none | kept |
+/// | VTU | XML, raw binary | f32; f64 if the origin is not zero | all | kept |
+///
+/// Writes are large, `out` needs no buffer. STL repeats positions for each face and so holds those
+/// of all vertices; the others hold a few blocks. An empty surface gives a valid empty file.
+pub fn write<W: Write + Seek>(
+    surface: &dyn Surface,
+    format: Format,
+    out: &mut W,
+) -> Result<(), WriteError> {
+    if surface.vertex_count() > u32::MAX as usize {
+        return Err(WriteError::TooManyVertices(surface.vertex_count()));
+    }
+    let base = out.stream_position()?;
+    let mut file = File { out, base, at: 0 };
+    match format {
+        Format::Ply => ply::write(surface, &mut file),
+        Format::Obj => obj::write(surface, &mut file),
+        Format::Stl => stl::write(surface, &mut file),
+        Format::Glb => glb::write(surface, &mut file),
+        Format::Off => off::write(surface, &mut file),
+        Format::Vtu => vtu::write(surface, &mut file),
+    }?;
+    file.out.flush()?;
+    Ok(())
+}
+
+trait WriteSeek: Write + Seek {}
+
+impl<W: Write + Seek> WriteSeek for W {}
+
+/// The output with its position, counted from where we began.
+struct File<'a> {
+    out: &'a mut dyn WriteSeek,
+    base: u64,
+    at: u64,
+}
+
+impl File<'_> {
+    /// Writes at a place and moves the place behind it.
+    fn put(&mut self, place: &mut u64, bytes: &[u8]) -> Result<(), WriteError> {
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        self.go(*place)?;
+        self.out.write_all(bytes)?;
+        self.at += bytes.len() as u64;
+        *place = self.at;
+        Ok(())
+    }
+
+    /// Moves to a place.
+    fn go(&mut self, place: u64) -> Result<(), WriteError> {
+        if place != self.at {
+            self.out.seek(SeekFrom::Start(self.base + place))?;
+            self.at = place;
+        }
+        Ok(())
+    }
+
+    /// Writes all vertices. `encode` appends a group to `N` buffers, which go to `N` places.
+    fn vertices<const N: usize>(
+        &mut self,
+        surface: &dyn Surface,
+        places: &mut [u64; N],
+        encode: impl Fn(&[SurfaceVertex], &mut [Vec<u8>; N]) + Sync,
+    ) -> Result<(), WriteError> {
+        let announced = surface.vertex_count();
+        let mut found = 0;
+        let groups = groups(surface.vertex_blocks(), announced);
+        for window in groups.chunks(window()) {
+            let encoded: Vec<_> = window
+                .par_iter()
+                .map(|blocks| {
+                    let mut group = Vec::new();
+                    for block in blocks.clone() {
+                        surface.vertices(block, &mut group);
+                    }
+                    let mut buffers = [const { Vec::new() }; N];
+                    encode(&group, &mut buffers);
+                    (group.len(), buffers)
+                })
+                .collect();
+            for (count, buffers) in encoded {
+                found += count;
+                self.put_all(places, &buffers)?;
+            }
+        }
+        agree("vertices", announced, found)
+    }
+
+    /// Writes all faces, as [`File::vertices`] does vertices.
+    fn faces<const N: usize>(
+        &mut self,
+        surface: &dyn Surface,
+        places: &mut [u64; N],
+        encode: impl Fn(&Faces, &mut [Vec<u8>; N]) + Sync,
+    ) -> Result<(), WriteError> {
+        let announced = (surface.triangle_count(), surface.quad_count());
+        let mut found = (0, 0);
+        let groups = groups(surface.face_blocks(), announced.0 + announced.1);
+        for window in groups.chunks(window()) {
+            let encoded: Vec<_> = window
+                .par_iter()
+                .map(|blocks| {
+                    let mut group = Faces::default();
+                    for block in blocks.clone() {
+                        surface.faces(block, &mut group);
+                    }
+                    let mut buffers = [const { Vec::new() }; N];
+                    encode(&group, &mut buffers);
+                    (group.triangles.len(), group.quads.len(), buffers)
+                })
+                .collect();
+            for (triangles, quads, buffers) in encoded {
+                found = (found.0 + triangles, found.1 + quads);
+                self.put_all(places, &buffers)?;
+            }
+        }
+        agree("triangles", announced.0, found.0)?;
+        agree("quads", announced.1, found.1)
+    }
+
+    fn put_all<const N: usize>(
+        &mut self,
+        places: &mut [u64; N],
+        buffers: &[Vec<u8>; N],
+    ) -> Result<(), WriteError> {
+        places
+            .iter_mut()
+            .zip(buffers)
+            .try_for_each(|(place, bytes)| self.put(place, bytes))
+    }
+}
+
+fn agree(what: &'static str, announced: usize, found: usize) -> Result<(), WriteError> {
+    if announced == found {
+        return Ok(());
+    }
+    Err(WriteError::Inconsistent {
+        what,
+        announced,
+        found,
+    })
+}
+
+/// Vertices or faces of a group, at least: enough for a write, few enough for the cache.
+const GROUP: usize = 1 << 15;
+
+/// Blocks, so many together that a group is worth a write.
+fn groups(blocks: usize, items: usize) -> Vec<Range<usize>> {
+    let each = (GROUP * blocks).checked_div(items).unwrap_or(blocks).max(1);
+    (0..blocks)
+        .step_by(each)
+        .map(|first| first..blocks.min(first + each))
+        .collect()
+}
+
+/// Groups made at a time.
+fn window() -> usize {
+    2 * rayon::current_num_threads()
+}
+
+/// The two triangles of a quad; the same diagonal as everywhere in this crate.
+fn split(&[a, b, c, d]: &[u32; 4]) -> [[u32; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+/// Position + origin.
+fn absolute(vertex: &SurfaceVertex, origin: DVec3) -> [f64; 3] {
+    (vertex.position.as_dvec3() + origin).to_array()
+}
+
+/// Appends a position as text: the shortest numbers that read back the same, with a space between.
+fn push_position(text: &mut Vec<u8>, vertex: &SurfaceVertex, origin: DVec3) {
+    let mut buffer = zmij::Buffer::new();
+    for (axis, (x, origin)) in vertex
+        .position
+        .to_array()
+        .into_iter()
+        .zip(origin.to_array())
+        .enumerate()
+    {
+        if axis > 0 {
+            text.push(b' ');
+        }
+        let number = if origin == 0.0 {
+            buffer.format(x)
+        } else {
+            buffer.format(f64::from(x) + origin)
+        };
+        text.extend_from_slice(number.as_bytes());
+    }
+}
+
+/// Appends a number in decimals.
+fn push_index(text: &mut Vec<u8>, mut number: u64) {
+    let mut digits = [0; 20];
+    let mut first = digits.len();
+    loop {
+        first -= 1;
+        digits[first] = b'0' + (number % 10) as u8;
+        number /= 10;
+        if number == 0 {
+            break;
+        }
+    }
+    text.extend_from_slice(&digits[first..]);
+}
+
+/// Bytes of numbers, in the order given.
+macro_rules! record {
+    ($size:literal; $($number:expr),* $(,)?) => {{
+        let mut record = [0u8; $size];
+        let mut at = 0;
+        $(
+            let bytes = $number.to_le_bytes();
+            record[at..at + bytes.len()].copy_from_slice(&bytes);
+            at += bytes.len();
+        )*
+        debug_assert_eq!(at, $size);
+        record
+    }};
+}
+use record;
