@@ -1,0 +1,129 @@
+"""Opens each mesh file with the independent readers that know its format; prints JSON.
+
+usage: read_meshes.py FILE...
+
+One object per file and reader: file, reader, vertices, triangles, quads, watertight, winding,
+volume, low, high, attributes (name: [min, max]). Nothing is merged, except positions of STL.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import meshio
+import numpy
+import pygltflib
+import trimesh
+
+
+def judged(points, triangles, quads):
+    """What trimesh says of the faces, quads split."""
+    split = numpy.concatenate([triangles.reshape(-1, 3), quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    mesh = trimesh.Trimesh(points, split, process=False)
+    return described(mesh, len(triangles), len(quads))
+
+
+def described(mesh, triangles, quads):
+    points = numpy.asarray(mesh.vertices, dtype=float)
+    return {
+        "vertices": len(points),
+        "triangles": triangles,
+        "quads": quads,
+        "watertight": bool(mesh.is_watertight),
+        "winding": bool(mesh.is_winding_consistent),
+        "volume": float(mesh.volume),
+        "low": points.min(axis=0).tolist(),
+        "high": points.max(axis=0).tolist(),
+        "attributes": {},
+    }
+
+
+def ranges(attributes, names):
+    """The lowest and highest value of the attributes that are there."""
+    found = {name: numpy.asarray(attributes[name]) for name in names if name in attributes}
+    return {
+        name.strip("_").lower(): [float(values.min()), float(values.max())]
+        for name, values in found.items()
+    }
+
+
+OWN = ["type", "point", "section", "radius"]
+GLTF = ["_TYPE", "_POINT", "_SECTION", "_RADIUS"]
+
+
+def with_trimesh(path):
+    merge = path.suffix == ".stl"
+    mesh = trimesh.load(path, process=merge, force="mesh")
+    result = described(mesh, len(mesh.faces), 0)
+    if path.suffix == ".glb":
+        result["attributes"] = ranges(mesh.vertex_attributes, GLTF)
+    if path.suffix == ".ply":
+        data = mesh.metadata.get("_ply_raw", {}).get("vertex", {}).get("data")
+        if data is not None and data.dtype.names:
+            result["attributes"] = ranges({name: data[name] for name in data.dtype.names}, OWN)
+    return result
+
+
+def with_meshio(path):
+    mesh = meshio.read(path)
+    cells = mesh.cells_dict
+    triangles = cells.get("triangle", numpy.zeros((0, 3), dtype=int))
+    quads = cells.get("quad", numpy.zeros((0, 4), dtype=int))
+    result = judged(mesh.points, triangles, quads)
+    result["attributes"] = ranges(mesh.point_data, OWN)
+    return result
+
+
+def with_pygltflib(path):
+    """Reads accessors by their definition in the glTF specification."""
+    model = pygltflib.GLTF2().load(str(path))
+    blob = model.binary_blob()
+    primitive = model.meshes[0].primitives[0]
+    translation = numpy.array(model.nodes[0].translation or [0, 0, 0])
+
+    def numbers(index):
+        accessor = model.accessors[index]
+        view = model.bufferViews[accessor.bufferView]
+        kind = {5126: numpy.float32, 5125: numpy.uint32}[accessor.componentType]
+        width = {"SCALAR": 1, "VEC3": 3}[accessor.type]
+        stride = view.byteStride or 4 * width
+        start = (view.byteOffset or 0) + (accessor.byteOffset or 0)
+        return numpy.ndarray((accessor.count, width), kind, blob, start, (stride, 4))
+
+    positions = numbers(primitive.attributes.POSITION)
+    bounds = model.accessors[primitive.attributes.POSITION]
+    assert positions.min(axis=0).tolist() == bounds.min, "min"
+    assert positions.max(axis=0).tolist() == bounds.max, "max"
+    triangles = numbers(primitive.indices).reshape(-1, 3)
+    result = judged(positions + translation, triangles, numpy.zeros((0, 4), dtype=int))
+    own = {name: numbers(getattr(primitive.attributes, name)) for name in GLTF}
+    result["attributes"] = ranges(own, GLTF)
+    return result
+
+
+READERS = {
+    ".ply": [with_trimesh, with_meshio],
+    ".obj": [with_trimesh, with_meshio],
+    ".stl": [with_trimesh],
+    ".glb": [with_trimesh, with_pygltflib],
+    ".off": [with_trimesh, with_meshio],
+    ".vtu": [with_meshio],
+}
+
+# These readers want faces of one kind: trimesh in binary PLY, meshio in OFF.
+TRIANGLES_ONLY = [(with_trimesh, "mixed.ply"), (with_meshio, "mixed.off")]
+
+
+def main():
+    results = []
+    for path in map(Path, sys.argv[1:]):
+        for reader in READERS[path.suffix]:
+            if (reader, path.name) in TRIANGLES_ONLY:
+                continue
+            name = reader.__name__.removeprefix("with_")
+            results.append({"file": path.name, "reader": name, **reader(path)})
+    json.dump(results, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()
