@@ -1,1 +1,82 @@
-//! Placeholder, replaced at once.
+//! Morphology files and the morphology model, there and back.
+//!
+//! [`read`] finds the format, reads the whole file and gives a [`Read`]: the **morphology**, the
+//! name of the **format** and the **warnings**, one per kind of oddity. What cannot be read is a
+//! [`ReadError`] that names file, line, what is wrong and what to do. [`swc::write`] writes.
+//!
+//! ```
+//! use neurotess_formats::{ReadOptions, swc};
+//!
+//! let file = b"1 1 0 0 0 5 -1\n2 2 0 6 0 1 1\n3 2 0 9 0 1 2\n";
+//! let read = swc::read_bytes(file, "axon.swc", &ReadOptions::default())?;
+//! assert_eq!(read.morphology.points.len(), 2);
+//! assert!(read.warnings.is_empty());
+//!
+//! let mut written = Vec::new();
+//! swc::write(&read.morphology, &mut written).expect("memory takes it");
+//! assert_eq!(written, file);
+//! # Ok::<(), neurotess_formats::ReadError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod error;
+pub mod swc;
+mod warning;
+
+use std::fs;
+use std::path::Path;
+
+use neurotess_morphology::Morphology;
+
+pub use error::{Fault, ReadError};
+pub use warning::Warning;
+
+/// How to read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Take every warning as an error.
+    pub strict: bool,
+}
+
+/// What a file gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Read {
+    /// The cell, named after the file.
+    pub morphology: Morphology,
+    /// Short name of the format: `swc`.
+    pub format: &'static str,
+    /// What was odd, in the order of the lines.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads a morphology; the format is told by the name's extension, else by the content.
+///
+/// # Errors
+/// [`ReadError`] with file and line.
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadError> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let bytes = match fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(e) => {
+            return Err(ReadError {
+                file: name,
+                line: None,
+                fault: Fault::Io(e),
+            });
+        }
+    };
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    if swc::EXTENSIONS.contains(&extension.as_str()) || swc::looks_like(&bytes) {
+        return swc::read_bytes(&bytes, &name, options);
+    }
+    Err(ReadError {
+        file: name,
+        line: None,
+        fault: Fault::UnknownFormat,
+    })
+}

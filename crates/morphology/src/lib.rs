@@ -12,10 +12,41 @@
 //!                 ├─○─○   section 1: points 3..5, parent section 0
 //!                 └─○     section 2: points 5..6, parent section 0
 //! ```
+//!
+//! Readers and generators hand over flat **nodes** and get the arrays from
+//! [`Morphology::from_nodes`]; [`Measures::of`] and the functions of [`shape`] measure them.
+//!
+//! ```
+//! use glam::DVec3;
+//! use neurotess_morphology::{Measures, Morphology, NeuriteKind, Node};
+//!
+//! let node = |id, kind, y, parent| Node {
+//!     id,
+//!     kind,
+//!     position: DVec3::new(0.0, y, 0.0),
+//!     radius: 1.0,
+//!     parent,
+//! };
+//! let nodes = [
+//!     node(1, NeuriteKind::SOMA, 0.0, None),
+//!     node(2, NeuriteKind::AXON, 5.0, Some(0)),
+//!     node(3, NeuriteKind::AXON, 9.0, Some(1)),
+//! ];
+//! let built = Morphology::from_nodes("axon", Vec::new(), &nodes)?;
+//! assert_eq!(Measures::of(&built.morphology).length, 4.0); // the link to the soma is not counted
+//! # Ok::<(), neurotess_morphology::BuildError>(())
+//! ```
 #![forbid(unsafe_code)]
 
+mod build;
 mod kind;
+mod measures;
 mod model;
+pub mod shape;
+mod soma;
 
+pub use build::{BuildError, BuildNote, Built, Node, Oddity};
 pub use kind::NeuriteKind;
+pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
 pub use model::{Attachment, Morphology, Point, Section, SectionId, Soma, SomaKind, SomaSample};
+pub use soma::soma_area_volume;

@@ -1,0 +1,122 @@
+//! What was odd about the nodes, told once per kind of oddity.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::somata::Somata;
+use super::tree::NONE;
+use super::{Node, is_soma};
+use crate::{Soma, SomaKind};
+
+/// Something that a reader should warn of; the morphology is usable all the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Oddity {
+    /// No sample is of type 1.
+    NoSoma,
+    /// A tree's root was a neurite's point and its soma elsewhere: the soma is the root now.
+    SomaNotRoot,
+    /// Samples of type 1 form several somata.
+    SeveralSomata,
+    /// The samples of a soma fork, other than those of a three-point soma.
+    SomaBranches,
+    /// A soma has no positive radius.
+    SomaZeroRadius,
+    /// Samples of type 1 inside a neurite, apart from the tree's soma: kept as points.
+    SomaInsideNeurite,
+    /// Neurites that hang on nothing: beside a soma, or several of them.
+    Disconnected,
+    /// Points with radius zero.
+    ZeroRadius,
+    /// Samples with a negative radius.
+    NegativeRadius,
+}
+
+impl Oddity {
+    /// Name for machines.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NoSoma => "no_soma",
+            Self::SomaNotRoot => "soma_not_root",
+            Self::SeveralSomata => "several_somata",
+            Self::SomaBranches => "soma_branches",
+            Self::SomaZeroRadius => "soma_zero_radius",
+            Self::SomaInsideNeurite => "soma_inside_neurite",
+            Self::Disconnected => "disconnected",
+            Self::ZeroRadius => "zero_radius",
+            Self::NegativeRadius => "negative_radius",
+        }
+    }
+}
+
+impl fmt::Display for Oddity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoSoma => "no sample is of type 1: the cell has no soma",
+            Self::SomaNotRoot => "the soma is not the root of its tree: re-rooted there",
+            Self::SeveralSomata => "several separate somata: the thickest is taken as the main one",
+            Self::SomaBranches => "the samples of the soma fork: taken as frusta along the links",
+            Self::SomaZeroRadius => "the soma has no radius",
+            Self::SomaInsideNeurite => "soma samples inside a neurite: kept as points of type 1",
+            Self::Disconnected => "neurites that are connected to nothing: kept where they are",
+            Self::ZeroRadius => "points with radius zero",
+            Self::NegativeRadius => "negative radius: kept, measured as zero",
+        })
+    }
+}
+
+/// An oddity and where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuildNote {
+    /// What is odd.
+    pub oddity: Oddity,
+    /// Index of the first node that is so.
+    pub node: u32,
+    /// How many are.
+    pub count: u64,
+}
+
+/// The oddities so far: first node and count of each.
+#[derive(Default)]
+pub(super) struct Notes(BTreeMap<Oddity, (u32, u64)>);
+
+impl Notes {
+    pub(super) fn add(&mut self, oddity: Oddity, node: u32) {
+        self.add_many(oddity, node, 1);
+    }
+
+    pub(super) fn add_many(&mut self, oddity: Oddity, node: u32, count: u64) {
+        let entry = self.0.entry(oddity).or_insert((node, 0));
+        *entry = (entry.0.min(node), entry.1 + count);
+    }
+
+    pub(super) fn soma(&mut self, soma: &Soma, members: &[u32]) {
+        if soma.radius <= 0.0 {
+            self.add(Oddity::SomaZeroRadius, members[0]);
+        }
+        if soma.kind == SomaKind::Cylinders
+            && let Some(fork) = soma.fork()
+        {
+            self.add(Oddity::SomaBranches, members[fork as usize]);
+        }
+    }
+
+    /// Radii of points; those of somata are zero by right in contours.
+    pub(super) fn radii(&mut self, nodes: &[Node], somata: &Somata) {
+        for (i, node) in (0_u32..).zip(nodes) {
+            if node.radius < 0.0 {
+                self.add(Oddity::NegativeRadius, i);
+            } else if node.radius == 0.0 && !(is_soma(node) && somata.of(i) != NONE) {
+                self.add(Oddity::ZeroRadius, i);
+            }
+        }
+    }
+
+    pub(super) fn into_vec(self) -> Vec<BuildNote> {
+        let note = |(oddity, (node, count))| BuildNote {
+            oddity,
+            node,
+            count,
+        };
+        self.0.into_iter().map(note).collect()
+    }
+}
