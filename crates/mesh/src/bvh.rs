@@ -5,8 +5,9 @@
 //! gives the curve; we halve the row of leaves instead of splitting where bits change, so that the
 //! tree needs no pointers: the children of node n are 2 n and 2 n + 1).
 //!
-//! **Practice.** Meshes of neurons have faces of like size along thin tubes: sorting is most of
-//! the cost and a better tree (by surface area) would not pay.
+//! **Practice.** Meshes of neurons have faces of like size along thin tubes, which a curve sorts
+//! well: building the tree and testing all pairs of a torus of a million triangles takes 0.6 s on
+//! two cores (`examples/measure_speed.rs`).
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -54,7 +55,7 @@ pub(crate) struct Bvh {
     nodes: Vec<Bounds>,
 }
 
-/// Boxes in one leaf; 2, 4 and 8 were within a tenth of one another.
+/// Boxes in one leaf; by eye.
 const LEAF: usize = 4;
 
 impl Bvh {
