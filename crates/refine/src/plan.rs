@@ -181,7 +181,7 @@ fn cell(quad: [u32; 4], falling: bool, quads: bool, out: &mut Faces) {
 
 impl Grid {
     /// Triangles and quads. Every step of a side that snapping makes empty takes one triangle away.
-    fn face_counts(&self, quads: bool) -> (usize, usize) {
+    pub(crate) fn face_counts(&self, quads: bool) -> (usize, usize) {
         let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);
         let empty: usize = self
             .levels

@@ -37,6 +37,14 @@ impl<'m> Refinement<'m> {
         (3 * self.plan.triangles + 4 * self.plan.quads) / 2
     }
 
+    /// Number of faces of one patch; those of all patches follow one another in the patches' order,
+    /// triangles and quads apart.
+    pub fn patch_face_count(&self, patch: usize) -> usize {
+        let grid = self.plan.grid(self.mesh, &self.options, patch);
+        let (triangles, quads) = grid.face_counts(self.options.quads);
+        triangles + quads
+    }
+
     /// Volume (µm³) and area (µm²) of the refined surface; evaluates all of it, on all cores.
     pub fn volume_and_area(&self) -> (f64, f64) {
         let center = self
