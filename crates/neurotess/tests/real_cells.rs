@@ -1,0 +1,105 @@
+//! Every tracing at hand gives a closed surface: the repository's samples, and the test data beside
+//! the checkout where it is there.
+
+use std::path::{Path, PathBuf};
+
+use neurotess::formats::{ReadOptions, read};
+use neurotess::generate::{GenerateOptions, SphereKind, generate};
+use neurotess::mesh::{CoarseMesh, SurfaceMesh};
+use neurotess::refine::{Levels, RefineOptions, Refinement};
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn tracings(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        println!("skipped: no folder {}", folder.display());
+        return Vec::new();
+    };
+    let files = entries.filter_map(|e| Some(e.ok()?.path()));
+    let mut files: Vec<_> = files
+        .filter(|f| f.extension().is_some_and(|e| e == "swc"))
+        .collect();
+    files.sort();
+    files
+}
+
+fn all() -> Vec<PathBuf> {
+    let mut files = tracings(&workspace().join("samples"));
+    files.extend(tracings(&workspace().join("../shared/data/swc")));
+    files
+}
+
+fn assert_closed(mesh: &CoarseMesh, levels: &Levels<'_>, what: &str) {
+    let coarse = mesh.topology();
+    assert!(
+        coarse.closed && coarse.oriented && coarse.vertex_manifold,
+        "{what}: {coarse:?}"
+    );
+    assert_eq!(coarse.euler, 2 * coarse.components as i64, "{what}");
+    let refinement = Refinement::new(mesh, levels, &RefineOptions::default());
+    let surface = SurfaceMesh::collect(&refinement);
+    let refined = surface.topology();
+    assert!(
+        refined.closed && refined.oriented && refined.vertex_manifold,
+        "{what}: {refined:?}"
+    );
+    assert_eq!(refined.euler, coarse.euler, "{what}");
+    assert_eq!(refined.components, coarse.components, "{what}");
+    assert_eq!(refined.used_vertices, surface.vertices.len(), "{what}");
+}
+
+#[test]
+fn every_tracing_gives_a_closed_surface_without_folds_in_the_soma() {
+    for file in all() {
+        let name = file
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
+        let generated = generate(&morphology, &GenerateOptions::default());
+        for warning in &generated.warnings {
+            assert!(
+                !["soma_folded", "soma_inverted"].contains(&warning.code),
+                "{name}: {warning}"
+            );
+        }
+        let huge = morphology.points.len() > 50_000;
+        assert_closed(
+            &generated.mesh,
+            &Levels::Homogeneous(if huge { 1 } else { 4 }),
+            &name,
+        );
+        if !huge {
+            let mixed: Vec<u8> = (0..generated.mesh.tracing.len())
+                .map(|i| [1, 3, 2, 6][i * 7 % 4])
+                .collect();
+            assert_closed(&generated.mesh, &Levels::PerPoint(&mixed), &name);
+            assert_closed(&generated.mesh, &Levels::MaxError(0.1), &name);
+        }
+    }
+}
+
+#[test]
+fn the_papers_sphere_serves_every_tracing_too() {
+    for file in all() {
+        let name = file
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
+        if morphology.points.len() > 10_000 {
+            continue;
+        }
+        let options = GenerateOptions {
+            sphere: SphereKind::Octahedron,
+            sphere_level: Some(3),
+            ..GenerateOptions::default()
+        };
+        let generated = generate(&morphology, &options);
+        assert_closed(&generated.mesh, &Levels::Homogeneous(2), &name);
+    }
+}
