@@ -87,9 +87,9 @@ pub fn contractions(morphology: &Morphology) -> Vec<Option<f64>> {
     ids(morphology).map(contraction).collect()
 }
 
-/// Angle (radians) between the two children of each bifurcation, measured to the points `reach`
-/// µm along them (or to their ends), in the order of the parents.
-pub fn fork_angles(morphology: &Morphology, reach: f64) -> Vec<f64> {
+/// Angle (radians, in [0, π]) between the two children of a section, measured to the points
+/// `reach` µm along them (or to their ends); `None` where there are not two.
+pub fn fork_angles(morphology: &Morphology, reach: f64) -> Vec<Option<f64>> {
     let mut directions: Vec<Vec<DVec3>> = vec![Vec::new(); morphology.sections.len()];
     for id in ids(morphology) {
         if let Some(parent) = morphology.sections[id.index()].parent()
@@ -99,10 +99,10 @@ pub fn fork_angles(morphology: &Morphology, reach: f64) -> Vec<f64> {
         }
     }
     let angle = |children: &Vec<DVec3>| match children[..] {
-        [a, b] => Some(a.angle_between(b)),
+        [a, b] => Some(a.dot(b).clamp(-1.0, 1.0).acos()),
         _ => None,
     };
-    directions.iter().filter_map(angle).collect()
+    directions.iter().map(angle).collect()
 }
 
 /// Direction from the branch point to the point `reach` µm along the section.
