@@ -11,7 +11,7 @@ use crate::{Soma, SomaKind, SomaSample};
 
 /// Relative tolerance of the three-point soma: files round coordinates to two decimals.
 const THREE_POINT_TOLERANCE: f64 = 0.01;
-/// Greatest gap between a contour's ends, as a part of its length. By eye: 0.02 in real files.
+/// Greatest gap between a contour's ends, as a part of its length. By eye: 0.02 in C210401C.
 const CONTOUR_GAP: f64 = 0.2;
 /// Greatest distance of a contour from its plane, as a part of its radius. By eye.
 const CONTOUR_BULGE: f64 = 0.25;

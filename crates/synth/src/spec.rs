@@ -41,7 +41,7 @@ pub(crate) struct Tree {
     /// Angle between daughters (radians).
     pub(crate) angle: (f64, f64),
     pub(crate) tropism: Tropism,
-    /// Sideways part of a step; 0.33 contracts by about 0.9.
+    /// Sideways part of a step; 0.42 contracts to about 0.92.
     pub(crate) wobble: f64,
     /// Side branches before the tree splits up.
     pub(crate) trunk: Option<Trunk>,

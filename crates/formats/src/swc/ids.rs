@@ -1,7 +1,7 @@
 //! Parents by number to parents by index.
 //!
 //! Numbers mostly count up from 0 or 1: then the index is a difference. Dense ones in any order
-//! get a table, sparse ones a sorted list; a hash map was never faster than either.
+//! get a table, sparse ones a sorted list.
 
 use neurotess_morphology::Node;
 

@@ -36,7 +36,7 @@ type Located<T> = Result<T, (u64, Fault)>;
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
-/// Linear in the bytes, but n log n where the numbers of n samples are sparse; needs about 70 bytes
+/// Linear in the bytes, but n log n where the numbers of n samples are sparse; needs about 90 bytes
 /// a sample above the file and the morphology.
 ///
 /// # Errors
