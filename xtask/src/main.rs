@@ -1,2 +1,45 @@
-//! Placeholder.
-fn main() {}
+//! `cargo xtask COMMAND`: what the README's commands run.
+//!
+//! Each command is a list of steps; the first that fails ends it and is shown as it could be typed.
+#![forbid(unsafe_code)]
+#![allow(
+    clippy::print_stdout,
+    reason = "telling what is done is what this program is for"
+)]
+
+mod architecture;
+mod demo;
+mod licences;
+mod metadata;
+mod python;
+mod steps;
+mod tests;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "cargo xtask COMMAND
+
+  demo    mesh the built-in samples into out/, check the meshes, say where to look
+  test    set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  setup   the Python environment in which other readers check our files (where Python 3 is)
+";
+
+fn main() -> ExitCode {
+    let command = std::env::args().nth(1);
+    let done = match command.as_deref() {
+        Some("demo") => demo::run(),
+        Some("test") => tests::run(),
+        Some("setup") => python::set_up().map(|said| println!("{said}")),
+        _ => {
+            println!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            println!("\nFAILED: {e:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! One cell: read, generate, refine and write.
+
+use std::path::Path;
+use std::time::Instant;
+
+use neurotess::formats::{self, ReadOptions};
+use neurotess::generate::{self, Generated};
+use neurotess::mesh::{self as surfaces, CoarseMesh, Surface};
+use neurotess::refine::{CoarseSurface, Levels, Refinement};
+use serde::Serialize;
+
+use super::observed::Observed;
+use super::options::{Fineness, Recipe};
+use crate::output::{Output, OutputError, broken, refuse_existing};
+use crate::progress::Progress;
+use crate::report::Failure;
+use crate::targets::Job;
+
+/// One object of the JSON list, and one line of the log.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Cell {
+    pub(crate) file: String,
+    pub(crate) out: String,
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    pub(crate) quads: usize,
+    pub(crate) closed: bool,
+    pub(crate) euler: i64,
+    pub(crate) components: usize,
+    /// µm³, as written; not measured unless wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) volume: Option<f64>,
+    /// µm², likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) area: Option<f64>,
+    pub(crate) soma_volume: f64,
+    pub(crate) seconds: Seconds,
+    pub(crate) warnings: Vec<CellWarning>,
+}
+
+/// Where the time went.
+///
+/// Refining and writing are one streamed pass over all threads: `refine` is the planning and what
+/// the blocks took, divided by the threads; `write` is the rest of the pass.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) soma: f64,
+    pub(crate) coarse: f64,
+    pub(crate) refine: f64,
+    pub(crate) write: f64,
+    /// Topology, volume and area, for the report only.
+    pub(crate) measure: f64,
+}
+
+/// Something odd in the file (with a line), or mended in the mesh (with a sample).
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CellWarning {
+    pub(crate) line: Option<u64>,
+    pub(crate) sample: Option<i64>,
+    pub(crate) code: &'static str,
+    pub(crate) message: String,
+    pub(crate) count: u64,
+}
+
+/// Makes the mesh of one cell and writes it.
+pub(crate) fn mesh(
+    job: &Job,
+    recipe: &Recipe,
+    progress: Option<&Progress<'_>>,
+) -> Result<Cell, Failure> {
+    let file = job.input.display().to_string();
+    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    refuse_existing(&job.out, recipe.force).map_err(failed)?;
+    let mut seconds = Seconds::default();
+    let clock = Instant::now();
+    let options = ReadOptions {
+        strict: recipe.strict,
+    };
+    let read = formats::read(&job.input, &options).map_err(|e| Failure(e.to_string()))?;
+    seconds.read = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let generated = generate::generate(&read.morphology, &recipe.generate);
+    seconds.soma = generated.soma_seconds;
+    seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
+    drop(read.morphology);
+    if generated.mesh.patches.is_empty() {
+        return Err(Failure(format!(
+            "{file}: nothing is left to mesh: check --types and --soma"
+        )));
+    }
+
+    let written = write(&generated.mesh, recipe, &job.out, progress, &mut seconds);
+    let written = written.map_err(failed)?;
+    let clock = Instant::now();
+    let topology = generated.mesh.topology();
+    let measured = recipe.measure.then(|| measure(&generated.mesh, recipe));
+    seconds.measure = clock.elapsed().as_secs_f64();
+    Ok(Cell {
+        file: file.clone(),
+        out: job.out.display().to_string(),
+        vertices: written.vertices,
+        triangles: written.triangles,
+        quads: written.quads,
+        closed: topology.closed,
+        // Refining divides faces and edges; the shape stays.
+        euler: topology.euler,
+        components: topology.components,
+        volume: measured.map(|(volume, _)| volume),
+        area: measured.map(|(_, area)| area),
+        // An empty sum is −0.
+        soma_volume: generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
+        seconds,
+        warnings: warnings(read.warnings, &generated),
+    })
+}
+
+/// What a file holds.
+struct Written {
+    vertices: usize,
+    triangles: usize,
+    quads: usize,
+}
+
+fn write(
+    mesh: &CoarseMesh,
+    recipe: &Recipe,
+    out: &Path,
+    progress: Option<&Progress<'_>>,
+    seconds: &mut Seconds,
+) -> Result<Written, OutputError> {
+    let clock = Instant::now();
+    let refinement;
+    let coarse;
+    let surface: &dyn Surface = match levels(recipe.fineness) {
+        Some(levels) => {
+            refinement = Refinement::new(mesh, &levels, &recipe.refine);
+            &refinement
+        }
+        None => {
+            coarse = CoarseSurface::new(mesh, recipe.format.has_quads());
+            &coarse
+        }
+    };
+    let planned = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let observed = Observed::new(surface, progress);
+    let mut output = Output::create(out, recipe.force)?;
+    surfaces::write(&observed, recipe.format, output.file()).map_err(|e| match e {
+        surfaces::WriteError::Io(e) => broken(out, &e),
+        other => broken(out, &std::io::Error::other(other)),
+    })?;
+    output.finish()?;
+    let pass = clock.elapsed().as_secs_f64();
+    let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
+    seconds.refine = planned + blocks;
+    seconds.write = pass - blocks;
+    Ok(Written {
+        vertices: surface.vertex_count(),
+        triangles: surface.triangle_count(),
+        quads: surface.quad_count(),
+    })
+}
+
+fn levels(fineness: Fineness) -> Option<Levels<'static>> {
+    match fineness {
+        Fineness::Coarse => None,
+        Fineness::Level(level) => Some(Levels::Homogeneous(level)),
+        Fineness::MaxError(error) => Some(Levels::MaxError(error)),
+    }
+}
+
+/// Volume and area of what was written.
+fn measure(mesh: &CoarseMesh, recipe: &Recipe) -> (f64, f64) {
+    match levels(recipe.fineness) {
+        Some(levels) => Refinement::new(mesh, &levels, &recipe.refine).volume_and_area(),
+        None => {
+            let measure = mesh.measure();
+            (measure.volume, measure.area)
+        }
+    }
+}
+
+fn warnings(read: Vec<formats::Warning>, generated: &Generated) -> Vec<CellWarning> {
+    let of_file = read.into_iter().map(|w| CellWarning {
+        line: w.line,
+        sample: None,
+        code: w.code,
+        message: w.message,
+        count: w.count,
+    });
+    let of_mesh = generated.warnings.iter().map(|w| CellWarning {
+        line: None,
+        sample: w.sample,
+        code: w.code,
+        message: w.to_string(),
+        count: w.count as u64,
+    });
+    of_file.chain(of_mesh).collect()
+}

@@ -1,0 +1,11 @@
+//! The command line as scripts see it: one test for each row of its contract.
+
+mod check;
+mod convert;
+mod help;
+mod info;
+mod inputs;
+mod kill;
+mod mesh;
+mod synth;
+mod work;

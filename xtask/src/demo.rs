@@ -1,0 +1,106 @@
+//! `cargo xtask demo`: the main job on the built-in samples.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, bail};
+
+use crate::steps::{self, Steps, cargo, output, root};
+
+/// What is made of the samples: a folder, and options of `neurotess mesh`.
+const MESHES: &[(&str, &str)] = &[
+    ("ply", "--format ply"),
+    ("glb", "--format glb --max-error 0.05"),
+    ("stl", "--format stl --level 2"),
+    ("coarse", "--format obj --level 0"),
+];
+
+/// Runs the command.
+pub(crate) fn run() -> anyhow::Result<()> {
+    let mut steps = Steps::default();
+    steps.step("build", || {
+        steps::run(&mut cargo(
+            "build --release --locked --package neurotess-cli",
+        ))
+        .map(|()| "the program neurotess".into())
+    })?;
+    let program = program()?;
+    let neurotess = |arguments: &str| {
+        let mut command = Command::new(&program);
+        command
+            .args(arguments.split_whitespace())
+            .current_dir(root());
+        command
+    };
+    steps.step("samples", || {
+        steps::run(&mut neurotess("info samples")).map(|()| "what is in samples/".into())
+    })?;
+    for (folder, options) in MESHES {
+        steps.step("mesh", || {
+            let arguments = format!("mesh samples -o out/{folder} --force {options}");
+            steps::run(&mut neurotess(&arguments))?;
+            Ok(format!("{} files in out/{folder}", count(folder)?))
+        })?;
+    }
+    steps.step("check", || check(&mut neurotess("check out/ply --json")))?;
+    steps.summary();
+    println!(
+        "\nLook at out/ply in MeshLab or ParaView, at out/glb in Blender or any viewer of glTF;"
+    );
+    println!(
+        "out/stl is for printing and simulators, out/coarse holds the quads before refinement."
+    );
+    println!(
+        "Your own cell: {} mesh cell.swc -o cell.ply",
+        shown(&program)
+    );
+    Ok(())
+}
+
+fn check(command: &mut Command) -> anyhow::Result<String> {
+    let verdicts: serde_json::Value = serde_json::from_str(&output(command)?)?;
+    let verdicts = verdicts.as_array().context("a list of verdicts")?;
+    let mut crossings = 0;
+    for verdict in verdicts {
+        let name = verdict["file"].as_str().unwrap_or_default();
+        let pairs = verdict["self_intersections"].as_u64().unwrap_or(0);
+        let sound = |key: &str| verdict[key] == true;
+        println!(
+            "   {name}: {} triangles, volume {:.0} µm³, {pairs} pairs of faces cross",
+            verdict["triangles"],
+            verdict["volume"].as_f64().unwrap_or(0.0)
+        );
+        if !["closed", "edge_manifold", "vertex_manifold", "oriented"]
+            .map(sound)
+            .contains(&false)
+        {
+            crossings += pairs;
+        } else {
+            bail!("{name} is not a closed, oriented 2-manifold");
+        }
+    }
+    Ok(format!(
+        "{} meshes are closed, oriented 2-manifolds; {crossings} pairs of faces cross",
+        verdicts.len()
+    ))
+}
+
+fn count(folder: &str) -> anyhow::Result<usize> {
+    Ok(fs::read_dir(root().join("out").join(folder))?.count())
+}
+
+/// Where Cargo put the program.
+fn program() -> anyhow::Result<PathBuf> {
+    let metadata = output(&mut cargo("metadata --format-version 1 --no-deps --locked"))?;
+    let metadata: serde_json::Value = serde_json::from_str(&metadata)?;
+    let target = metadata["target_directory"].as_str().context("a folder")?;
+    let name = format!("neurotess{}", std::env::consts::EXE_SUFFIX);
+    Ok(PathBuf::from(target).join("release").join(name))
+}
+
+fn shown(program: &Path) -> String {
+    let root = fs::canonicalize(root()).unwrap_or_default();
+    let relative = program.strip_prefix(&root).unwrap_or(program);
+    relative.display().to_string()
+}

@@ -1,0 +1,114 @@
+//! Steps with a name and a time, and the summary at the end.
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+
+/// Folder of the workspace.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Cargo as it called us, in the workspace.
+pub(crate) fn cargo(arguments: &str) -> Command {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command
+        .args(arguments.split_whitespace())
+        .current_dir(root());
+    command
+}
+
+/// Runs steps and remembers what they took.
+#[derive(Default)]
+pub(crate) struct Steps {
+    done: Vec<(&'static str, Duration, String)>,
+}
+
+impl Steps {
+    /// Runs a step; what it returns stands in the summary.
+    pub(crate) fn step(
+        &mut self,
+        name: &'static str,
+        work: impl FnOnce() -> anyhow::Result<String>,
+    ) -> anyhow::Result<()> {
+        println!("── {name}");
+        let clock = Instant::now();
+        let said = work().with_context(|| format!("step '{name}'"))?;
+        let took = clock.elapsed();
+        println!("   {name}: {said} ({:.1} s)", took.as_secs_f64());
+        self.done.push((name, took, said));
+        Ok(())
+    }
+
+    /// Prints all steps with their times.
+    pub(crate) fn summary(&self) {
+        println!("\n── summary");
+        for (name, took, said) in &self.done {
+            println!("   {name:<13} {:>7.1} s  {said}", took.as_secs_f64());
+        }
+        let total: Duration = self.done.iter().map(|(_, took, _)| *took).sum();
+        println!("   {:<13} {:>7.1} s", "together", total.as_secs_f64());
+    }
+}
+
+/// Runs a command; its output is ours.
+pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
+    println!("   $ {}", typed(command));
+    let status = command
+        .status()
+        .with_context(|| format!("cannot start: {}", typed(command)))?;
+    if !status.success() {
+        bail!("{status}: {}", typed(command));
+    }
+    Ok(())
+}
+
+/// Runs a command, shows what it prints on standard output and hands each line over.
+pub(crate) fn run_listening(
+    command: &mut Command,
+    mut heard: impl FnMut(&str),
+) -> anyhow::Result<()> {
+    println!("   $ {}", typed(command));
+    let mut child = command
+        .stdout(Stdio::piped())
+        .spawn()
+        .with_context(|| format!("cannot start: {}", typed(command)))?;
+    if let Some(output) = child.stdout.take() {
+        for line in BufReader::new(output).split(b'\n') {
+            let line = line?;
+            let line = String::from_utf8_lossy(&line);
+            println!("{line}");
+            heard(&line);
+        }
+    }
+    let status = child.wait()?;
+    if !status.success() {
+        bail!("{status}: {}", typed(command));
+    }
+    Ok(())
+}
+
+/// What a command prints on standard output.
+pub(crate) fn output(command: &mut Command) -> anyhow::Result<String> {
+    let output = command
+        .stderr(Stdio::inherit())
+        .output()
+        .with_context(|| format!("cannot start: {}", typed(command)))?;
+    if !output.status.success() {
+        bail!("{}: {}", output.status, typed(command));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// The command as it could be typed.
+fn typed(command: &Command) -> String {
+    let program = Path::new(command.get_program());
+    let name = program.file_name().unwrap_or(program.as_os_str());
+    let words = std::iter::once(name).chain(command.get_args());
+    let words: Vec<_> = words.map(|word| word.to_string_lossy()).collect();
+    words.join(" ")
+}
