@@ -1,4 +1,67 @@
 //! From tracings of neurons to closed surfaces.
+//!
+//! # A tour
+//!
+//! A **morphology** is a traced cell: somata, sections and points with radii, in micrometres. It is
+//! read from a file, or grown by [`synth`].
+//!
+//! ```
+//! use neurotess::formats::{ReadOptions, swc};
+//!
+//! let tracing = b"# a soma, an axon, a dendrite that forks
+//! 1 1  0   0  0  5   -1
+//! 2 2  0  -9  0  1    1
+//! 3 2  0 -30  2  0.8  2
+//! 4 3  0   9  0  1.2  1
+//! 5 3  2  25  0  1    4
+//! 6 3 12  40  3  0.7  5
+//! 7 3 -9  42 -4  0.7  5
+//! ";
+//! let read = swc::read_bytes(tracing, "cell.swc", &ReadOptions::default())?;
+//! assert!(read.warnings.is_empty());
+//!
+//! // How long is it? The way through the soma is not counted.
+//! use neurotess::morphology::Measures;
+//! let measures = Measures::of(&read.morphology);
+//! assert_eq!((measures.n_neurites, measures.n_ends), (2, 3));
+//!
+//! // The coarse mesh: quads around the tracing, closed by their indices.
+//! use neurotess::generate::{GenerateOptions, generate};
+//! let generated = generate(&read.morphology, &GenerateOptions::default());
+//! let shape = generated.mesh.topology();
+//! assert!(shape.closed && shape.oriented && shape.euler == 2);
+//!
+//! // Refined to level 4: a surface that is made block by block when it is asked for.
+//! use neurotess::refine::{Levels, RefineOptions, Refinement};
+//! let surface =
+//!     Refinement::new(&generated.mesh, &Levels::Homogeneous(4), &RefineOptions::default());
+//! let (volume, area) = surface.volume_and_area();
+//! assert!(volume > generated.somata[0].volume && area > 0.0);
+//!
+//! // To a file, or to memory, and back.
+//! use neurotess::mesh::{Format, check, read_bytes, write};
+//! let mut ply = std::io::Cursor::new(Vec::new());
+//! write(&surface, Format::Ply, &mut ply)?;
+//! let report = check(&read_bytes(&ply.into_inner(), Format::Ply)?);
+//! assert!(report.closed && report.vertex_manifold && report.self_intersections == 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The **coarse mesh** is small and is what a renderer needs; the **surface** may be far larger than
+//! memory. For a surface as fine as an error asks for, use
+//! [`Levels::MaxError`](refine::Levels::MaxError). What is in doubt comes back as **warnings**, of
+//! the reader and of the generator; libraries print nothing.
+//!
+//! # Where things are
+//!
+//! | module | what |
+//! | --- | --- |
+//! | [`morphology`] | the traced cell and its measures |
+//! | [`formats`] | morphology files, there and back |
+//! | [`synth`] | synthetic neurons |
+//! | [`generate`] | from a morphology to a coarse mesh |
+//! | [`refine`] | from a coarse mesh to a surface |
+//! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
 #![forbid(unsafe_code)]
 
 pub use neurotess_formats as formats;
