@@ -19,8 +19,15 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod asc;
 mod error;
+pub mod h5;
+mod hdf5;
+mod losses;
+mod number;
 pub mod swc;
+mod text;
+mod traced;
 mod warning;
 
 use std::fs;
@@ -43,7 +50,7 @@ pub struct ReadOptions {
 pub struct Read {
     /// The cell, named after the file.
     pub morphology: Morphology,
-    /// Short name of the format: `swc`.
+    /// Short name of the format: `swc`, `asc` or `h5`.
     pub format: &'static str,
     /// What was odd, in the order of the lines.
     pub warnings: Vec<Warning>,
@@ -71,12 +78,33 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
         .unwrap_or_default()
         .to_string_lossy()
         .to_ascii_lowercase();
-    if swc::EXTENSIONS.contains(&extension.as_str()) || swc::looks_like(&bytes) {
-        return swc::read_bytes(&bytes, &name, options);
+    match Format::of(&extension, &bytes) {
+        Some(Format::Swc) => swc::read_bytes(&bytes, &name, options),
+        Some(Format::Asc) => asc::read_bytes(&bytes, &name, options),
+        Some(Format::H5) => h5::read_bytes(bytes, &name, options),
+        None => Err(ReadError::of_file(&name, Fault::UnknownFormat)),
     }
-    Err(ReadError {
-        file: name,
-        line: None,
-        fault: Fault::UnknownFormat,
-    })
+}
+
+/// The formats that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Swc,
+    Asc,
+    H5,
+}
+
+impl Format {
+    /// Told by the extension, in lower case; else by what the file begins with.
+    fn of(extension: &str, bytes: &[u8]) -> Option<Self> {
+        let named = |extensions: &[&str]| extensions.contains(&extension);
+        match () {
+            () if named(&swc::EXTENSIONS) => Some(Self::Swc),
+            () if named(&asc::EXTENSIONS) => Some(Self::Asc),
+            () if named(&h5::EXTENSIONS) || h5::looks_like(bytes) => Some(Self::H5),
+            () if asc::looks_like(bytes) => Some(Self::Asc),
+            () if swc::looks_like(bytes) => Some(Self::Swc),
+            () => None,
+        }
+    }
 }
