@@ -166,6 +166,49 @@ pub enum Fault {
         /// How many there are.
         found: usize,
     },
+    /// XML itself is broken.
+    #[error("the XML is broken ({reason}): export the file again")]
+    Xml {
+        /// What the library says.
+        reason: String,
+    },
+    /// An attribute is missing or not what it should be.
+    #[error("<{element}> has {attribute}={text:?}, which is missing or out of range: correct it")]
+    Attribute {
+        /// The element's name.
+        element: String,
+        /// The attribute's name.
+        attribute: &'static str,
+        /// What stands there; empty if nothing.
+        text: String,
+    },
+    /// XML without a cell.
+    #[error("no <morphology> with a <segment>: look for the file that has the cell")]
+    NoMorphology,
+    /// Two segments have the same number.
+    #[error("segment {id} stands in line {first_line} already: number the segments anew")]
+    RepeatedSegment {
+        /// The number.
+        id: i64,
+        /// Line of the first.
+        first_line: u64,
+    },
+    /// The parent is not in the cell.
+    #[error("segment {id} has parent {parent}, which is not in the cell: add it")]
+    UnknownSegment {
+        /// Number of the child.
+        id: i64,
+        /// Number that no segment has.
+        parent: i64,
+    },
+    /// A segment has no end where it needs one.
+    #[error("segment {id} has no <{end}>: add it")]
+    NoEnd {
+        /// Its number.
+        id: i64,
+        /// Which end.
+        end: &'static str,
+    },
     /// HDF5 itself is broken, or a dataset is not there.
     #[error("{place} cannot be read as HDF5 ({reason}): fetch or export the file again")]
     Hdf5 {

@@ -24,6 +24,7 @@ mod error;
 pub mod h5;
 mod hdf5;
 mod losses;
+pub mod neuroml;
 mod number;
 pub mod swc;
 mod text;
@@ -50,7 +51,7 @@ pub struct ReadOptions {
 pub struct Read {
     /// The cell, named after the file.
     pub morphology: Morphology,
-    /// Short name of the format: `swc`, `asc` or `h5`.
+    /// Short name of the format: `swc`, `asc`, `h5` or `neuroml`.
     pub format: &'static str,
     /// What was odd, in the order of the lines.
     pub warnings: Vec<Warning>,
@@ -81,6 +82,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
     match Format::of(&extension, &bytes) {
         Some(Format::Swc) => swc::read_bytes(&bytes, &name, options),
         Some(Format::Asc) => asc::read_bytes(&bytes, &name, options),
+        Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, &name, options),
         Some(Format::H5) => h5::read_bytes(bytes, &name, options),
         None => Err(ReadError::of_file(&name, Fault::UnknownFormat)),
     }
@@ -92,6 +94,7 @@ enum Format {
     Swc,
     Asc,
     H5,
+    NeuroMl,
 }
 
 impl Format {
@@ -102,6 +105,7 @@ impl Format {
             () if named(&swc::EXTENSIONS) => Some(Self::Swc),
             () if named(&asc::EXTENSIONS) => Some(Self::Asc),
             () if named(&h5::EXTENSIONS) || h5::looks_like(bytes) => Some(Self::H5),
+            () if named(&neuroml::EXTENSIONS) || neuroml::looks_like(bytes) => Some(Self::NeuroMl),
             () if asc::looks_like(bytes) => Some(Self::Asc),
             () if swc::looks_like(bytes) => Some(Self::Swc),
             () => None,
