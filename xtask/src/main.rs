@@ -8,6 +8,7 @@
 )]
 
 mod architecture;
+mod bench;
 mod demo;
 mod licences;
 mod metadata;
@@ -21,6 +22,7 @@ const USAGE: &str = "cargo xtask COMMAND
 
   demo    mesh the built-in samples into out/, check the meshes, say where to look
   test    set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  bench   time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   setup   the Python environment in which other readers check our files (where Python 3 is)
 ";
 
@@ -29,7 +31,8 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
-        Some("setup") => python::set_up().map(|said| println!("{said}")),
+        Some("bench") => bench::run(),
+        Some("setup") => python::set_up(&python::TESTS).map(|said| println!("{said}")),
         _ => {
             println!("{USAGE}");
             return ExitCode::from(2);

@@ -17,7 +17,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
 /// Runs all steps, the cheap ones first.
 fn all(steps: &mut Steps) -> anyhow::Result<Counts> {
     let mut counts = Counts::default();
-    steps.step("setup", python::set_up)?;
+    steps.step("setup", || python::set_up(&python::TESTS))?;
     steps.step("format", || {
         steps::run(&mut cargo("fmt --all --check")).map(|()| "as rustfmt has it".into())
     })?;
