@@ -73,12 +73,12 @@ impl Store {
 
     /// A dataset of real numbers. `columns`: how many there must be.
     pub(crate) fn reals(&self, path: &str, columns: usize) -> Result<Table<f64>, Fault> {
-        self.table(path, columns, |dataset| dataset.read_f64())
+        self.table(path, columns, hdf5_pure::Dataset::read_f64)
     }
 
     /// A dataset of whole numbers. `columns`: how many there must be.
     pub(crate) fn wholes(&self, path: &str, columns: usize) -> Result<Table<i64>, Fault> {
-        self.table(path, columns, |dataset| dataset.read_i64())
+        self.table(path, columns, hdf5_pure::Dataset::read_i64)
     }
 
     fn table<T>(

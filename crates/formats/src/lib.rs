@@ -2,7 +2,7 @@
 //!
 //! [`read`] finds the format, reads the whole file and gives a [`Read`]: the **morphology**, the
 //! name of the **format** and the **warnings**, one per kind of oddity. What cannot be read is a
-//! [`ReadError`] that names file, line, what is wrong and what to do. [`swc::write`] writes.
+//! [`ReadError`] that names file, line, what is wrong and what to do. [`write`] writes.
 //!
 //! ```
 //! use neurotess_formats::{ReadOptions, swc};
@@ -21,6 +21,7 @@
 
 pub mod asc;
 mod error;
+mod format;
 pub mod h5;
 mod hdf5;
 mod losses;
@@ -37,6 +38,7 @@ use std::path::Path;
 use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
+pub use format::{EXTENSIONS, Format, write};
 pub use warning::Warning;
 
 /// How to read.
@@ -74,41 +76,12 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
             });
         }
     };
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase();
-    match Format::of(&extension, &bytes) {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    match Format::of_extension(&extension).or_else(|| Format::of_content(&bytes)) {
         Some(Format::Swc) => swc::read_bytes(&bytes, &name, options),
         Some(Format::Asc) => asc::read_bytes(&bytes, &name, options),
         Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, &name, options),
         Some(Format::H5) => h5::read_bytes(bytes, &name, options),
         None => Err(ReadError::of_file(&name, Fault::UnknownFormat)),
-    }
-}
-
-/// The formats that are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Swc,
-    Asc,
-    H5,
-    NeuroMl,
-}
-
-impl Format {
-    /// Told by the extension, in lower case; else by what the file begins with.
-    fn of(extension: &str, bytes: &[u8]) -> Option<Self> {
-        let named = |extensions: &[&str]| extensions.contains(&extension);
-        match () {
-            () if named(&swc::EXTENSIONS) => Some(Self::Swc),
-            () if named(&asc::EXTENSIONS) => Some(Self::Asc),
-            () if named(&h5::EXTENSIONS) || h5::looks_like(bytes) => Some(Self::H5),
-            () if named(&neuroml::EXTENSIONS) || neuroml::looks_like(bytes) => Some(Self::NeuroMl),
-            () if asc::looks_like(bytes) => Some(Self::Asc),
-            () if swc::looks_like(bytes) => Some(Self::Swc),
-            () => None,
-        }
     }
 }

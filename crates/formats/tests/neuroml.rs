@@ -141,15 +141,15 @@ fn faults_name_line_and_remedy() {
 #[test]
 fn shared_files_are_read() {
     let Some(data) = data() else { return };
-    for (name, segments, ends, soma) in [
-        ("NML2_SimpleMorphology.nml", 0.0, 2, "cylinders"),
-        ("NML2_MultiCompCellNetwork.nml", 0.0, 1, "cylinders"),
-        ("pyr_4_sym.cell.nml", 0.0, 4, "cylinders"),
-        ("l22_cylsoma.cell.nml", 0.0, 2, "cylinders"),
+    for (name, length, ends, soma) in [
+        ("NML2_SimpleMorphology.nml", 21.0, 2, "cylinders"),
+        ("NML2_MultiCompCellNetwork.nml", 40.0, 1, "cylinders"),
+        ("pyr_4_sym.cell.nml", 1610.012, 4, "cylinders"),
+        ("l22_cylsoma.cell.nml", 35.921, 2, "cylinders"),
     ] {
         let read = read(data.join("nml").join(name), &ReadOptions::default()).expect(name);
         let m = Measures::of(&read.morphology);
-        assert!(m.length > segments, "{name}");
+        assert!((m.length - length).abs() < 1e-3, "{name}: {}", m.length);
         assert_eq!((m.n_ends, m.soma.kind), (ends, soma), "{name}");
     }
 }

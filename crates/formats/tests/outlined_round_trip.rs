@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use shared::data;
 
 type Write = fn(&Morphology, &mut Vec<u8>) -> Vec<Warning>;
-type Read = fn(Vec<u8>) -> Morphology;
+type Read = fn(&[u8]) -> Morphology;
 
 fn as_asc(m: &Morphology, bytes: &mut Vec<u8>) -> Vec<Warning> {
     asc::write(m, bytes).expect("memory takes it")
@@ -19,13 +19,13 @@ fn as_h5(m: &Morphology, bytes: &mut Vec<u8>) -> Vec<Warning> {
     h5::write(m, bytes).expect("memory takes it")
 }
 
-fn from_asc(bytes: Vec<u8>) -> Morphology {
-    let read = asc::read_bytes(&bytes, "cell.asc", &ReadOptions::default());
+fn from_asc(bytes: &[u8]) -> Morphology {
+    let read = asc::read_bytes(bytes, "cell.asc", &ReadOptions::default());
     read.expect("our own file").morphology
 }
 
-fn from_h5(bytes: Vec<u8>) -> Morphology {
-    let read = h5::read_bytes(bytes, "cell.h5", &ReadOptions::default());
+fn from_h5(bytes: &[u8]) -> Morphology {
+    let read = h5::read_bytes(bytes.to_vec(), "cell.h5", &ReadOptions::default());
     read.expect("our own file").morphology
 }
 
@@ -60,7 +60,7 @@ fn shared_files_come_back() {
             for (write, back) in FORMATS {
                 let mut bytes = Vec::new();
                 let losses = write(&cell, &mut bytes);
-                let again = back(bytes);
+                let again = back(&bytes);
                 if !codes(&losses).contains(&"types_changed") {
                     assert_same_neurites(&cell, &again);
                 }
@@ -96,7 +96,7 @@ fn a_sphere_becomes_an_outline_of_its_size_and_all_losses_are_told() {
         let mut bytes = Vec::new();
         let losses = write(&cell, &mut bytes);
         assert!(codes(&losses).contains(&"soma_as_outline"));
-        let again = back(bytes);
+        let again = back(&bytes);
         assert_same_neurites(&cell, &again);
         let (a, b) = (Measures::of(&cell), Measures::of(&again));
         assert_eq!((a.length, a.area, a.volume), (b.length, b.area, b.volume));
@@ -115,7 +115,7 @@ fn types_that_asc_has_not_are_counted() {
     assert_eq!(changed.map(|w| w.count), Some(1));
     let mut bytes = Vec::new();
     assert!(!codes(&as_h5(&cell, &mut bytes)).contains(&"types_changed"));
-    assert_same_neurites(&cell, &from_h5(bytes));
+    assert_same_neurites(&cell, &from_h5(&bytes));
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn broken_files_are_refused_with_their_place() {
             "invalid-incomplete.asc",
             ":15: a branch goes on after the word that ends it",
         ),
-        ("unbalanced.asc", ":1: a bracket is not closed"),
+        ("unbalanced.asc", ":2: a bracket is not closed"),
         (
             "empty.h5",
             ": the file has no datasets 'points' and 'structure'",
@@ -182,7 +182,7 @@ proptest! {
         if let Ok(read) = asc::read_bytes(text.as_bytes(), "any.asc", &ReadOptions::default()) {
             let mut bytes = Vec::new();
             let losses = as_asc(&read.morphology, &mut bytes);
-            let again = from_asc(bytes);
+            let again = from_asc(&bytes);
             if !codes(&losses).contains(&"types_changed") {
                 assert_same_neurites(&read.morphology, &again);
             }

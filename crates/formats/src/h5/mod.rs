@@ -208,7 +208,7 @@ impl Tables {
         let row = self.points.row(point);
         if let Some(column) = row
             .iter()
-            .position(|x| !(x.abs() <= Morphology::MAX_COORDINATE))
+            .position(|x| x.is_nan() || x.abs() > Morphology::MAX_COORDINATE)
         {
             return Err(Fault::Row {
                 dataset: self.points_path.clone(),
