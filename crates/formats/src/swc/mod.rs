@@ -23,6 +23,7 @@ mod write;
 
 use neurotess_morphology::{BuildError, BuildNote, Morphology};
 
+use crate::text::{Located, refuse_foreign, stem};
 use crate::warning::Warnings;
 use crate::{Fault, Read, ReadError, ReadOptions};
 use rows::Records;
@@ -30,9 +31,6 @@ pub use write::write;
 
 /// Extensions of the format's files, in lower case.
 pub const EXTENSIONS: [&str; 2] = ["swc", "eswc"];
-
-/// A fault and its line, before it is known which file this is.
-type Located<T> = Result<T, (u64, Fault)>;
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
@@ -44,14 +42,8 @@ type Located<T> = Result<T, (u64, Fault)>;
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
     let mut warnings = Warnings::default();
     let extended = name.to_ascii_lowercase().ends_with(".eswc");
-    let morphology =
-        interpret(bytes, stem(name), extended, &mut warnings).map_err(|(line, fault)| {
-            ReadError {
-                file: name.into(),
-                line: Some(line),
-                fault,
-            }
-        })?;
+    let morphology = interpret(bytes, stem(name, &EXTENSIONS), extended, &mut warnings)
+        .map_err(|located| ReadError::at(name, located))?;
     Ok(Read {
         morphology,
         format: "swc",
@@ -109,45 +101,4 @@ fn interpret(
         warnings.add_many(line(node), oddity.code(), &oddity.to_string(), count);
     }
     Ok(built.morphology)
-}
-
-/// What is no text in one byte a letter, or a page of the web.
-fn refuse_foreign(bytes: &[u8]) -> Located<()> {
-    if bytes.is_empty() {
-        return Err((1, Fault::Empty));
-    }
-    let utf16_mark = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
-    if utf16_mark {
-        return Err((1, Fault::Utf16));
-    }
-    if let Some(nul) = memchr::memchr(0, bytes) {
-        // Without the mark: every other byte of ASCII text is NUL.
-        let start = &bytes[..bytes.len().min(64)];
-        let alternate = |odd: usize| start.iter().skip(odd).step_by(2).all(|&b| b == 0);
-        let utf16 = start.len() > 2 && alternate(0) != alternate(1);
-        let line = 1 + memchr::memchr_iter(b'\n', &bytes[..nul]).count() as u64;
-        return Err(if utf16 {
-            (1, Fault::Utf16)
-        } else {
-            (line, Fault::Binary)
-        });
-    }
-    let text = bytes
-        .strip_prefix(rows::BOM)
-        .unwrap_or(bytes)
-        .trim_ascii_start();
-    if text.first() == Some(&b'<') {
-        let line = 1 + memchr::memchr_iter(b'\n', &bytes[..bytes.len() - text.len()]).count();
-        return Err((line as u64, Fault::Html));
-    }
-    Ok(())
-}
-
-/// The file's name without folder and SWC's extension; other dots belong to the name.
-fn stem(name: &str) -> &str {
-    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    match file.rsplit_once('.') {
-        Some((stem, ext)) if EXTENSIONS.contains(&ext.to_ascii_lowercase().as_str()) => stem,
-        _ => file,
-    }
 }

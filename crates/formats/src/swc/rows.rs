@@ -3,13 +3,10 @@
 use glam::DVec3;
 use neurotess_morphology::{Morphology, NeuriteKind, Node};
 
-use super::Located;
 use super::number::{self, Class, class};
 use crate::Fault;
+use crate::text::{BOM, Located};
 use crate::warning::Warnings;
-
-/// Byte-order mark of UTF-8.
-pub(super) const BOM: &[u8] = &[0xef, 0xbb, 0xbf];
 
 /// The rows of a file.
 #[derive(Default)]
