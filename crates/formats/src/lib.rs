@@ -2,7 +2,7 @@
 //!
 //! [`read`] finds the format, reads the whole file and gives a [`Read`]: the **morphology**, the
 //! name of the **format** and the **warnings**, one per kind of oddity. What cannot be read is a
-//! [`ReadError`] that names file, line, what is wrong and what to do. [`write`] writes.
+//! [`ReadError`] that names file, line, what is wrong and what to do. [`write()`] writes.
 //!
 //! ```
 //! use neurotess_formats::{ReadOptions, swc};

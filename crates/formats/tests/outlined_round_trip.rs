@@ -159,8 +159,25 @@ fn broken_files_are_refused_with_their_place() {
         assert!(said.contains(": "), "what to do: {said}");
     }
     // Read, with a warning.
-    for name in ["simple2.asc", "soma_after_dendrite.h5", "deep_nesting.asc"] {
+    for name in ["simple2.asc", "soma_after_dendrite.h5"] {
         assert_eq!(said(name), "read", "{name}");
+    }
+}
+
+#[test]
+fn forks_may_be_200_000_deep() {
+    let depth = 200_000;
+    let down: String = (0..depth)
+        .map(|y| format!("(0 {y} 0 1) ((1 {y} 0 1) | "))
+        .collect();
+    let text = format!("((Axon) {down}(0 -1 0 1){})", ")".repeat(depth));
+    let read = asc::read_bytes(text.as_bytes(), "deep.asc", &ReadOptions::default());
+    let cell = read.expect("it is sound").morphology;
+    assert_eq!(Measures::of(&cell).n_ends, depth + 1);
+    for (write, back) in FORMATS {
+        let mut bytes = Vec::new();
+        write(&cell, &mut bytes);
+        assert_same_neurites(&cell, &back(&bytes));
     }
 }
 
