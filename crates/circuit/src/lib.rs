@@ -1,0 +1,57 @@
+//! Many neurons: circuits, scenes and simulation reports.
+//!
+//! # A tour
+//!
+//! A **circuit** is opened by its configuration, or by the folder that has one. It holds
+//! **populations** of **nodes**, each with a place, a rotation and the name of a morphology, and
+//! **templates**: the distinct morphology files, which are read when they are first asked for, and
+//! once.
+//!
+//! ```no_run
+//! use neurotess_circuit::{Circuit, Groups, Selection, read_all, soma_center};
+//!
+//! let circuit = Circuit::open("circuit_config.json")?;
+//! for failure in &circuit.failures {
+//!     eprintln!("{failure}"); // parts that could not be opened; the rest is there
+//! }
+//!
+//! // A **selection** chooses nodes: by id, node set, box, or a sample.
+//! let selection = Selection { sample: Some((1000, 1)), ..Selection::default() };
+//! let nodes = circuit.select(&selection)?;
+//!
+//! // **Instances** are what a renderer needs: template, place, id, group for the colour.
+//! let groups = Groups::by(&circuit, "layer");
+//! let instances = circuit.instances(&nodes, Some(&groups));
+//! read_all(instances.iter().map(|i| &circuit.templates[i.template.index()]));
+//! for instance in &instances {
+//!     let Ok(read) = circuit.templates[instance.template.index()].read() else { continue };
+//!     let world_from_cell = instance.world_from_cell(soma_center(&read.morphology));
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Coordinates of circuits are `f64`: at 10⁴ µm `f32` resolves 0.001 µm only.
+#![forbid(unsafe_code)]
+
+mod error;
+mod groups;
+mod hdf5;
+mod json;
+mod manifest;
+mod model;
+mod node_sets;
+mod open;
+mod select;
+mod sonata;
+mod template;
+mod warning;
+
+pub use error::{CircuitError, Fault};
+pub use groups::Groups;
+pub use model::{Attribute, Circuit, Instance, NodeRef, Population};
+pub use node_sets::NodeSets;
+pub use open::is_circuit;
+pub use select::Selection;
+pub use sonata::{Edges, Synapses};
+pub use template::{Template, TemplateId, read_all, soma_center};
+pub use warning::Warning;
