@@ -195,7 +195,7 @@ fn rows<'a>(
 ) -> impl Iterator<Item = u32> + 'a {
     let columns = rules.iter();
     let tests: Option<Vec<Test<'a>>> = columns
-        .map(|(attribute, rule)| Some(Test::new(column(population, attribute)?, rule)))
+        .map(|(attribute, rule)| Some(Test::new(&column(population, attribute)?, rule)))
         .collect();
     let n = if tests.is_some() { population.len() } else { 0 };
     let holds = move |row: &u32| tests.iter().flatten().all(|test| test.holds(*row as usize));
@@ -211,8 +211,8 @@ enum Test<'a> {
 }
 
 impl<'a> Test<'a> {
-    fn new(of: Of<'a>, rule: &'a Rule) -> Self {
-        match of {
+    fn new(of: &Of<'a>, rule: &'a Rule) -> Self {
+        match *of {
             Of::Name(name) => Self::All(rule.holds_for_word(name)),
             Of::Id(ids) => {
                 let set = match rule {

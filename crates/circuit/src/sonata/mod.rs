@@ -7,14 +7,14 @@
 mod config;
 mod edges;
 mod nodes;
-mod orientation;
+pub(crate) mod orientation;
 mod population;
 mod types;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-pub(crate) use config::{find, names_circuit};
+pub(crate) use config::{find, folder_of, names_circuit};
 pub use edges::{Edges, Synapses};
 
 use crate::hdf5::Store;

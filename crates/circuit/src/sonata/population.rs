@@ -136,7 +136,7 @@ fn places(
                 .to_array()
                 .iter()
                 .all(|c| c.is_nan());
-            !value.is_finite() && !(value.is_nan() && all_nan)
+            !(value.is_finite() || value.is_nan() && all_nan)
         };
         let faulty: Vec<(usize, f64)> = axes[axis]
             .iter()
