@@ -234,6 +234,21 @@ pub enum Fault {
         /// How many there are.
         count: u64,
     },
+    /// A report whose nodes the circuit does not have.
+    #[error(
+        "{missing} nodes of population '{population}' are not in {circuit}, the first is {first}: \
+         give the report of this circuit"
+    )]
+    OtherCircuit {
+        /// The report's population.
+        population: String,
+        /// The circuit's file.
+        circuit: String,
+        /// How many nodes are missing.
+        missing: u64,
+        /// Id of the first.
+        first: u64,
+    },
     /// A row of a table has too few or too many fields.
     #[error("{found} fields instead of {expected}: correct it")]
     Fields {

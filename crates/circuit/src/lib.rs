@@ -30,6 +30,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A **report** has values of a simulation for **elements**, pieces of sections, frame by frame; of a
+//! file far larger than memory only what is asked for is read. **Spikes** flash and decay.
+//!
+//! ```no_run
+//! use neurotess_circuit::{Report, SectionOrder, Spikes};
+//!
+//! let report = Report::open("voltage.h5")?;
+//! let values = &report.populations[0];
+//! let frame = values.time.frame_at(12.5).ok_or("no frame at 12.5 ms")?;
+//! let elements: Vec<u64> = values.elements_of(0).collect();
+//! for (value, compartment) in values.values(frame, &elements)?.iter().zip(values.compartments(0)?) {
+//!     println!("section {} at {}: {value} {}", compartment.section, compartment.along, values.units);
+//! }
+//! for (node, brightness) in Spikes::open("spikes.h5")?.populations[0].flashes(12.5, 5.0) {
+//!     println!("{node} flashes: {brightness}");
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Coordinates of circuits are `f64`: at 10⁴ µm `f32` resolves 0.001 µm only.
 #![forbid(unsafe_code)]
 
@@ -43,6 +62,7 @@ mod model;
 mod node_sets;
 mod nsol;
 mod open;
+mod report;
 mod scene;
 mod select;
 mod sonata;
@@ -55,6 +75,10 @@ pub use groups::Groups;
 pub use model::{Attribute, Circuit, Instance, NodeRef, Population};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;
+pub use report::{
+    Compartment, Place, Recording, Report, ReportKind, ReportPopulation, SectionOrder,
+    SpikePopulation, Spikes, TimeAxis,
+};
 pub use scene::color;
 pub use select::Selection;
 pub use sonata::{Edges, Synapses};
