@@ -143,11 +143,13 @@ pub(crate) struct OutArgs {
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   neurotess synth pyramidal -o cell.swc --seed 7
-  neurotess synth purkinje -o cells/ --count 1000 --points 5000")]
+  neurotess synth purkinje -o cells/ --count 1000 --points 5000
+  neurotess synth circuit -o circuit/ --neurons 10000 --morphologies 100")]
 pub(crate) struct SynthArgs {
-    /// Kind of cell: pyramidal, purkinje, granule, basket, motor or star
-    #[arg(value_parser = crate::synth::kind)]
-    pub(crate) kind: Kind,
+    /// Kind of cell: pyramidal, purkinje, granule, basket, motor or star; or circuit: many cells, with
+    /// spikes and a report, as SONATA
+    #[arg(value_parser = crate::synth::what)]
+    pub(crate) kind: What,
     #[command(flatten)]
     pub(crate) out: OutArgs,
     /// Seed of the first cell; the next ones count up
@@ -159,6 +161,27 @@ pub(crate) struct SynthArgs {
     /// Number of cells; more than one makes OUT a folder
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub(crate) count: usize,
+    /// Cells of the circuit, up to 100 million
+    #[arg(long, default_value_t = 1000, value_name = "N", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    pub(crate) neurons: u32,
+    /// Distinct morphologies of the circuit
+    #[arg(long, default_value_t = 10, value_name = "M", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) morphologies: u32,
+    /// Cells that the circuit's report has voltages of
+    #[arg(long, default_value_t = 100, value_name = "N", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) reported: u32,
+}
+
+/// What `neurotess synth` makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum What {
+    /// Cells of a kind.
+    Cells(Kind),
+    /// A circuit.
+    Circuit,
 }
 
 /// `neurotess mesh`

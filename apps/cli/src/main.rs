@@ -3,6 +3,7 @@
 
 mod args;
 mod check;
+mod circuit;
 mod convert;
 mod info;
 mod inputs;

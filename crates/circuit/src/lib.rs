@@ -69,6 +69,7 @@ mod sonata;
 mod template;
 mod transform;
 mod warning;
+pub mod write;
 
 pub use error::{CircuitError, Fault};
 pub use groups::Groups;

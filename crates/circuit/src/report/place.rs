@@ -55,10 +55,9 @@ impl SectionOrder {
         Some(Place::Section(*section, compartment.along))
     }
 
-    /// The number that reports have for a section.
-    pub fn number(&self, section: SectionId) -> Option<u64> {
-        let index = self.0.iter().position(|&other| other == section);
-        index.map(|index| index as u64 + 1)
+    /// The sections in this order: the first has number 1.
+    pub fn sections(&self) -> &[SectionId] {
+        &self.0
     }
 }
 
@@ -108,6 +107,6 @@ mod tests {
         let expected = [1, 2, 0].map(|id| Some(Place::Section(SectionId(id), 0.5)));
         assert_eq!(ids, expected);
         assert_eq!(place(4), None);
-        assert_eq!(order.number(SectionId(0)), Some(3));
+        assert_eq!(order.sections()[2], SectionId(0));
     }
 }

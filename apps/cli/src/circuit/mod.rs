@@ -1,0 +1,3 @@
+//! Circuits on the command line.
+
+pub(crate) mod synth;
