@@ -8,6 +8,8 @@ use neurotess::mesh::Format;
 use neurotess::morphology::NeuriteKind;
 use neurotess::synth::Kind;
 
+use crate::circuit::CellArgs;
+
 /// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
 #[derive(Debug, Parser)]
 #[command(
@@ -69,10 +71,10 @@ pub(crate) enum Color {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// What is in a morphology: counts, lengths, areas, the soma, warnings
+    /// What is in a morphology or a circuit: counts, lengths, the soma, populations, warnings
     Info(InfoArgs),
     /// From tracings to closed surface meshes
-    Mesh(MeshArgs),
+    Mesh(Box<MeshArgs>),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
     Check(CheckArgs),
     /// Write morphologies in another format
@@ -89,7 +91,8 @@ pub(crate) enum Command {
 /// `neurotess info`
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// Morphology files, folders (searched recursively) or globs
+    /// Morphology files, folders (searched recursively) or globs; circuits (a SONATA configuration or
+    /// the folder of one, a scene)
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// Take every warning of the reader as an error
@@ -191,11 +194,13 @@ pub(crate) enum What {
   neurotess mesh cell.swc -o cell.glb --max-error 0.05
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
+  neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
 and radius (µm).")]
 pub(crate) struct MeshArgs {
-    /// Morphology files, folders (searched recursively) or globs
+    /// Morphology files, folders (searched recursively) or globs; or one circuit, whose cells are
+    /// written in its coordinates
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -252,6 +257,8 @@ pub(crate) struct MeshArgs {
     /// Append one JSON line per cell to this file as it finishes
     #[arg(long, value_name = "FILE.jsonl", help_heading = "Many inputs")]
     pub(crate) log: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,

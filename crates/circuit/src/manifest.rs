@@ -51,7 +51,9 @@ impl Manifest {
 
     /// The path that a value names.
     pub(crate) fn path(&self, json: &Json) -> Result<PathBuf, CircuitError> {
-        Ok(self.folder.join(self.expand(json)?))
+        // Components, so that `./x/./y` is told as `x/y`.
+        let path = self.folder.join(self.expand(json)?);
+        Ok(path.components().collect())
     }
 
     /// Finds the value of one variable, and of those it needs. The depth is that of the manifest's

@@ -160,8 +160,13 @@ impl Population {
 }
 
 impl Circuit {
-    /// How many nodes show a morphology.
+    /// How many nodes there are.
     pub fn n_neurons(&self) -> usize {
+        self.populations.iter().map(Population::len).sum()
+    }
+
+    /// How many nodes show a morphology.
+    pub fn n_shown(&self) -> usize {
         let shown = |p: &Population| p.templates.iter().flatten().count();
         self.populations.iter().map(shown).sum()
     }

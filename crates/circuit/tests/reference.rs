@@ -159,7 +159,7 @@ fn groups_that_lack_what_others_have_are_read() {
         .iter()
         .find(|w| w.code == "morphology_missing");
     assert_eq!(missing.map(|w| w.count), Some(7));
-    assert_eq!(circuit.n_neurons(), 3);
+    assert_eq!(circuit.n_shown(), 3);
     assert!(
         circuit
             .warnings

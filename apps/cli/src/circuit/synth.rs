@@ -185,7 +185,8 @@ fn report(made: &SyntheticCircuit) -> io::Result<(ReportLayout, Vec<f32>)> {
         nodes: made.reported.clone(),
         sections: cells.into_iter().map(|cell| cell.sections).collect(),
         chunk: [16, 1024],
-        compressed: true,
+        // The HDF5 that libsonata brings knows no compression.
+        compressed: false,
     };
     Ok((layout, data))
 }

@@ -1,6 +1,7 @@
 //! The command line as scripts see it: one test for each row of its contract.
 
 mod check;
+mod circuit;
 mod convert;
 mod help;
 mod info;
