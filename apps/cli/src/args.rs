@@ -164,9 +164,9 @@ pub(crate) struct SynthArgs {
     /// Number of cells; more than one makes OUT a folder
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub(crate) count: usize,
-    /// Cells of the circuit, up to 100 million
+    /// Cells of the circuit, up to 10 million
     #[arg(long, default_value_t = 1000, value_name = "N", help_heading = "Circuit",
-          value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub(crate) neurons: u32,
     /// Distinct morphologies of the circuit
     #[arg(long, default_value_t = 10, value_name = "M", help_heading = "Circuit",
@@ -257,11 +257,11 @@ pub(crate) struct MeshArgs {
     /// Append one JSON line per cell to this file as it finishes
     #[arg(long, value_name = "FILE.jsonl", help_heading = "Many inputs")]
     pub(crate) log: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) cells: CellArgs,
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
 }
 
 /// `--path`

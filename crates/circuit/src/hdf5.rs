@@ -1,11 +1,11 @@
 //! HDF5 behind a small window: what circuits and reports ask of a file.
 //!
-//! Files are read in parts where they lie, never whole: reports are larger than memory.
+//! Reports are larger than memory: of them only parts are read, where they lie.
 
 use std::collections::HashMap;
 use std::path::Path;
 
-use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File};
+use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOptions};
 
 use crate::{CircuitError, Fault};
 
@@ -30,13 +30,32 @@ pub(crate) enum Column {
 const MAX_ROWS: u64 = u32::MAX as u64;
 
 impl Store {
+    /// Opens a file that is read in parts, where they lie.
     pub(crate) fn open(path: &Path) -> Result<Self, CircuitError> {
+        Self::open_by(path, File::open_streaming)
+    }
+
+    /// Opens a file that is read nearly whole. Up to a gigabyte is read at once: strings lie one by
+    /// one, and a million calls to the system for each column of them take longer than all else.
+    pub(crate) fn open_whole(path: &Path) -> Result<Self, CircuitError> {
+        let size = std::fs::metadata(path).map_or(0, |data| data.len());
+        if size <= 1 << 30 {
+            Self::open_by(path, File::open)
+        } else {
+            Self::open(path)
+        }
+    }
+
+    fn open_by<'a>(
+        path: &'a Path,
+        open: impl FnOnce(&'a Path) -> Result<File, hdf5_pure::Error>,
+    ) -> Result<Self, CircuitError> {
         let name = path.display().to_string();
         if !path.is_file() {
             let fault = Fault::Io(std::io::ErrorKind::NotFound.into());
             return Err(CircuitError::of_file(&name, fault));
         }
-        match File::open_streaming(path) {
+        match open(path) {
             Ok(file) => Ok(Self { file, name }),
             Err(e) => Err(CircuitError::of_file(&name, hdf5(&e))),
         }
@@ -164,13 +183,37 @@ impl Store {
             return self.coded(path, &enumeration(&datatype));
         }
         if is_string(&datatype) {
-            return Ok(distinct(self.strings(path)?));
+            return self.words(path);
         }
         if self.has(library) {
             let words = self.strings(library)?;
             return self.coded(path, &(0..).zip(words).collect());
         }
         Ok(Column::Numbers(self.reals(path)?))
+    }
+
+    /// Strings, each distinct one kept once: a million of four letters are not a million allocations.
+    fn words(&self, path: &str) -> Result<Column, CircuitError> {
+        let rows = self.rows(path)?;
+        let dataset = self.dataset(path)?;
+        let mut distinct = Distinct::default();
+        let visited = dataset
+            .visit_vlen_strings(VlenStringReadOptions::default(), |word| distinct.push(word));
+        if visited.is_err() {
+            // Strings of a fixed length; or whatever is wrong, told again.
+            distinct = Distinct::default();
+            for word in self.strings(path)? {
+                distinct.push(&word);
+            }
+        }
+        let Distinct {
+            library, indices, ..
+        } = distinct;
+        if indices.len() as u64 != rows {
+            let (found, expected) = (vec![indices.len() as u64], format!("[{rows}]"));
+            return Err(self.fault(path, Fault::Shape { found, expected }));
+        }
+        Ok(Column::Words { library, indices })
     }
 
     fn strings(&self, path: &str) -> Result<Vec<String>, CircuitError> {
@@ -259,21 +302,24 @@ fn enumeration(datatype: &Datatype) -> HashMap<i64, String> {
 }
 
 /// Words without their repetitions, in the order of their first appearance.
-pub(crate) fn distinct(words: Vec<String>) -> Column {
-    let mut places: HashMap<String, u32> = HashMap::new();
-    let mut library: Vec<String> = Vec::new();
-    let mut indices = Vec::with_capacity(words.len());
-    for word in words {
-        let place = match places.get(&word) {
+#[derive(Default)]
+struct Distinct {
+    places: HashMap<String, u32>,
+    library: Vec<String>,
+    indices: Vec<u32>,
+}
+
+impl Distinct {
+    fn push(&mut self, word: &str) {
+        let place = match self.places.get(word) {
             Some(&place) => place,
             None => {
-                let place = library.len() as u32;
-                library.push(word.clone());
-                places.insert(word, place);
+                let place = self.library.len() as u32;
+                self.library.push(word.into());
+                self.places.insert(word.into(), place);
                 place
             }
         };
-        indices.push(place);
+        self.indices.push(place);
     }
-    Column::Words { library, indices }
 }

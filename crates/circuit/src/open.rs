@@ -29,7 +29,8 @@ impl Circuit {
     }
 }
 
-/// Whether a file, or a folder, is a circuit: a folder is one if it has the configuration of one.
+/// Whether a file, or a folder, is to be opened as a circuit. A folder is if it has the configuration
+/// of one; any `.json` file is, since no morphology is: what is wrong with it, opening tells.
 pub fn is_circuit(path: &Path) -> bool {
     if path.is_dir() {
         return sonata::find(path).is_ok();
@@ -42,7 +43,7 @@ pub fn is_circuit(path: &Path) -> bool {
         let read = File::open(path).and_then(|file| file.take(4096).read_to_end(&mut begin));
         return read.is_ok() && nsol::looks_like(&begin);
     }
-    has_extension(path, "json") && sonata::names_circuit(path)
+    has_extension(path, "json")
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

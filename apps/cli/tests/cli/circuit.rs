@@ -150,3 +150,149 @@ fn the_seed_decides_every_file() {
         again.errors()
     );
 }
+
+#[test]
+fn info_tells_populations_bounds_and_reports() {
+    let (work, _) = made();
+    for input in ["c", "c/circuit_config.json", "c/simulation_config.json"] {
+        let json = work.run(&format!("info {input} --json")).exits(0).json();
+        let info = &json[0];
+        assert_eq!(
+            (&info["n_neurons"], &info["n_morphologies"]),
+            (&60.into(), &4.into())
+        );
+        assert_eq!(info["populations"][0]["name"], "cortex");
+        assert!(info["bbox"]["max"][1].as_f64() <= Some(2000.0));
+        let reports = info["reports"].as_array().expect("reports");
+        let voltage = &reports
+            .iter()
+            .find(|r| r["name"] == "voltage")
+            .expect("voltage");
+        assert_eq!(
+            (&voltage["type"], &voltage["n_nodes"]),
+            (&"compartment".into(), &5.into())
+        );
+        assert_eq!(
+            numbers(&serde_json::json!([
+                voltage["time"]["start"],
+                voltage["time"]["end"]
+            ])),
+            [0.0, 100.0]
+        );
+        assert!(reports.iter().any(|r| r["type"] == "spikes"));
+    }
+    let text = work.run("info c").exits(0).stdout();
+    assert!(
+        text.contains("60, 60 shown, of 4 morphology files"),
+        "{text}"
+    );
+}
+
+#[test]
+fn morphologies_and_circuits_are_told_in_one_list() {
+    let (work, _) = made();
+    let json = work.run("info c/morphologies c --json").exits(0).json();
+    assert_eq!(json.as_array().map(Vec::len), Some(5));
+    assert_eq!(json[4]["format"], "sonata");
+}
+
+#[test]
+fn cells_are_meshed_where_they_stand() {
+    let (work, folder) = made();
+    let json = work
+        .run("mesh c -o out --sample 3 --level 1 --json --soma sphere")
+        .exits(0)
+        .json();
+    let cells = json.as_array().expect("cells");
+    assert_eq!((cells.len(), work.files("out").len()), (3, 3));
+    let circuit = Circuit::open(folder).expect("a circuit");
+    for cell in cells {
+        assert_eq!(cell["closed"], true);
+        let id = cell["node_id"].as_u64().expect("an id") as usize;
+        let place = circuit.populations[0].positions[id];
+        let out = cell["out"].as_str().expect("a file");
+        assert!(out.ends_with(&format!("cortex_{id}.ply")), "{out}");
+        let mesh = neurotess::mesh::read(&work.path(out)).expect("a mesh");
+        // The soma is around the node's place.
+        let soma = mesh.vertices.iter().filter(|v| v.section == 0);
+        let (sum, count) = soma.fold((DVec3::ZERO, 0.0), |(sum, count), v| {
+            (sum + mesh.origin + v.position.as_dvec3(), count + 1.0)
+        });
+        assert!(
+            (sum / count).distance(place) < 3.0,
+            "{} {place}",
+            sum / count
+        );
+    }
+    let again = "mesh c -o out --sample 3 --level 1 --json --soma sphere --resume";
+    let skipped = work.run(again).exits(0).json();
+    assert!(
+        skipped
+            .as_array()
+            .expect("cells")
+            .iter()
+            .all(|c| c["skipped"] == true)
+    );
+}
+
+#[test]
+fn cells_are_chosen() {
+    let (work, _) = made();
+    let ids = |chosen: &str, out: &str| {
+        let json = work.run(&format!("mesh c -o {out} --level 0 --json {chosen}"));
+        let json = json.exits(0).json();
+        let cells = json.as_array().expect("cells").iter();
+        cells
+            .map(|c| c["node_id"].as_u64().expect("an id"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(ids("--nodes 3,10-12", "a"), [3, 10, 11, 12]);
+    let layer = ids("--node-set L1", "b");
+    let depth = ids("--region -1e6,1850,-1e6,1e6,2000,1e6", "c1");
+    assert_eq!(layer, depth, "the layer is a slab");
+    let unknown = work.run("mesh c -o d --node-set L9").exits(1);
+    assert!(unknown.errors()[0].contains("node set 'L9' is not defined"));
+    for wrong in [
+        "c c/morphologies",
+        "c/morphologies --sample 2",
+        "c --region 1,2",
+    ] {
+        work.run(&format!("mesh {wrong} -o e")).exits(2);
+    }
+}
+
+#[test]
+fn a_scene_of_files_is_a_circuit() {
+    let work = Work::new();
+    work.file("cell.swc", crate::work::SMALL);
+    work.file(
+        "pair.scene.toml",
+        "[[cells]]\nfile = \"cell.swc\"\n\n[[cells]]\nfile = \"cell.swc\"\nid = 5\n\
+         position = [10000, 0, 0]\nscale = 2\n",
+    );
+    let json = work
+        .run("mesh pair.scene.toml -o out --level 1 --json --format off")
+        .exits(0)
+        .json();
+    let volume = |i: usize| json[i]["volume"].as_f64().expect("a volume");
+    assert!((volume(1) / volume(0) - 8.0).abs() < 1e-6);
+    let checked = work.run("check out --json").exits(0).json();
+    for (i, mesh) in checked.as_array().expect("two").iter().enumerate() {
+        assert_eq!(mesh["closed"], true);
+        let found = mesh["volume"].as_f64().expect("a volume");
+        assert!(
+            (found / volume(i) - 1.0).abs() < 1e-3,
+            "{found} {}",
+            volume(i)
+        );
+    }
+    work.file(
+        "bad.scene.toml",
+        "[[cells]]\nfile = \"cell.swc\"\nquaternion = [0, 0, 0, 0]\n",
+    );
+    let errors = work.run("info bad.scene.toml").exits(1).errors();
+    assert!(
+        errors[0].contains("bad.scene.toml: 'cells[0].quaternion'"),
+        "{errors:?}"
+    );
+}

@@ -304,7 +304,7 @@ pub(crate) fn find(folder: &Path) -> Result<PathBuf, CircuitError> {
 }
 
 /// Whether a JSON file is the configuration of a circuit or of a simulation.
-pub(crate) fn names_circuit(path: &Path) -> bool {
+fn names_circuit(path: &Path) -> bool {
     Document::open(path).is_ok_and(|document| {
         let root = document.root();
         let networks = root.get("networks").and_then(|n| n.get("nodes"));

@@ -14,7 +14,7 @@ mod types;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-pub(crate) use config::{find, folder_of, names_circuit};
+pub(crate) use config::{find, folder_of};
 pub use edges::{Edges, Synapses};
 
 use crate::hdf5::Store;
@@ -115,7 +115,7 @@ impl Reading {
             let fault = Fault::NoFile { path };
             return Err(CircuitError::new(config, source.key.clone(), fault));
         }
-        let store = Store::open(&source.file)?;
+        let store = Store::open_whole(&source.file)?;
         let there = store.groups("nodes");
         if there.is_empty() {
             return Err(store.fault("nodes", Fault::Missing));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DQuat, DVec3};
+use rayon::prelude::*;
 
 use crate::sonata::config::{NodeSource, PopulationSource};
 use crate::sonata::nodes::Table;
@@ -61,20 +62,20 @@ pub(crate) fn read(
     places(table, &mut population, &mut broken, notes)?;
     rotations(table, &mut population, &mut broken, notes)?;
     recentring(table, &mut population)?;
-    for attribute in table.attributes() {
-        let is_place = [&PLACES[..], &QUATERNION, &ANGLES]
-            .concat()
-            .contains(&&*attribute);
-        if is_place {
-            continue;
-        }
-        match table.attribute(&attribute) {
-            Ok(Some(column)) => drop(population.attributes.insert(attribute, column)),
+    let names: Vec<String> = table
+        .attributes()
+        .into_iter()
+        .filter(|name| !is_place(name))
+        .collect();
+    let columns: Vec<_> = names.par_iter().map(|name| table.attribute(name)).collect();
+    for (name, column) in names.into_iter().zip(columns) {
+        match column {
+            Ok(Some(column)) => drop(population.attributes.insert(name, column)),
             Ok(None) => {}
             // One that cannot be read, like an array per node, does not keep the cells from showing.
-            Err(e) if attribute != "morphology" => notes.warnings.push(Warning::new(
+            Err(e) if name != "morphology" => notes.warnings.push(Warning::new(
                 file,
-                table.key(&attribute),
+                table.key(&name),
                 "attribute_left_out",
                 e.fault.to_string(),
             )),
@@ -83,6 +84,11 @@ pub(crate) fn read(
     }
     morphologies(table, &mut population, settings, &broken, notes);
     Ok(population)
+}
+
+/// Whether an attribute is read as a place or a rotation.
+fn is_place(name: &str) -> bool {
+    PLACES.contains(&name) || QUATERNION.contains(&name) || ANGLES.contains(&name)
 }
 
 /// Nodes whose place or rotation makes no sense.
