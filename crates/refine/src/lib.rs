@@ -13,17 +13,22 @@
 //!   └─────┴─────┘   coarser side, level 2
 //! ```
 //!
-//! This is the reference for the shaders: plain arrays in, no allocation per patch.
+//! This is the reference for the shaders: plain arrays in, no allocation per patch. The shaders' own
+//! text lies beside each file under the same stem; [`gpu`] hands it out, with the resident form of a
+//! mesh that they read ([`pack`]).
 #![forbid(unsafe_code)]
 
 mod coarse_surface;
 mod evaluate;
+pub mod gpu;
 mod level;
 mod options;
 mod plan;
 mod refinement;
+mod template;
 
 pub use coarse_surface::CoarseSurface;
 pub use level::HIGHEST_LEVEL;
-pub use options::{Caps, Levels, Path, RefineOptions};
+pub use options::{Caps, Levels, Path, RefineOptions, View};
 pub use refinement::Refinement;
+pub use template::{PackedTracing, PackedVertex, Part, pack};
