@@ -20,7 +20,8 @@ struct Finish {
     kept: vec2<u32>,
     // 1: the background is left out.
     clear: u32,
-    pad: u32,
+    // Bytes of a pixel where nothing is.
+    empty: u32,
     // Linear.
     background: vec4<f32>,
 }
@@ -60,6 +61,9 @@ fn alike(depth: f32, q: vec2<i32>) -> f32 {
 
 fn occlusion_at(p: vec2<i32>) -> f32 {
     let depth = depth_at(p);
+    if depth == 0.0 {
+        return 1.0;
+    }
     var sum = 0.0;
     var weights = 0.0;
     for (var k = -BLUR; k <= BLUR; k++) {
@@ -94,12 +98,17 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
             sum += colour;
         }
     }
+    let at = id.y * finish.kept.x + id.x;
+    if sum.a == 0.0 {
+        pixels[at] = finish.empty;
+        return;
+    }
     sum /= f32(finish.scale * finish.scale);
     var out = vec4(sum.rgb + finish.background.rgb * (1.0 - sum.a), 1.0);
     if finish.clear == 1u {
-        out = select(vec4(0.0), vec4(sum.rgb / sum.a, sum.a), sum.a > 0.0);
+        out = vec4(sum.rgb / sum.a, sum.a);
     }
     // Rounded by hand: how pack4x8unorm rounds is the driver's choice.
     let bytes = vec4<u32>(floor(vec4(encoded(out.rgb), out.a) * 255.0 + 0.5));
-    pixels[id.y * finish.kept.x + id.x] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+    pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }

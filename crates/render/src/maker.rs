@@ -8,7 +8,7 @@
 //!     normal: vec3<f32>,    // unit, outwards
 //!     axis: vec3<f32>,      // point of the tube's centre line, relative to the eye
 //!     radius: f32,          // µm; 0 on somata, which are never widened
-//!     attribute: u32,       // word of the tracing point: what the colour is looked up by
+//!     word: u32,            // word of the tracing point: what the colour is looked up by
 //!     instance: u32,
 //!     grid: vec2<f32>,      // for wireframes: lines run where x, y or x + y is a whole number
 //! }

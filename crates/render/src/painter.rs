@@ -5,7 +5,7 @@
 //!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
 //! ```
 
-use crate::colour::ColourTable;
+use crate::colour::{ColourTable, Rgb, linear};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher};
@@ -23,8 +23,8 @@ pub(crate) struct Finishing {
     pub(crate) margin: u32,
     /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may be.
     pub(crate) occlusion: Option<(f32, f32)>,
-    /// Linear colour behind everything; none: transparent.
-    pub(crate) background: Option<[f32; 3]>,
+    /// Colour behind everything; none: transparent.
+    pub(crate) background: Option<Rgb>,
 }
 
 /// Textures and buffers for one tile of the greatest size.
@@ -108,7 +108,10 @@ impl<'g> Painter<'g> {
         };
         let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
-        let background = finishing.background.unwrap_or_default();
+        let [r, g, b] = linear(finishing.background.unwrap_or_default());
+        let empty = finishing
+            .background
+            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let finish = Finish {
             radius,
             most,
@@ -116,7 +119,8 @@ impl<'g> Painter<'g> {
             margin: finishing.margin,
             kept,
             clear: u32::from(finishing.background.is_none()),
-            background: [background[0], background[1], background[2], 1.0],
+            empty: u32::from_le_bytes(empty),
+            background: [r, g, b, 1.0],
             ..Finish::of(frame)
         };
         let shade = Shade::new(frame, look, finishing.scale, self.scale_entries);

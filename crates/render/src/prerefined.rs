@@ -4,6 +4,7 @@
 //! cut into **chunks** that each fit one binding, and chunks into **runs** of triangles that are left
 //! out where they do not show.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
@@ -41,7 +42,7 @@ struct StoredVertex {
     /// 0 on somata.
     radius: f32,
     normal: u32,
-    attribute: u32,
+    word: u32,
 }
 
 /// Twin of `Placement` in `prerefined.wgsl`.
@@ -53,7 +54,7 @@ struct Placement {
 }
 
 /// What is resident, and how much.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Resident {
     /// Coarse patches that it was made of.
     pub patches: usize,
@@ -67,6 +68,8 @@ pub struct Resident {
     pub vertex_bytes: u64,
     /// Bytes of corners.
     pub corner_bytes: u64,
+    /// Number of coarse edges by level.
+    pub levels: BTreeMap<u32, usize>,
 }
 
 struct Run {
@@ -74,6 +77,8 @@ struct Run {
     corners: Range<u32>,
     center: Vec3,
     radius: f32,
+    /// Whether it ever showed.
+    drawn: bool,
 }
 
 struct Chunk {
@@ -131,6 +136,9 @@ impl Prerefined {
                 point.sample = number;
             }
             let refined = Refinement::new(&numbered, &levels(index), options);
+            for (level, edges) in refined.level_histogram() {
+                *made.resident.levels.entry(level).or_default() += edges;
+            }
             let surface = SurfaceMesh::collect(&refined);
             made.resident.patches += painted.mesh.patches.len();
             made.resident.points += painted.mesh.tracing.len();
@@ -144,13 +152,21 @@ impl Prerefined {
     }
 
     /// What is resident.
-    pub fn resident(&self) -> Resident {
-        self.resident
+    pub fn resident(&self) -> &Resident {
+        &self.resident
     }
 
-    /// Triangles of the runs that showed in the last frame.
+    /// Triangles of the runs that showed in any frame.
     pub fn drawn(&self) -> usize {
         self.drawn
+    }
+
+    /// About as many patches as made those triangles.
+    pub fn patches_drawn(&self) -> usize {
+        let Resident {
+            patches, triangles, ..
+        } = self.resident;
+        (patches * self.drawn).div_ceil(triangles.max(1))
     }
 
     fn add(
@@ -206,6 +222,7 @@ impl Prerefined {
                 corners: first..first + run.len() as u32,
                 center: (low + high) / 2.0,
                 radius: (high - low).length() / 2.0,
+                drawn: false,
             }
         });
         self.chunks.push(Chunk {
@@ -250,17 +267,19 @@ impl VertexMaker for Prerefined {
                 .write_buffer(&self.placements, STRIDE * index as u64, bytes);
         }
         let planes = frame.frustum();
-        self.drawn = 0;
         for chunk in &mut self.chunks {
             chunk.shown.clear();
-            for run in &chunk.runs {
-                // Widened to a pixel, a run reaches a pixel farther.
+            for run in &mut chunk.runs {
+                // Widened to a pixel, a run reaches farther by half of one: 4 sub-pixels.
                 let center = run.center + offsets[chunk.mesh];
-                let pixel = (center.length() + run.radius) * frame.slope() as f32;
-                if !shows(&planes, center, run.radius + 2.0 * pixel) {
+                let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
+                if !shows(&planes, center, run.radius + pixels) {
                     continue;
                 }
-                self.drawn += run.corners.len() / 3;
+                if !run.drawn {
+                    self.drawn += run.corners.len() / 3;
+                    run.drawn = true;
+                }
                 match chunk.shown.last_mut() {
                     Some(last) if last.end == run.corners.start => last.end = run.corners.end,
                     _ => chunk.shown.push(run.corners.clone()),
@@ -298,7 +317,7 @@ fn store(vertex: &SurfaceVertex, painted: &Painted<'_>) -> StoredVertex {
         position: vertex.position.to_array(),
         radius: if soma { 0.0 } else { vertex.radius },
         normal: pack_normal(vertex.normal),
-        attribute: painted.words.get(tracing).copied().unwrap_or(0),
+        word: painted.words.get(tracing).copied().unwrap_or(0),
     }
 }
 

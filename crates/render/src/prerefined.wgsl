@@ -7,7 +7,7 @@ struct StoredVertex {
     z: f32,
     radius: f32,
     normal: u32,
-    attribute: u32,
+    word: u32,
 }
 
 struct Placement {
@@ -44,7 +44,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
         normal,
         position - normal * v.radius,
         v.radius,
-        v.attribute,
+        v.word,
         placement.instance,
         grid,
     );

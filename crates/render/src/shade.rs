@@ -85,7 +85,7 @@ impl Shade {
             up,
             slope: frame.slope() as f32,
             backward,
-            half_width: HALF_WIDTH,
+            half_width: HALF_WIDTH * scale as f32,
             key: key.normalize_or(KEY).to_array(),
             wire: 0.5 * look.wire * scale as f32,
             size: frame.size.map(|n| n as f32),
@@ -97,8 +97,7 @@ impl Shade {
     }
 }
 
-/// Half the width (sub-pixels) of the thinnest thing: below a whole sub-pixel, lines step over
-/// sample points and look dotted.
+/// Half the width (pixels) of the thinnest thing drawn: below a pixel, lines look dotted.
 const HALF_WIDTH: f32 = 0.5;
 
 /// Draws samples from a maker's vertices.

@@ -5,7 +5,7 @@ struct SurfaceVertex {
     normal: vec3<f32>,
     axis: vec3<f32>,
     radius: f32,
-    attribute: u32,
+    word: u32,
     instance: u32,
     grid: vec2<f32>,
 }
