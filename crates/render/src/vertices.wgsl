@@ -26,11 +26,11 @@ struct Bucket {
     first_index: u32,
 }
 
-@group(1) @binding(0) var<uniform> frame: Frame;
-@group(1) @binding(1) var<storage, read> placed: array<Placed>;
-@group(1) @binding(2) var<storage, read> owners: array<u32>;
-@group(1) @binding(3) var<storage, read> list: array<vec2<u32>>;
-@group(1) @binding(4) var<storage, read> buckets: array<Bucket>;
+@group(0) @binding(4) var<uniform> frame: Frame;
+@group(0) @binding(5) var<storage, read> placed: array<Placed>;
+@group(0) @binding(6) var<storage, read> owners: array<u32>;
+@group(0) @binding(7) var<storage, read> list: array<vec2<u32>>;
+@group(0) @binding(8) var<storage, read> buckets: array<Bucket>;
 
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let bucket = buckets[vertex_index >> INDEX_BUCKET_SHIFT];

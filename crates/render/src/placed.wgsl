@@ -1,6 +1,6 @@
 // What the shaders of a frame share: the frame's choices, placed parts and the words of decisions.
 //
-// Called by lod.wgsl and vertices.wgsl. Structs as in frame.rs; constants come from its prelude.
+// Called by decide.wgsl, list.wgsl and vertices.wgsl. Structs as in refining.rs; constants come from its prelude.
 
 // One for the whole frame. Lengths in micrometres; planes are relative to the eye.
 struct Frame {
@@ -8,6 +8,8 @@ struct Frame {
     slope: f32,
     flat: f32,
     smallest: f32,
+    // A struct in a uniform buffer begins at a multiple of 16 bytes.
+    spare: f32,
     levels: Criterion,
 }
 
@@ -34,6 +36,7 @@ struct Placed {
 
 // What is drawn together.
 struct Batch {
+    first: u32,
     placed: u32,
     slots: u32,
     sections: u32,
@@ -69,4 +72,21 @@ fn decided_levels(word: u32) -> vec4<u32> {
 
 fn decided_kind(word: u32) -> u32 {
     return word >> DECISION_KIND_SHIFT;
+}
+
+// Place of a level in the set of grid sizes: the smallest that holds it.
+fn size_class(level: u32) -> u32 {
+    for (var k = 0u; k < GRID_SIZES; k += 1u) {
+        if (GRID_SIZE[k] >= level) {
+            return k;
+        }
+    }
+    return GRID_SIZES - 1u;
+}
+
+fn bucket_of(word: u32, caps: u32) -> u32 {
+    let kind = decided_kind(word);
+    let grid = patch_grid(kind, caps, decided_levels(word));
+    let flat = size_class(grid.ny) * GRID_SIZES + size_class(grid.nx);
+    return select(flat + GRID_SIZES * GRID_SIZES, flat, kind == PATCH_LATERAL);
 }
