@@ -51,7 +51,7 @@ pub fn prelude() -> String {
     let mut text = String::new();
     let mut whole = |name: &str, value: u32| {
         // Writing to a String does not fail.
-        drop(writeln!(text, "const {name}: u32 = {value}u;"));
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
     };
     whole("HIGHEST_LEVEL", HIGHEST_LEVEL);
     whole("ROLE_JOINT", Role::Joint as u32);
@@ -76,7 +76,7 @@ pub fn prelude() -> String {
     whole("LEVELS_PIXEL_SIZE", LEVELS_PIXEL_SIZE);
     whole("LEVELS_PIXEL_ERROR", LEVELS_PIXEL_ERROR);
     let mut real = |name: &str, value: f32| {
-        drop(writeln!(text, "const {name}: f32 = {value:?};"));
+        let _ = writeln!(text, "const {name}: f32 = {value:?};");
     };
     real("MOST_SWAY", MOST_SWAY);
     real("SHARE", SHARE);

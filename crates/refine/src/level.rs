@@ -91,7 +91,10 @@ fn round_up(cuts: f32) -> u32 {
 fn turning(a: &Corner, b: &Corner) -> f32 {
     let (ra, rb) = (a.offset.length(), b.offset.length());
     // tan(θ/2) of unit vectors without the arc cosine, which GPUs have to few digits only.
-    let (apart, together) = ((a.radial - b.radial).length(), (a.radial + b.radial).length());
+    let (apart, together) = (
+        (a.radial - b.radial).length(),
+        (a.radial + b.radial).length(),
+    );
     let half = (apart / together.max(1e-6)).min(STEEPEST);
     let speed = 2.0 * half;
     ra.max(rb) * speed * speed + 2.0 * (ra - rb).abs() * speed

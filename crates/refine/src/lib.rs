@@ -30,5 +30,6 @@ mod template;
 pub use coarse_surface::CoarseSurface;
 pub use level::HIGHEST_LEVEL;
 pub use options::{Caps, Levels, Path, RefineOptions, View};
+pub use plan::patch_triangles;
 pub use refinement::Refinement;
 pub use template::{PackedTracing, PackedVertex, Part, pack};

@@ -55,12 +55,17 @@ fn patch_side(base: Base, p: Patch, index: u32) -> Side {
     return Side(end, start, kind, true);
 }
 
-fn side_level(base: Base, p: Patch, index: u32, levels: Criterion, view: View) -> u32 {
-    let s = patch_side(base, p, index);
-    let a = corner(base, s.start);
-    let b = corner(base, s.end);
-    return edge_level(
-        levels, view, s.kind, a, value_of(base, s.start), b, value_of(base, s.end));
+// Levels of the four sides. A loop, so that one piece of code decides for both faces of an edge.
+fn side_levels(base: Base, p: Patch, levels: Criterion, view: View) -> vec4<u32> {
+    var found = vec4<u32>(1u);
+    for (var index = 0u; index < 4u; index += 1u) {
+        let s = patch_side(base, p, index);
+        let a = corner(base, s.start);
+        let b = corner(base, s.end);
+        found[index] = edge_level(
+            levels, view, s.kind, a, value_of(base, s.start), b, value_of(base, s.end));
+    }
+    return found;
 }
 
 fn finer(n: u32) -> u32 {

@@ -18,7 +18,7 @@ pub struct PackedVertex {
     /// Unit normal.
     pub normal: [f32; 3],
     /// Free for the renderer: its colour.
-    pub attribute: u32,
+    pub word: u32,
 }
 
 /// A tracing point. Twin of the struct of the same name in `template.wgsl`.
@@ -59,22 +59,22 @@ impl Part {
     }
 }
 
-/// Packs a mesh into parts of at most `most_patches` patches. `attributes`: one word per tracing
+/// Packs a mesh into parts of at most `most_patches` patches. `words`: one word per tracing
 /// point for the renderer; `values`: one level per tracing point. Missing ones are 0 and 1.
-pub fn pack(mesh: &CoarseMesh, attributes: &[u32], values: &[u8], most_patches: usize) -> Vec<Part> {
+pub fn pack(mesh: &CoarseMesh, words: &[u32], values: &[u8], most_patches: usize) -> Vec<Part> {
     let most = most_patches.clamp(1, 1 << (PATCH_KIND_SHIFT - 2));
     let ranges = (0..mesh.patches.len()).step_by(most);
     ranges
         .map(|first| {
             let end = (first + most).min(mesh.patches.len());
-            pack_part(mesh, attributes, values, first, &mesh.patches[first..end])
+            pack_part(mesh, words, values, first, &mesh.patches[first..end])
         })
         .collect()
 }
 
 fn pack_part(
     mesh: &CoarseMesh,
-    attributes: &[u32],
+    words: &[u32],
     values: &[u8],
     first_patch: usize,
     patches: &[Patch],
@@ -88,7 +88,7 @@ fn pack_part(
             position: vertex.position.to_array(),
             tracing: place(&tracing, vertex.tracing),
             normal: vertex.normal.to_array(),
-            attribute: attributes.get(vertex.tracing as usize).copied().unwrap_or(0),
+            word: words.get(vertex.tracing as usize).copied().unwrap_or(0),
         }
     };
     let packed_tracing = |&t: &u32| {

@@ -7,7 +7,7 @@ struct PackedVertex {
     position: vec3<f32>,
     tracing: u32,
     normal: vec3<f32>,
-    attribute: u32,
+    word: u32,
 }
 
 struct PackedTracing {
@@ -36,7 +36,7 @@ struct Patch {
 
 fn patch_at(base: Base, index: u32) -> Patch {
     let packed = patches[base.first_patch + index];
-    return Patch(packed.x >> PATCH_KIND_SHIFT, packed & PATCH_CORNER_MASK);
+    return Patch(packed.x >> PATCH_KIND_SHIFT, packed & vec4<u32>(PATCH_CORNER_MASK));
 }
 
 fn corner(base: Base, vertex: u32) -> Corner {
@@ -74,6 +74,6 @@ fn value_of(base: Base, vertex: u32) -> u32 {
 }
 
 // What the renderer put beside a vertex: its colour.
-fn attribute_of(base: Base, vertex: u32) -> u32 {
-    return vertices[base.vertex + vertex].attribute;
+fn word_of(base: Base, vertex: u32) -> u32 {
+    return vertices[base.vertex + vertex].word;
 }

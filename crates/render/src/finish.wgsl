@@ -8,18 +8,18 @@ struct Finish {
     half_size: vec2<f32>,
     // µm per sub-pixel at unit depth.
     slope: f32,
-    near: f32,
+    // Sub-pixels per pixel, along one side.
+    scale: u32,
     // Radius of occlusion (µm), at most `most` sub-pixels; 0: none.
     radius: f32,
     most: f32,
-    // Sub-pixels per pixel, along one side.
-    scale: u32,
     // Sub-pixels around what is kept.
     margin: u32,
-    // What is kept (pixels).
-    kept: vec2<u32>,
     // 1: the background is left out.
     clear: u32,
+    // What is kept (pixels).
+    kept: vec2<u32>,
+    spare: u32,
     // Bytes of a pixel where nothing is.
     empty: u32,
     // Linear.
@@ -28,8 +28,8 @@ struct Finish {
 
 @group(0) @binding(0) var<uniform> finish: Finish;
 @group(0) @binding(1) var colours: texture_2d<f32>;
-@group(0) @binding(2) var normals: NORMAL_TEXTURE;
-@group(0) @binding(3) var depths: DEPTH_TEXTURE;
+@group(0) @binding(2) var normals: SAMPLED_TEXTURE;
+@group(0) @binding(3) var depths: SAMPLED_TEXTURE;
 @group(0) @binding(4) var<storage, read_write> raw: array<f32>;
 @group(0) @binding(5) var<storage, read_write> blurred: array<f32>;
 @group(0) @binding(6) var<storage, read_write> pixels: array<u32>;
@@ -39,8 +39,7 @@ fn depth_at(p: vec2<i32>) -> f32 {
     if any(p < vec2(0)) || any(p >= vec2<i32>(finish.tile_size)) {
         return 0.0;
     }
-    let reversed = textureLoad(depths, p, 0);
-    return select(finish.near / reversed, 0.0, reversed <= 0.0);
+    return textureLoad(depths, p, 0).x;
 }
 
 // Place in the view (µm): right, up, backward.

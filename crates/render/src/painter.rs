@@ -11,7 +11,9 @@ use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher};
 use crate::frame::Frame;
 use crate::maker::VertexMaker;
-use crate::shade::{COLOUR_FORMAT, DEPTH_FORMAT, Look, NORMAL_FORMAT, Shade, Shader};
+use crate::shade::{
+    COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, Look, NORMAL_FORMAT, Shade, Shader,
+};
 use crate::timing::{Pass, Timer};
 
 /// How a tile is finished.
@@ -32,6 +34,7 @@ struct Targets {
     colour: wgpu::TextureView,
     resolved: Option<wgpu::TextureView>,
     normal: wgpu::TextureView,
+    distance: wgpu::TextureView,
     depth: wgpu::TextureView,
     raw: wgpu::Buffer,
     blurred: wgpu::Buffer,
@@ -176,7 +179,7 @@ impl<'g> Painter<'g> {
                 entry(0, self.finish.as_entire_binding()),
                 entry(1, view(resolved)),
                 entry(2, view(&targets.normal)),
-                entry(3, view(&targets.depth)),
+                entry(3, view(&targets.distance)),
                 entry(4, targets.raw.as_entire_binding()),
                 entry(5, targets.blurred.as_entire_binding()),
                 entry(6, targets.pixels.as_entire_binding()),
@@ -210,12 +213,13 @@ impl<'g> Painter<'g> {
             color_attachments: &[
                 attachment(&targets.colour, targets.resolved.as_ref(), colour_store),
                 attachment(&targets.normal, None, wgpu::StoreOp::Store),
+                attachment(&targets.distance, None, wgpu::StoreOp::Store),
             ],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Store,
+                    store: wgpu::StoreOp::Discard,
                 }),
                 stencil_ops: None,
             }),
@@ -272,6 +276,7 @@ impl Targets {
         let colour = texture(COLOUR_FORMAT, samples);
         let resolved = (samples > 1).then(|| texture(COLOUR_FORMAT, 1));
         let normal = texture(NORMAL_FORMAT, samples);
+        let distance = texture(DISTANCE_FORMAT, samples);
         let depth = texture(DEPTH_FORMAT, samples);
         let storage = wgpu::BufferUsages::STORAGE;
         let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
@@ -279,6 +284,7 @@ impl Targets {
             colour,
             resolved,
             normal,
+            distance,
             depth,
             raw: make(gpu, "occlusion", 4 * pixels, storage),
             blurred: make(gpu, "occlusion", 4 * pixels, storage),

@@ -37,20 +37,28 @@ pub struct Painted<'m> {
 /// Twin of `StoredVertex` in `prerefined.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-struct StoredVertex {
-    position: [f32; 3],
+pub(crate) struct StoredVertex {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) z: f32,
     /// 0 on somata.
-    radius: f32,
-    normal: u32,
-    word: u32,
+    pub(crate) radius: f32,
+    pub(crate) normal: u32,
+    pub(crate) word: u32,
+}
+
+impl StoredVertex {
+    fn position(&self) -> Vec3 {
+        Vec3::new(self.x, self.y, self.z)
+    }
 }
 
 /// Twin of `Placement` in `prerefined.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-struct Placement {
-    relative_from_mesh: [f32; 3],
-    instance: u32,
+pub(crate) struct Placement {
+    pub(crate) relative_from_mesh: [f32; 3],
+    pub(crate) instance: u32,
 }
 
 /// What is resident, and how much.
@@ -215,7 +223,7 @@ impl Prerefined {
         self.resident.corner_bytes += corner_buffer.size();
         let runs = corners.chunks(3 * RUN).zip((0_u32..).step_by(3 * RUN));
         let runs = runs.map(|(run, first)| {
-            let positions = || run.iter().map(|&c| Vec3::from(stored[c as usize].position));
+            let positions = || run.iter().map(|&c| stored[c as usize].position());
             let low = positions().fold(Vec3::MAX, Vec3::min);
             let high = positions().fold(Vec3::MIN, Vec3::max);
             Run {
@@ -308,13 +316,15 @@ impl VertexMaker for Prerefined {
 }
 
 /// Defines `surface_vertex`.
-const WGSL: &str = include_str!("prerefined.wgsl");
+pub(crate) const WGSL: &str = include_str!("prerefined.wgsl");
 
 fn store(vertex: &SurfaceVertex, painted: &Painted<'_>) -> StoredVertex {
     let tracing = vertex.point as usize;
     let soma = painted.mesh.tracing[tracing].role == Role::Soma;
     StoredVertex {
-        position: vertex.position.to_array(),
+        x: vertex.position.x,
+        y: vertex.position.y,
+        z: vertex.position.z,
         radius: if soma { 0.0 } else { vertex.radius },
         normal: pack_normal(vertex.normal),
         word: painted.words.get(tracing).copied().unwrap_or(0),

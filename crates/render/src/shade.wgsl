@@ -113,6 +113,8 @@ struct Sample {
     @location(0) colour: vec4<f32>,
     // Normal in the view, from -1..1 to 0..1.
     @location(1) normal: vec4<f32>,
+    // µm along the sight. As a colour, since OpenGL cannot load from depth textures.
+    @location(2) depth: f32,
     MASK_MEMBER
 }
 
@@ -172,6 +174,7 @@ fn fragment(in: Varying) -> Sample {
     var out: Sample;
     out.colour = vec4(colour, 1.0);
     out.normal = vec4(n * 0.5 + 0.5, 1.0);
+    out.depth = -dot(in.relative, shade.backward);
     MASK_STATEMENT
     return out;
 }

@@ -1,11 +1,11 @@
 //! What pictures must hold whatever they look like. Skipped, with a word, where no adapter is.
 
-mod common;
+mod pictured;
 
-use common::{CELL, by_type, camera, gpu, mesh, picture};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, SAMPLES};
+use pictured::{CELL, by_type, camera, gpu, mesh, picture};
 
 fn small(size: [u32; 2]) -> PictureOptions {
     PictureOptions {
@@ -184,14 +184,30 @@ fn light_occlusion_and_wires_change_the_picture() {
         look(Light::Flat, 0.0),
         look(Light::From(Vec3::new(1.0, -1.0, 0.2)), 0.0),
         look(Light::Soft, 1.0),
-        PictureOptions {
-            occlusion: Occlusion::Off,
-            ..plain
-        },
     ] {
         let (count, step) = difference(&image, &picture(&gpu, &mesh, &camera, &other));
         assert!(count > 200 && step > 10, "{other:?}: {count} {step}");
     }
     let again = picture(&gpu, &mesh, &camera, &plain);
     assert_eq!(difference(&image, &again), (0, 0));
+}
+
+#[test]
+fn occlusion_darkens_corners_only() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let with = small([240, 200]);
+    let without = PictureOptions {
+        occlusion: Occlusion::Off,
+        ..with
+    };
+    // Where the dendrite leaves the soma.
+    let (eye, target) = (DVec3::new(10.0, 18.0, 40.0), DVec3::new(0.0, 7.0, 0.0));
+    let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("fine");
+    let images = [with, without].map(|options| picture(&gpu, &mesh, &camera, &options));
+    let pairs = images[0].pixels.iter().zip(&images[1].pixels);
+    assert!(pairs.clone().all(|(with, without)| with <= without));
+    let darker = pairs.filter(|(with, without)| *without - *with > 8).count();
+    let all = 3 * drawn(&images[1], WHITE);
+    assert!((all / 100..all / 2).contains(&darker), "{darker} of {all}");
 }

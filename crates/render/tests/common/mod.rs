@@ -1,92 +1,110 @@
-//! A device, a cell and its picture.
+//! A device, and scenes with every kind of patch.
+#![allow(dead_code)]
 
-use neurotess_formats::{ReadOptions, swc};
+#[path = "../../../refine/tests/common/mod.rs"]
+pub(crate) mod trees;
+
+use glam::DVec3;
 use neurotess_generate::{GenerateOptions, generate};
-use neurotess_mesh::CoarseMesh;
-use neurotess_refine::{Levels, RefineOptions};
-use neurotess_render::{
-    Ball, Camera, ColourTable, DEFAULT_FOV, Gpu, Image, Painted, Palette, PictureOptions,
-    Prerefined, Side, category, paint,
-};
+use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+use neurotess_render::{Camera, Gpu, Sight};
+use trees::{Twig, grow};
 
-/// A soma, an axon, and a dendrite that forks.
-pub const CELL: &str = "1 1 0 0 0 5 -1
-2 2 0 -9 0 0.4 1
-3 2 3 -30 2 0.3 2
-4 2 -4 -44 6 0.05 3
-5 3 0 9 0 1.6 1
-6 3 2 25 0 1.2 5
-7 3 12 40 3 0.9 6
-8 3 -9 42 -4 0.8 6
-9 4 -12 2 9 1.5 1
-10 4 -30 9 20 1 9
-";
-
-/// The device, or `None` with a word on why tests are skipped.
-pub fn gpu() -> Option<Gpu> {
+/// The device, or nothing with a word about it.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
+pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::open(None) {
         Ok(gpu) => Some(gpu),
-        Err(e) => {
-            println!("SKIPPED: {e}");
+        Err(error) => {
+            println!("SKIPPED: {error}");
             None
         }
     }
 }
 
-/// The coarse mesh of a tracing.
-pub fn mesh(swc_text: &str) -> CoarseMesh {
-    let read = swc::read_bytes(swc_text.as_bytes(), "cell.swc", &ReadOptions::default());
-    let morphology = read.expect("a cell").morphology;
-    generate(&morphology, &GenerateOptions::default()).mesh
+/// Splitmix64.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn whole(&mut self, below: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % below
+    }
+
+    pub(crate) fn real(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.whole(1 << 53) as f64 / (1_u64 << 53) as f64)
+    }
+
+    pub(crate) fn direction(&mut self) -> DVec3 {
+        let mut real = || self.real(-1.0, 1.0);
+        DVec3::new(real(), real(), real()).normalize_or(DVec3::X)
+    }
 }
 
-/// Balls around a mesh.
-pub fn balls(mesh: &CoarseMesh) -> Vec<Ball> {
-    let tracing = mesh.tracing.iter();
-    let ball = tracing.map(|t| {
-        let center = mesh.origin + t.center.as_dvec3();
-        (center, f64::from(t.radius))
-    });
-    ball.collect()
+/// A cell with a soma of radius 6 µm, joints, bends and ends, from a seed.
+pub(crate) fn cell(seed: u64, twigs: usize) -> CoarseMesh {
+    let mut random = Random(seed);
+    let twigs: Vec<Twig> = (0..twigs)
+        .map(|i| Twig {
+            parent: if i < 4 {
+                i
+            } else {
+                random.whole(i as u64) as usize
+            },
+            seed: random.whole(u64::MAX),
+            points: 2 + random.whole(7) as usize,
+            step: random.real(1.5, 6.0) as f32,
+            wild: random.real(0.1, 0.5) as f32,
+            radius: random.real(0.3, 1.2) as f32,
+        })
+        .collect();
+    let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default()).mesh;
+    for kind in [PatchKind::Lateral, PatchKind::Cap, PatchKind::Soma] {
+        assert!(mesh.patches.iter().any(|p| p.kind == kind), "{kind:?}");
+    }
+    assert!(
+        mesh.tracing.iter().any(|t| t.role == Role::Joint),
+        "no joint"
+    );
+    mesh
 }
 
-/// A camera that fits.
-pub fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
-    let aspect = f64::from(size[0]) / f64::from(size[1]);
-    Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &balls(mesh)).expect("fits")
-}
-
-/// Words and table by type.
-pub fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColourTable) {
-    let words = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
-    let table = ColourTable {
-        scale: Vec::new(),
-        categories: (0..8).map(|kind| Palette::NeuroM.of_type(kind)).collect(),
-    };
-    (words.collect(), table)
-}
-
-/// The whole picture of a mesh at level 4.
-pub fn picture(gpu: &Gpu, mesh: &CoarseMesh, camera: &Camera, options: &PictureOptions) -> Image {
-    let (words, table) = by_type(mesh);
-    let painted = Painted {
-        mesh,
-        words: &words,
-    };
-    let mut maker = Prerefined::new(
-        gpu,
-        &[painted],
-        |_| Levels::Homogeneous(4),
-        &RefineOptions::default(),
-        options.look.wire > 0.0,
+/// Middle and reach (µm) of a mesh in its tracing's coordinates.
+pub(crate) fn extent(mesh: &CoarseMesh) -> (DVec3, f64) {
+    let mut low = DVec3::INFINITY;
+    let mut high = DVec3::NEG_INFINITY;
+    for vertex in &mesh.vertices {
+        low = low.min(vertex.position.as_dvec3());
+        high = high.max(vertex.position.as_dvec3());
+    }
+    (
+        (low + high) / 2.0 + mesh.origin,
+        (high - low).length() / 2.0,
     )
-    .expect("uploaded");
-    let mut whole = Image::new(options.size[0], options.size[1]);
-    let near = camera.near(&balls(mesh));
-    let taken = |top: u32, band: Image| {
-        whole.lay(0, i64::from(top), &band);
-        Ok::<(), std::convert::Infallible>(())
-    };
-    paint(gpu, &mut maker, camera, near, &table, options, taken).expect("painted");
-    whole
+}
+
+/// Random levels 1 to 64, mostly small.
+pub(crate) fn random_values(mesh: &CoarseMesh, seed: u64) -> Vec<u8> {
+    let mut random = Random(seed);
+    let set = [1, 1, 2, 3, 4, 5, 7, 8, 12, 17, 33, 64];
+    mesh.tracing
+        .iter()
+        .map(|_| set[random.whole(set.len() as u64) as usize])
+        .collect()
+}
+
+/// An eye at `distance` reaches from the middle of the mesh, looking nearly there.
+pub(crate) fn look(mesh: &CoarseMesh, random: &mut Random, distance: f64) -> Camera {
+    let (middle, reach) = extent(mesh);
+    let eye = middle + random.direction() * reach * distance;
+    let target = middle + random.direction() * reach * 0.2 * distance.min(1.0);
+    let up = (target - eye).any_orthogonal_vector();
+    Camera::new(eye, target, up, 0.7).expect("a camera")
+}
+
+pub(crate) fn sight(camera: &Camera, width: u32, height: u32) -> Sight {
+    Sight::new(camera, width, height, 1e-3)
 }
