@@ -81,9 +81,11 @@ fn a_wireframe_on_black() {
         occlusion: Occlusion::Off,
         ..small()
     };
+    let (eye, target) = (DVec3::new(9.0, 6.0, 40.0), DVec3::ZERO);
+    let camera = Camera::new(eye, target, DVec3::Y, 0.4).expect("a camera");
     compare(
         "wires",
-        &picture(&gpu, &sample("granule.swc"), &close(), &options),
+        &picture(&gpu, &sample("granule.swc"), &camera, &options),
     );
 }
 

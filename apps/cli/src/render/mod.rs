@@ -58,8 +58,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
     let colouring = colouring::colouring(&cells, args);
+    let (overlay, cameras) = overlay(args, &colouring, cameras, &balls);
     let stats = draw(
-        &gpu, args, &cells, &colouring, &cameras, &balls, &files, reporter,
+        &gpu, args, &cells, &colouring, &cameras, &balls, &overlay, &files, reporter,
     )?;
     if let Some(path) = &args.stats {
         let mut output = Output::create(path, args.force)?;
@@ -92,6 +93,33 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
     Ok((0..frames).map(name).collect())
 }
 
+/// Legend and scale bar, and the cameras: where the legend would cover something, the scene makes
+/// room for it if it can.
+fn overlay(
+    args: &RenderArgs,
+    colouring: &Colouring,
+    mut cameras: Vec<Camera>,
+    balls: &[Ball],
+) -> (Overlay, Vec<Camera>) {
+    let options = OverlayOptions {
+        legend: (!args.no_legend).then(|| colouring.legend.clone()),
+        scale_bar: args.scale_bar.map(|bar| match bar {
+            Fit::Auto => 0.0,
+            Fit::Length(length) => length,
+        }),
+        background: (!args.transparent).then_some(args.background.0),
+    };
+    let mut overlay = Overlay::new(&options, args.size.0, &cameras, balls);
+    let beside = overlay
+        .covering
+        .and_then(|share| sight::beside(args, balls, share));
+    if let Some(camera) = beside {
+        cameras = vec![camera];
+        overlay = Overlay::new(&options, args.size.0, &cameras, balls);
+    }
+    (overlay, cameras)
+}
+
 #[expect(clippy::too_many_arguments, reason = "each is a subject of its own")]
 fn draw(
     gpu: &Gpu,
@@ -100,6 +128,7 @@ fn draw(
     colouring: &Colouring,
     cameras: &[Camera],
     balls: &[Ball],
+    overlay: &Overlay,
     files: &[PathBuf],
     reporter: &Reporter,
 ) -> anyhow::Result<Stats> {
@@ -108,19 +137,6 @@ fn draw(
         let taken = options.samples_taken();
         reporter.warning(&format!("{} samples: {taken} are taken", args.samples));
     }
-    let overlay = Overlay::new(
-        &OverlayOptions {
-            legend: (!args.no_legend).then(|| colouring.legend.clone()),
-            scale_bar: args.scale_bar.map(|bar| match bar {
-                Fit::Auto => 0.0,
-                Fit::Length(length) => length,
-            }),
-            background: options.background,
-        },
-        options.size,
-        cameras,
-        balls,
-    );
     if overlay.legend_left_out {
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
@@ -132,7 +148,10 @@ fn draw(
             words,
         })
         .collect();
-    let nearest = cameras.iter().map(|camera| camera.near(balls));
+    let [width, height] = options.size.map(f64::from);
+    let nearest = cameras
+        .iter()
+        .map(|camera| camera.nearest_seen(width / height, balls));
     let nearest = nearest.fold(f64::MAX, f64::min);
     let LodArg::Prerefined = args.lod;
     let mut maker = Prerefined::new(
@@ -169,7 +188,7 @@ fn draw(
 }
 
 /// Levels of a cell: as told, or by the error that shows from the one camera; where it moves, from
-/// the nearest that anything ever is.
+/// the nearest that anything seen ever is.
 fn levels(args: &RenderArgs, cell: &Cell, cameras: &[Camera], nearest: f64) -> Levels<'static> {
     let height = f64::from(args.size.0[1]);
     match (args.level, cameras) {
