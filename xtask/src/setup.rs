@@ -64,8 +64,7 @@ fn has_driver() -> bool {
         let entries = std::fs::read_dir(Path::new(folder));
         entries.is_ok_and(|mut entries| entries.next().is_some())
     };
-    named.iter().any(|name| std::env::var_os(name).is_some())
-        || DRIVERS.iter().any(|f| has_files(&f))
+    named.iter().any(|name| std::env::var_os(name).is_some()) || DRIVERS.iter().any(has_files)
 }
 
 /// `apt-get` as the administrator, who is not asked for a password.

@@ -269,12 +269,12 @@ impl Camera {
     /// Rotation from the world to the view, as f32: x right, y up, z backward.
     pub fn view_rotation(&self) -> [Vec3; 3] {
         let rows = self.view_from_world.transpose();
-        [rows.x_axis, rows.y_axis, rows.z_axis].map(|axis| axis.as_vec3())
+        [rows.x_axis, rows.y_axis, rows.z_axis].map(DVec3::as_vec3)
     }
 
     /// Clip space from positions relative to the eye (world axes, µm): reversed depth, no far end.
     pub fn clip_from_relative(&self, aspect: f64, near: f64) -> Mat4 {
-        let [right, up, backward] = self.axes().map(|axis| axis.as_vec3());
+        let [right, up, backward] = self.axes().map(DVec3::as_vec3);
         let (tan_x, tan_y) = self.tangents(aspect, 0.0);
         let rows = [
             (right / tan_x as f32).extend(0.0),

@@ -53,7 +53,11 @@ impl Overlay {
                 let [x, y] = place(corner, size, &image, line);
                 if count > 0 {
                     let share = f64::from((image.width as f32 + 1.5 * line) / width);
-                    overlay.covering = Some(if corner % 2 == 0 { -share } else { share });
+                    overlay.covering = Some(if corner.is_multiple_of(2) {
+                        -share
+                    } else {
+                        share
+                    });
                     if let Some(background) = options.background {
                         overlay.pieces.push((x, y, panel(&image, background)));
                     }
@@ -103,7 +107,11 @@ fn place(corner: usize, size: [u32; 2], image: &Image, line: f32) -> [i64; 2] {
         i64::from(size[1]) - i64::from(image.height) - gap,
     ];
     [
-        if corner % 2 == 0 { gap } else { far[0] },
+        if corner.is_multiple_of(2) {
+            gap
+        } else {
+            far[0]
+        },
         if corner < 2 { gap } else { far[1] },
     ]
 }

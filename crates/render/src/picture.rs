@@ -149,7 +149,6 @@ impl PictureOptions {
 ///
 /// # Errors
 /// What the device cannot do, and what the taker of bands says.
-#[expect(clippy::too_many_arguments, reason = "each is a subject of its own")]
 pub fn paint<E>(
     gpu: &Gpu,
     maker: &mut dyn VertexMaker,

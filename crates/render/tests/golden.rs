@@ -124,6 +124,7 @@ fn a_scale_with_its_legend_on_nothing() {
     compare("scale", &image);
 }
 
+#[expect(clippy::print_stdout, reason = "a renewed picture is told of")]
 fn compare(name: &str, image: &Image) {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
     if std::env::var("NEUROTESS_GOLDEN").is_ok_and(|value| value == "renew") {

@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::work::{BROKEN, Run, SMALL, Work};
 
 /// Whether pictures can be drawn here; says so where not.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
 fn can_draw() -> bool {
     let work = Work::new();
     work.file("cell.swc", SMALL);

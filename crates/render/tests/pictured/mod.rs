@@ -24,6 +24,7 @@ pub(crate) const CELL: &str = "1 1 0 0 0 5 -1
 ";
 
 /// The device, or `None` with a word on why tests are skipped.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::open(None) {
         Ok(gpu) => Some(gpu),
