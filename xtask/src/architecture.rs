@@ -18,6 +18,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
     (
+        "neurotess-render",
+        &["neurotess-mesh", "neurotess-refine"],
+    ),
+    (
         "neurotess",
         &[
             "neurotess-morphology",
@@ -26,6 +30,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-synth",
             "neurotess-generate",
             "neurotess-refine",
+            "neurotess-render",
         ],
     ),
     ("neurotess-cli", &["neurotess"]),

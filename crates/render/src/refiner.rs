@@ -121,7 +121,7 @@ impl Refiner {
         })
     }
 
-    /// The module that makes vertices: `fn surface_vertex(vertex_index: u32, instance_index: u32) ->
+    /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn surface_vertex(vertex_index: u32, instance_index: u32) ->
     /// SurfaceVertex`. Binds group 0.
     pub fn vertex_wgsl() -> String {
         compose(&[include_str!("vertices.wgsl")])

@@ -1,22 +1,8 @@
 // Who makes vertices: on the fly, from the resident patch and its decided levels.
 //
-// `surface_vertex` is the seam to whatever shades. Called with the builtin indices of a draw that
+// `surface_vertex` is the seam to whatever shades (maker.rs); SurfaceVertex comes before. Called with the builtin indices of a draw that
 // refiner.rs sets up. The index buffer (grids.rs) hands out vertex indices that say which bucket, which
 // patch of the instance, and which column and row of its grid.
-
-struct SurfaceVertex {
-    // Relative to the eye, in the world's directions (micrometres).
-    position: vec3<f32>,
-    normal: vec3<f32>,
-    // Point of the tube's centre line and the radius there; a radius of 0 on somata.
-    axis: vec3<f32>,
-    radius: f32,
-    // The word of the tracing point.
-    word: u32,
-    instance: u32,
-    // Column and row in the refinement grid.
-    grid: vec2<f32>,
-}
 
 struct Bucket {
     start: u32,
