@@ -1,5 +1,7 @@
 //! The refined surface, made block by block from the coarse mesh.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Faces, Role, Surface, SurfaceVertex, TracingPoint};
 use rayon::prelude::*;
@@ -35,6 +37,15 @@ impl<'m> Refinement<'m> {
     pub fn edge_count(&self) -> usize {
         // Closed: every edge has two faces.
         (3 * self.plan.triangles + 4 * self.plan.quads) / 2
+    }
+
+    /// Number of coarse edges by level, lowest first.
+    pub fn level_histogram(&self) -> BTreeMap<u32, usize> {
+        let mut histogram = BTreeMap::new();
+        for edge in &self.plan.edges {
+            *histogram.entry(u32::from(edge.level)).or_default() += 1;
+        }
+        histogram
     }
 
     /// Number of faces of one patch; those of all patches follow one another in the patches' order,

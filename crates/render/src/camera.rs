@@ -267,6 +267,15 @@ impl Camera {
         ]
     }
 
+    /// Where a point is seen in a picture of this size (pixels from the upper left corner); nowhere
+    /// if it lies behind the eye.
+    pub fn pixel_of(&self, point: DVec3, size: [u32; 2]) -> Option<[f64; 2]> {
+        let v = self.view_from_world * (point - self.eye);
+        let [width, height] = size.map(f64::from);
+        let pixel = -v.z * self.pixel_slope(height);
+        (v.z < 0.0).then(|| [width / 2.0 + v.x / pixel, height / 2.0 - v.y / pixel])
+    }
+
     /// Size (µm) of a pixel at unit depth, in a picture of this height (pixels).
     pub fn pixel_slope(&self, height: f64) -> f64 {
         2.0 * (self.fov / 2.0).tan() / height

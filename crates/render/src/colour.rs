@@ -60,6 +60,12 @@ pub fn linear(rgb: Rgb) -> [f32; 3] {
     })
 }
 
+/// Whether light things are seen better before this colour than dark ones.
+pub fn is_dark(rgb: Rgb) -> bool {
+    let [r, g, b] = linear(rgb);
+    0.2126 * r + 0.7152 * g + 0.0722 * b < 0.2
+}
+
 /// Entries of a scale: neighbours differ by less than a step of 8 bits.
 pub const SCALE_ENTRIES: usize = 256;
 
@@ -112,11 +118,16 @@ impl ColourMap {
         map.eval_continuous(fraction.clamp(0.0, 1.0)).as_array()
     }
 
-    /// Its scale.
-    pub fn scale(self) -> Vec<Rgb> {
+    /// Its scale before this background, evenly spaced: the end that would not be seen before it
+    /// is left out, and the rest stays uniform.
+    pub fn scale(self, background: Option<Rgb>) -> Vec<Rgb> {
+        let (low, high) = match background {
+            Some(rgb) if is_dark(rgb) => (0.15, 1.0),
+            _ => (0.0, 0.93),
+        };
         let last = (SCALE_ENTRIES - 1) as f64;
         (0..SCALE_ENTRIES)
-            .map(|i| self.at(i as f64 / last))
+            .map(|i| self.at(low + (high - low) * i as f64 / last))
             .collect()
     }
 }
@@ -193,6 +204,15 @@ impl Palette {
             Ok(kind) => CUSTOM[(kind - 5) % CUSTOM.len()],
             Err(_) => self.types()[0],
         }
+    }
+
+    /// Colour of somata before this background: black before black is light grey.
+    pub fn of_soma(self, background: Option<Rgb>) -> Rgb {
+        let soma = self.of_type(1);
+        if background.is_some_and(is_dark) && is_dark(soma) && self != Self::NeuroMorpho {
+            return [190, 190, 190];
+        }
+        soma
     }
 
     /// Colour of the index-th of things that are merely told apart; they repeat after ten.
@@ -273,8 +293,13 @@ mod tests {
             assert_eq!(map.name().parse(), Ok(map));
         }
         // matplotlib's first and last of viridis.
-        let viridis = ColourMap::Viridis.scale();
-        assert_eq!((viridis[0], viridis[255]), ([68, 1, 84], [253, 231, 37]));
+        let viridis = ColourMap::Viridis;
+        assert_eq!(
+            (viridis.at(0.0), viridis.at(1.0)),
+            ([68, 1, 84], [253, 231, 37])
+        );
+        assert_eq!(viridis.scale(None)[0], [68, 1, 84]);
+        assert_eq!(viridis.scale(Some([0; 3]))[255], [253, 231, 37]);
     }
 
     #[test]

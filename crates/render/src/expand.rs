@@ -33,7 +33,7 @@ pub struct ExpandedVertex {
     pub word: u32,
     /// Place of the instance in the scene.
     pub instance: u32,
-    /// Column and row in the refinement grid.
+    /// Place in the refinement grid, as wires need it.
     pub grid: [f32; 2],
 }
 

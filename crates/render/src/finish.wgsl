@@ -8,27 +8,28 @@ struct Finish {
     half_size: vec2<f32>,
     // µm per sub-pixel at unit depth.
     slope: f32,
-    near: f32,
+    // Sub-pixels per pixel, along one side.
+    scale: u32,
     // Radius of occlusion (µm), at most `most` sub-pixels; 0: none.
     radius: f32,
     most: f32,
-    // Sub-pixels per pixel, along one side.
-    scale: u32,
     // Sub-pixels around what is kept.
     margin: u32,
-    // What is kept (pixels).
-    kept: vec2<u32>,
     // 1: the background is left out.
     clear: u32,
-    pad: u32,
+    // What is kept (pixels).
+    kept: vec2<u32>,
+    spare: u32,
+    // Bytes of a pixel where nothing is.
+    empty: u32,
     // Linear.
     background: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> finish: Finish;
 @group(0) @binding(1) var colours: texture_2d<f32>;
-@group(0) @binding(2) var normals: NORMAL_TEXTURE;
-@group(0) @binding(3) var depths: DEPTH_TEXTURE;
+@group(0) @binding(2) var normals: SAMPLED_TEXTURE;
+@group(0) @binding(3) var depths: SAMPLED_TEXTURE;
 @group(0) @binding(4) var<storage, read_write> raw: array<f32>;
 @group(0) @binding(5) var<storage, read_write> blurred: array<f32>;
 @group(0) @binding(6) var<storage, read_write> pixels: array<u32>;
@@ -38,8 +39,7 @@ fn depth_at(p: vec2<i32>) -> f32 {
     if any(p < vec2(0)) || any(p >= vec2<i32>(finish.tile_size)) {
         return 0.0;
     }
-    let reversed = textureLoad(depths, p, 0);
-    return select(finish.near / reversed, 0.0, reversed <= 0.0);
+    return textureLoad(depths, p, 0).x;
 }
 
 // Place in the view (µm): right, up, backward.
@@ -60,6 +60,9 @@ fn alike(depth: f32, q: vec2<i32>) -> f32 {
 
 fn occlusion_at(p: vec2<i32>) -> f32 {
     let depth = depth_at(p);
+    if depth == 0.0 {
+        return 1.0;
+    }
     var sum = 0.0;
     var weights = 0.0;
     for (var k = -BLUR; k <= BLUR; k++) {
@@ -94,12 +97,17 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
             sum += colour;
         }
     }
+    let at = id.y * finish.kept.x + id.x;
+    if sum.a == 0.0 {
+        pixels[at] = finish.empty;
+        return;
+    }
     sum /= f32(finish.scale * finish.scale);
     var out = vec4(sum.rgb + finish.background.rgb * (1.0 - sum.a), 1.0);
     if finish.clear == 1u {
-        out = select(vec4(0.0), vec4(sum.rgb / sum.a, sum.a), sum.a > 0.0);
+        out = vec4(sum.rgb / sum.a, sum.a);
     }
     // Rounded by hand: how pack4x8unorm rounds is the driver's choice.
     let bytes = vec4<u32>(floor(vec4(encoded(out.rgb), out.a) * 255.0 + 0.5));
-    pixels[id.y * finish.kept.x + id.x] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+    pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }

@@ -14,7 +14,6 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = id.y * finish.tile_size.x + id.x;
     let depth = depth_at(p);
     if depth == 0.0 {
-        raw[at] = 1.0;
         return;
     }
     let center = view_at(p, depth);
@@ -41,7 +40,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
         let near = max(1.0 - distance / (1.5 * radius), 0.0);
         sum += rise * near;
     }
-    raw[at] = max(1.0 - 2.2 * sum / f32(TAPS), 0.0);
+    raw[at] = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
 }
 
 @compute @workgroup_size(8, 8)
@@ -51,6 +50,9 @@ fn blur(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let depth = depth_at(p);
+    if depth == 0.0 {
+        return;
+    }
     var sum = 0.0;
     var weights = 0.0;
     for (var k = -BLUR; k <= BLUR; k++) {

@@ -5,13 +5,15 @@
 //!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
 //! ```
 
-use crate::colour::ColourTable;
+use crate::colour::{ColourTable, Rgb, linear};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher};
 use crate::frame::Frame;
 use crate::maker::VertexMaker;
-use crate::shade::{COLOUR_FORMAT, DEPTH_FORMAT, Look, NORMAL_FORMAT, Shade, Shader};
+use crate::shade::{
+    COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, Look, NORMAL_FORMAT, Shade, Shader,
+};
 use crate::timing::{Pass, Timer};
 
 /// How a tile is finished.
@@ -23,8 +25,8 @@ pub(crate) struct Finishing {
     pub(crate) margin: u32,
     /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may be.
     pub(crate) occlusion: Option<(f32, f32)>,
-    /// Linear colour behind everything; none: transparent.
-    pub(crate) background: Option<[f32; 3]>,
+    /// Colour behind everything; none: transparent.
+    pub(crate) background: Option<Rgb>,
 }
 
 /// Textures and buffers for one tile of the greatest size.
@@ -32,6 +34,7 @@ struct Targets {
     colour: wgpu::TextureView,
     resolved: Option<wgpu::TextureView>,
     normal: wgpu::TextureView,
+    distance: wgpu::TextureView,
     depth: wgpu::TextureView,
     raw: wgpu::Buffer,
     blurred: wgpu::Buffer,
@@ -108,7 +111,10 @@ impl<'g> Painter<'g> {
         };
         let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
-        let background = finishing.background.unwrap_or_default();
+        let [r, g, b] = linear(finishing.background.unwrap_or_default());
+        let empty = finishing
+            .background
+            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let finish = Finish {
             radius,
             most,
@@ -116,7 +122,8 @@ impl<'g> Painter<'g> {
             margin: finishing.margin,
             kept,
             clear: u32::from(finishing.background.is_none()),
-            background: [background[0], background[1], background[2], 1.0],
+            empty: u32::from_le_bytes(empty),
+            background: [r, g, b, 1.0],
             ..Finish::of(frame)
         };
         let shade = Shade::new(frame, look, finishing.scale, self.scale_entries);
@@ -126,8 +133,12 @@ impl<'g> Painter<'g> {
         let (shade_group, finish_group) = self.groups(targets);
 
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        maker.prepare(self.gpu, &mut encoder, frame)?;
-        self.draw(maker, targets, &shade_group, &mut encoder);
+        let rounds = maker.prepare(self.gpu, frame)?.max(1);
+        for round in 0..rounds {
+            let timestamps = self.timer.compute(Pass::Choose);
+            maker.choose(round, &mut encoder, timestamps);
+            self.draw(maker, round, rounds, targets, &shade_group, &mut encoder);
+        }
         let over = |n: u32| n.div_ceil(8);
         // Nothing to do is still a pass: its times are read.
         let all = |n: u32| if radius > 0.0 { over(n) } else { 0 };
@@ -172,7 +183,7 @@ impl<'g> Painter<'g> {
                 entry(0, self.finish.as_entire_binding()),
                 entry(1, view(resolved)),
                 entry(2, view(&targets.normal)),
-                entry(3, view(&targets.depth)),
+                entry(3, view(&targets.distance)),
                 entry(4, targets.raw.as_entire_binding()),
                 entry(5, targets.blurred.as_entire_binding()),
                 entry(6, targets.pixels.as_entire_binding()),
@@ -184,11 +195,17 @@ impl<'g> Painter<'g> {
     fn draw(
         &self,
         maker: &dyn VertexMaker,
+        round: usize,
+        rounds: usize,
         targets: &Targets,
         group: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,
     ) {
-        let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let first = round == 0;
+        let empty = match first {
+            true => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            false => wgpu::LoadOp::Load,
+        };
         let attachment = |view, resolve_target, store| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -198,20 +215,24 @@ impl<'g> Painter<'g> {
             })
         };
         let colour_store = match targets.resolved {
-            Some(_) => wgpu::StoreOp::Discard,
-            None => wgpu::StoreOp::Store,
+            Some(_) if round + 1 == rounds => wgpu::StoreOp::Discard,
+            _ => wgpu::StoreOp::Store,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("draw"),
             color_attachments: &[
                 attachment(&targets.colour, targets.resolved.as_ref(), colour_store),
                 attachment(&targets.normal, None, wgpu::StoreOp::Store),
+                attachment(&targets.distance, None, wgpu::StoreOp::Store),
             ],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Store,
+                    load: match first {
+                        true => wgpu::LoadOp::Clear(0.0),
+                        false => wgpu::LoadOp::Load,
+                    },
+                    store: wgpu::StoreOp::Discard,
                 }),
                 stencil_ops: None,
             }),
@@ -220,7 +241,7 @@ impl<'g> Painter<'g> {
         });
         pass.set_pipeline(&self.shader.pipeline);
         pass.set_bind_group(1, group, &[]);
-        maker.draw(&mut pass);
+        maker.draw(round, &mut pass);
     }
 
     fn compute(
@@ -268,6 +289,7 @@ impl Targets {
         let colour = texture(COLOUR_FORMAT, samples);
         let resolved = (samples > 1).then(|| texture(COLOUR_FORMAT, 1));
         let normal = texture(NORMAL_FORMAT, samples);
+        let distance = texture(DISTANCE_FORMAT, samples);
         let depth = texture(DEPTH_FORMAT, samples);
         let storage = wgpu::BufferUsages::STORAGE;
         let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
@@ -275,6 +297,7 @@ impl Targets {
             colour,
             resolved,
             normal,
+            distance,
             depth,
             raw: make(gpu, "occlusion", 4 * pixels, storage),
             blurred: make(gpu, "occlusion", 4 * pixels, storage),

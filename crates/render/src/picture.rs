@@ -9,7 +9,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 use crate::camera::Camera;
-use crate::colour::{ColourTable, Rgb, linear};
+use crate::colour::{ColourTable, Rgb};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::BLUR;
@@ -40,10 +40,10 @@ pub struct PictureOptions {
 /// Ambient occlusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Occlusion {
-    /// Within 3 % of the picture's height, at the distance of the camera's target.
+    /// Within 5 % of the picture's height, at the distance of the camera's target.
     #[default]
     Fit,
-    /// Within this distance (µm), at most 8 % of the picture's height.
+    /// Within this distance (µm), at most 6 % of the picture's height.
     Within(f32),
     /// None.
     Off,
@@ -118,9 +118,9 @@ impl PictureOptions {
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
         let largest = self.tile.min(gpu.largest_texture()).max(64 * scale);
         // Half a tile is for margins at most.
-        let most = (0.08 * height).min(f64::from(largest) / 5.0).ceil();
+        let most = (0.06 * height).min(f64::from(largest) / 5.0).ceil();
         let radius = match self.occlusion {
-            Occlusion::Fit => 0.03 * height * sub_pixel,
+            Occlusion::Fit => 0.05 * height * sub_pixel,
             Occlusion::Within(radius) => f64::from(radius),
             Occlusion::Off => 0.0,
         };
@@ -166,7 +166,7 @@ pub fn paint<E>(
         scale,
         margin,
         occlusion: parting.occlusion,
-        background: options.background.map(linear),
+        background: options.background,
     };
     let [width, height] = options.size.map(|n| n.max(1));
     let mut tiles = 0;

@@ -4,6 +4,7 @@
 //! cut into **chunks** that each fit one binding, and chunks into **runs** of triangles that are left
 //! out where they do not show.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
@@ -36,24 +37,32 @@ pub struct Painted<'m> {
 /// Twin of `StoredVertex` in `prerefined.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-struct StoredVertex {
-    position: [f32; 3],
+pub(crate) struct StoredVertex {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) z: f32,
     /// 0 on somata.
-    radius: f32,
-    normal: u32,
-    word: u32,
+    pub(crate) radius: f32,
+    pub(crate) normal: u32,
+    pub(crate) word: u32,
+}
+
+impl StoredVertex {
+    fn position(&self) -> Vec3 {
+        Vec3::new(self.x, self.y, self.z)
+    }
 }
 
 /// Twin of `Placement` in `prerefined.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-struct Placement {
-    relative_from_mesh: [f32; 3],
-    instance: u32,
+pub(crate) struct Placement {
+    pub(crate) relative_from_mesh: [f32; 3],
+    pub(crate) instance: u32,
 }
 
 /// What is resident, and how much.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Resident {
     /// Coarse patches that it was made of.
     pub patches: usize,
@@ -67,6 +76,8 @@ pub struct Resident {
     pub vertex_bytes: u64,
     /// Bytes of corners.
     pub corner_bytes: u64,
+    /// Number of coarse edges by level.
+    pub levels: BTreeMap<u32, usize>,
 }
 
 struct Run {
@@ -74,6 +85,8 @@ struct Run {
     corners: Range<u32>,
     center: Vec3,
     radius: f32,
+    /// Whether it ever showed.
+    drawn: bool,
 }
 
 struct Chunk {
@@ -131,6 +144,9 @@ impl Prerefined {
                 point.sample = number;
             }
             let refined = Refinement::new(&numbered, &levels(index), options);
+            for (level, edges) in refined.level_histogram() {
+                *made.resident.levels.entry(level).or_default() += edges;
+            }
             let surface = SurfaceMesh::collect(&refined);
             made.resident.patches += painted.mesh.patches.len();
             made.resident.points += painted.mesh.tracing.len();
@@ -144,13 +160,21 @@ impl Prerefined {
     }
 
     /// What is resident.
-    pub fn resident(&self) -> Resident {
-        self.resident
+    pub fn resident(&self) -> &Resident {
+        &self.resident
     }
 
-    /// Triangles of the runs that showed in the last frame.
+    /// Triangles of the runs that showed in any frame.
     pub fn drawn(&self) -> usize {
         self.drawn
+    }
+
+    /// About as many patches as made those triangles.
+    pub fn patches_drawn(&self) -> usize {
+        let Resident {
+            patches, triangles, ..
+        } = self.resident;
+        (patches * self.drawn).div_ceil(triangles.max(1))
     }
 
     fn add(
@@ -199,13 +223,14 @@ impl Prerefined {
         self.resident.corner_bytes += corner_buffer.size();
         let runs = corners.chunks(3 * RUN).zip((0_u32..).step_by(3 * RUN));
         let runs = runs.map(|(run, first)| {
-            let positions = || run.iter().map(|&c| Vec3::from(stored[c as usize].position));
+            let positions = || run.iter().map(|&c| stored[c as usize].position());
             let low = positions().fold(Vec3::MAX, Vec3::min);
             let high = positions().fold(Vec3::MIN, Vec3::max);
             Run {
                 corners: first..first + run.len() as u32,
                 center: (low + high) / 2.0,
                 radius: (high - low).length() / 2.0,
+                drawn: false,
             }
         });
         self.chunks.push(Chunk {
@@ -229,12 +254,7 @@ impl VertexMaker for Prerefined {
         &self.layout
     }
 
-    fn prepare(
-        &mut self,
-        gpu: &Gpu,
-        _encoder: &mut wgpu::CommandEncoder,
-        frame: &Frame,
-    ) -> Result<(), DeviceError> {
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
         let offsets = self
             .origins
             .iter()
@@ -250,27 +270,29 @@ impl VertexMaker for Prerefined {
                 .write_buffer(&self.placements, STRIDE * index as u64, bytes);
         }
         let planes = frame.frustum();
-        self.drawn = 0;
         for chunk in &mut self.chunks {
             chunk.shown.clear();
-            for run in &chunk.runs {
-                // Widened to a pixel, a run reaches a pixel farther.
+            for run in &mut chunk.runs {
+                // Widened to a pixel, a run reaches farther by half of one: 4 sub-pixels.
                 let center = run.center + offsets[chunk.mesh];
-                let pixel = (center.length() + run.radius) * frame.slope() as f32;
-                if !shows(&planes, center, run.radius + 2.0 * pixel) {
+                let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
+                if !shows(&planes, center, run.radius + pixels) {
                     continue;
                 }
-                self.drawn += run.corners.len() / 3;
+                if !run.drawn {
+                    self.drawn += run.corners.len() / 3;
+                    run.drawn = true;
+                }
                 match chunk.shown.last_mut() {
                     Some(last) if last.end == run.corners.start => last.end = run.corners.end,
                     _ => chunk.shown.push(run.corners.clone()),
                 }
             }
         }
-        Ok(())
+        Ok(1)
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, _round: usize, pass: &mut wgpu::RenderPass<'_>) {
         for chunk in self.chunks.iter().filter(|chunk| !chunk.shown.is_empty()) {
             let offset = STRIDE as u32 * chunk.mesh as u32;
             pass.set_bind_group(0, &chunk.group, &[offset]);
@@ -289,13 +311,15 @@ impl VertexMaker for Prerefined {
 }
 
 /// Defines `surface_vertex`.
-const WGSL: &str = include_str!("prerefined.wgsl");
+pub(crate) const WGSL: &str = include_str!("prerefined.wgsl");
 
 fn store(vertex: &SurfaceVertex, painted: &Painted<'_>) -> StoredVertex {
     let tracing = vertex.point as usize;
     let soma = painted.mesh.tracing[tracing].role == Role::Soma;
     StoredVertex {
-        position: vertex.position.to_array(),
+        x: vertex.position.x,
+        y: vertex.position.y,
+        z: vertex.position.z,
         radius: if soma { 0.0 } else { vertex.radius },
         normal: pack_normal(vertex.normal),
         word: painted.words.get(tracing).copied().unwrap_or(0),

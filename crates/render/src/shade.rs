@@ -12,6 +12,8 @@ use crate::maker::{SURFACE_VERTEX_WGSL, VertexMaker};
 pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Normals in the view.
 pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Depths (µm).
+pub(crate) const DISTANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// Reversed depth keeps its digits in floating point only.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -53,20 +55,20 @@ const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct Shade {
-    clip_from_relative: [f32; 16],
-    right: [f32; 3],
-    near: f32,
-    up: [f32; 3],
-    slope: f32,
-    backward: [f32; 3],
-    half_width: f32,
-    key: [f32; 3],
-    wire: f32,
-    size: [f32; 2],
-    tile_origin: [f32; 2],
-    tile_size: [f32; 2],
-    lit: f32,
-    scale_entries: u32,
+    pub(crate) clip_from_relative: [f32; 16],
+    pub(crate) right: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) up: [f32; 3],
+    pub(crate) slope: f32,
+    pub(crate) backward: [f32; 3],
+    pub(crate) half_width: f32,
+    pub(crate) key: [f32; 3],
+    pub(crate) wire: f32,
+    pub(crate) size: [f32; 2],
+    pub(crate) tile_origin: [f32; 2],
+    pub(crate) tile_size: [f32; 2],
+    pub(crate) lit: f32,
+    pub(crate) scale_entries: u32,
 }
 
 impl Shade {
@@ -85,7 +87,7 @@ impl Shade {
             up,
             slope: frame.slope() as f32,
             backward,
-            half_width: HALF_WIDTH,
+            half_width: HALF_WIDTH * scale as f32,
             key: key.normalize_or(KEY).to_array(),
             wire: 0.5 * look.wire * scale as f32,
             size: frame.size.map(|n| n as f32),
@@ -97,8 +99,7 @@ impl Shade {
     }
 }
 
-/// Half the width (sub-pixels) of the thinnest thing: below a whole sub-pixel, lines step over
-/// sample points and look dotted.
+/// Half the width (pixels) of the thinnest thing drawn: below a pixel, lines look dotted.
 const HALF_WIDTH: f32 = 0.5;
 
 /// Draws samples from a maker's vertices.
@@ -112,7 +113,7 @@ impl Shader {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shade"),
-            source: wgpu::ShaderSource::Wgsl(text(&maker.wgsl(), samples).into()),
+            source: wgpu::ShaderSource::Wgsl(shader_text(&maker.wgsl(), samples).into()),
         });
         let layout = layout(device);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -155,7 +156,7 @@ impl Shader {
                 module: &module,
                 entry_point: Some("fragment"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[target(COLOUR_FORMAT), target(NORMAL_FORMAT)],
+                targets: &[COLOUR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
             }),
             multiview_mask: None,
             cache: None,
@@ -165,11 +166,7 @@ impl Shader {
 }
 
 /// The whole text for a maker, with this many samples per sub-pixel.
-pub fn shader_text(maker: &str, samples: u32) -> String {
-    text(maker, samples)
-}
-
-fn text(maker: &str, samples: u32) -> String {
+pub(crate) fn shader_text(maker: &str, samples: u32) -> String {
     // With one sample a mask is of no use: what covers less than half is left out instead.
     let (member, statement) = if samples > 1 {
         (

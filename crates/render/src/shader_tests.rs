@@ -1,7 +1,7 @@
 //! Our shaders are valid in every language, and their structs are ours.
 
 #[path = "../../refine/tests/languages/mod.rs"]
-mod languages;
+pub(crate) mod languages;
 
 use crate::assert_layout;
 use crate::expand::{ExpandedVertex, Wanted, expand_wgsl};
