@@ -41,10 +41,14 @@ pub fn decide(
         .collect()
 }
 
-/// Whether a ball in a placed part's coordinates shows.
+/// Whether a ball in a placed part's coordinates shows. What is thinner than a pixel is drawn a pixel
+/// wide.
 pub(crate) fn shows(frame: &FrameWords, place: &Placed, center: Vec3, radius: f32) -> bool {
+    let [eye, forward] = [place.eye, place.forward].map(Vec3::from_array);
+    let depth = (forward.dot(center - eye) - radius).max(place.near);
+    let pixel = frame.slope * depth + frame.flat / place.scale;
     let p = place.relative(center);
-    let reach = radius * place.scale;
+    let reach = (radius + pixel) * place.scale;
     for plane in frame.planes.map(Vec4::from_array) {
         // Also where it is not a number.
         let inside = plane.truncate().dot(p) + plane.w >= -reach;
@@ -52,9 +56,7 @@ pub(crate) fn shows(frame: &FrameWords, place: &Placed, center: Vec3, radius: f3
             return false;
         }
     }
-    let [eye, forward] = [place.eye, place.forward].map(Vec3::from_array);
-    let depth = (forward.dot(center - eye) - radius).max(place.near);
-    2.0 * radius >= frame.smallest * (frame.slope * depth + frame.flat / place.scale)
+    2.0 * radius >= frame.smallest * pixel
 }
 
 /// Ball around a patch at any level, from the position and the tracing point's centre of each corner.

@@ -29,19 +29,21 @@ fn owner_of(slot: u32) -> u32 {
     return low;
 }
 
-// Whether a ball shows: within the frustum, and not smaller than what is left out.
+// Whether a ball shows: within the frustum, and not smaller than what is left out. What is thinner than
+// a pixel is drawn a pixel wide.
 fn shows(place: Placed, center: vec3<f32>, radius: f32) -> bool {
+    let view = view_of(frame, place);
+    let depth = max(dot(view.forward, center - view.eye) - radius, view.near);
+    let pixel = view.slope * depth + view.flat;
     let p = relative(place, center);
-    let reach = radius * place.scale;
+    let reach = (radius + pixel) * place.scale;
     for (var k = 0u; k < 5u; k += 1u) {
         // Also where it is not a number.
         if (!(dot(frame.planes[k].xyz, p) + frame.planes[k].w >= -reach)) {
             return false;
         }
     }
-    let view = view_of(frame, place);
-    let depth = max(dot(view.forward, center - view.eye) - radius, view.near);
-    return 2.0 * radius >= frame.smallest * (view.slope * depth + view.flat);
+    return 2.0 * radius >= frame.smallest * pixel;
 }
 
 // Ball around a patch at any level.

@@ -7,6 +7,7 @@ use wgpu::{BufferUsages, ShaderStages};
 
 use crate::device::Gpu;
 use crate::error::DeviceError;
+use crate::maker::SURFACE_VERTEX_WGSL;
 use crate::readback::read;
 use crate::refiner::{Batch, Refiner, storage};
 use crate::refining::compose;
@@ -14,7 +15,7 @@ use crate::refining::compose;
 /// Workgroups in a row of a dispatch.
 const ROW: u32 = 1024;
 
-/// A vertex as the shading stage gets it. Twin of `SurfaceVertex` in vertices.wgsl.
+/// A vertex as the shading stage gets it. Twin of `SurfaceVertex` in surface_vertex.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ExpandedVertex {
@@ -32,7 +33,7 @@ pub struct ExpandedVertex {
     pub word: u32,
     /// Place of the instance in the scene.
     pub instance: u32,
-    /// Column and row in the refinement grid.
+    /// Place in the refinement grid, as wires need it.
     pub grid: [f32; 2],
 }
 
@@ -51,11 +52,9 @@ pub struct Wanted {
 /// The module of the pass.
 pub(crate) fn expand_wgsl() -> String {
     let row = format!("const EXPAND_ROW: u32 = {ROW}u;\n");
-    compose(&[
-        &row,
-        include_str!("vertices.wgsl"),
-        include_str!("expand.wgsl"),
-    ])
+    let vertices = include_str!("vertices.wgsl");
+    let expand = include_str!("expand.wgsl");
+    compose(&[&row, SURFACE_VERTEX_WGSL, vertices, expand])
 }
 
 impl Refiner {

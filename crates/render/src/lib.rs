@@ -1,6 +1,7 @@
 //! Pictures of coarse meshes on the GPU.
 #![forbid(unsafe_code)]
 
+mod adaptive;
 mod camera;
 mod colour;
 mod decide;
@@ -31,6 +32,7 @@ mod text;
 mod timing;
 mod work;
 
+pub use adaptive::Adaptive;
 pub use camera::{Ball, Camera, DEFAULT_FOV, Side};
 pub use colour::{
     CATEGORY_BIT, ColourMap, ColourTable, Palette, Rgb, SCALE_ENTRIES, category, fraction, is_dark,

@@ -33,17 +33,26 @@ pub trait VertexMaker {
     /// Layout of bind group 0.
     fn layout(&self) -> &wgpu::BindGroupLayout;
 
-    /// What must be done before a frame can be drawn: uniforms, compute passes.
+    /// What must be uploaded before a frame can be drawn. Gives the number of rounds that draw it:
+    /// one after the other, each chosen, then drawn.
     ///
     /// # Errors
     /// What the device cannot do.
-    fn prepare(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        frame: &Frame,
-    ) -> Result<(), DeviceError>;
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError>;
 
-    /// Draws what was prepared. The pipeline and the groups from 1 on are set.
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>);
+    /// The compute pass of a round. Nothing to do is still a pass: its times are read.
+    fn choose(
+        &self,
+        _round: usize,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("choose"),
+            timestamp_writes: timestamps,
+        });
+    }
+
+    /// Draws what was chosen. The pipeline and the groups from 1 on are set.
+    fn draw(&self, round: usize, pass: &mut wgpu::RenderPass<'_>);
 }

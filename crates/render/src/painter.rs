@@ -133,8 +133,12 @@ impl<'g> Painter<'g> {
         let (shade_group, finish_group) = self.groups(targets);
 
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        maker.prepare(self.gpu, &mut encoder, frame)?;
-        self.draw(maker, targets, &shade_group, &mut encoder);
+        let rounds = maker.prepare(self.gpu, frame)?.max(1);
+        for round in 0..rounds {
+            let timestamps = self.timer.compute(Pass::Choose);
+            maker.choose(round, &mut encoder, timestamps);
+            self.draw(maker, round, rounds, targets, &shade_group, &mut encoder);
+        }
         let over = |n: u32| n.div_ceil(8);
         // Nothing to do is still a pass: its times are read.
         let all = |n: u32| if radius > 0.0 { over(n) } else { 0 };
@@ -191,11 +195,17 @@ impl<'g> Painter<'g> {
     fn draw(
         &self,
         maker: &dyn VertexMaker,
+        round: usize,
+        rounds: usize,
         targets: &Targets,
         group: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,
     ) {
-        let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let first = round == 0;
+        let empty = match first {
+            true => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            false => wgpu::LoadOp::Load,
+        };
         let attachment = |view, resolve_target, store| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -205,8 +215,8 @@ impl<'g> Painter<'g> {
             })
         };
         let colour_store = match targets.resolved {
-            Some(_) => wgpu::StoreOp::Discard,
-            None => wgpu::StoreOp::Store,
+            Some(_) if round + 1 == rounds => wgpu::StoreOp::Discard,
+            _ => wgpu::StoreOp::Store,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("draw"),
@@ -218,7 +228,10 @@ impl<'g> Painter<'g> {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
+                    load: match first {
+                        true => wgpu::LoadOp::Clear(0.0),
+                        false => wgpu::LoadOp::Load,
+                    },
                     store: wgpu::StoreOp::Discard,
                 }),
                 stencil_ops: None,
@@ -230,7 +243,7 @@ impl<'g> Painter<'g> {
         pass.set_bind_group(1, group, &[]);
         let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
         pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
-        maker.draw(&mut pass);
+        maker.draw(round, &mut pass);
     }
 
     fn compute(

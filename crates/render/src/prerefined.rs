@@ -254,12 +254,7 @@ impl VertexMaker for Prerefined {
         &self.layout
     }
 
-    fn prepare(
-        &mut self,
-        gpu: &Gpu,
-        _encoder: &mut wgpu::CommandEncoder,
-        frame: &Frame,
-    ) -> Result<(), DeviceError> {
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
         let offsets = self
             .origins
             .iter()
@@ -294,10 +289,10 @@ impl VertexMaker for Prerefined {
                 }
             }
         }
-        Ok(())
+        Ok(1)
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, _round: usize, pass: &mut wgpu::RenderPass<'_>) {
         for chunk in self.chunks.iter().filter(|chunk| !chunk.shown.is_empty()) {
             let offset = STRIDE as u32 * chunk.mesh as u32;
             pass.set_bind_group(0, &chunk.group, &[offset]);

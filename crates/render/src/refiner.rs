@@ -121,7 +121,7 @@ impl Refiner {
         })
     }
 
-    /// The module that makes vertices: `fn surface_vertex(vertex_index: u32, instance_index: u32) ->
+    /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn surface_vertex(vertex_index: u32, instance_index: u32) ->
     /// SurfaceVertex`. Binds group 0.
     pub fn vertex_wgsl() -> String {
         compose(&[include_str!("vertices.wgsl")])
@@ -172,24 +172,27 @@ impl Refiner {
         Ok(FramePlan { batches, patches })
     }
 
-    /// Decides on a batch's patches and lists those that show. `timestamps`: where the device notes
-    /// the beginning and the end.
+    /// Decides on a batch's patches and lists those that show; without a batch, an empty pass.
+    /// `timestamps`: where the device notes the beginning and the end.
     pub fn choose(
         &self,
         scene: &Scene,
         encoder: &mut wgpu::CommandEncoder,
-        batch: &Batch,
+        batch: Option<&Batch>,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
-        let BatchWords {
-            slots, sections, ..
-        } = batch.words;
-        let offset = [self.work.batch_offset(batch.index)];
-        encoder.clear_buffer(&self.work.counts, 0, None);
+        if batch.is_some() {
+            encoder.clear_buffer(&self.work.counts, 0, None);
+        }
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("levels"),
             timestamp_writes: timestamps,
         });
+        let Some(batch) = batch else { return };
+        let BatchWords {
+            slots, sections, ..
+        } = batch.words;
+        let offset = [self.work.batch_offset(batch.index)];
         pass.set_pipeline(&self.decide);
         pass.set_bind_group(0, &scene.templates().pages[batch.page].group, &[]);
         pass.set_bind_group(1, &self.work.decisions_group, &offset);

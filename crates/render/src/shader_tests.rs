@@ -6,7 +6,7 @@ pub(crate) mod languages;
 use crate::assert_layout;
 use crate::expand::{ExpandedVertex, Wanted, expand_wgsl};
 use crate::grids::Bucket;
-use crate::refiner::{DrawIndexed, Refiner, decide_wgsl, list_wgsl};
+use crate::refiner::{DrawIndexed, decide_wgsl, list_wgsl};
 use crate::refining::{BatchWords, FrameWords, Placed};
 
 #[test]
@@ -75,5 +75,4 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         ExpandedVertex,
         [position, normal, axis, radius, word, instance, grid]
     );
-    languages::check("vertices", &Refiner::vertex_wgsl());
 }

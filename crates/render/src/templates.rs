@@ -2,7 +2,7 @@
 
 use bytemuck::Pod;
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role};
 use neurotess_refine::{PackedTracing, PackedVertex, Part, pack};
 use wgpu::util::DeviceExt;
 
@@ -101,7 +101,7 @@ impl Templates {
             let mut stored = StoredTemplate {
                 origin: template.mesh.origin,
                 parts: Vec::new(),
-                points: template.mesh.tracing.len(),
+                points: points(template.mesh),
             };
             for part in pack(template.mesh, template.words, template.values, most) {
                 if !draft.holds(&part, most_bytes) {
@@ -154,9 +154,15 @@ impl Templates {
         self.templates.len()
     }
 
-    /// Number of tracing points of all templates.
+    /// Number of tracing points of all templates, those that stand for somata's vertices aside.
     pub fn point_count(&self) -> usize {
         self.templates.iter().map(|template| template.points).sum()
+    }
+
+    /// Bytes on the device per tracing point.
+    pub fn bytes_per_point(&self) -> f64 {
+        let bytes: u64 = self.bytes().iter().map(|&(_, bytes)| bytes).sum();
+        bytes as f64 / self.point_count().max(1) as f64
     }
 
     /// Bytes on the device by the name of the buffer.
@@ -208,6 +214,11 @@ impl Draft {
         self.clusters.extend(stored.balls.iter().map(words));
         stored
     }
+}
+
+fn points(mesh: &CoarseMesh) -> usize {
+    let tracing = mesh.tracing.iter();
+    tracing.filter(|point| point.role != Role::Soma).count()
 }
 
 /// A ball around each cluster of patches.

@@ -4,9 +4,10 @@ use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::painter::read;
 
-/// The passes of a tile.
+/// The passes of a tile. Of a scene that is drawn in several rounds the last is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
+    Choose,
     Draw,
     Occlude,
     Blur,
@@ -14,7 +15,7 @@ pub(crate) enum Pass {
 }
 
 /// Their names, in their order.
-pub(crate) const PASSES: [&str; 4] = ["draw", "occlude", "blur", "gather"];
+pub(crate) const PASSES: [&str; 5] = ["choose", "draw", "occlude", "blur", "gather"];
 
 const COUNT: u32 = 2 * PASSES.len() as u32;
 

@@ -1,22 +1,8 @@
 // Who makes vertices: on the fly, from the resident patch and its decided levels.
 //
-// `surface_vertex` is the seam to whatever shades. Called with the builtin indices of a draw that
-// refiner.rs sets up. The index buffer (grids.rs) hands out vertex indices that say which bucket, which
+// `surface_vertex` is the seam to whatever shades (maker.rs); SurfaceVertex comes before. Called with
+// the builtin indices of a draw that refiner.rs sets up. The index buffer (grids.rs) hands out vertex indices that say which bucket, which
 // patch of the instance, and which column and row of its grid.
-
-struct SurfaceVertex {
-    // Relative to the eye, in the world's directions (micrometres).
-    position: vec3<f32>,
-    normal: vec3<f32>,
-    // Point of the tube's centre line and the radius there; a radius of 0 on somata.
-    axis: vec3<f32>,
-    radius: f32,
-    // The word of the tracing point.
-    word: u32,
-    instance: u32,
-    // Column and row in the refinement grid.
-    grid: vec2<f32>,
-}
 
 struct Bucket {
     start: u32,
@@ -64,6 +50,17 @@ fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
         v.radius * part.scale,
         word_of(base, v.nearest),
         part.instance,
-        vec2<f32>(f32(column), f32(row)),
+        wire_grid(p.kind, grid, column, row),
     );
+}
+
+// Coordinates whose sum is whole on the diagonals that grids.rs draws: rising, or on round patches
+// towards the corners.
+fn wire_grid(kind: u32, grid: Grid, i: u32, j: u32) -> vec2<f32> {
+    if (kind == PATCH_LATERAL || ((grid.nx | grid.ny) & 1u) == 1u) {
+        return vec2<f32>(f32(i), -f32(j));
+    }
+    let middle = vec2<f32>(f32(grid.nx / 2u), f32(grid.ny / 2u));
+    let from_middle = abs(vec2<f32>(f32(i), f32(j)) - middle);
+    return vec2<f32>(from_middle.x, -from_middle.y);
 }

@@ -53,7 +53,7 @@ fn choose(
     let mut all = Vec::new();
     for batch in &plan.batches {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        refiner.choose(scene, &mut encoder, batch, None);
+        refiner.choose(scene, &mut encoder, Some(batch), None);
         gpu.queue.submit([encoder.finish()]);
         let chosen = refiner.read_chosen(gpu, scene, batch).expect("chosen");
         let lists: Vec<Vec<Wanted>> = chosen.iter().map(&wanted).collect();

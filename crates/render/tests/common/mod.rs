@@ -4,9 +4,12 @@
 #[path = "../../../refine/tests/common/mod.rs"]
 pub(crate) mod trees;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+use neurotess_morphology::{
+    Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
+};
 use neurotess_render::{Camera, Gpu, Sight};
 use trees::{Twig, grow};
 
@@ -70,6 +73,73 @@ pub(crate) fn cell(seed: u64, twigs: usize) -> CoarseMesh {
         "no joint"
     );
     mesh
+}
+
+/// A cell without sharp bends: neurites all around a soma that curve gently and fork once. No part of
+/// its surface is folded over at any level.
+pub(crate) fn smooth_cell(seed: u64) -> CoarseMesh {
+    let mut random = Random(seed);
+    let sample = SomaSample {
+        id: 1,
+        position: Vec3::ZERO,
+        radius: 6.0,
+        parent: None,
+    };
+    let mut cell = Morphology {
+        name: "smooth".into(),
+        somata: vec![Soma {
+            kind: SomaKind::Point,
+            samples: vec![sample],
+            center: Vec3::ZERO,
+            radius: 6.0,
+        }],
+        ..Morphology::default()
+    };
+    for k in 0..5 {
+        // Evenly over the sphere.
+        let z = 0.8 - 0.4 * k as f32;
+        let (sin, cos) = (2.4 * k as f32).sin_cos();
+        let out = Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z;
+        let side = (out.any_orthonormal_vector() + random.direction().as_vec3() * 0.1)
+            .normalize_or(Vec3::X);
+        let root = Attachment::Soma { soma: 0, sample: 0 };
+        let id = SectionId(cell.sections.len() as u32);
+        let at = grow_section(&mut cell, root, out * 7.5, out, side * 0.06, 0.9);
+        for turn in [0.8, -0.8] {
+            let heading = (out + side * turn).normalize_or(out);
+            let root = Attachment::Section(id);
+            let start = at + heading * 3.5;
+            grow_section(&mut cell, root, start, heading, side * -0.06 * turn, 0.7);
+        }
+    }
+    generate(&cell, &GenerateOptions::default()).mesh
+}
+
+fn grow_section(
+    cell: &mut Morphology,
+    attachment: Attachment,
+    mut at: Vec3,
+    mut heading: Vec3,
+    curve: Vec3,
+    radius: f32,
+) -> Vec3 {
+    let first = cell.points.len() as u32;
+    for k in 0..6 {
+        cell.sample_ids.push(cell.points.len() as i64 + 2);
+        cell.points.push(Point {
+            position: at,
+            radius: radius - 0.02 * k as f32,
+        });
+        heading = (heading + curve).normalize_or(heading);
+        at += heading * 2.8;
+    }
+    cell.sections.push(Section {
+        kind: NeuriteKind(3),
+        attachment,
+        first,
+        end: cell.points.len() as u32,
+    });
+    cell.points[cell.points.len() - 1].position
 }
 
 /// Middle and reach (µm) of a mesh in its tracing's coordinates.
