@@ -10,16 +10,20 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use neurotess_mesh::{PatchKind, Role};
 
+use crate::ball::{SOMA_REACH, TUBE_REACH};
+use crate::decode::{
+    LOOSE, POINT_END, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_LOOSE, POINT_NARROWS, POINTS_OF_BALL,
+    POSITION_STEPS, RADIUS_BASE,
+};
 use crate::evaluate::MOST_SWAY;
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
-use crate::template::PATCH_KIND_SHIFT;
 use crate::{Caps, Levels, Path, RefineOptions, View};
 
 /// Twin of `evaluate.rs`.
 pub const EVALUATE_WGSL: &str = include_str!("evaluate.wgsl");
 /// Twin of `level.rs`.
 pub const LEVEL_WGSL: &str = include_str!("level.wgsl");
-/// The layout of resident data; binds group 0, bindings 0 to 2.
+/// The layout of resident data, twin of `decode.rs`; binds group 0, binding 0.
 pub const TEMPLATE_WGSL: &str = include_str!("template.wgsl");
 /// Twin of `plan.rs`.
 pub const PLAN_WGSL: &str = include_str!("plan.wgsl");
@@ -59,8 +63,17 @@ pub fn prelude() -> String {
     whole("PATCH_LATERAL", PatchKind::Lateral as u32);
     whole("PATCH_CAP", PatchKind::Cap as u32);
     whole("PATCH_SOMA", PatchKind::Soma as u32);
-    whole("PATCH_KIND_SHIFT", PATCH_KIND_SHIFT);
-    whole("PATCH_CORNER_MASK", (1 << PATCH_KIND_SHIFT) - 1);
+    whole("LOOSE", LOOSE);
+    whole("POINT_KIND_SHIFT", POINT_KIND_SHIFT);
+    whole("POINT_END", POINT_END);
+    whole("POINT_LOOSE", POINT_LOOSE);
+    whole("POINT_NARROWS", POINT_NARROWS);
+    whole("POINT_GOES_ON", POINT_GOES_ON);
+    whole("POINTS_OF_BALL", POINTS_OF_BALL as u32);
+    whole("PLACES_OF_BALL", 4 * POINTS_OF_BALL as u32);
+    whole("RADIUS_BASE", RADIUS_BASE);
+    whole("ROLE_ORDINARY", Role::Ordinary as u32);
+    whole("ROLE_END", Role::End as u32);
     whole("PATH_HERMITE", Path::Hermite as u32);
     whole("PATH_LINEAR", Path::Linear as u32);
     whole("CAPS_ROUND", Caps::Round as u32);
@@ -82,6 +95,9 @@ pub fn prelude() -> String {
     real("SHARE", SHARE);
     real("SLACK", SLACK);
     real("STEEPEST", STEEPEST);
+    real("POSITION_STEPS", POSITION_STEPS);
+    real("TUBE_REACH", TUBE_REACH);
+    real("SOMA_REACH", SOMA_REACH);
     real("HALF_PI", std::f32::consts::FRAC_PI_2);
     text
 }

@@ -18,18 +18,23 @@
 //! mesh that they read ([`pack`]).
 #![forbid(unsafe_code)]
 
+mod ball;
 mod coarse_surface;
+mod decode;
 mod evaluate;
 pub mod gpu;
 mod level;
 mod options;
+mod pack;
 mod plan;
 mod refinement;
-mod template;
+mod runs;
 
+pub use ball::{ball_around, patch_ball};
 pub use coarse_surface::CoarseSurface;
+pub use decode::POINTS_OF_BALL;
 pub use level::HIGHEST_LEVEL;
 pub use options::{Caps, Levels, Path, RefineOptions, View};
+pub use pack::{PLACES_OF_BALL, Part, Places, dequantized, pack};
 pub use plan::patch_triangles;
 pub use refinement::Refinement;
-pub use template::{PackedTracing, PackedVertex, Part, pack};

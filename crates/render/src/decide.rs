@@ -6,11 +6,11 @@
 
 use glam::{Vec3, Vec4};
 use neurotess_mesh::CoarseMesh;
-use neurotess_refine::Refinement;
+use neurotess_refine::{PLACES_OF_BALL, Refinement, ball_around, dequantized, pack, patch_ball};
 
-use crate::refining::{CLUSTER, FrameWords, Placed, Refining, SOMA_REACH, Sight, TUBE_REACH};
+use crate::refining::{FrameWords, Placed, Refining, Sight};
 use crate::scene::Placement;
-use crate::templates::{ball_of, cluster_balls};
+use crate::templates::MOST_PATCHES;
 
 /// What the device must decide on every patch of a mesh at a placement: nothing where it is culled,
 /// else the levels of its four sides. `values`: a level per tracing point.
@@ -25,20 +25,25 @@ pub fn decide(
     let place = Placed::new(sight, placement, mesh.origin);
     let view = sight.local_view(placement, mesh.origin);
     let choice = refining.choice.scaled(placement.scale);
-    let refinement = Refinement::new(mesh, &choice.levels(view, values), &refining.options());
-    let clusters = cluster_balls(mesh, &mesh.patches);
-    let all = clusters.iter().copied();
-    let whole = crate::templates::around(all);
+    let parts = pack(mesh, &[], values, MOST_PATCHES);
+    let mesh = dequantized(mesh, &parts);
+    let refinement = Refinement::new(&mesh, &choice.levels(view, values), &refining.options());
     let in_sight = |ball: (Vec3, f32)| shows(&frame, &place, ball.0, ball.1);
-    let visible = |i: usize| {
-        in_sight(whole)
-            && in_sight(clusters[i / CLUSTER])
-            && in_sight(ball_of(mesh, &mesh.patches[i]))
-    };
-    let patches = 0..mesh.patches.len();
-    patches
-        .map(|i| visible(i).then(|| refinement.patch_levels(i)))
-        .collect()
+    let mut decided = vec![None; mesh.patches.len()];
+    for part in &parts {
+        if !in_sight(ball_around(part.balls.iter().copied())) {
+            continue;
+        }
+        for (places, &ball) in part.patches.chunks(PLACES_OF_BALL).zip(&part.balls) {
+            let there = places.iter().map(|&patch| patch as usize);
+            for patch in there.filter(|&patch| patch < mesh.patches.len() && in_sight(ball)) {
+                if in_sight(patch_ball(&mesh, &mesh.patches[patch])) {
+                    decided[patch] = Some(refinement.patch_levels(patch));
+                }
+            }
+        }
+    }
+    decided
 }
 
 /// Whether a ball in a placed part's coordinates shows. What is thinner than a pixel is drawn a pixel
@@ -57,19 +62,4 @@ pub(crate) fn shows(frame: &FrameWords, place: &Placed, center: Vec3, radius: f3
         }
     }
     2.0 * radius >= frame.smallest * pixel
-}
-
-/// Ball around a patch at any level, from the position and the tracing point's centre of each corner.
-pub(crate) fn patch_ball(soma: bool, corners: &[(Vec3, Vec3); 4]) -> (Vec3, f32) {
-    let points = corners.map(|(position, center)| if soma { position } else { center });
-    let middle = (points[0] + points[1] + points[2] + points[3]) * 0.25;
-    let reach = |k: usize| {
-        let (position, center) = corners[k];
-        if soma {
-            (position - middle).length() * SOMA_REACH
-        } else {
-            (center - middle).length() + (position - center).length() * TUBE_REACH
-        }
-    };
-    (middle, (0..4).map(reach).fold(0.0, f32::max))
 }

@@ -3,8 +3,6 @@
 //
 // Called by refiner.rs for a batch, before list.wgsl. CPU twin: decide.rs.
 
-@group(0) @binding(3) var<storage, read> clusters: array<vec4<f32>>;
-
 @group(1) @binding(4) var<uniform> frame: Frame;
 @group(1) @binding(5) var<uniform> batch: Batch;
 @group(1) @binding(6) var<storage, read> placed: array<Placed>;
@@ -90,8 +88,14 @@ fn decide(
     let patch_index = slot - place.first_slot;
     var word = 0u;
     if (patch_index < place.patches) {
-        let cluster = clusters[place.first_cluster + patch_index / CLUSTER];
-        if (shows(place, cluster.xyz, cluster.w)) {
+        let at = place.base.balls + 4u * (patch_index / PLACES_OF_BALL);
+        let center = vec3<f32>(
+            bitcast<f32>(heap[at]),
+            bitcast<f32>(heap[at + 1u]),
+            bitcast<f32>(heap[at + 2u]),
+        );
+        if (shows(place, center, bitcast<f32>(heap[at + 3u]))
+            && patch_exists(place.base, patch_index)) {
             word = decide_patch(place, patch_index);
         }
     }
@@ -102,7 +106,7 @@ fn decide(
 }
 
 fn decide_patch(place: Placed, patch_index: u32) -> u32 {
-    let base = base_of(place);
+    let base = place.base;
     let p = patch_at(base, patch_index);
     let ball = patch_ball(base, p);
     if (!shows(place, ball.center, ball.radius)) {

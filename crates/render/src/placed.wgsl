@@ -24,10 +24,7 @@ struct Placed {
     scale: f32,
     forward: vec3<f32>,
     near: f32,
-    vertex: u32,
-    tracing: u32,
-    first_patch: u32,
-    first_cluster: u32,
+    base: Base,
     first_slot: u32,
     patches: u32,
     instance: u32,
@@ -40,10 +37,6 @@ struct Batch {
     placed: u32,
     slots: u32,
     sections: u32,
-}
-
-fn base_of(place: Placed) -> Base {
-    return Base(place.vertex, place.tracing, place.first_patch);
 }
 
 fn view_of(frame: Frame, place: Placed) -> View {

@@ -91,12 +91,12 @@ impl Refiner {
             let part = parts
                 .into_iter()
                 .flat_map(|t| &t.parts)
-                .find(|part| part.page == batch.page && part.first_patch == owner.first_patch);
+                .find(|part| part.page == batch.page && part.base == owner.base);
             let (kind, levels) = decided(word);
             Chosen {
                 place,
                 instance: owner.instance,
-                patch: slot - owner.first_slot + part.map_or(0, |part| part.in_mesh),
+                patch: part.map_or(0, |part| part.in_mesh[(slot - owner.first_slot) as usize]),
                 levels,
                 kind: match kind {
                     0 => PatchKind::Lateral,

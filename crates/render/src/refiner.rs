@@ -258,11 +258,8 @@ fn place_all(scene: &Scene, sight: &Sight, frame: &FrameWords) -> (Vec<(usize, P
         for part in &template.parts {
             patches += u64::from(part.patches);
             let place = Placed {
-                vertex: part.vertex,
-                tracing: part.tracing,
-                first_patch: part.first_patch,
-                first_cluster: part.first_cluster,
-                patches: part.patches,
+                base: part.base,
+                patches: part.places,
                 instance: i as u32,
                 state: instance.state,
                 ..stand

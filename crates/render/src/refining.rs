@@ -5,7 +5,7 @@ use std::fmt::Write;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 use neurotess_refine::gpu::{self, Criterion};
-use neurotess_refine::{Caps, Levels, Path, RefineOptions, View};
+use neurotess_refine::{Caps, Levels, Path, Places, RefineOptions, View};
 
 use crate::camera::Camera;
 use crate::grids::{
@@ -14,15 +14,10 @@ use crate::grids::{
 };
 use crate::scene::Placement;
 
-/// Patches that are culled together, and the size of a workgroup.
+/// Patches that are decided on together: the size of a workgroup.
 pub(crate) const CLUSTER: usize = 64;
 /// Patches that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
-/// Farthest that a tube reaches from its centre's chord, in its larger ring's size: the rings
-/// themselves, the sway of the centre line (0.24), and what a quarter ellipse bulges.
-pub(crate) const TUBE_REACH: f32 = 1.5;
-/// Farthest that a soma's patch reaches from its middle, in the distance of its farthest corner.
-pub(crate) const SOMA_REACH: f32 = 1.5;
 const DECISION_KIND_SHIFT: u32 = 28;
 
 /// How finely a scene is drawn, whatever the camera.
@@ -188,14 +183,45 @@ pub(crate) struct Placed {
     pub(crate) scale: f32,
     pub(crate) forward: [f32; 3],
     pub(crate) near: f32,
-    pub(crate) vertex: u32,
-    pub(crate) tracing: u32,
-    pub(crate) first_patch: u32,
-    pub(crate) first_cluster: u32,
+    pub(crate) base: Base,
     pub(crate) first_slot: u32,
     pub(crate) patches: u32,
     pub(crate) instance: u32,
     pub(crate) state: u32,
+    pub(crate) pad: [u32; 3],
+}
+
+/// Where a part lies in the heap of its page: [`Places`], moved. Twin of the struct of the same name in
+/// refine's template.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Base {
+    pub(crate) points: u32,
+    pub(crate) point_count: u32,
+    pub(crate) balls: u32,
+    pub(crate) loose: u32,
+    pub(crate) anchors: u32,
+    pub(crate) quads: u32,
+    pub(crate) quad_count: u32,
+    pub(crate) caps: u32,
+    pub(crate) words: u32,
+}
+
+impl Base {
+    /// A part that begins at this word of the heap.
+    pub(crate) fn new(first: u32, places: &Places) -> Self {
+        Self {
+            points: first + places.points,
+            point_count: places.point_count,
+            balls: first + places.balls,
+            loose: first + places.loose,
+            anchors: first + places.anchors,
+            quads: first + places.quads,
+            quad_count: places.quad_count,
+            caps: first + places.caps,
+            words: first + places.words,
+        }
+    }
 }
 
 impl Placed {
@@ -268,9 +294,6 @@ pub(crate) fn compose(own: &[&str]) -> String {
     ] {
         // Writing to a String does not fail.
         let _ = writeln!(constants, "const {name}: u32 = {value}u;");
-    }
-    for (name, value) in [("TUBE_REACH", TUBE_REACH), ("SOMA_REACH", SOMA_REACH)] {
-        let _ = writeln!(constants, "const {name}: f32 = {value:?};");
     }
     let sizes = GRID_SIZE.map(|size| format!("{size}u")).join(", ");
     let _ = writeln!(

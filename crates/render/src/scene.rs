@@ -120,7 +120,7 @@ impl Scene {
                 return Err(SceneError::Template {
                     instance: i,
                     template: instance.template.0,
-                    templates: templates.count(),
+                    templates: templates.count_of_templates(),
                 });
             }
             let somewhere = rotation.is_finite() && translation.is_finite() && scale.is_finite();

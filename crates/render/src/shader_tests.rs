@@ -7,7 +7,7 @@ use crate::assert_layout;
 use crate::expand::{ExpandedVertex, Wanted, expand_wgsl};
 use crate::grids::Bucket;
 use crate::refiner::{DrawIndexed, decide_wgsl, list_wgsl};
-use crate::refining::{BatchWords, FrameWords, Placed};
+use crate::refining::{Base, BatchWords, FrameWords, Placed};
 
 #[test]
 fn shaders_are_valid_in_every_language_and_have_our_layouts() {
@@ -21,23 +21,26 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
     );
     assert_layout!(
         &decide,
+        "Base",
+        Base,
+        [
+            points,
+            point_count,
+            balls,
+            loose,
+            anchors,
+            quads,
+            quad_count,
+            caps,
+            words
+        ]
+    );
+    assert_layout!(
+        &decide,
         "Placed",
         Placed,
         [
-            row_x,
-            row_y,
-            row_z,
-            eye,
-            scale,
-            forward,
-            near,
-            vertex,
-            tracing,
-            first_patch,
-            first_cluster,
-            first_slot,
-            patches,
-            instance,
+            row_x, row_y, row_z, eye, scale, forward, near, base, first_slot, patches, instance,
             state
         ]
     );

@@ -36,7 +36,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
 // Column i and row j of a listed patch. Those beyond its grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let part = placed[owners[listed.x / CLUSTER]];
-    let base = base_of(part);
+    let base = part.base;
     let levels = decided_levels(listed.y);
     let grid = patch_grid(decided_kind(listed.y), frame.levels.caps, levels);
     let p = patch_at(base, listed.x - part.first_slot);

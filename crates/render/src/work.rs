@@ -17,7 +17,7 @@ pub(crate) struct WorkLayouts {
     pub(crate) decisions: wgpu::BindGroupLayout,
     /// Group 1 of the passes that list.
     pub(crate) lists: wgpu::BindGroupLayout,
-    /// Group 0 of whoever makes vertices: bindings 0 to 2 of a page, then those of a frame from 4.
+    /// Group 0 of whoever makes vertices: binding 0 of a page, those of a frame from 4.
     pub(crate) drawing: wgpu::BindGroupLayout,
 }
 
@@ -51,8 +51,6 @@ impl WorkLayouts {
                 "drawing",
                 &[
                     storage(0, both, true),
-                    storage(1, both, true),
-                    storage(2, both, true),
                     uniform(4, both, false),
                     storage(5, both, true),
                     storage(6, both, true),
@@ -213,11 +211,8 @@ impl Work {
         page: &Page,
         buckets: &wgpu::Buffer,
     ) -> wgpu::BindGroup {
-        let [vertices, tracing, patches, _] = &page.buffers;
         let entries = [
-            (0, &vertices.1),
-            (1, &tracing.1),
-            (2, &patches.1),
+            (0, &page.heap),
             (4, &self.frame),
             (5, &self.placed),
             (6, &self.owners),
