@@ -17,6 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["neurotess-morphology", "neurotess-mesh"],
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
+    ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
     (
         "neurotess",
         &[
@@ -26,6 +27,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-synth",
             "neurotess-generate",
             "neurotess-refine",
+            "neurotess-render",
         ],
     ),
     ("neurotess-cli", &["neurotess"]),

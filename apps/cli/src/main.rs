@@ -10,6 +10,7 @@ mod interrupt;
 mod mesh;
 mod output;
 mod progress;
+mod render;
 mod report;
 mod synth;
 mod targets;
@@ -46,6 +47,7 @@ fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
         Some(Command::Mesh(args)) => mesh::run(args, reporter),
         Some(Command::Check(args)) => check::run(args, reporter),
         Some(Command::Convert(args)) => convert::run(args, reporter),
+        Some(Command::Render(args)) => render::run(args, reporter),
         Some(Command::Synth(args)) => synth::run(args, reporter),
         Some(Command::Completions { shell }) => {
             let mut text = Vec::new();
