@@ -14,6 +14,9 @@ struct Base {
     loose: u32,
     // Eight words each.
     anchors: u32,
+    // Somata's patches, three words for two.
+    soma: u32,
+    soma_count: u32,
     // Two words each.
     quads: u32,
     quad_count: u32,
@@ -60,7 +63,20 @@ fn patch_at(base: Base, index: u32) -> Patch {
         let after = (k + 1u) & 3u;
         return Patch(PATCH_LATERAL, vec4<u32>(ring[k], ring[after], next[after], next[k]));
     }
-    let quad = index - 4u * base.point_count;
+    let soma = index - 4u * base.point_count;
+    if (soma < base.soma_count) {
+        // 48 bits: four loose vertices of 12.
+        let at = base.soma + 3u * soma / 2u;
+        let odd = (soma & 1u) * 16u;
+        let x = heap[at];
+        let y = heap[at + 1u];
+        let low = select(x, (x >> 16u) | (y << 16u), odd != 0u);
+        let high = (y >> odd) & 0xffffu;
+        let corners = vec4<u32>(
+            low & 0xfffu, (low >> 12u) & 0xfffu, (low >> 24u) | ((high & 0xfu) << 8u), high >> 4u);
+        return Patch(PATCH_SOMA, corners | vec4<u32>(LOOSE));
+    }
+    let quad = soma - base.soma_count;
     if (quad < base.quad_count) {
         let x = heap[base.quads + 2u * quad];
         let y = heap[base.quads + 2u * quad + 1u];

@@ -188,7 +188,7 @@ pub(crate) struct Placed {
     pub(crate) patches: u32,
     pub(crate) instance: u32,
     pub(crate) state: u32,
-    pub(crate) pad: [u32; 3],
+    pub(crate) pad: [u32; 1],
 }
 
 /// Where a part lies in the heap of its page: [`Places`], moved. Twin of the struct of the same name in
@@ -201,6 +201,8 @@ pub(crate) struct Base {
     pub(crate) balls: u32,
     pub(crate) loose: u32,
     pub(crate) anchors: u32,
+    pub(crate) soma: u32,
+    pub(crate) soma_count: u32,
     pub(crate) quads: u32,
     pub(crate) quad_count: u32,
     pub(crate) caps: u32,
@@ -216,6 +218,8 @@ impl Base {
             balls: first + places.balls,
             loose: first + places.loose,
             anchors: first + places.anchors,
+            soma: first + places.soma,
+            soma_count: places.soma_count,
             quads: first + places.quads,
             quad_count: places.quad_count,
             caps: first + places.caps,
