@@ -17,10 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["neurotess-morphology", "neurotess-mesh"],
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
-    (
-        "neurotess-render",
-        &["neurotess-mesh", "neurotess-refine"],
-    ),
+    ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
     (
         "neurotess",
         &[

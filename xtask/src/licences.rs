@@ -33,8 +33,14 @@ const ALLOWED: &[&str] = &[
 const DUPLICATES: &[(&str, &str)] = &[
     ("equator", "faer and its kernels are a release apart"),
     ("equator-macro", "the same"),
-    ("syn", "runs at build time only; faer's macros are older than serde's"),
-    ("thiserror", "gemm asks for the cache's size on macOS through sysctl, which has the old one"),
+    (
+        "syn",
+        "runs at build time only; faer's macros are older than serde's",
+    ),
+    (
+        "thiserror",
+        "gemm asks for the cache's size on macOS through sysctl, which has the old one",
+    ),
     ("thiserror-impl", "the same"),
 ];
 

@@ -11,7 +11,9 @@ mod architecture;
 mod demo;
 mod licences;
 mod metadata;
+mod pictures;
 mod python;
+mod setup;
 mod steps;
 mod tests;
 
@@ -19,9 +21,11 @@ use std::process::ExitCode;
 
 const USAGE: &str = "cargo xtask COMMAND
 
-  demo    mesh the built-in samples into out/, check the meshes, say where to look
-  test    set up, then every check: formatting, clippy, tests, docs, licences, architecture
-  setup   the Python environment in which other readers check our files (where Python 3 is)
+  demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
+  test      set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  setup     a software Vulkan driver where there is none, and the Python environment in which other
+            readers check our files (where Python 3 is)
+  pictures  draw the README's pictures; with --golden those that tests compare with
 ";
 
 fn main() -> ExitCode {
@@ -29,7 +33,8 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
-        Some("setup") => python::set_up().map(|said| println!("{said}")),
+        Some("setup") => setup::run().map(|said| println!("{said}")),
+        Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),
         _ => {
             println!("{USAGE}");
             return ExitCode::from(2);

@@ -11,6 +11,7 @@ use glam::{DMat3, DQuat, DVec3, Mat4, Vec3, Vec4};
 use neurotess_refine::View;
 
 use crate::error::CameraError;
+use crate::frame::shows;
 
 /// An eye in perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,35 +112,57 @@ impl Camera {
         margin: f64,
         balls: &[Ball],
     ) -> Result<Self, CameraError> {
+        Self::fit_within(side, fov, aspect, [margin; 4], balls)
+    }
+
+    /// As [`Camera::fit`], with a margin for each side: left, right, top, bottom.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn fit_within(
+        side: Side,
+        fov: f64,
+        aspect: f64,
+        margins: [f64; 4],
+        balls: &[Ball],
+    ) -> Result<Self, CameraError> {
         let (backward, up) = side.axes();
         let start = Self::new(backward, DVec3::ZERO, up, fov)?;
-        let (tan_x, tan_y) = start.tangents(aspect, margin);
-        let extent = |axis: usize, tan: f64| {
-            // How far the two side planes through the origin must move outwards to touch.
-            let (mut low, mut high) = (f64::MAX, f64::MIN);
-            for &(center, radius) in balls {
-                let v = start.view_from_world * center;
-                let reach = radius * tan.hypot(1.0);
-                high = high.max(v[axis] + tan * v.z + reach);
-                low = low.min(v[axis] - tan * v.z - reach);
-            }
-            (low, high)
-        };
         if balls.is_empty() {
             return Self::new(backward * 100.0, DVec3::ZERO, up, fov);
         }
-        let ((x0, x1), (y0, y1)) = (extent(0, tan_x), extent(1, tan_y));
-        let depth = ((x1 - x0) / tan_x).max((y1 - y0) / tan_y) / 2.0;
+        let (tan_x, tan_y) = start.tangents(aspect, 0.0);
+        let [left, right, top, bottom] = margins.map(|m| 1.0 - 2.0 * m.clamp(0.0, 0.45));
+        // Where the eye must be along an axis, and how far back, for the planes on its low and high
+        // side to touch.
+        let touch = |axis: usize, low_tan: f64, high_tan: f64| {
+            let (mut low, mut high) = (f64::MAX, f64::MIN);
+            for &(center, radius) in balls {
+                let v = start.view_from_world * center;
+                high = high.max(v[axis] + high_tan * v.z + radius * high_tan.hypot(1.0));
+                low = low.min(v[axis] - low_tan * v.z - radius * low_tan.hypot(1.0));
+            }
+            let depth = (high - low) / (low_tan + high_tan);
+            (
+                (low * high_tan + high * low_tan) / (low_tan + high_tan),
+                depth,
+            )
+        };
+        let (x, depth_x) = touch(0, tan_x * left, tan_x * right);
+        let (y, depth_y) = touch(1, tan_y * bottom, tan_y * top);
+        let depth = depth_x.max(depth_y);
+        // Farther than an axis asks for, its things stay in the middle of what is free.
+        let x = x + (depth - depth_x) * tan_x * (left - right) / 2.0;
+        let y = y + (depth - depth_y) * tan_y * (bottom - top) / 2.0;
         let nearest = balls
             .iter()
             .map(|&(center, radius)| (start.view_from_world * center).z + radius)
             .fold(f64::MIN, f64::max);
-        let middle = mean(balls);
-        // A scene without extent is seen from 1 µm; never from within the nearest ball.
+        let middle = start.view_from_world * mean(balls);
+        // A scene without extent is seen from a little away; never from within the nearest ball.
         let depth = depth.max(nearest + 1e-3 * (nearest - middle.z).abs().max(1e-3));
-        let eye = DVec3::new((x0 + x1) / 2.0, (y0 + y1) / 2.0, depth);
-        let middle_depth = (start.view_from_world * middle).z.min(nearest - 1e-6);
-        let target = DVec3::new(eye.x, eye.y, middle_depth.min(depth - 1e-3));
+        let eye = DVec3::new(x, y, depth);
+        let target = DVec3::new(x, y, middle.z.min(nearest - 1e-6).min(depth - 1e-3));
         let world = start.view_from_world.transpose();
         Self::new(world * eye, world * target, up, fov)
     }
@@ -229,15 +252,29 @@ impl Camera {
         (0.9 * near.min(far)).max(1e-5 * far)
     }
 
+    /// Depth (µm) of the nearest ball in the picture, at least a thousandth of the target's: what
+    /// lies outside or behind the eye need not be fine. Nothing seen: the target's.
+    pub fn nearest_seen(&self, aspect: f64, balls: &[Ball]) -> f64 {
+        let target = self.depth(self.target).abs();
+        let planes = self.frustum(aspect, 0.0);
+        let seen = balls.iter().filter(|&&(center, radius)| {
+            shows(&planes, (center - self.eye).as_vec3(), radius as f32)
+        });
+        let depths = seen.map(|&(center, radius)| self.depth(center) - radius);
+        let nearest = depths.fold(f64::MAX, f64::min);
+        let nearest = if nearest == f64::MAX { target } else { nearest };
+        nearest.max(1e-3 * target)
+    }
+
     /// Rotation from the world to the view, as f32: x right, y up, z backward.
     pub fn view_rotation(&self) -> [Vec3; 3] {
         let rows = self.view_from_world.transpose();
-        [rows.x_axis, rows.y_axis, rows.z_axis].map(|axis| axis.as_vec3())
+        [rows.x_axis, rows.y_axis, rows.z_axis].map(DVec3::as_vec3)
     }
 
     /// Clip space from positions relative to the eye (world axes, µm): reversed depth, no far end.
     pub fn clip_from_relative(&self, aspect: f64, near: f64) -> Mat4 {
-        let [right, up, backward] = self.axes().map(|axis| axis.as_vec3());
+        let [right, up, backward] = self.axes().map(DVec3::as_vec3);
         let (tan_x, tan_y) = self.tangents(aspect, 0.0);
         let rows = [
             (right / tan_x as f32).extend(0.0),
@@ -349,6 +386,36 @@ mod tests {
                 let most = reach(&camera, aspect, &balls());
                 assert!(most.abs() < 0.01, "{side:?} {aspect}: {most}");
             }
+        }
+    }
+
+    #[test]
+    fn margins_stay_free() {
+        let margins = [0.3, 0.05, 0.02, 0.1];
+        for aspect in [0.5, 2.0] {
+            let camera = Camera::fit_within(Side::Iso, 0.4, aspect, margins, &balls());
+            let camera = camera.expect("fits");
+            let size = [(4000.0 * aspect) as u32, 4000];
+            let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+            for (center, _) in balls() {
+                let p = camera.pixel_of(center, size).expect("in front");
+                for k in 0..2 {
+                    low[k] = low[k].min(p[k] / f64::from(size[k]));
+                    high[k] = high[k].max(p[k] / f64::from(size[k]));
+                }
+            }
+            let free = [low[0], 1.0 - high[0], low[1], 1.0 - high[1]];
+            for (free, margin) in free.iter().zip(margins) {
+                assert!(*free > margin - 0.001, "{free} {margin}");
+            }
+            let slack = [
+                free[0] - 0.3 + free[1] - 0.05,
+                free[2] - 0.02 + free[3] - 0.1,
+            ];
+            assert!(
+                slack[0].min(slack[1]) < 0.1,
+                "as near as it can be: {slack:?}"
+            );
         }
     }
 

@@ -263,7 +263,7 @@ mod tests {
         };
         let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: u64::MAX & !3,
+            size: !3,
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });

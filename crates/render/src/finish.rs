@@ -41,7 +41,7 @@ impl Finish {
 /// Taps of the occlusion around a sub-pixel.
 const TAPS: u32 = 14;
 /// How dark corners are. Chosen by eye: forks and the feet of stems show, tubes stay clean.
-const STRENGTH: f32 = 3.2;
+const STRENGTH: f32 = 3.0;
 /// Sub-pixels that the occlusion is blurred over, to each side: the turns repeat after four.
 pub(crate) const BLUR: u32 = 4;
 

@@ -89,7 +89,7 @@ impl<W: Write + 'static> PngWriter<W> {
     ///
     /// # Errors
     /// Those of the file.
-    pub fn new(file: W, size: [u32; 2], alpha: bool) -> Result<Self, png::EncodingError> {
+    pub fn new(file: W, size: [u32; 2], alpha: bool) -> std::io::Result<Self> {
         let mut encoder = png::Encoder::new(file, size[0], size[1]);
         encoder.set_color(if alpha {
             png::ColorType::Rgba
@@ -128,8 +128,8 @@ impl<W: Write + 'static> PngWriter<W> {
     ///
     /// # Errors
     /// Those of the file.
-    pub fn finish(self) -> Result<(), png::EncodingError> {
-        self.stream.finish()
+    pub fn finish(self) -> std::io::Result<()> {
+        Ok(self.stream.finish()?)
     }
 }
 

@@ -37,8 +37,9 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
         let v = view_at(q, other) - center;
         let distance = length(v);
         let rise = max(dot(v, n) / max(distance, 1e-20) - 0.12, 0.0);
-        let near = max(1.0 - distance / (1.5 * radius), 0.0);
-        sum += rise * near;
+        // Twice the radius along the sight: what lies that far in front still casts its shade.
+        let far = min(distance / (2.0 * radius), 1.0);
+        sum += rise * (1.0 - far * far);
     }
     raw[at] = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
 }

@@ -11,6 +11,9 @@ pub struct Overlay {
     pieces: Vec<(i64, i64, Image)>,
     /// Whether the legend found no place.
     pub legend_left_out: bool,
+    /// Where the legend covers something: the share of the picture's width, on the left (negative)
+    /// or the right, that would have to be free for it.
+    pub covering: Option<f64>,
 }
 
 /// What to write into the corners.
@@ -48,8 +51,16 @@ impl Overlay {
                 let (corner, count) = seen.emptiest(&image, line, &[0, 1, 2, 3]);
                 taken = Some(corner);
                 let [x, y] = place(corner, size, &image, line);
-                if let Some(background) = options.background.filter(|_| count > 0) {
-                    overlay.pieces.push((x, y, panel(&image, background)));
+                if count > 0 {
+                    let share = f64::from((image.width as f32 + 1.5 * line) / width);
+                    overlay.covering = Some(if corner.is_multiple_of(2) {
+                        -share
+                    } else {
+                        share
+                    });
+                    if let Some(background) = options.background {
+                        overlay.pieces.push((x, y, panel(&image, background)));
+                    }
                 }
                 overlay.pieces.push((x, y, image));
             } else {
@@ -96,7 +107,11 @@ fn place(corner: usize, size: [u32; 2], image: &Image, line: f32) -> [i64; 2] {
         i64::from(size[1]) - i64::from(image.height) - gap,
     ];
     [
-        if corner % 2 == 0 { gap } else { far[0] },
+        if corner.is_multiple_of(2) {
+            gap
+        } else {
+            far[0]
+        },
         if corner < 2 { gap } else { far[1] },
     ]
 }
@@ -114,7 +129,8 @@ fn panel(image: &Image, background: Rgb) -> Image {
 /// Where balls are seen (pixels).
 struct Seen {
     size: [u32; 2],
-    places: Vec<[f64; 2]>,
+    /// Place and radius.
+    places: Vec<([f64; 2], f64)>,
 }
 
 /// Most places that are looked at: a picture's corners are judged well enough by them.
@@ -127,7 +143,10 @@ impl Seen {
             .iter()
             .flat_map(|c| balls.iter().map(move |b| (c, b)));
         let places = pairs.step_by(step);
-        let places = places.filter_map(|(camera, ball)| camera.pixel_of(ball.0, size));
+        let places = places.filter_map(|(camera, &(center, radius))| {
+            let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(center);
+            Some((camera.pixel_of(center, size)?, radius / pixel))
+        });
         Self {
             size,
             places: places.collect(),
@@ -139,8 +158,8 @@ impl Seen {
         let count = |corner: usize| {
             let [x, y] = place(corner, self.size, image, line).map(|n| n as f64);
             let (w, h) = (f64::from(image.width), f64::from(image.height));
-            let gap = f64::from(line) / 2.0;
-            let under = |p: &&[f64; 2]| {
+            let under = |(p, radius): &&([f64; 2], f64)| {
+                let gap = f64::from(line) / 2.0 + radius;
                 (x - gap..x + w + gap).contains(&p[0]) && (y - gap..y + h + gap).contains(&p[1])
             };
             self.places.iter().filter(under).count()

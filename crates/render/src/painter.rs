@@ -12,7 +12,7 @@ use crate::finish::{Finish, Finisher};
 use crate::frame::Frame;
 use crate::maker::VertexMaker;
 use crate::shade::{
-    COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, Look, NORMAL_FORMAT, Shade, Shader,
+    COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, GUARD, Look, NORMAL_FORMAT, Shade, Shader,
 };
 use crate::timing::{Pass, Timer};
 
@@ -241,6 +241,8 @@ impl<'g> Painter<'g> {
         });
         pass.set_pipeline(&self.shader.pipeline);
         pass.set_bind_group(1, group, &[]);
+        let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
+        pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
         maker.draw(round, &mut pass);
     }
 

@@ -17,7 +17,7 @@ use crate::frame::{Frame, Tile};
 use crate::image::Image;
 use crate::maker::VertexMaker;
 use crate::painter::{Finishing, Painter};
-use crate::shade::Look;
+use crate::shade::{GUARD, Look};
 use crate::timing::PASSES;
 
 /// How a picture is made.
@@ -40,10 +40,10 @@ pub struct PictureOptions {
 /// Ambient occlusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Occlusion {
-    /// Within 5 % of the picture's height, at the distance of the camera's target.
+    /// Within 8 % of the picture's height, at the distance of the camera's target.
     #[default]
     Fit,
-    /// Within this distance (µm), at most 6 % of the picture's height.
+    /// Within this distance (µm), at most 9 % of the picture's height and 360 sub-pixels.
     Within(f32),
     /// None.
     Off,
@@ -62,8 +62,10 @@ impl Default for PictureOptions {
     }
 }
 
-/// With four samples, 100 bytes a sub-pixel: 230 MiB.
+/// With four samples, 104 bytes a sub-pixel: 240 MiB.
 const TILE: u32 = 1536;
+/// Farthest that ambient occlusion looks (sub-pixels): more would leave little of a tile.
+const MOST_MARGIN: f64 = 360.0;
 /// Sample numbers that there are.
 pub const SAMPLES: [u32; 5] = [1, 4, 16, 36, 64];
 /// Greatest width or height of a picture: positions are f32 and keep 1/256 of a sub-pixel.
@@ -109,18 +111,22 @@ struct Parting {
 }
 
 impl PictureOptions {
+    /// The samples of a pixel that are taken: the most that there are, not above those asked for.
+    pub fn samples_taken(&self) -> u32 {
+        let most = SAMPLES.into_iter().rfind(|&n| n <= self.samples);
+        most.unwrap_or(1)
+    }
+
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
-        // The largest that there is, not above what is asked for.
-        let wanted = SAMPLES.into_iter().rfind(|&n| n <= self.samples.max(1));
-        let wanted = wanted.unwrap_or(1);
+        let wanted = self.samples_taken();
         let scale = ((f64::from(wanted) / 4.0).sqrt() as u32).max(1);
         let height = f64::from(self.size[1] * scale);
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
-        let largest = self.tile.min(gpu.largest_texture()).max(64 * scale);
-        // Half a tile is for margins at most.
-        let most = (0.06 * height).min(f64::from(largest) / 5.0).ceil();
+        let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);
+        // The same whatever the tiles are: they must fit together.
+        let most = (0.09 * height).min(MOST_MARGIN).ceil();
         let radius = match self.occlusion {
-            Occlusion::Fit => 0.05 * height * sub_pixel,
+            Occlusion::Fit => 0.08 * height * sub_pixel,
             Occlusion::Within(radius) => f64::from(radius),
             Occlusion::Off => 0.0,
         };
@@ -128,7 +134,7 @@ impl PictureOptions {
         let margin = occlusion
             .map_or(0, |_| most as u32 + BLUR + 2)
             .next_multiple_of(scale);
-        let inner = ((largest.saturating_sub(2 * margin)) / scale).max(8);
+        let inner = (largest.saturating_sub(2 * margin) / scale).max(32);
         Parting {
             scale,
             samples: if wanted == 1 { 1 } else { 4 },
@@ -143,7 +149,6 @@ impl PictureOptions {
 ///
 /// # Errors
 /// What the device cannot do, and what the taker of bands says.
-#[expect(clippy::too_many_arguments, reason = "each is a subject of its own")]
 pub fn paint<E>(
     gpu: &Gpu,
     maker: &mut dyn VertexMaker,

@@ -28,7 +28,8 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                     wire,
                     size,
                     tile_origin,
-                    tile_size,
+                    viewport_origin,
+                    viewport_size,
                     lit,
                     scale_entries
                 ]

@@ -259,7 +259,7 @@ impl VertexMaker for Prerefined {
             .origins
             .iter()
             .map(|&origin| origin - frame.camera.eye());
-        let offsets: Vec<Vec3> = offsets.map(|offset| offset.as_vec3()).collect();
+        let offsets: Vec<Vec3> = offsets.map(DVec3::as_vec3).collect();
         for (index, offset) in offsets.iter().enumerate() {
             let placement = Placement {
                 relative_from_mesh: offset.to_array(),

@@ -66,9 +66,11 @@ pub(crate) struct Shade {
     pub(crate) wire: f32,
     pub(crate) size: [f32; 2],
     pub(crate) tile_origin: [f32; 2],
-    pub(crate) tile_size: [f32; 2],
+    pub(crate) viewport_origin: [f32; 2],
+    pub(crate) viewport_size: [f32; 2],
     pub(crate) lit: f32,
     pub(crate) scale_entries: u32,
+    pub(crate) pad: [u32; 2],
 }
 
 impl Shade {
@@ -92,12 +94,18 @@ impl Shade {
             wire: 0.5 * look.wire * scale as f32,
             size: frame.size.map(|n| n as f32),
             tile_origin: [frame.tile.x as f32, frame.tile.y as f32],
-            tile_size: [frame.tile.width as f32, frame.tile.height as f32],
+            viewport_origin: [frame.tile.x, frame.tile.y].map(|n| n as f32 - GUARD),
+            viewport_size: [frame.tile.width, frame.tile.height].map(|n| n as f32 + 2.0 * GUARD),
             lit,
             scale_entries,
+            pad: [0; 2],
         }
     }
 }
+
+/// Sub-pixels by which the viewport reaches beyond the tile on each side. Software rasterisers clip at
+/// the viewport, and a clipped edge covers other samples: one in 600,000 at the borders of tiles.
+pub(crate) const GUARD: f32 = 512.0;
 
 /// Half the width (pixels) of the thinnest thing drawn: below a pixel, lines look dotted.
 const HALF_WIDTH: f32 = 0.5;

@@ -18,7 +18,9 @@ struct Shade {
     wire: f32,
     size: vec2<f32>,
     tile_origin: vec2<f32>,
-    tile_size: vec2<f32>,
+    // Of the viewport, which reaches beyond the tile (sub-pixels of the whole picture).
+    viewport_origin: vec2<f32>,
+    viewport_size: vec2<f32>,
     // 1: lit, 0: the bare colour.
     lit: f32,
     // Number of scale entries at the start of the table; categories follow.
@@ -36,6 +38,8 @@ struct Varying {
     @location(2) relative: vec3<f32>,
     @location(3) grid: vec2<f32>,
     @location(4) coverage: f32,
+    // From 0, a tube two pixels wide, to 1, nothing.
+    @location(5) thin: f32,
 }
 
 // A category counts from the end of the scale; anything else is a fraction of the scale.
@@ -54,24 +58,24 @@ fn colour_of(word: u32) -> vec3<f32> {
 // a triangle covers the same samples whatever tile it is drawn in. The quarter keeps away from ties.
 fn snapped(clip: vec4<f32>) -> vec4<f32> {
     let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size;
-    let local = floor(pixel * 256.0) / 256.0 - shade.tile_origin + 0.25 / 256.0;
-    let ndc = (local / shade.tile_size * 2.0 - 1.0) * vec2(1.0, -1.0);
+    let local = floor(pixel * 256.0) / 256.0 - shade.viewport_origin + 0.25 / 256.0;
+    let ndc = (local / shade.viewport_size * 2.0 - 1.0) * vec2(1.0, -1.0);
     return vec4(ndc * clip.w, clip.z, clip.w);
 }
 
 // Behind the near plane nothing can be divided; this is the same up to rounding.
 fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
-    let scale = shade.size / shade.tile_size;
-    let shift = (shade.size - 2.0 * shade.tile_origin) / shade.tile_size - 1.0;
+    let scale = shade.size / shade.viewport_size;
+    let shift = (shade.size - 2.0 * shade.viewport_origin) / shade.viewport_size - 1.0;
     return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
 }
 
 // Ink of a line by the share of a pixel that it fills. Spread by area alone, the axons of a whole cell
 // fade from sight: 0.3 of a pixel in linear light is hardly seen on white. This rises with the width
-// and is 0.8 there. Chosen by eye on the samples.
+// and is 0.9 there, 0.5 at a twentieth. Chosen by eye on the samples and on real cells of 1 to 3 mm.
 fn ink_of(share: f32) -> f32 {
     let rest = 1.0 - sqrt(share);
-    return 1.0 - rest * rest;
+    return 1.0 - rest * rest * rest;
 }
 
 @vertex
@@ -82,10 +86,12 @@ fn vertex(
     let v = surface_vertex(vertex_index, instance_index);
     var relative = v.position;
     var coverage = 1.0;
+    var thin = 0.0;
     if v.radius > 0.0 {
         // What is thinner than a pixel is widened to one and made fainter.
         let depth = max(-dot(v.axis, shade.backward), shade.near);
         let narrowest = shade.half_width * shade.slope * depth;
+        thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
         if v.radius < narrowest {
             let offset = v.position - v.axis;
             let away = select(v.normal, normalize(offset), dot(offset, offset) > 0.0);
@@ -105,6 +111,7 @@ fn vertex(
     out.relative = relative;
     out.grid = v.grid;
     out.coverage = coverage;
+    out.thin = thin;
     return out;
 }
 
@@ -125,7 +132,7 @@ fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
     let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
     let sky = 0.5 + 0.5 * n.y;
-    let diffuse = 0.72 * key * key + 0.16 * fill + mix(0.18, 0.42, sky);
+    let diffuse = 0.85 * key * key + 0.18 * fill + mix(0.22, 0.52, sky);
     // A broad sheen, so that black things have a shape.
     let half = normalize(shade.key + to_eye);
     let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
@@ -138,9 +145,9 @@ fn wires(grid: vec2<f32>) -> f32 {
     let width = max(fwidth(g), vec3(1e-6));
     let distance = abs(fract(g - 0.5) - 0.5) / width;
     let nearest = min(distance.x, min(distance.y, distance.z));
-    // Where lines would touch one another they fade to a tint.
+    // Where lines would touch one another they fade.
     let crowded = max(width.x, max(width.y, width.z)) * shade.wire * 4.0;
-    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
+    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.0, 1.0);
 }
 
 fn bayer(p: vec2<u32>) -> f32 {
@@ -161,7 +168,10 @@ fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
 fn fragment(in: Varying) -> Sample {
     let world = normalize(in.normal);
     let axes = mat3x3(shade.right, shade.up, shade.backward);
-    let n = world * axes;
+    let to_eye = -normalize(in.relative) * axes;
+    // A line shows no sides: it gets the light of a face towards the viewer, so its colour is the
+    // legend's. Means over all sides were a third darker, and thin things looked grey.
+    let n = normalize(mix(world * axes, to_eye, in.thin));
     var colour = in.colour;
     if shade.wire > 0.0 {
         let luminance = dot(colour, vec3(0.2126, 0.7152, 0.0722));
@@ -169,7 +179,7 @@ fn fragment(in: Varying) -> Sample {
         colour = mix(colour, line, wires(in.grid));
     }
     if shade.lit > 0.0 {
-        colour = light(colour, n, -normalize(in.relative) * axes);
+        colour = light(colour, n, to_eye);
     }
     var out: Sample;
     out.colour = vec4(colour, 1.0);

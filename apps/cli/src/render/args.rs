@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use glam::{DVec3, Vec3};
-use neurotess::render::{ColourMap, LARGEST, Light, Palette, Rgb, SAMPLES};
+use neurotess::render::{ColourMap, LARGEST, Light, Palette, Rgb};
 
 use crate::args::{SomaArg, Types};
 
@@ -35,9 +35,9 @@ pub(crate) struct RenderArgs {
         help_heading = "Picture"
     )]
     pub(crate) size: Size,
-    /// Samples of a pixel: 1, 4, 16, 36 or 64
-    #[arg(long, default_value_t = 16, value_name = "N", value_parser = samples,
-          help_heading = "Picture")]
+    /// Samples of a pixel, 1 to 64: smoother edges; 1, 4, 16, 36 and 64 are there
+    #[arg(long, default_value_t = 16, value_name = "N", help_heading = "Picture",
+          value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) samples: u32,
     /// Colour behind everything: a name (white, black, grey) or RRGGBB
     #[arg(
@@ -131,9 +131,9 @@ pub(crate) struct RenderArgs {
     )]
     pub(crate) fov: f64,
     /// Go once around the scene, in --frames pictures
-    #[arg(long, requires = "frames", help_heading = "Camera")]
+    #[arg(long, help_heading = "Camera")]
     pub(crate) turntable: bool,
-    /// Number of pictures: OUT_0000.png and so on
+    /// Number of pictures: OUT_0000.png and so on [default: 36]
     #[arg(long, value_name = "N", requires = "turntable", help_heading = "Camera",
           value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) frames: Option<u32>,
@@ -168,6 +168,13 @@ pub(crate) struct RenderArgs {
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
+}
+
+impl RenderArgs {
+    /// Number of pictures of a series; none: one picture.
+    pub(crate) fn series(&self) -> Option<u32> {
+        self.turntable.then(|| self.frames.unwrap_or(36))
+    }
 }
 
 /// `--color-by`
@@ -316,11 +323,6 @@ impl FromStr for LightArg {
         };
         Ok(Self(light))
     }
-}
-
-fn samples(text: &str) -> Result<u32, String> {
-    let number = text.parse().ok().filter(|n| SAMPLES.contains(n));
-    number.ok_or_else(|| "use 1, 4, 16, 36 or 64".into())
 }
 
 #[cfg(test)]

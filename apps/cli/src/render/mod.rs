@@ -58,8 +58,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
     let colouring = colouring::colouring(&cells, args);
+    let (overlay, cameras) = overlay(args, &colouring, cameras, &balls);
     let stats = draw(
-        &gpu, args, &cells, &colouring, &cameras, &balls, &files, reporter,
+        &gpu, args, &cells, &colouring, &cameras, &balls, &overlay, &files, reporter,
     )?;
     if let Some(path) = &args.stats {
         let mut output = Output::create(path, args.force)?;
@@ -84,12 +85,39 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
             out.display()
         ));
     };
-    let Some(frames) = args.frames else {
+    let Some(frames) = args.series() else {
         return Ok(vec![out.clone()]);
     };
     let stem = stem.to_string_lossy();
     let name = |frame| out.with_file_name(format!("{stem}_{frame:04}.png"));
     Ok((0..frames).map(name).collect())
+}
+
+/// Legend and scale bar, and the cameras: where the legend would cover something, the scene makes
+/// room for it if it can.
+fn overlay(
+    args: &RenderArgs,
+    colouring: &Colouring,
+    mut cameras: Vec<Camera>,
+    balls: &[Ball],
+) -> (Overlay, Vec<Camera>) {
+    let options = OverlayOptions {
+        legend: (!args.no_legend).then(|| colouring.legend.clone()),
+        scale_bar: args.scale_bar.map(|bar| match bar {
+            Fit::Auto => 0.0,
+            Fit::Length(length) => length,
+        }),
+        background: (!args.transparent).then_some(args.background.0),
+    };
+    let mut overlay = Overlay::new(&options, args.size.0, &cameras, balls);
+    let beside = overlay
+        .covering
+        .and_then(|share| sight::beside(args, balls, share));
+    if let Some(camera) = beside {
+        cameras = vec![camera];
+        overlay = Overlay::new(&options, args.size.0, &cameras, balls);
+    }
+    (overlay, cameras)
 }
 
 #[expect(clippy::too_many_arguments, reason = "each is a subject of its own")]
@@ -100,23 +128,15 @@ fn draw(
     colouring: &Colouring,
     cameras: &[Camera],
     balls: &[Ball],
+    overlay: &Overlay,
     files: &[PathBuf],
     reporter: &Reporter,
 ) -> anyhow::Result<Stats> {
     let options = picture_options(args);
-    let overlay = Overlay::new(
-        &OverlayOptions {
-            legend: (!args.no_legend).then(|| colouring.legend.clone()),
-            scale_bar: args.scale_bar.map(|bar| match bar {
-                Fit::Auto => 0.0,
-                Fit::Length(length) => length,
-            }),
-            background: options.background,
-        },
-        options.size,
-        cameras,
-        balls,
-    );
+    if options.samples_taken() != args.samples {
+        let taken = options.samples_taken();
+        reporter.warning(&format!("{} samples: {taken} are taken", args.samples));
+    }
     if overlay.legend_left_out {
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
@@ -128,7 +148,10 @@ fn draw(
             words,
         })
         .collect();
-    let nearest = cameras.iter().map(|camera| camera.near(balls));
+    let [width, height] = options.size.map(f64::from);
+    let nearest = cameras
+        .iter()
+        .map(|camera| camera.nearest_seen(width / height, balls));
     let nearest = nearest.fold(f64::MAX, f64::min);
     let LodArg::Prerefined = args.lod;
     let mut maker = Prerefined::new(
@@ -165,7 +188,7 @@ fn draw(
 }
 
 /// Levels of a cell: as told, or by the error that shows from the one camera; where it moves, from
-/// the nearest that anything ever is.
+/// the nearest that anything seen ever is.
 fn levels(args: &RenderArgs, cell: &Cell, cameras: &[Camera], nearest: f64) -> Levels<'static> {
     let height = f64::from(args.size.0[1]);
     match (args.level, cameras) {
@@ -207,10 +230,10 @@ fn write(
 ) -> anyhow::Result<Cost> {
     let mut output = Output::create(path, args.force)?;
     let file = output.file().try_clone().map_err(|e| broken(path, &e))?;
-    let fault = |e: png::EncodingError| broken(path, &std::io::Error::other(e));
+    let fault = |e: std::io::Error| broken(path, &e);
     let mut png =
         PngWriter::new(BufWriter::new(file), args.size.0, args.transparent).map_err(fault)?;
-    let cost = paint(&mut |band| png.write(band).map_err(|e| broken(path, &e)))?;
+    let cost = paint(&mut |band| png.write(band).map_err(fault))?;
     png.finish().map_err(fault)?;
     output.finish()?;
     Ok(cost)

@@ -5,7 +5,7 @@ use crate::work::{BROKEN, SMALL, Work};
 #[test]
 fn help_is_as_agreed() {
     let work = Work::new();
-    for command in ["", "info", "mesh", "check", "convert", "synth"] {
+    for command in ["", "info", "mesh", "render", "check", "convert", "synth"] {
         let help = work.run(&format!("{command} --help")).exits(0).stdout();
         // Windows adds `.exe`.
         let help = help.replace("neurotess.exe", "neurotess");

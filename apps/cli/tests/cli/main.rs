@@ -7,5 +7,6 @@ mod info;
 mod inputs;
 mod kill;
 mod mesh;
+mod render;
 mod synth;
 mod work;

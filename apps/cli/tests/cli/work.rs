@@ -49,7 +49,9 @@ impl Work {
         command
             .current_dir(self.0.path())
             .args(arguments.split_whitespace())
-            .env_remove("NO_COLOR");
+            .env_remove("NO_COLOR")
+            // Mesa's layer that selects devices complains where there is no Wayland display.
+            .env("NODEVICE_SELECT", "1");
         command
     }
 

@@ -1,4 +1,5 @@
 //! A device, a cell and its picture.
+#![allow(dead_code)]
 
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
@@ -6,7 +7,7 @@ use neurotess_mesh::CoarseMesh;
 use neurotess_refine::{Levels, RefineOptions};
 use neurotess_render::{
     Ball, Camera, ColourTable, DEFAULT_FOV, Gpu, Image, Painted, Palette, PictureOptions,
-    Prerefined, Side, category, paint,
+    Prerefined, Rgb, Side, category, paint,
 };
 
 /// A soma, an axon, and a dendrite that forks.
@@ -23,6 +24,7 @@ pub(crate) const CELL: &str = "1 1 0 0 0 5 -1
 ";
 
 /// The device, or `None` with a word on why tests are skipped.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::open(None) {
         Ok(gpu) => Some(gpu),
@@ -66,7 +68,7 @@ pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColourTable) {
     (words.collect(), table)
 }
 
-/// The whole picture of a mesh at level 4.
+/// The whole picture of a mesh at level 4, in the colours of its types.
 pub(crate) fn picture(
     gpu: &Gpu,
     mesh: &CoarseMesh,
@@ -74,10 +76,34 @@ pub(crate) fn picture(
     options: &PictureOptions,
 ) -> Image {
     let (words, table) = by_type(mesh);
-    let painted = Painted {
-        mesh,
-        words: &words,
+    draw(gpu, mesh, &words, &table, camera, options)
+}
+
+/// The same on a scale.
+pub(crate) fn picture_of(
+    gpu: &Gpu,
+    mesh: &CoarseMesh,
+    words: &[u32],
+    scale: &[Rgb],
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let table = ColourTable {
+        scale: scale.to_vec(),
+        categories: Vec::new(),
     };
+    draw(gpu, mesh, words, &table, camera, options)
+}
+
+fn draw(
+    gpu: &Gpu,
+    mesh: &CoarseMesh,
+    words: &[u32],
+    table: &ColourTable,
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let painted = Painted { mesh, words };
     let mut maker = Prerefined::new(
         gpu,
         &[painted],
@@ -92,6 +118,6 @@ pub(crate) fn picture(
         whole.lay(0, i64::from(top), &band);
         Ok::<(), std::convert::Infallible>(())
     };
-    paint(gpu, &mut maker, camera, near, &table, options, taken).expect("painted");
+    paint(gpu, &mut maker, camera, near, table, options, taken).expect("painted");
     whole
 }
