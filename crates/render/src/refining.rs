@@ -19,6 +19,8 @@ pub(crate) const CLUSTER: usize = 64;
 /// Patches that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
 const DECISION_KIND_SHIFT: u32 = 28;
+/// Kind of a lateral patch between two points with rings of their own, in a decision.
+pub(crate) const DECIDED_TUBE: u32 = 3;
 
 /// How finely a scene is drawn, whatever the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -290,6 +292,7 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("BUCKETS", BUCKETS as u32),
         ("GRID_SIZES", GRID_SIZE.len() as u32),
         ("DECISION_KIND_SHIFT", DECISION_KIND_SHIFT),
+        ("DECIDED_TUBE", DECIDED_TUBE),
         ("INDEX_PLACE_MASK", INDEX_PLACE_MASK),
         ("INDEX_ROW_SHIFT", INDEX_ROW_SHIFT),
         ("INDEX_PATCH_SHIFT", INDEX_PATCH_SHIFT),
@@ -317,7 +320,7 @@ mod tests {
     #[test]
     fn decisions_keep_their_levels_and_kind() {
         for levels in [[1, 2, 3, 4], [64, 64, 64, 64], [1, 64, 17, 33]] {
-            for kind in 0..3 {
+            for kind in 0..4 {
                 assert_eq!(decided(decision(kind, levels)), (kind, levels));
             }
         }
