@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use neurotess::refine::{Levels, RefineOptions};
 use neurotess::render::{
     Adaptive, Ball, Camera, Choice, Frame, Gpu, Instance, Painted, PictureOptions, Prerefined,
-    Refining, Scene, Template, Templates, Tile, VertexMaker,
+    Refining, Scene, Template, Templates, Tile, VertexMaker, bounds,
 };
 
 use super::args::{LodArg, RenderArgs};
@@ -82,7 +82,8 @@ impl Maker {
             choice,
             ..Refining::default()
         };
-        let maker = Adaptive::new(gpu, scene, refining, options.sub_pixels())?;
+        let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels())?;
+        maker.set_bounds(cells.iter().flat_map(|cell| bounds(&cell.mesh)).collect());
         Ok(Self::OnTheFly(Box::new(maker)))
     }
 
