@@ -165,7 +165,7 @@ fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
     assert_eq!(
         four["level_histogram"]
             .as_object()
-            .map(|levels| levels.len()),
+            .map(serde_json::Map::len),
         Some(1)
     );
 }
