@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context, bail};
 
-use crate::steps::{self, Steps, cargo, output, root};
+use crate::steps::{self, Steps, cargo, output, root, target_folder};
 
 /// What is made of the samples: a folder, and options of `neurotess mesh`.
 const MESHES: &[(&str, &str)] = &[
@@ -120,11 +120,8 @@ fn count(folder: &str) -> anyhow::Result<usize> {
 
 /// Where Cargo put the program.
 fn program() -> anyhow::Result<PathBuf> {
-    let metadata = output(&mut cargo("metadata --format-version 1 --no-deps --locked"))?;
-    let metadata: serde_json::Value = serde_json::from_str(&metadata)?;
-    let target = metadata["target_directory"].as_str().context("a folder")?;
     let name = format!("neurotess{}", std::env::consts::EXE_SUFFIX);
-    Ok(PathBuf::from(target).join("release").join(name))
+    Ok(target_folder()?.join("release").join(name))
 }
 
 fn shown(program: &Path) -> String {

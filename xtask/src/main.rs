@@ -8,6 +8,7 @@
 )]
 
 mod architecture;
+mod bench;
 mod demo;
 mod licences;
 mod metadata;
@@ -23,6 +24,7 @@ const USAGE: &str = "cargo xtask COMMAND
 
   demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
   test      set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   setup     a software Vulkan driver where there is none, and the Python environment in which other
             readers check our files (where Python 3 is)
   pictures  draw the README's pictures; with --golden those that tests compare with
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
+        Some("bench") => bench::run(),
         Some("setup") => setup::run().map(|said| println!("{said}")),
         Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),
         _ => {

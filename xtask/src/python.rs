@@ -1,4 +1,5 @@
-//! The Python environment `.venv`, in which other people's readers check our files.
+//! Python environments: `.venv`, in which other people's readers check our files, and `.venv-bench`,
+//! in which other people's tools are timed beside ours.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,34 +9,61 @@ use anyhow::Context;
 
 use crate::steps::{root, run};
 
-/// Makes `.venv` with `tests/python/requirements.txt`, unless it is there; says how it is.
-pub(crate) fn set_up() -> anyhow::Result<String> {
-    let wanted = root().join("tests/python/requirements.txt");
-    let wanted = fs::read_to_string(&wanted).context("tests/python/requirements.txt")?;
-    let venv = root().join(".venv");
-    let stamp = venv.join("requirements.stamp");
+/// An environment: its folder, and the list of packages in it.
+pub(crate) struct Environment {
+    folder: &'static str,
+    packages: &'static str,
+}
+
+/// Where tests find other people's readers.
+pub(crate) const TESTS: Environment = Environment {
+    folder: ".venv",
+    packages: "tests/python/requirements.txt",
+};
+
+/// Where benchmarks find other people's tools.
+pub(crate) const BENCHMARKS: Environment = Environment {
+    folder: ".venv-bench",
+    packages: "benchmarks/requirements.txt",
+};
+
+/// Makes an environment with its packages, unless it is there; says how it is.
+pub(crate) fn set_up(environment: &Environment) -> anyhow::Result<String> {
+    let wanted = root().join(environment.packages);
+    let wanted = fs::read_to_string(&wanted).context(environment.packages)?;
+    let stamp = root().join(environment.folder).join("requirements.stamp");
     if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
         return Ok("the Python environment is there".into());
     }
-    let Some(python) = interpreter() else {
-        return Ok("no Python 3 here: checks by other readers will be skipped".into());
+    let Some(python) = system_interpreter() else {
+        return Ok("no Python 3 here: what needs it will be skipped".into());
     };
-    if let Err(e) = install(python, &venv) {
+    if let Err(e) = install(python, environment) {
         // Without the packages the tests say that they skip; all else can be checked.
         println!("   {e:#}");
-        return Ok(
-            "Python packages cannot be installed: checks by other readers are skipped".into(),
-        );
+        return Ok("Python packages cannot be installed: what needs them is skipped".into());
     }
-    fs::write(&stamp, &wanted).context("cannot write .venv/requirements.stamp")?;
-    Ok("made the Python environment in .venv".into())
+    fs::write(&stamp, &wanted).with_context(|| format!("cannot write {}", stamp.display()))?;
+    Ok(format!(
+        "made the Python environment in {}",
+        environment.folder
+    ))
 }
 
-fn install(python: &str, venv: &Path) -> anyhow::Result<()> {
-    let own = own_interpreter(venv);
+/// The environment's own interpreter, where the environment is complete.
+pub(crate) fn interpreter(environment: &Environment) -> Option<PathBuf> {
+    let folder = root().join(environment.folder);
+    folder
+        .join("requirements.stamp")
+        .exists()
+        .then(|| own_interpreter(&folder))
+}
+
+fn install(python: &str, environment: &Environment) -> anyhow::Result<()> {
+    let own = own_interpreter(&root().join(environment.folder));
     if !own.exists() {
         run(Command::new(python)
-            .args(["-m", "venv", ".venv"])
+            .args(["-m", "venv", environment.folder])
             .current_dir(root()))?;
     }
     run(Command::new(own)
@@ -46,11 +74,11 @@ fn install(python: &str, venv: &Path) -> anyhow::Result<()> {
             "--quiet",
             "--disable-pip-version-check",
         ])
-        .args(["-r", "tests/python/requirements.txt"])
+        .args(["-r", environment.packages])
         .current_dir(root()))
 }
 
-fn interpreter() -> Option<&'static str> {
+fn system_interpreter() -> Option<&'static str> {
     let version = "import sys; sys.exit(sys.version_info < (3, 9))";
     ["python3", "python"].into_iter().find(|python| {
         let status = Command::new(python)

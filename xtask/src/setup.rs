@@ -19,7 +19,7 @@ const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 /// Sets up all that tests want; says how it is.
 pub(crate) fn run() -> anyhow::Result<String> {
     let adapter = adapter();
-    Ok(format!("{}; {adapter}", python::set_up()?))
+    Ok(format!("{}; {adapter}", python::set_up(&python::TESTS)?))
 }
 
 /// Installs lavapipe where no Vulkan driver is, on Debian and its kin; says how it is. Never fails:

@@ -22,6 +22,14 @@ pub(crate) fn cargo(arguments: &str) -> Command {
     command
 }
 
+/// Cargo's folder of what it builds.
+pub(crate) fn target_folder() -> anyhow::Result<PathBuf> {
+    let metadata = output(&mut cargo("metadata --format-version 1 --no-deps --locked"))?;
+    let metadata: serde_json::Value = serde_json::from_str(&metadata)?;
+    let target = metadata["target_directory"].as_str().context("a folder")?;
+    Ok(PathBuf::from(target))
+}
+
 /// Runs steps and remembers what they took.
 #[derive(Default)]
 pub(crate) struct Steps {

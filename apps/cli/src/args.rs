@@ -126,7 +126,7 @@ pub(crate) struct ConvertArgs {
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) out: OutArgs,
-    /// Format to write, where OUT's extension does not tell: swc
+    /// Format to write, where OUT's extension does not tell: swc, asc or h5
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<String>,
     /// Take every warning of the reader as an error

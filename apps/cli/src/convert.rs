@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use neurotess::formats::{self, ReadOptions, swc};
+use neurotess::formats::{self, Format, ReadOptions};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
@@ -22,13 +22,16 @@ struct Converted {
     out: String,
     format: &'static str,
     warnings: Vec<ReaderWarning>,
+    /// What the format cannot say.
+    lost: Vec<ReaderWarning>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
-    writable(args, &inputs)?;
-    let jobs = targets::plan(&inputs, &args.out.out, "swc")?;
+    let format = format(args, &inputs)?;
+    let extension = format.extensions()[0];
+    let jobs = targets::plan(&inputs, &args.out.out, extension)?;
     let outs: BTreeMap<&PathBuf, &Path> = jobs
         .iter()
         .map(|job| (&job.input, job.out.as_path()))
@@ -42,10 +45,11 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
         refuse_existing(out, args.out.force).map_err(failed)?;
         let read = formats::read(&input.path, &options).map_err(|e| Failure(e.to_string()))?;
-        write_swc(&read.morphology, out, args.out.force).map_err(failed)?;
+        let lost = write(&read.morphology, format, out, args.out.force).map_err(failed)?;
         Ok(Converted {
             out: out.display().to_string(),
-            format: "swc",
+            format: extension,
+            lost: lost.into_iter().map(ReaderWarning::from).collect(),
             warnings: read.warnings.into_iter().map(ReaderWarning::from).collect(),
             file: file.clone(),
         })
@@ -53,41 +57,71 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
     for entry in &converted {
         if let Entry::Done(done) = entry {
             reporter.result(&format!("{} → {}", done.file, done.out));
+            tell_losses(done, reporter);
         }
     }
     reporter.document(&converted)
 }
 
-/// Writes a morphology to an SWC file, whole or not at all.
-pub(crate) fn write_swc(
-    morphology: &Morphology,
-    out: &Path,
-    force: bool,
-) -> Result<(), OutputError> {
-    let mut output = Output::create(out, force)?;
-    swc::write(morphology, BufWriter::new(output.file())).map_err(|e| broken(out, &e))?;
-    output.finish()
+/// What OUT lacks: all of it for one file or where much is to be told, else that there is something.
+fn tell_losses(done: &Converted, reporter: &Reporter) {
+    if done.lost.is_empty() {
+        return;
+    }
+    if reporter.verbose() {
+        for loss in &done.lost {
+            reporter.warning(&format!("{}: {}", done.out, loss.message()));
+        }
+        return;
+    }
+    let codes: Vec<&str> = done.lost.iter().map(ReaderWarning::code).collect();
+    reporter.warning(&format!(
+        "{}: not all can be said in {}: {} (-v tells more)",
+        done.out,
+        done.format,
+        codes.join(", ")
+    ));
 }
 
-/// An error if the format asked for cannot be written.
-fn writable(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<()> {
+/// Writes a morphology to a file, whole or not at all; what the format cannot say.
+pub(crate) fn write(
+    morphology: &Morphology,
+    format: Format,
+    out: &Path,
+    force: bool,
+) -> Result<Vec<formats::Warning>, OutputError> {
+    let mut output = Output::create(out, force)?;
+    let writer = BufWriter::new(output.file());
+    let lost = formats::write(morphology, format, writer).map_err(|e| broken(out, &e))?;
+    output.finish()?;
+    Ok(lost)
+}
+
+/// The format asked for by name or by OUT's extension; SWC for a folder.
+fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     let out = &args.out.out;
-    let format = match &args.format {
+    let asked = match &args.format {
         Some(format) => format.clone(),
-        None if targets::is_folder(out, inputs) => "swc".into(),
+        None if targets::is_folder(out, inputs) => return Ok(Format::Swc),
         None => out
             .extension()
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned(),
     };
-    if format.eq_ignore_ascii_case("swc") {
-        return Ok(());
+    let format = Format::of_extension(&asked).filter(|f| Format::WRITTEN.contains(f));
+    if let Some(format) = format {
+        return Ok(format);
     }
-    let asked = if format.is_empty() {
+    let asked = if asked.is_empty() {
         format!("{} has no extension", out.display())
     } else {
-        format!("morphologies cannot be written as '{format}'")
+        format!("morphologies cannot be written as '{asked}'")
     };
-    usage(format!("{asked}: this version writes swc"))
+    usage(format!("{asked}: use {}", written().join(", ")))
+}
+
+/// Formats that are written, by their extensions.
+pub(crate) fn written() -> [&'static str; Format::WRITTEN.len()] {
+    Format::WRITTEN.map(|format| format.extensions()[0])
 }

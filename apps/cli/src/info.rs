@@ -11,7 +11,7 @@ use crate::report::{Failure, Reporter, count};
 use crate::workers;
 
 /// Extensions of morphologies that are looked for in folders.
-pub(crate) const MORPHOLOGIES: [&str; 2] = formats::swc::EXTENSIONS;
+pub(crate) const MORPHOLOGIES: [&str; 7] = formats::EXTENSIONS;
 
 /// One object of the JSON list.
 #[derive(Serialize)]
@@ -30,6 +30,16 @@ pub(crate) struct ReaderWarning {
     code: &'static str,
     message: String,
     count: u64,
+}
+
+impl ReaderWarning {
+    pub(crate) fn code(&self) -> &'static str {
+        self.code
+    }
+
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
 }
 
 impl From<formats::Warning> for ReaderWarning {

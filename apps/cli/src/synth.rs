@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use neurotess::formats::Format;
 use neurotess::synth::{self, Kind, Options};
 use serde::Serialize;
 
 use crate::args::SynthArgs;
-use crate::convert::write_swc;
+use crate::convert;
 use crate::info::{Entry, Failed, bug};
 use crate::output::refuse_existing;
 use crate::progress::Progress;
@@ -92,7 +93,7 @@ fn grow(options: &Options, out: &Path, force: bool) -> Result<Grown, Failure> {
     let failed = |e: crate::output::OutputError| Failure(e.to_string());
     refuse_existing(out, force).map_err(failed)?;
     let morphology = synth::grow(options);
-    write_swc(&morphology, out, force).map_err(failed)?;
+    convert::write(&morphology, Format::Swc, out, force).map_err(failed)?;
     Ok(Grown {
         out: out.display().to_string(),
         kind: options.kind.name(),

@@ -3,6 +3,7 @@
 use neurotess::mesh::Format;
 use serde_json::json;
 
+use crate::convert;
 use crate::info::MORPHOLOGIES;
 use crate::report::Reporter;
 
@@ -14,7 +15,7 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
     if reporter.verbose() {
         reporter.result("adapter: none (this build does not draw)");
         reporter.result(&format!("reads: {}", MORPHOLOGIES.join(" ")));
-        reporter.result("writes: swc");
+        reporter.result(&format!("writes: {}", convert::written().join(" ")));
         reporter.result(&format!("meshes: {}", meshes.join(" ")));
         let system = (std::env::consts::OS, std::env::consts::ARCH);
         reporter.result(&format!("system: {} {}", system.0, system.1));
@@ -23,7 +24,7 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
         "version": version,
         "adapter": null,
         "reads": MORPHOLOGIES,
-        "writes": ["swc"],
+        "writes": convert::written(),
         "meshes": meshes,
     }))
 }

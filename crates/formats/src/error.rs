@@ -17,6 +17,26 @@ pub struct ReadError {
     pub fault: Fault,
 }
 
+impl ReadError {
+    /// A fault with its line in a file.
+    pub(crate) fn at(file: &str, (line, fault): (u64, Fault)) -> Self {
+        Self {
+            file: file.into(),
+            line: Some(line),
+            fault,
+        }
+    }
+
+    /// A fault of a file that has no lines.
+    pub(crate) fn of_file(file: &str, fault: Fault) -> Self {
+        Self {
+            file: file.into(),
+            line: None,
+            fault,
+        }
+    }
+}
+
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
@@ -34,7 +54,9 @@ pub enum Fault {
     #[error("cannot be read ({0}): check the path and its permissions")]
     Io(io::Error),
     /// Neither name nor content tell the format.
-    #[error("not a format known by its name or content: give an SWC file (.swc, .eswc)")]
+    #[error(
+        "not a format known by its name or content: give SWC (.swc, .eswc), Neurolucida (.asc), H5 (.h5) or NeuroML (.nml)"
+    )]
     UnknownFormat,
     /// Not a byte.
     #[error("the file is empty: fetch or export it again")]
@@ -46,7 +68,7 @@ pub enum Fault {
     #[error("the text is UTF-16: save it as UTF-8 or plain ASCII")]
     Utf16,
     /// A NUL byte.
-    #[error("the file is binary: SWC is plain text; check which format this is")]
+    #[error("the file is binary where text was expected: check which format this is")]
     Binary,
     /// A web page.
     #[error("the file is a web page, not a morphology: the download failed, fetch it again")]
@@ -115,6 +137,134 @@ pub enum Fault {
         /// Number of the first sample in the cycle.
         id: i64,
     },
+    /// A point is its own ancestor, in a format that does not number points.
+    #[error("the point is its own ancestor: break the cycle of parents")]
+    OwnAncestor,
+    /// Something that begins has no end.
+    #[error("a {what} is not closed: check whether the file was cut short")]
+    Unclosed {
+        /// What begins in this line.
+        what: &'static str,
+    },
+    /// A sign has no place here.
+    #[error("{found:?} stands where {expected} was expected: check the brackets above")]
+    Unexpected {
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: &'static str,
+    },
+    /// Points or children after the end of a branch.
+    #[error("a branch goes on after {after}: close it, or begin the next one with |")]
+    BranchGoesOn {
+        /// What ended it.
+        after: &'static str,
+    },
+    /// A point has too few numbers.
+    #[error("a point of {found} numbers instead of 4 (x, y, z, diameter): add the missing ones")]
+    PointNumbers {
+        /// How many there are.
+        found: usize,
+    },
+    /// XML itself is broken.
+    #[error("the XML is broken ({reason}): export the file again")]
+    Xml {
+        /// What the library says.
+        reason: String,
+    },
+    /// An attribute is missing or not what it should be.
+    #[error("<{element}> has {attribute}={text:?}, which is missing or out of range: correct it")]
+    Attribute {
+        /// The element's name.
+        element: String,
+        /// The attribute's name.
+        attribute: &'static str,
+        /// What stands there; empty if nothing.
+        text: String,
+    },
+    /// XML without a cell.
+    #[error("no <morphology> with a <segment>: look for the file that has the cell")]
+    NoMorphology,
+    /// Two segments have the same number.
+    #[error("segment {id} stands in line {first_line} already: number the segments anew")]
+    RepeatedSegment {
+        /// The number.
+        id: i64,
+        /// Line of the first.
+        first_line: u64,
+    },
+    /// The parent is not in the cell.
+    #[error("segment {id} has parent {parent}, which is not in the cell: add it")]
+    UnknownSegment {
+        /// Number of the child.
+        id: i64,
+        /// Number that no segment has.
+        parent: i64,
+    },
+    /// A segment has no end where it needs one.
+    #[error("segment {id} has no <{end}>: add it")]
+    NoEnd {
+        /// Its number.
+        id: i64,
+        /// Which end.
+        end: &'static str,
+    },
+    /// HDF5 itself is broken, or a dataset is not there.
+    #[error("{place} cannot be read as HDF5 ({reason}): fetch or export the file again")]
+    Hdf5 {
+        /// The file, or the dataset's path.
+        place: String,
+        /// What the library says.
+        reason: String,
+    },
+    /// HDF5 without the datasets of a morphology.
+    #[error(
+        "the file has no datasets 'points' and 'structure': it is HDF5, but not a morphology; \
+         check which file this is"
+    )]
+    NoTables,
+    /// A dataset of another shape.
+    #[error(
+        "dataset '{dataset}' has shape {found:?} instead of rows of {columns}: export it again"
+    )]
+    Shape {
+        /// Its path.
+        dataset: String,
+        /// Its shape.
+        found: Vec<u64>,
+        /// How many columns there should be.
+        columns: usize,
+    },
+    /// A row of a dataset is wrong.
+    #[error("dataset '{dataset}', row {row}: {fault}")]
+    Row {
+        /// The dataset's path.
+        dataset: String,
+        /// The row, from 0 on, as HDF5 counts.
+        row: u64,
+        /// What is wrong with it.
+        fault: Box<Fault>,
+    },
+    /// A number in a table of sections points nowhere.
+    #[error("the {column} points nowhere or is not allowed: export the file again")]
+    Reference {
+        /// The column.
+        column: &'static str,
+    },
+    /// Many morphologies in one file.
+    #[error(
+        "the file is a container of {count} morphologies, the first is '{first}': \
+         extract the one that is wanted"
+    )]
+    Container {
+        /// How many.
+        count: usize,
+        /// Path of the first.
+        first: String,
+    },
+    /// Blood vessels.
+    #[error("the file is a vasculature, not a neuron: vessels are graphs and cannot be read")]
+    Vasculature,
     /// More samples than 32 bits can count.
     #[error("more than 4 billion samples: split the file")]
     TooMany,

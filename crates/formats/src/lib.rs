@@ -2,7 +2,7 @@
 //!
 //! [`read`] finds the format, reads the whole file and gives a [`Read`]: the **morphology**, the
 //! name of the **format** and the **warnings**, one per kind of oddity. What cannot be read is a
-//! [`ReadError`] that names file, line, what is wrong and what to do. [`swc::write`] writes.
+//! [`ReadError`] that names file, line, what is wrong and what to do. [`write()`] writes.
 //!
 //! ```
 //! use neurotess_formats::{ReadOptions, swc};
@@ -19,8 +19,17 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod asc;
 mod error;
+mod format;
+pub mod h5;
+mod hdf5;
+mod losses;
+pub mod neuroml;
+mod number;
 pub mod swc;
+mod text;
+mod traced;
 mod warning;
 
 use std::fs;
@@ -29,7 +38,10 @@ use std::path::Path;
 use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
+pub use format::{EXTENSIONS, Format, write};
+use text::Located;
 pub use warning::Warning;
+use warning::Warnings;
 
 /// How to read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,7 +55,7 @@ pub struct ReadOptions {
 pub struct Read {
     /// The cell, named after the file.
     pub morphology: Morphology,
-    /// Short name of the format: `swc`.
+    /// Short name of the format: `swc`, `asc`, `h5` or `neuroml`.
     pub format: &'static str,
     /// What was odd, in the order of the lines.
     pub warnings: Vec<Warning>,
@@ -66,17 +78,30 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
             });
         }
     };
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase();
-    if swc::EXTENSIONS.contains(&extension.as_str()) || swc::looks_like(&bytes) {
-        return swc::read_bytes(&bytes, &name, options);
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    match Format::of_extension(&extension).or_else(|| Format::of_content(&bytes)) {
+        Some(Format::Swc) => swc::read_bytes(&bytes, &name, options),
+        Some(Format::Asc) => asc::read_bytes(&bytes, &name, options),
+        Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, &name, options),
+        Some(Format::H5) => h5::read_bytes(bytes, &name, options),
+        None => Err(ReadError::of_file(&name, Fault::UnknownFormat)),
     }
-    Err(ReadError {
-        file: name,
-        line: None,
-        fault: Fault::UnknownFormat,
+}
+
+/// Reads a format that has lines: `interpret` gets the cell's name and collects warnings.
+fn read_text(
+    format: Format,
+    name: &str,
+    options: &ReadOptions,
+    interpret: impl FnOnce(&str, &mut Warnings) -> Located<Morphology>,
+) -> Result<Read, ReadError> {
+    let mut warnings = Warnings::default();
+    let stem = text::stem(name, format.extensions());
+    let morphology =
+        interpret(stem, &mut warnings).map_err(|located| ReadError::at(name, located))?;
+    Ok(Read {
+        morphology,
+        format: format.name(),
+        warnings: warnings.finish(name, options)?,
     })
 }

@@ -4,6 +4,8 @@
 //! are joined by four lateral patches. Who owns a ring's vertices: a soma those of its insertions,
 //! a joint its poles and crotches, the path everything else.
 
+use std::rc::Rc;
+
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
 
@@ -20,7 +22,7 @@ type Ring = [u32; 4];
 /// nodes of their insertions in order.
 pub(crate) struct Assembly<'a> {
     skeleton: &'a Skeleton,
-    children: Children,
+    children: Rc<Children>,
     orientations: &'a [DVec3],
     mesh: CoarseMesh,
     /// Ring of each insertion node.
@@ -60,11 +62,19 @@ impl PlacedJoint {
 
 impl<'a> Assembly<'a> {
     pub(crate) fn new(skeleton: &'a Skeleton, orientations: &'a [DVec3]) -> Self {
+        // A ring and four patches a node, and something for somata.
+        let (nodes, soma) = (skeleton.nodes.len(), 1024);
+        let mesh = CoarseMesh {
+            vertices: Vec::with_capacity(4 * nodes + soma),
+            patches: Vec::with_capacity(4 * nodes + soma),
+            tracing: Vec::with_capacity(nodes + soma),
+            ..CoarseMesh::default()
+        };
         Self {
             skeleton,
             children: skeleton.children(),
             orientations,
-            mesh: CoarseMesh::default(),
+            mesh,
             insertion_rings: Vec::new(),
             joints: (0..skeleton.nodes.len()).map(|_| None).collect(),
         }
@@ -358,22 +368,24 @@ impl<'a> Assembly<'a> {
 
 /// Normals of joints' and somata's vertices: the mean of their faces', by area.
 fn average_normals(mesh: &mut CoarseMesh) {
-    let averaged = |mesh: &CoarseMesh, v: u32| {
-        let role = mesh.tracing[mesh.vertices[v as usize].tracing as usize].role;
+    let averaged = |vertex: &Vertex| {
+        let role = mesh.tracing[vertex.tracing as usize].role;
         matches!(role, Role::Joint | Role::Soma | Role::Insertion)
     };
+    let averaged: Vec<bool> = mesh.vertices.iter().map(averaged).collect();
     let mut sums = vec![Vec3::ZERO; mesh.vertices.len()];
     for patch in &mesh.patches {
+        if !patch.corners.iter().any(|&v| averaged[v as usize]) {
+            continue; // nearly all
+        }
         let [a, b, c, d] = patch.corners.map(|v| mesh.vertices[v as usize].position);
         let normal = (c - a).cross(d - b);
         for v in patch.corners {
-            if averaged(mesh, v) {
-                sums[v as usize] += normal;
-            }
+            sums[v as usize] += normal;
         }
     }
     for (v, &sum) in sums.iter().enumerate() {
-        if averaged(mesh, v as u32) {
+        if averaged[v] {
             let vertex = &mut mesh.vertices[v];
             let center = mesh.tracing[vertex.tracing as usize].center;
             let outwards = (vertex.position - center).normalize_or(Vec3::Y);

@@ -53,8 +53,11 @@ pub(crate) fn split_crowded(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         let children = skeleton.children();
         let mut changed = false;
         for fork in 0..skeleton.nodes.len() as u32 {
+            if children.of(fork).len() < 3 {
+                continue; // three neighbours at most
+            }
             let around = neighbours(&children, skeleton, fork);
-            if children.of(fork).len() < 2 || around.len() < 4 {
+            if around.len() < 4 {
                 continue;
             }
             let directions: Vec<DVec3> = tubes(skeleton, &children, fork, &around)
@@ -123,14 +126,17 @@ fn split(skeleton: &mut Skeleton, fork: u32, around: &[u32], directions: &[DVec3
 /// Leaves out ordinary points that lie within the reach of a joint beside them.
 pub(crate) fn clear_the_way(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let mut total = 0;
+    // Forks around which something changed.
+    let mut changed = vec![true; skeleton.nodes.len()];
     for _ in 0..8 {
         let children = skeleton.children();
         let mut keep = vec![true; skeleton.nodes.len()];
         let mut dropped = 0;
         for fork in 0..skeleton.nodes.len() as u32 {
-            if children.of(fork).len() < 2 {
+            if children.of(fork).len() < 2 || !changed[fork as usize] {
                 continue;
             }
+            changed[fork as usize] = false;
             let around = neighbours(&children, skeleton, fork);
             let tubes = tubes(skeleton, &children, fork, &around);
             // Where the tubes would part if their rings left them room.
@@ -155,10 +161,20 @@ pub(crate) fn clear_the_way(skeleton: &mut Skeleton, warnings: &mut Warnings) {
                 if free && moves < skeleton.node(fork).radius {
                     keep[n as usize] = false;
                     dropped += 1;
+                    // Forks up to two nodes away see another way now.
+                    let only = |n: u32| children.of(n).first().copied().unwrap_or(n);
+                    let above = node.parent;
+                    let above_that = Some(skeleton.node(above).parent).filter(|&p| p != NONE);
+                    let below = only(n);
+                    for near in [above, above_that.unwrap_or(above), below, only(below)] {
+                        changed[near as usize] = true;
+                    }
                 }
             }
         }
         total += dropped;
+        let mut kept = keep.iter();
+        changed.retain(|_| kept.next() == Some(&true));
         skeleton.retain(&keep);
         if dropped == 0 {
             break;

@@ -242,6 +242,7 @@ pub(crate) fn insert_first_rings(
         nodes.push(node);
     }
     skeleton.nodes = nodes;
+    skeleton.links_changed();
 }
 
 /// Gives a free tree of one point a second one, so that it becomes a short rod.
@@ -257,6 +258,7 @@ pub(crate) fn lengthen_single_points(skeleton: &mut Skeleton, warnings: &mut War
                 parent: i as u32,
                 ..node
             });
+            skeleton.links_changed();
             warnings.add(
                 "one_point_tree",
                 Some(node.sample),

@@ -3,6 +3,9 @@
 //! Parents stand before their children at all times, so that every step is a sweep over an array
 //! and no tree is too deep.
 
+use std::cell::OnceCell;
+use std::rc::Rc;
+
 use glam::DVec3;
 use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
 
@@ -41,9 +44,13 @@ pub(crate) enum Root {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Skeleton {
     pub(crate) nodes: Vec<Node>,
+    /// Made when first asked for; whoever changes links or nodes calls
+    /// [`links_changed`](Skeleton::links_changed).
+    children: OnceCell<Rc<Children>>,
 }
 
 /// Children of every node, in order.
+#[derive(Debug, PartialEq)]
 pub(crate) struct Children {
     start: Vec<u32>,
     list: Vec<u32>,
@@ -89,15 +96,29 @@ impl Skeleton {
                 parent = new_index[point];
             }
         }
-        Self { nodes }
+        Self {
+            nodes,
+            children: OnceCell::new(),
+        }
     }
 
     pub(crate) fn node(&self, index: u32) -> &Node {
         &self.nodes[index as usize]
     }
 
-    /// Lists the children of every node.
-    pub(crate) fn children(&self) -> Children {
+    /// Children of every node, as the links are now.
+    pub(crate) fn children(&self) -> Rc<Children> {
+        let children = self.children.get_or_init(|| Rc::new(self.list_children()));
+        debug_assert_eq!(**children, self.list_children(), "links changed in silence");
+        Rc::clone(children)
+    }
+
+    /// To be called after nodes were added or links changed.
+    pub(crate) fn links_changed(&mut self) {
+        self.children.take();
+    }
+
+    fn list_children(&self) -> Children {
         let mut start = vec![0_u32; self.nodes.len() + 1];
         for node in self.nodes.iter().filter(|n| n.parent != NONE) {
             start[node.parent as usize + 1] += 1;
@@ -105,15 +126,17 @@ impl Skeleton {
         for i in 1..start.len() {
             start[i] += start[i - 1];
         }
-        let mut fill = start.clone();
         let mut list = vec![0; *start.last().unwrap_or(&0) as usize];
+        // Each start moves to its end as the list is filled: the next node's start.
         for (index, node) in self.nodes.iter().enumerate() {
             if node.parent != NONE {
-                let slot = &mut fill[node.parent as usize];
+                let slot = &mut start[node.parent as usize];
                 list[*slot as usize] = index as u32;
                 *slot += 1;
             }
         }
+        start.rotate_right(1);
+        start[0] = 0;
         Children { start, list }
     }
 
@@ -136,20 +159,22 @@ impl Skeleton {
         }
         // Where children of a node attach: itself if kept, else where it would have attached.
         let mut stands_for: Vec<(u32, Root)> = Vec::with_capacity(self.nodes.len());
-        let mut kept = Vec::with_capacity(self.nodes.len());
-        for (index, node) in self.nodes.iter().enumerate() {
+        let mut kept = 0;
+        for (index, &keep) in keep.iter().enumerate() {
+            let node = self.nodes[index];
             let (parent, root) = if node.parent == NONE {
                 (NONE, node.root)
             } else {
                 stands_for[node.parent as usize]
             };
-            if keep[index] {
-                stands_for.push((kept.len() as u32, Root::Free));
-                kept.push(Node {
+            if keep {
+                stands_for.push((kept as u32, Root::Free));
+                self.nodes[kept] = Node {
                     parent,
                     root,
-                    ..*node
-                });
+                    ..node
+                };
+                kept += 1;
             } else {
                 // A soma's ring that is left out leaves the neurite without one.
                 let root = match root {
@@ -159,12 +184,14 @@ impl Skeleton {
                 stands_for.push((parent, root));
             }
         }
-        self.nodes = kept;
+        self.nodes.truncate(kept);
+        self.links_changed();
     }
 
     /// Brings parents before children again after links were changed, depth first.
     pub(crate) fn reorder(&mut self) {
         // Lists of children do not depend on the order of nodes.
+        self.links_changed();
         let children = self.children();
         let mut order = Vec::with_capacity(self.nodes.len());
         let mut stack: Vec<u32> = (0..self.nodes.len() as u32)
@@ -191,6 +218,7 @@ impl Skeleton {
                 Node { parent, ..node }
             })
             .collect();
+        self.links_changed();
     }
 
     /// Turns free trees whose root has two children round, so that they start at an end.

@@ -51,6 +51,43 @@ impl Soma {
         }
     }
 
+    /// The soma that one outline or several, stacked, trace.
+    ///
+    /// An outline begins at the first sample and at each that does not hang on the one before.
+    /// The sphere is that of the outline with the greatest area: its centroid, and the radius of
+    /// equal area. Where none is nearly flat and of some area, it is the mean of the samples with
+    /// their mean distance from it. A single sample is a sphere.
+    ///
+    /// # Panics
+    /// If there is no sample.
+    pub fn from_outlines(samples: Vec<SomaSample>) -> Self {
+        if samples.len() < 2 {
+            return Self::from_samples(samples);
+        }
+        let positions: Vec<DVec3> = samples.iter().map(|s| s.position.as_dvec3()).collect();
+        let follows = |i: usize| samples[i].parent == Some(i as u32 - 1);
+        let starts: Vec<usize> = (0..samples.len())
+            .filter(|&i| i == 0 || !follows(i))
+            .collect();
+        let ends = starts.iter().skip(1).copied().chain([samples.len()]);
+        let largest = starts
+            .iter()
+            .zip(ends)
+            .filter_map(|(&start, end)| flat_outline(&positions[start..end]))
+            .reduce(|best, other| if other.1 > best.1 { other } else { best });
+        let (center, radius) = largest.unwrap_or_else(|| {
+            let center = mean(&positions);
+            let distances = positions.iter().map(|p| p.distance(center));
+            (center, distances.sum::<f64>() / positions.len() as f64)
+        });
+        Self {
+            kind: SomaKind::Contour,
+            samples,
+            center: center.as_vec3(),
+            radius: radius as f32,
+        }
+    }
+
     /// The first sample that two others hang on, if any.
     pub(crate) fn fork(&self) -> Option<u32> {
         let counts = child_counts(&self.samples);
@@ -110,7 +147,7 @@ fn three_point_root(samples: &[SomaSample], positions: &[DVec3]) -> Option<usize
     fits.then_some(root)
 }
 
-/// Centroid and radius of equal area, if the samples are an outline.
+/// Centroid and radius of equal area, if the samples are a closed, thin outline.
 fn contour(samples: &[SomaSample], positions: &[DVec3]) -> Option<(DVec3, f64)> {
     let outline: Vec<DVec3> = chain(samples)?.into_iter().map(|i| positions[i]).collect();
     let (first, last) = (*outline.first()?, *outline.last()?);
@@ -118,7 +155,12 @@ fn contour(samples: &[SomaSample], positions: &[DVec3]) -> Option<(DVec3, f64)> 
     if outline.len() < 4 || first.distance(last) > CONTOUR_GAP * length {
         return None;
     }
-    let middle = mean(&outline);
+    flat_outline(&outline).filter(|&(_, radius)| thin(samples, radius))
+}
+
+/// Centroid and radius of equal area of an outline that is nearly flat and has an area.
+fn flat_outline(outline: &[DVec3]) -> Option<(DVec3, f64)> {
+    let middle = mean(outline);
     let corners = || outline.iter().zip(outline.iter().cycle().skip(1));
     let normal: DVec3 = corners()
         .map(|(&a, &b)| (a - middle).cross(b - middle))
@@ -129,7 +171,7 @@ fn contour(samples: &[SomaSample], positions: &[DVec3]) -> Option<(DVec3, f64)> 
         .iter()
         .map(|&p| (p - middle).dot(normal).abs())
         .fold(0.0, f64::max);
-    if bulge > CONTOUR_BULGE * radius || !thin(samples, radius) {
+    if bulge > CONTOUR_BULGE * radius {
         return None;
     }
     let weighted = |(&a, &b): (&DVec3, &DVec3)| {
@@ -267,6 +309,46 @@ mod tests {
             })
             .collect();
         assert_eq!(soma(&samples).kind, SomaKind::Cylinders);
+    }
+
+    #[test]
+    fn of_stacked_outlines_the_largest_counts() {
+        let square = |half: f32, z: f32| {
+            [(-1., -1.), (1., -1.), (1., 1.), (-1., 1.)]
+                .map(|(x, y): (f32, f32)| Vec3::new(half * x, half * y, z))
+        };
+        let corners = [square(1., 0.), square(2., 3.), square(1.5, 6.)].concat();
+        let sample = |(i, &position): (usize, &Vec3)| SomaSample {
+            id: i as i64 + 1,
+            position,
+            radius: 1.0,
+            parent: match i {
+                0 => None,
+                i if i % 4 == 0 => Some(i as u32 - 4),
+                i => Some(i as u32 - 1),
+            },
+        };
+        let soma = Soma::from_outlines(corners.iter().enumerate().map(sample).collect());
+        assert_eq!(
+            (soma.kind, soma.center),
+            (SomaKind::Contour, Vec3::new(0., 0., 3.))
+        );
+        assert!((soma.radius - (16.0 / PI as f32).sqrt()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn outlines_without_area_have_the_mean_distance() {
+        let sample = |id, x, parent| SomaSample {
+            id,
+            position: Vec3::new(x, 0., 0.),
+            radius: 0.1,
+            parent,
+        };
+        let soma = Soma::from_outlines(vec![sample(1, 0., None), sample(2, 4., Some(0))]);
+        assert_eq!(
+            (soma.kind, soma.center, soma.radius),
+            (SomaKind::Contour, Vec3::new(2., 0., 0.), 2.0)
+        );
     }
 
     #[test]

@@ -12,9 +12,10 @@ fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+#[expect(clippy::print_stderr, reason = "nothing is skipped in silence")]
 fn tracings(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else {
-        println!("skipped: no folder {}", folder.display());
+        eprintln!("skipped: no folder {}", folder.display());
         return Vec::new();
     };
     let files = entries.filter_map(|e| Some(e.ok()?.path()));

@@ -119,6 +119,6 @@ fn an_edge_whose_faces_disagree_is_found() {
             }
         };
         let (_, back) = count(&gpu, &maker, 1, 8);
-        assert!(back > 100, "{honest}: {back}");
+        assert!(back > 10, "{honest}: {back}");
     }
 }

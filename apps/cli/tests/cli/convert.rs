@@ -30,9 +30,50 @@ fn folders_are_converted_and_failures_told() {
 }
 
 #[test]
+fn formats_turn_into_one_another_and_losses_are_told() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    for (from, to) in [
+        ("cell.swc", "a.asc"),
+        ("a.asc", "b.h5"),
+        ("b.h5", "c.asc"),
+        ("c.asc", "d.swc"),
+    ] {
+        work.run(&format!("convert {from} -o {to}")).exits(0);
+    }
+    let measures = |name: &str| {
+        let info = work.run(&format!("info {name} --json")).exits(0).json();
+        [
+            "length",
+            "area",
+            "volume",
+            "n_sections",
+            "n_ends",
+            "length_by_type",
+        ]
+        .map(|key| info[0][key].clone())
+    };
+    assert_eq!(measures("cell.swc"), measures("d.swc"));
+    let json = work.run("convert cell.swc -o e.asc --json").exits(0).json();
+    let lost = json[0]["lost"].as_array().expect("a list");
+    assert!(lost.iter().any(|w| w["code"] == "soma_as_outline"));
+    let said = work.run("convert cell.swc -o f.asc").exits(0).stderr();
+    assert!(said.contains("soma_as_outline"), "{said}");
+    work.run("mesh b.h5 -o b.ply").exits(0);
+    work.run("convert cell.swc -o folder/ --format h5").exits(0);
+    assert_eq!(work.names("folder"), ["cell.h5"]);
+}
+
+#[test]
 fn other_formats_are_refused_with_what_can_be_written() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
-    let run = work.run("convert cell.swc -o cell.asc").exits(2);
-    assert!(run.stderr().contains("'asc'") && run.stderr().contains("writes swc"));
+    for name in ["cell.nml", "cell.obj", "cell"] {
+        let run = work.run(&format!("convert cell.swc -o {name}")).exits(2);
+        assert!(
+            run.stderr().contains("use swc, asc, h5"),
+            "{}",
+            run.stderr()
+        );
+    }
 }

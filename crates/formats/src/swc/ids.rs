@@ -5,9 +5,9 @@
 
 use neurotess_morphology::Node;
 
-use super::Located;
 use super::rows::Records;
 use crate::Fault;
+use crate::text::Located;
 use crate::warning::Warnings;
 
 /// A table may have this many entries per sample.

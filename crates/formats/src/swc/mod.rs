@@ -21,18 +21,16 @@ mod number;
 mod rows;
 mod write;
 
-use neurotess_morphology::{BuildError, BuildNote, Morphology};
+use neurotess_morphology::{BuildError, Morphology};
 
+use crate::text::{Located, refuse_foreign};
 use crate::warning::Warnings;
-use crate::{Fault, Read, ReadError, ReadOptions};
+use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 use rows::Records;
 pub use write::write;
 
 /// Extensions of the format's files, in lower case.
 pub const EXTENSIONS: [&str; 2] = ["swc", "eswc"];
-
-/// A fault and its line, before it is known which file this is.
-type Located<T> = Result<T, (u64, Fault)>;
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
@@ -42,20 +40,9 @@ type Located<T> = Result<T, (u64, Fault)>;
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
-    let mut warnings = Warnings::default();
     let extended = name.to_ascii_lowercase().ends_with(".eswc");
-    let morphology =
-        interpret(bytes, stem(name), extended, &mut warnings).map_err(|(line, fault)| {
-            ReadError {
-                file: name.into(),
-                line: Some(line),
-                fault,
-            }
-        })?;
-    Ok(Read {
-        morphology,
-        format: "swc",
-        warnings: warnings.finish(name, options)?,
+    read_text(Format::Swc, name, options, |name, warnings| {
+        interpret(bytes, name, extended, warnings)
     })
 }
 
@@ -100,54 +87,6 @@ fn interpret(
             ),
             BuildError::UnknownParent { .. } | BuildError::TooMany { .. } => (1, Fault::TooMany),
         })?;
-    for BuildNote {
-        oddity,
-        node,
-        count,
-    } in built.notes
-    {
-        warnings.add_many(line(node), oddity.code(), &oddity.to_string(), count);
-    }
+    warnings.add_notes(built.notes, line);
     Ok(built.morphology)
-}
-
-/// What is no text in one byte a letter, or a page of the web.
-fn refuse_foreign(bytes: &[u8]) -> Located<()> {
-    if bytes.is_empty() {
-        return Err((1, Fault::Empty));
-    }
-    let utf16_mark = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
-    if utf16_mark {
-        return Err((1, Fault::Utf16));
-    }
-    if let Some(nul) = memchr::memchr(0, bytes) {
-        // Without the mark: every other byte of ASCII text is NUL.
-        let start = &bytes[..bytes.len().min(64)];
-        let alternate = |odd: usize| start.iter().skip(odd).step_by(2).all(|&b| b == 0);
-        let utf16 = start.len() > 2 && alternate(0) != alternate(1);
-        let line = 1 + memchr::memchr_iter(b'\n', &bytes[..nul]).count() as u64;
-        return Err(if utf16 {
-            (1, Fault::Utf16)
-        } else {
-            (line, Fault::Binary)
-        });
-    }
-    let text = bytes
-        .strip_prefix(rows::BOM)
-        .unwrap_or(bytes)
-        .trim_ascii_start();
-    if text.first() == Some(&b'<') {
-        let line = 1 + memchr::memchr_iter(b'\n', &bytes[..bytes.len() - text.len()]).count();
-        return Err((line as u64, Fault::Html));
-    }
-    Ok(())
-}
-
-/// The file's name without folder and SWC's extension; other dots belong to the name.
-fn stem(name: &str) -> &str {
-    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    match file.rsplit_once('.') {
-        Some((stem, ext)) if EXTENSIONS.contains(&ext.to_ascii_lowercase().as_str()) => stem,
-        _ => file,
-    }
 }

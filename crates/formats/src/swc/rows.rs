@@ -3,13 +3,10 @@
 use glam::DVec3;
 use neurotess_morphology::{Morphology, NeuriteKind, Node};
 
-use super::Located;
 use super::number::{self, Class, class};
 use crate::Fault;
+use crate::text::{BOM, Located};
 use crate::warning::Warnings;
-
-/// Byte-order mark of UTF-8.
-pub(super) const BOM: &[u8] = &[0xef, 0xbb, 0xbf];
 
 /// The rows of a file.
 #[derive(Default)]
@@ -215,8 +212,32 @@ impl Fields<'_> {
     }
 
     /// Goes to the start of the next field.
+    #[inline]
     fn next_field(&mut self, column: &'static str) -> Result<(), Fault> {
-        let (mut blanks, mut commas, mut semicolons) = (0, 0, 0);
+        // Nearly always there are blanks and nothing else.
+        let mut blanks = 0;
+        while let Some(&byte) = self.rest.get(blanks)
+            && class(byte) == Class::Blank
+        {
+            blanks += 1;
+        }
+        self.rest = &self.rest[blanks..];
+        if blanks > 0
+            && self
+                .rest
+                .first()
+                .is_some_and(|&b| class(b) == Class::Letter)
+        {
+            self.split |= self.found > 0;
+            self.found += 1;
+            return Ok(());
+        }
+        self.separator(column, blanks)
+    }
+
+    /// Like [`next_field`](Self::next_field), whatever there is after the blanks.
+    fn separator(&mut self, column: &'static str, mut blanks: usize) -> Result<(), Fault> {
+        let (mut commas, mut semicolons) = (0, 0);
         while let Some((&byte, after)) = self.rest.split_first() {
             match class(byte) {
                 Class::Blank => blanks += 1,

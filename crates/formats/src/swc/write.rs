@@ -7,8 +7,7 @@ use std::io::{self, BufWriter, Write};
 
 use neurotess_morphology::{Attachment, Morphology, Section};
 
-/// Most decimals tried before all that a number has are written.
-const MOST_DECIMALS: usize = 12;
+use crate::number::decimal;
 
 /// Writes a morphology as SWC.
 ///
@@ -140,33 +139,4 @@ impl<W: Write> Rows<'_, W> {
         let _ = writeln!(text, " {parent}");
         self.writer.write_all(text.as_bytes())
     }
-}
-
-/// Appends the shortest decimal that reads back as `value` relative to `origin`.
-fn decimal(text: &mut String, value: f32, origin: f64) {
-    use std::fmt::Write as _;
-    let start = text.len();
-    let exact = origin + f64::from(value);
-    // The second condition keeps the choice of the origin, which is made by such comparisons.
-    let far = |x: f64| (x as f32).abs() > Morphology::FARTHEST_UNSHIFTED;
-    let same = |text: &str| {
-        let read: f64 = fast_float2::parse(text).unwrap_or(f64::NAN);
-        (read - origin) as f32 == value && far(read) == far(exact)
-    };
-    if origin == 0.0 {
-        let _ = write!(text, "{value}");
-        if same(&text[start..]) {
-            return;
-        }
-        text.truncate(start);
-    } else {
-        for decimals in 0..=MOST_DECIMALS {
-            let _ = write!(text, "{exact:.decimals$}");
-            if same(&text[start..]) {
-                return;
-            }
-            text.truncate(start);
-        }
-    }
-    let _ = write!(text, "{exact}");
 }

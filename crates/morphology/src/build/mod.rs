@@ -97,38 +97,60 @@ impl Morphology {
         header: Vec<String>,
         nodes: &[Node],
     ) -> Result<Built, BuildError> {
-        let mut parents = checked_parents(nodes)?;
-        let mut links = Links::of(&parents);
-        let order = tree::parents_first(&parents, &links)?;
-        let mut notes = Notes::default();
-
-        let somata = Somata::find(nodes, &parents, order.as_deref(), &mut notes);
-        if tree::hang_up_by(&mut parents, &somata.tops) {
-            links = Links::of(&parents);
-        }
-        let walk = Walk {
-            nodes,
-            parents: &parents,
-            links: &links,
-            somata: &somata,
-        };
-        let starts = walk.starts(&mut notes);
-        let frame = Frame::choose(nodes, walk.anchor(&starts));
-
-        let mut morphology = Morphology {
-            name: name.into(),
-            origin: frame.origin,
-            somata: walk.somata(&frame, &mut notes),
-            header,
-            ..Morphology::default()
-        };
-        walk.neurites(&starts, &frame, &mut morphology);
-        notes.radii(nodes, &somata);
-        Ok(Built {
-            morphology,
-            notes: notes.into_vec(),
-        })
+        build(name.into(), header, nodes, Soma::from_samples)
     }
+
+    /// Like [`from_nodes`](Self::from_nodes), for formats that trace somata as outlines: the
+    /// samples of a soma are what [`Soma::from_outlines`] takes, whatever their radii.
+    ///
+    /// # Errors
+    /// See [`BuildError`].
+    pub fn from_outlined_nodes(
+        name: impl Into<String>,
+        header: Vec<String>,
+        nodes: &[Node],
+    ) -> Result<Built, BuildError> {
+        build(name.into(), header, nodes, Soma::from_outlines)
+    }
+}
+
+fn build(
+    name: String,
+    header: Vec<String>,
+    nodes: &[Node],
+    soma: fn(Vec<SomaSample>) -> Soma,
+) -> Result<Built, BuildError> {
+    let mut parents = checked_parents(nodes)?;
+    let mut links = Links::of(&parents);
+    let order = tree::parents_first(&parents, &links)?;
+    let mut notes = Notes::default();
+
+    let somata = Somata::find(nodes, &parents, order.as_deref(), &mut notes);
+    if tree::hang_up_by(&mut parents, &somata.tops) {
+        links = Links::of(&parents);
+    }
+    let walk = Walk {
+        nodes,
+        parents: &parents,
+        links: &links,
+        somata: &somata,
+    };
+    let starts = walk.starts(&mut notes);
+    let frame = Frame::choose(nodes, walk.anchor(&starts));
+
+    let mut morphology = Morphology {
+        name,
+        origin: frame.origin,
+        somata: walk.somata(&frame, soma, &mut notes),
+        header,
+        ..Morphology::default()
+    };
+    walk.neurites(&starts, &frame, &mut morphology);
+    notes.radii(nodes, &somata);
+    Ok(Built {
+        morphology,
+        notes: notes.into_vec(),
+    })
 }
 
 /// Parents with [`NONE`] for "has none"; everything about single nodes is checked here.
@@ -192,7 +214,12 @@ impl Walk<'_> {
         Some(self.nodes[*node as usize].position)
     }
 
-    fn somata(&self, frame: &Frame, notes: &mut Notes) -> Vec<Soma> {
+    fn somata(
+        &self,
+        frame: &Frame,
+        traced: fn(Vec<SomaSample>) -> Soma,
+        notes: &mut Notes,
+    ) -> Vec<Soma> {
         let soma = |members: &Vec<u32>| {
             let sample = |&m: &u32| {
                 let node = &self.nodes[m as usize];
@@ -204,7 +231,7 @@ impl Walk<'_> {
                     parent: (parent != NONE).then(|| self.somata.sample(parent)),
                 }
             };
-            let soma = Soma::from_samples(members.iter().map(sample).collect());
+            let soma = traced(members.iter().map(sample).collect());
             notes.soma(&soma, members);
             soma
         };

@@ -1,0 +1,276 @@
+//! H5 morphologies of the Blue Brain Project, versions 1, 1.1 to 1.3 and 2.
+//!
+//! Version 1 has two tables: `points` (x, y, z, **diameter**) and `structure` (first point, type,
+//! parent section), whose row 0 is the soma's outline if its type is 1; a section's points end where
+//! the next one's begin, and its first repeats its parent's last. Version 2 has the same in
+//! `NAME/raw/points`, `NAME/structure/raw` and `NAME/structure/sectiontype`. Perimeters and
+//! organelles are left out with a warning. HDF5 itself is read by a library in pure Rust.
+
+mod write;
+
+use neurotess_morphology::{Morphology, NeuriteKind};
+
+use crate::hdf5::{Store, Table};
+use crate::text::stem;
+use crate::traced::{Sample, Traced, Tracing};
+use crate::warning::Warnings;
+use crate::{Fault, Read, ReadError, ReadOptions};
+pub use write::write;
+
+/// Extensions of the format's files, in lower case.
+pub const EXTENSIONS: [&str; 2] = ["h5", "hdf5"];
+
+/// First bytes of every HDF5 file without a user block.
+const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// Type of the soma's row in `structure`.
+const SOMA: i64 = 1;
+
+/// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
+///
+/// # Errors
+/// [`ReadError`] with `name` and the dataset.
+pub fn read_bytes(bytes: Vec<u8>, name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
+    let mut warnings = Warnings::default();
+    let morphology = interpret(bytes, stem(name, &EXTENSIONS), &mut warnings)
+        .map_err(|fault| ReadError::of_file(name, fault))?;
+    let mut warnings = warnings.finish(name, options)?;
+    // Rows of tables are no lines.
+    warnings.iter_mut().for_each(|w| w.line = None);
+    Ok(Read {
+        morphology,
+        format: "h5",
+        warnings,
+    })
+}
+
+/// Whether the bytes are HDF5.
+pub(crate) fn looks_like(bytes: &[u8]) -> bool {
+    bytes.starts_with(SIGNATURE)
+}
+
+fn interpret(bytes: Vec<u8>, name: &str, warnings: &mut Warnings) -> Result<Morphology, Fault> {
+    if bytes.is_empty() {
+        return Err(Fault::Empty);
+    }
+    let store = Store::from_bytes(bytes)?;
+    let tables = Tables::find(&store)?;
+    tell_what_is_left_out(&store, warnings);
+    tables
+        .tracing(warnings)?
+        .build(name, warnings)
+        .map_err(|(row, fault)| match fault {
+            Fault::OwnAncestor | Fault::OutOfRange { .. } => Fault::Row {
+                dataset: tables.points_path.clone(),
+                row: row - 1,
+                fault: Box::new(fault),
+            },
+            other => other,
+        })
+}
+
+/// The tables of a morphology, whatever the version.
+struct Tables {
+    points_path: String,
+    structure_path: String,
+    points: Table<f64>,
+    /// First point, type, parent.
+    sections: Vec<[i64; 3]>,
+}
+
+impl Tables {
+    fn find(store: &Store) -> Result<Self, Fault> {
+        if store.has("connectivity") {
+            return Err(Fault::Vasculature);
+        }
+        if store.has("points") && store.has("structure") {
+            let structure = store.wholes("structure", 3)?;
+            let row = |r: usize| {
+                let row = structure.row(r);
+                [row[0], row[1], row[2]]
+            };
+            return Ok(Self {
+                points: store.reals("points", 4)?,
+                sections: (0..structure.rows).map(row).collect(),
+                points_path: "points".into(),
+                structure_path: "structure".into(),
+            });
+        }
+        let groups = store.groups("");
+        let version_2 = |g: &&String| store.has(&format!("{g}/structure/raw"));
+        if let Some(group) = groups.iter().find(version_2) {
+            return Self::version_2(store, group);
+        }
+        let (count, first) = morphologies(store);
+        if count > 0 {
+            return Err(Fault::Container { count, first });
+        }
+        Err(Fault::NoTables)
+    }
+
+    fn version_2(store: &Store, group: &str) -> Result<Self, Fault> {
+        let points_path = format!("{group}/raw/points");
+        let structure_path = format!("{group}/structure/raw");
+        let types_path = format!("{group}/structure/sectiontype");
+        let structure = store.wholes(&structure_path, 2)?;
+        let types = store.wholes(&types_path, 1)?;
+        if types.rows != structure.rows {
+            return Err(Fault::Shape {
+                dataset: types_path,
+                found: vec![types.rows as u64],
+                columns: 1,
+            });
+        }
+        let row = |r: usize| [structure.row(r)[0], types.row(r)[0], structure.row(r)[1]];
+        Ok(Self {
+            points: store.reals(&points_path, 4)?,
+            sections: (0..structure.rows).map(row).collect(),
+            points_path,
+            structure_path,
+        })
+    }
+
+    fn tracing(&self, warnings: &mut Warnings) -> Result<Tracing, Fault> {
+        let mut tracing = Tracing::default();
+        // Of each section the last point, among those traced; none for a soma or an empty one.
+        let mut lasts: Vec<Option<u32>> = vec![None; self.sections.len()];
+        let mut starts: Vec<(u32, usize)> = Vec::new();
+        for (s, &[_, kind, _]) in self.sections.iter().enumerate() {
+            let range = self.range(s)?;
+            if kind == SOMA {
+                if s > 0 {
+                    let row = s as u64 + 1;
+                    warnings.add(
+                        row,
+                        "soma_not_first",
+                        "a soma that is not the first section",
+                    );
+                }
+                let outline: Vec<Sample> =
+                    range.map(|p| self.sample(p)).collect::<Result<_, _>>()?;
+                if !outline.is_empty() {
+                    tracing.outlines.push(outline);
+                }
+                continue;
+            }
+            let kind = i32::try_from(kind).ok().filter(|&k| k >= 0);
+            let kind = NeuriteKind(kind.ok_or_else(|| self.at(s, "type"))?);
+            for point in range {
+                let index = tracing.points.len() as u32;
+                if lasts[s].is_none() {
+                    starts.push((index, s));
+                }
+                tracing.points.push(Traced {
+                    sample: self.sample(point)?,
+                    kind,
+                    parent: lasts[s],
+                    starts: lasts[s].is_none(),
+                });
+                lasts[s] = Some(index);
+            }
+        }
+        for (index, s) in starts {
+            tracing.points[index as usize].parent = self.fork_of(s, &lasts)?;
+        }
+        Ok(tracing)
+    }
+
+    /// The point that a section hangs on: the last of its parent.
+    fn fork_of(&self, section: usize, lasts: &[Option<u32>]) -> Result<Option<u32>, Fault> {
+        let parent = self.sections[section][2];
+        if parent == -1 {
+            return Ok(None);
+        }
+        let known = usize::try_from(parent).ok().filter(|&p| p != section);
+        let parent = known.and_then(|p| self.sections.get(p).map(|row| (p, row)));
+        match parent {
+            Some((_, [_, SOMA, _])) => Ok(None),
+            Some((p, _)) => Ok(lasts[p]),
+            None => Err(self.at(section, "parent")),
+        }
+    }
+
+    fn range(&self, section: usize) -> Result<std::ops::Range<usize>, Fault> {
+        let end = match self.sections.get(section + 1) {
+            Some(&[next, ..]) => next,
+            None => self.points.rows as i64,
+        };
+        let first = self.sections[section][0];
+        // Files without a soma may have an empty row for it.
+        let empty = first == end && self.sections[section][1] != SOMA;
+        if first < 0 || end < first || empty || end > self.points.rows as i64 {
+            return Err(self.at(section, "first point"));
+        }
+        Ok(first as usize..end as usize)
+    }
+
+    fn sample(&self, point: usize) -> Result<Sample, Fault> {
+        let row = self.points.row(point);
+        if let Some(column) = row
+            .iter()
+            .position(|x| x.is_nan() || x.abs() > Morphology::MAX_COORDINATE)
+        {
+            return Err(Fault::Row {
+                dataset: self.points_path.clone(),
+                row: point as u64,
+                fault: Box::new(Fault::OutOfRange {
+                    column: ["x", "y", "z", "the diameter"][column],
+                    text: row[column].to_string(),
+                }),
+            });
+        }
+        Ok(Sample {
+            position: glam::DVec3::new(row[0], row[1], row[2]),
+            radius: row[3] / 2.0,
+            line: point as u64 + 1,
+        })
+    }
+
+    fn at(&self, section: usize, column: &'static str) -> Fault {
+        Fault::Row {
+            dataset: self.structure_path.clone(),
+            row: section as u64,
+            fault: Box::new(Fault::Reference { column }),
+        }
+    }
+}
+
+/// How many morphologies there are in groups up to three deep, and the first one's path.
+fn morphologies(store: &Store) -> (usize, String) {
+    let (mut count, mut first) = (0, String::new());
+    let mut paths: Vec<(String, u32)> = vec![(String::new(), 0)];
+    while let Some((path, depth)) = paths.pop() {
+        if store.has(&format!("{path}points")) && store.has(&format!("{path}structure")) {
+            count += 1;
+            if first.is_empty() || path < first {
+                first.clone_from(&path);
+            }
+        } else if depth < 3 {
+            let inner = store.groups(path.trim_end_matches('/'));
+            paths.extend(inner.iter().map(|g| (format!("{path}{g}/"), depth + 1)));
+        }
+    }
+    (count, first.trim_end_matches('/').to_owned())
+}
+
+fn tell_what_is_left_out(store: &Store, warnings: &mut Warnings) {
+    if store.has_group("organelles") {
+        warnings.add(1, "organelles_left_out", "organelles: left out");
+    }
+    if store.has("perimeters") {
+        warnings.add(1, "perimeters_left_out", "perimeters: left out");
+    }
+    match store.whole_attribute("metadata", "cell_family").first() {
+        Some(1) => warnings.add(
+            1,
+            "glia",
+            "the cell is glia: types 2 and 3 are perivascular and other processes",
+        ),
+        Some(2) => warnings.add(
+            1,
+            "spine",
+            "the file is a spine: types 2 and 3 are neck and head",
+        ),
+        _ => {}
+    }
+}

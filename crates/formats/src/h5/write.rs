@@ -1,0 +1,72 @@
+//! Writing H5 version 1.3.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+use hdf5_pure::{AttrValue, FileBuilder};
+use neurotess_morphology::{Attachment, Morphology};
+
+use crate::Warning;
+use crate::losses::{Losses, outlines};
+
+/// Writes a morphology as H5 of version 1.3, in `f64`, so that positions and radii come back exactly.
+/// What the format cannot say is returned: numbers of samples, header, somata other than outlines.
+///
+/// # Errors
+/// Those of the writer.
+///
+/// # Panics
+/// If indices in the morphology point outside its arrays.
+pub fn write(morphology: &Morphology, mut writer: impl Write) -> io::Result<Vec<Warning>> {
+    let mut points: Vec<f64> = Vec::new();
+    let mut push = |position: glam::Vec3, radius: f32| {
+        let place: DVec3 = morphology.origin + position.as_dvec3();
+        points.extend(place.to_array());
+        points.push(2.0 * f64::from(radius));
+        points.len() as i32 / 4
+    };
+    let mut structure: Vec<i32> = Vec::new();
+    let mut next = 0;
+    let soma_rows = i32::from(!morphology.somata.is_empty());
+    if soma_rows > 0 {
+        structure.extend([0, 1, -1]);
+        for (position, radius) in outlines(morphology).into_iter().flatten() {
+            next = push(position, radius);
+        }
+    }
+    for section in &morphology.sections {
+        let parent = match section.attachment {
+            Attachment::Section(id) => id.0 as i32 + soma_rows,
+            Attachment::Soma { .. } => 0,
+            Attachment::Free if soma_rows > 0 => 0,
+            Attachment::Free => -1,
+        };
+        structure.extend([next, section.kind.0, parent]);
+        if let Attachment::Section(id) = section.attachment {
+            let fork = morphology.points[morphology.sections[id.index()].end as usize - 1];
+            push(fork.position, fork.radius);
+        }
+        for point in &morphology.points[section.range()] {
+            next = push(point.position, point.radius);
+        }
+    }
+    let mut file = FileBuilder::new();
+    let rows = points.len() as u64 / 4;
+    file.create_dataset("points")
+        .with_f64_data(&points)
+        .with_shape(&[rows, 4]);
+    let rows = structure.len() as u64 / 3;
+    file.create_dataset("structure")
+        .with_i32_data(&structure)
+        .with_shape(&[rows, 3]);
+    let mut metadata = file.create_group("metadata");
+    metadata.set_attr("version", AttrValue::U32Array(vec![1, 3]));
+    metadata.set_attr("cell_family", AttrValue::U32Array(vec![0]));
+    file.add_group(metadata.finish());
+    let bytes = file.finish().map_err(io::Error::other)?;
+    writer.write_all(&bytes)?;
+    writer.flush()?;
+    let mut losses = Losses::of(morphology);
+    losses.header(morphology);
+    Ok(losses.into_warnings())
+}

@@ -1,0 +1,125 @@
+//! HDF5 behind a small window: what our readers ask of a file, and nothing of the library that
+//! answers.
+
+use crate::Fault;
+
+/// A file, open for reading.
+pub(crate) struct Store {
+    file: hdf5_pure::File,
+}
+
+/// A table of numbers.
+pub(crate) struct Table<T> {
+    pub(crate) rows: usize,
+    pub(crate) columns: usize,
+    values: Vec<T>,
+}
+
+impl<T> Table<T> {
+    pub(crate) fn row(&self, row: usize) -> &[T] {
+        &self.values[row * self.columns..(row + 1) * self.columns]
+    }
+}
+
+impl Store {
+    /// # Errors
+    /// [`Fault::Hdf5`] if the bytes are no HDF5 file.
+    pub(crate) fn from_bytes(bytes: Vec<u8>) -> Result<Self, Fault> {
+        let file = hdf5_pure::File::from_bytes(bytes).map_err(|e| hdf5("the file", &e))?;
+        Ok(Self { file })
+    }
+
+    /// Whether there is a dataset of this path.
+    pub(crate) fn has(&self, path: &str) -> bool {
+        self.file.dataset(path).is_ok()
+    }
+
+    /// Whether there is a group of this path.
+    pub(crate) fn has_group(&self, path: &str) -> bool {
+        self.file.group(path).is_ok()
+    }
+
+    /// Names of the groups in the group of this path; none where there is no such group.
+    pub(crate) fn groups(&self, path: &str) -> Vec<String> {
+        let group = if path.is_empty() {
+            Ok(self.file.root())
+        } else {
+            self.file.group(path)
+        };
+        group.and_then(|g| g.groups()).unwrap_or_default()
+    }
+
+    /// An attribute of a group as whole numbers; empty where there is none.
+    pub(crate) fn whole_attribute(&self, group: &str, name: &str) -> Vec<i64> {
+        use hdf5_pure::AttrValue as A;
+        let attributes = self.file.group(group).and_then(|g| g.attrs());
+        let Ok(Some(value)) = attributes.map(|mut all| all.remove(name)) else {
+            return Vec::new();
+        };
+        match value {
+            A::U8(v) => vec![v.into()],
+            A::I8(v) => vec![v.into()],
+            A::U32(v) => vec![v.into()],
+            A::I32(v) => vec![v.into()],
+            A::I64(v) => vec![v],
+            A::U64(v) => vec![i64::try_from(v).unwrap_or(i64::MAX)],
+            A::U8Array(v) => v.into_iter().map(i64::from).collect(),
+            A::U32Array(v) => v.into_iter().map(i64::from).collect(),
+            A::I32Array(v) => v.into_iter().map(i64::from).collect(),
+            A::I64Array(v) => v,
+            _ => Vec::new(),
+        }
+    }
+
+    /// A dataset of real numbers. `columns`: how many there must be.
+    pub(crate) fn reals(&self, path: &str, columns: usize) -> Result<Table<f64>, Fault> {
+        self.table(path, columns, hdf5_pure::Dataset::read_f64)
+    }
+
+    /// A dataset of whole numbers. `columns`: how many there must be.
+    pub(crate) fn wholes(&self, path: &str, columns: usize) -> Result<Table<i64>, Fault> {
+        self.table(path, columns, hdf5_pure::Dataset::read_i64)
+    }
+
+    fn table<T>(
+        &self,
+        path: &str,
+        columns: usize,
+        read: impl FnOnce(&hdf5_pure::Dataset) -> Result<Vec<T>, hdf5_pure::Error>,
+    ) -> Result<Table<T>, Fault> {
+        let dataset = self.file.dataset(path).map_err(|e| hdf5(path, &e))?;
+        let shape = dataset.shape().map_err(|e| hdf5(path, &e))?;
+        let rows = match *shape {
+            [rows, found] if found == columns as u64 => rows,
+            [rows] if columns == 1 => rows,
+            _ => {
+                return Err(Fault::Shape {
+                    dataset: path.into(),
+                    found: shape,
+                    columns,
+                });
+            }
+        };
+        let values = read(&dataset).map_err(|e| hdf5(path, &e))?;
+        let rows = usize::try_from(rows).unwrap_or(usize::MAX);
+        if rows.checked_mul(columns) != Some(values.len()) {
+            return Err(Fault::Shape {
+                dataset: path.into(),
+                found: shape,
+                columns,
+            });
+        }
+        Ok(Table {
+            rows,
+            columns,
+            values,
+        })
+    }
+}
+
+fn hdf5(place: &str, error: &hdf5_pure::Error) -> Fault {
+    Fault::Hdf5 {
+        place: place.into(),
+        reason: error.to_string(),
+    }
+}

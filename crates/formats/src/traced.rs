@@ -1,0 +1,177 @@
+//! Records of formats that trace somata as outlines and repeat the fork in each child: Neurolucida
+//! ASC and BBP's H5.
+//!
+//! **Theory.** Such formats say nothing of how neurites hang on the soma, and may begin a child with
+//! a copy of the point that it branches from. **Practice.** A copy with the same radius is left out;
+//! one with another radius is kept, as is a segment of length zero, for its radius is the child's
+//! own; a child that is nothing but a copy is left out. A root hangs on the nearest sample of an
+//! outline. Outlines that are within each other's reach are slices of one soma.
+
+use glam::DVec3;
+use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
+
+use crate::Fault;
+use crate::text::Located;
+use crate::warning::Warnings;
+
+/// A point with its radius (µm) and where the file has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    pub(crate) position: DVec3,
+    pub(crate) radius: f64,
+    /// Line, or row of a dataset; from 1 on.
+    pub(crate) line: u64,
+}
+
+/// A point of a neurite.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Traced {
+    pub(crate) sample: Sample,
+    pub(crate) kind: NeuriteKind,
+    /// Index of the parent among the traced points; `None` for a root.
+    pub(crate) parent: Option<u32>,
+    /// Whether it is the first of its section.
+    pub(crate) starts: bool,
+}
+
+/// What a file traced.
+#[derive(Default)]
+pub(crate) struct Tracing {
+    /// Outlines of somata, none of them empty.
+    pub(crate) outlines: Vec<Vec<Sample>>,
+    pub(crate) points: Vec<Traced>,
+    /// Comments to keep.
+    pub(crate) header: Vec<String>,
+}
+
+impl Tracing {
+    /// The morphology, its oddities told to `warnings`.
+    pub(crate) fn build(mut self, name: &str, warnings: &mut Warnings) -> Located<Morphology> {
+        if self.outlines.is_empty() && self.points.is_empty() {
+            return Err((1, Fault::NoSample));
+        }
+        if u32::try_from(self.points.len()).is_err() {
+            return Err((1, Fault::TooMany));
+        }
+        let (mut nodes, mut lines) = (Vec::new(), Vec::new());
+        for (outline, hung_on) in self.outlines.iter().zip(slices(&self.outlines)) {
+            let first = nodes.len() as u32;
+            let start_of = |k: usize| self.outlines[..k].iter().map(Vec::len).sum::<usize>() as u32;
+            for (i, sample) in (0..).zip(outline) {
+                let parent = match i {
+                    0 => hung_on.map(start_of),
+                    _ => Some(first + i - 1),
+                };
+                nodes.push(node(sample, NeuriteKind::SOMA, parent, nodes.len()));
+                lines.push(sample.line);
+            }
+        }
+        self.neurites(&mut nodes, &mut lines)?;
+        let built = Morphology::from_outlined_nodes(name, std::mem::take(&mut self.header), &nodes)
+            .map_err(|e| match e {
+                BuildError::Cycle { node } => (lines[node as usize], Fault::OwnAncestor),
+                BuildError::OutOfRange { node } => (
+                    lines[node as usize],
+                    Fault::OutOfRange {
+                        column: "a number",
+                        text: "too large".into(),
+                    },
+                ),
+                BuildError::UnknownParent { .. } | BuildError::TooMany { .. } => {
+                    (1, Fault::TooMany)
+                }
+            })?;
+        warnings.add_notes(built.notes, |node| lines[node as usize]);
+        Ok(built.morphology)
+    }
+
+    /// Appends the neurites' nodes without copies.
+    fn neurites(&self, nodes: &mut Vec<Node>, lines: &mut Vec<u64>) -> Located<()> {
+        let soma: Vec<DVec3> = nodes.iter().map(|n| n.position).collect();
+        let copies = self.copies();
+        let kept_before: Vec<u32> = copies
+            .iter()
+            .scan(nodes.len() as u32, |next, &copy| {
+                let own = *next;
+                *next += u32::from(!copy);
+                Some(own)
+            })
+            .collect();
+        for (point, _) in self.points.iter().zip(&copies).filter(|(_, copy)| !**copy) {
+            // Copies may hang on copies; more steps than points is a ring of them.
+            let mut parent = point.parent;
+            let mut steps = 0;
+            while let Some(p) = parent.filter(|&p| copies[p as usize]) {
+                parent = self.points[p as usize].parent;
+                steps += 1;
+                if steps > self.points.len() {
+                    return Err((point.sample.line, Fault::OwnAncestor));
+                }
+            }
+            let parent = match parent {
+                Some(p) => Some(kept_before[p as usize]),
+                None => nearest(&soma, point.sample.position),
+            };
+            nodes.push(node(&point.sample, point.kind, parent, nodes.len()));
+            lines.push(point.sample.line);
+        }
+        Ok(())
+    }
+
+    /// Which points only repeat the one that they branch from.
+    fn copies(&self) -> Vec<bool> {
+        let mut has_child = vec![false; self.points.len()];
+        for p in self.points.iter().filter_map(|p| p.parent) {
+            has_child[p as usize] = true;
+        }
+        let copy = |(point, has_child): (&Traced, bool)| {
+            let Some(parent) = point.parent.filter(|_| point.starts) else {
+                return false;
+            };
+            let parent = &self.points[parent as usize];
+            parent.sample.position == point.sample.position
+                && (parent.sample.radius == point.sample.radius || !has_child)
+        };
+        self.points.iter().zip(has_child).map(copy).collect()
+    }
+}
+
+fn node(sample: &Sample, kind: NeuriteKind, parent: Option<u32>, before: usize) -> Node {
+    Node {
+        id: before as i64 + 1,
+        kind,
+        position: sample.position,
+        radius: sample.radius,
+        parent,
+    }
+}
+
+/// For each outline the earlier one that it is a slice beside, if any.
+fn slices(outlines: &[Vec<Sample>]) -> Vec<Option<usize>> {
+    let spheres: Vec<(DVec3, f64)> = outlines
+        .iter()
+        .map(|outline| {
+            let center = outline.iter().map(|s| s.position).sum::<DVec3>() / outline.len() as f64;
+            let reach = outline
+                .iter()
+                .map(|s| s.position.distance(center).max(s.radius));
+            (center, reach.fold(0.0, f64::max))
+        })
+        .collect();
+    (0..spheres.len())
+        .map(|i| {
+            let (center, reach) = spheres[i];
+            spheres[..i]
+                .iter()
+                .position(|s| s.0.distance(center) <= s.1 + reach)
+        })
+        .collect()
+}
+
+fn nearest(soma: &[DVec3], position: DVec3) -> Option<u32> {
+    let distance = |s: &DVec3| s.distance_squared(position);
+    (0..)
+        .zip(soma)
+        .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))
+        .map(|(i, _)| i)
+}
