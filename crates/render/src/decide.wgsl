@@ -116,6 +116,7 @@ fn decide_patch(place: Placed, patch_index: u32) -> u32 {
     if (levels.kind == LEVELS_DISTANCE || levels.kind == LEVELS_MAX_ERROR) {
         levels.amount = levels.amount / place.scale;
     }
-    return decision(p.kind, side_levels(base, p, levels, view_of(frame, place)));
+    let kind = select(p.kind, DECIDED_TUBE, patch_is_tube(base, patch_index));
+    return decision(kind, side_levels(base, p, levels, view_of(frame, place)));
 }
 

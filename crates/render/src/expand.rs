@@ -51,7 +51,7 @@ pub struct Wanted {
 
 /// The module of the pass.
 pub(crate) fn expand_wgsl() -> String {
-    let row = format!("const EXPAND_ROW: u32 = {ROW}u;\n");
+    let row = format!("const EXPAND_ROW: u32 = {ROW}u;\nconst DRAWS_TUBES: bool = false;\n");
     let vertices = include_str!("vertices.wgsl");
     let expand = include_str!("expand.wgsl");
     compose(&[&row, SURFACE_VERTEX_WGSL, vertices, expand])

@@ -4,7 +4,8 @@
 //! holds it: each axis is one of [`GRID_SIZE`], and columns beyond the patch's own fall together with
 //! its last one, as triangles without area. So 12 × 12 buckets draw all 4,096 grids with exactly their
 //! own vertices, and no axis has more than half too many. Round patches (caps, somata) have buckets of
-//! their own, in which diagonals run towards the corners.
+//! their own, in which diagonals run towards the corners, and so have **tubes**, lateral patches between
+//! points with rings of their own: they are many, and a shader of their own makes their vertices.
 //!
 //! Small grids fill a GPU's waves badly: an instance of a small bucket draws **many patches
 //! together**, about 256 vertices.
@@ -17,8 +18,10 @@ use bytemuck::{Pod, Zeroable};
 /// Sizes of a grid's axis. Finer than powers of two: an axis then has at most half too many columns.
 pub(crate) const GRID_SIZE: [u32; 12] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
 
-/// Grids of lateral patches, then those of round ones.
-pub(crate) const BUCKETS: usize = 2 * GRID_SIZE.len() * GRID_SIZE.len();
+/// Grids of tubes.
+pub(crate) const TUBE_BUCKETS: usize = GRID_SIZE.len() * GRID_SIZE.len();
+/// Grids of tubes, then those of other lateral patches, then those of round ones.
+pub(crate) const BUCKETS: usize = 3 * TUBE_BUCKETS;
 
 /// Vertices that an instance of a draw has at least, if one patch has fewer.
 const VERTICES_TOGETHER: u32 = 256;
@@ -50,7 +53,7 @@ pub(crate) struct Bucket {
 pub(crate) fn buckets() -> (Vec<Bucket>, Vec<u32>) {
     let mut all = Vec::with_capacity(BUCKETS);
     let mut indices = Vec::new();
-    for round in [false, true] {
+    for round in [false, false, true] {
         for ny in GRID_SIZE {
             for nx in GRID_SIZE {
                 let first_index = indices.len() as u32;
@@ -112,6 +115,6 @@ mod tests {
     #[test]
     fn all_grids_together_cost_a_few_megabytes() {
         let (_, indices) = buckets();
-        assert!(size_of_val(&*indices) < 4 << 20, "{}", indices.len());
+        assert!(size_of_val(&*indices) < 5 << 20, "{}", indices.len());
     }
 }

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod adaptive;
+mod bounds;
 mod camera;
 mod colour;
 mod decide;
@@ -33,6 +34,7 @@ mod timing;
 mod work;
 
 pub use adaptive::Adaptive;
+pub use bounds::{any_shows, bounds};
 pub use camera::{Ball, Camera, DEFAULT_FOV, Side};
 pub use colour::{
     CATEGORY_BIT, ColourMap, ColourTable, Palette, Rgb, SCALE_ENTRIES, category, fraction, is_dark,

@@ -29,6 +29,18 @@ pub(crate) struct Finishing {
     pub(crate) background: Option<Rgb>,
 }
 
+impl Finishing {
+    /// What is kept of a tile.
+    fn without_margin(&self, frame: &Frame) -> Frame {
+        let mut kept = *frame;
+        kept.tile.x += self.margin as i32;
+        kept.tile.y += self.margin as i32;
+        kept.tile.width -= 2 * self.margin;
+        kept.tile.height -= 2 * self.margin;
+        kept
+    }
+}
+
 /// Textures and buffers for one tile of the greatest size.
 struct Targets {
     colour: wgpu::TextureView,
@@ -102,6 +114,14 @@ impl<'g> Painter<'g> {
         finishing: &Finishing,
     ) -> Result<Vec<u8>, DeviceError> {
         let size = [frame.tile.width, frame.tile.height];
+        let empty = finishing
+            .background
+            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        if !maker.shows(&finishing.without_margin(frame)) {
+            let pixel = finishing.scale * finishing.scale;
+            let [width, height] = size.map(|n| n - 2 * finishing.margin);
+            return Ok(empty.repeat((width * height / pixel) as usize));
+        }
         if self.targets.as_ref().is_none_or(|t| t.size != size) {
             self.targets = Some(Targets::new(self.gpu, size, self.samples));
             self.gpu.check()?;
@@ -112,9 +132,6 @@ impl<'g> Painter<'g> {
         let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
         let [r, g, b] = linear(finishing.background.unwrap_or_default());
-        let empty = finishing
-            .background
-            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let finish = Finish {
             radius,
             most,
@@ -239,11 +256,13 @@ impl<'g> Painter<'g> {
             timestamp_writes: self.timer.render(Pass::Draw),
             ..Default::default()
         });
-        pass.set_pipeline(&self.shader.pipeline);
         pass.set_bind_group(1, group, &[]);
         let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
         pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
-        maker.draw(round, &mut pass);
+        for (shader, pipeline) in self.shader.pipelines.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            maker.draw(round, shader, &mut pass);
+        }
     }
 
     fn compute(

@@ -117,9 +117,14 @@ impl PictureOptions {
         most.unwrap_or(1)
     }
 
+    /// Sub-pixels of a pixel, along a side.
+    pub fn sub_pixels(&self) -> u32 {
+        ((f64::from(self.samples_taken()) / 4.0).sqrt() as u32).max(1)
+    }
+
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
         let wanted = self.samples_taken();
-        let scale = ((f64::from(wanted) / 4.0).sqrt() as u32).max(1);
+        let scale = self.sub_pixels();
         let height = f64::from(self.size[1] * scale);
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
         let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);

@@ -80,6 +80,9 @@ fn size_class(level: u32) -> u32 {
 fn bucket_of(word: u32, caps: u32) -> u32 {
     let kind = decided_kind(word);
     let grid = patch_grid(kind, caps, decided_levels(word));
-    let flat = size_class(grid.ny) * GRID_SIZES + size_class(grid.nx);
-    return select(flat + GRID_SIZES * GRID_SIZES, flat, kind == PATCH_LATERAL);
+    let size = size_class(grid.ny) * GRID_SIZES + size_class(grid.nx);
+    if (kind == DECIDED_TUBE) {
+        return size;
+    }
+    return size + select(2u, 1u, kind == PATCH_LATERAL) * GRID_SIZES * GRID_SIZES;
 }

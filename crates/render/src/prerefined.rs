@@ -12,6 +12,8 @@ use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, SurfaceVertex};
 use neurotess_refine::{Levels, RefineOptions, Refinement};
 
+use crate::bounds::{any_shows, bounds};
+use crate::camera::Ball;
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::{Frame, shows};
@@ -103,6 +105,7 @@ pub struct Prerefined {
     placements: wgpu::Buffer,
     origins: Vec<DVec3>,
     chunks: Vec<Chunk>,
+    bounds: Vec<Ball>,
     resident: Resident,
     drawn: usize,
     /// Whether triangles have corners of their own, as wireframes need.
@@ -133,6 +136,7 @@ impl Prerefined {
             placements,
             origins: meshes.iter().map(|m| m.mesh.origin).collect(),
             chunks: Vec::new(),
+            bounds: meshes.iter().flat_map(|m| bounds(m.mesh)).collect(),
             resident: Resident::default(),
             drawn: 0,
             barycentric,
@@ -245,7 +249,11 @@ impl Prerefined {
 }
 
 impl VertexMaker for Prerefined {
-    fn wgsl(&self) -> String {
+    fn shows(&self, frame: &Frame) -> bool {
+        any_shows(&self.bounds, frame)
+    }
+
+    fn wgsl(&self, _shader: usize) -> String {
         let barycentric = self.barycentric;
         format!("const BARYCENTRIC: bool = {barycentric};\n{}", WGSL)
     }
@@ -292,7 +300,7 @@ impl VertexMaker for Prerefined {
         Ok(1)
     }
 
-    fn draw(&self, _round: usize, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, _round: usize, _shader: usize, pass: &mut wgpu::RenderPass<'_>) {
         for chunk in self.chunks.iter().filter(|chunk| !chunk.shown.is_empty()) {
             let offset = STRIDE as u32 * chunk.mesh as u32;
             pass.set_bind_group(0, &chunk.group, &[offset]);

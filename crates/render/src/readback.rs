@@ -8,7 +8,7 @@ use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::grids::{BUCKETS, Bucket};
 use crate::refiner::{Batch, Refiner};
-use crate::refining::{CLUSTER, decided};
+use crate::refining::{CLUSTER, DECIDED_TUBE, decided};
 use crate::scene::Scene;
 
 /// A patch that is drawn.
@@ -99,7 +99,7 @@ impl Refiner {
                 patch: part.map_or(0, |part| part.in_mesh[(slot - owner.first_slot) as usize]),
                 levels,
                 kind: match kind {
-                    0 => PatchKind::Lateral,
+                    0 | DECIDED_TUBE => PatchKind::Lateral,
                     1 => PatchKind::Cap,
                     _ => PatchKind::Soma,
                 },

@@ -30,11 +30,40 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let listed = list[bucket.start + place];
     let i = vertex_index & INDEX_PLACE_MASK;
     let j = (vertex_index >> INDEX_ROW_SHIFT) & INDEX_PLACE_MASK;
-    return listed_vertex(listed, i, j);
+    if (DRAWS_TUBES) {
+        return listed_tube_vertex(listed, i, j);
+    }
+    return listed_other_vertex(listed, i, j);
 }
 
 // Column i and row j of a listed patch. Those beyond its grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
+    if (decided_kind(listed.y) == DECIDED_TUBE) {
+        return listed_tube_vertex(listed, i, j);
+    }
+    return listed_other_vertex(listed, i, j);
+}
+
+fn listed_tube_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
+    let part = placed[owners[listed.x / CLUSTER]];
+    let levels = decided_levels(listed.y);
+    let grid = patch_grid(PATCH_LATERAL, frame.levels.caps, levels);
+    let column = min(i, grid.nx);
+    let row = min(j, grid.ny);
+    let index = listed.x - part.first_slot;
+    let v = tube_vertex(part.base, index, frame.levels, levels, grid, column, row);
+    return SurfaceVertex(
+        relative(part, v.position),
+        turned(part, v.normal) / part.scale,
+        relative(part, v.axis),
+        v.radius * part.scale,
+        tube_word(part.base, v),
+        part.instance,
+        wire_grid(PATCH_LATERAL, grid, column, row),
+    );
+}
+
+fn listed_other_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let part = placed[owners[listed.x / CLUSTER]];
     let base = part.base;
     let levels = decided_levels(listed.y);
