@@ -1,4 +1,15 @@
-//! Pictures of coarse meshes on the GPU.
+//! Pictures of coarse meshes on the GPU, without a window.
+//!
+//! A [`Gpu`] is an open device. A **camera** ([`Camera`]) is where one looks from. A **maker**
+//! ([`VertexMaker`]) makes vertices and decides how many: [`Adaptive`] refines a [`Scene`] as it is
+//! drawn, [`Prerefined`] keeps a refined surface in memory. A **word** per tracing point says its
+//! colour, which a [`ColourTable`] knows. [`paint`] draws a picture of any size, tile by tile, and
+//! hands it over in **bands**; an [`Overlay`] lays legend and scale bar over them, a [`PngWriter`]
+//! writes them.
+//!
+//! ```text
+//! maker: levels, vertices ─▶ shade.wgsl: light, lines, wires ─▶ occlusion.wgsl ─▶ finish.wgsl: bytes
+//! ```
 #![forbid(unsafe_code)]
 
 mod adaptive;
