@@ -22,6 +22,7 @@ mod error;
 mod expand;
 mod finish;
 mod frame;
+mod framing;
 mod grids;
 mod image;
 mod legend;
@@ -46,7 +47,7 @@ mod work;
 
 pub use adaptive::Adaptive;
 pub use bounds::{any_shows, bounds};
-pub use camera::{Ball, Camera, DEFAULT_FOV, Side};
+pub use camera::Camera;
 pub use colour::{
     CATEGORY_BIT, ColourMap, ColourTable, Palette, Rgb, SCALE_ENTRIES, category, fraction, is_dark,
     linear,
@@ -56,6 +57,7 @@ pub use device::{ADAPTER_VARIABLE, AdapterName, Gpu, adapters, optional_features
 pub use error::{CameraError, DeviceError};
 pub use expand::{ExpandedVertex, Wanted};
 pub use frame::{Frame, Tile, shows};
+pub use framing::{Ball, DEFAULT_FOV, Side};
 pub use image::{Image, PngWriter};
 pub use legend::{Legend, nice_length, scale_bar};
 pub use maker::{SURFACE_VERTEX_WGSL, VertexMaker};
