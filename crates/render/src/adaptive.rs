@@ -1,8 +1,10 @@
 //! The maker of vertices that refines on the fly: a scene and how it is refined.
 
+use crate::bounds::any_shows;
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::Frame;
+use crate::framing::Ball;
 use crate::maker::VertexMaker;
 use crate::readback::FrameStats;
 use crate::refiner::{FramePlan, Refiner};
@@ -17,6 +19,7 @@ pub struct Adaptive {
     refining: Refining,
     sub_pixels: f64,
     plan: FramePlan,
+    bounds: Option<Vec<Ball>>,
 }
 
 impl Adaptive {
@@ -36,6 +39,7 @@ impl Adaptive {
             refining,
             sub_pixels: f64::from(sub_pixels.max(1)),
             plan: FramePlan::default(),
+            bounds: None,
         })
     }
 
@@ -49,9 +53,16 @@ impl Adaptive {
         self.refining = refining;
     }
 
+    /// Balls that hold all that the scene shows (µm, in the world): tiles of a picture without any are
+    /// left out. [`bounds`](crate::bounds) makes them from a mesh.
+    pub fn set_bounds(&mut self, balls: Vec<Ball>) {
+        self.bounds = Some(balls);
+    }
+
     /// Other instances, or another scene, from the next frame on.
     pub fn set_scene(&mut self, scene: Scene) {
         self.scene = scene;
+        self.bounds = None;
         self.plan = FramePlan::default();
     }
 
@@ -87,6 +98,11 @@ impl Adaptive {
 }
 
 impl VertexMaker for Adaptive {
+    fn shows(&self, frame: &Frame) -> bool {
+        let balls = self.bounds.as_ref();
+        balls.is_none_or(|balls| any_shows(balls, frame))
+    }
+
     fn wgsl(&self) -> String {
         Refiner::vertex_wgsl()
     }

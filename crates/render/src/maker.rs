@@ -33,6 +33,11 @@ pub trait VertexMaker {
     /// Layout of bind group 0.
     fn layout(&self) -> &wgpu::BindGroupLayout;
 
+    /// Whether anything may show in a frame: tiles in which nothing does are not drawn.
+    fn shows(&self, _frame: &Frame) -> bool {
+        true
+    }
+
     /// What must be uploaded before a frame can be drawn. Gives the number of rounds that draw it:
     /// one after the other, each chosen, then drawn.
     ///

@@ -29,6 +29,18 @@ pub(crate) struct Finishing {
     pub(crate) background: Option<Rgb>,
 }
 
+impl Finishing {
+    /// What is kept of a tile.
+    fn without_margin(&self, frame: &Frame) -> Frame {
+        let mut kept = *frame;
+        kept.tile.x += self.margin as i32;
+        kept.tile.y += self.margin as i32;
+        kept.tile.width -= 2 * self.margin;
+        kept.tile.height -= 2 * self.margin;
+        kept
+    }
+}
+
 /// Textures and buffers for one tile of the greatest size.
 struct Targets {
     colour: wgpu::TextureView,
@@ -102,6 +114,14 @@ impl<'g> Painter<'g> {
         finishing: &Finishing,
     ) -> Result<Vec<u8>, DeviceError> {
         let size = [frame.tile.width, frame.tile.height];
+        let empty = finishing
+            .background
+            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        if !maker.shows(&finishing.without_margin(frame)) {
+            let pixel = finishing.scale * finishing.scale;
+            let [width, height] = size.map(|n| n - 2 * finishing.margin);
+            return Ok(empty.repeat((width * height / pixel) as usize));
+        }
         if self.targets.as_ref().is_none_or(|t| t.size != size) {
             self.targets = Some(Targets::new(self.gpu, size, self.samples));
             self.gpu.check()?;
@@ -112,9 +132,6 @@ impl<'g> Painter<'g> {
         let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
         let [r, g, b] = linear(finishing.background.unwrap_or_default());
-        let empty = finishing
-            .background
-            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let finish = Finish {
             radius,
             most,

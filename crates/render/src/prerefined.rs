@@ -12,9 +12,11 @@ use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, SurfaceVertex};
 use neurotess_refine::{Levels, RefineOptions, Refinement};
 
+use crate::bounds::{any_shows, bounds};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::{Frame, shows};
+use crate::framing::Ball;
 use crate::maker::VertexMaker;
 
 /// Triangles in a run: some thousand, so that tests for showing cost nothing beside drawing.
@@ -103,6 +105,7 @@ pub struct Prerefined {
     placements: wgpu::Buffer,
     origins: Vec<DVec3>,
     chunks: Vec<Chunk>,
+    bounds: Vec<Ball>,
     resident: Resident,
     drawn: usize,
     /// Whether triangles have corners of their own, as wireframes need.
@@ -133,6 +136,7 @@ impl Prerefined {
             placements,
             origins: meshes.iter().map(|m| m.mesh.origin).collect(),
             chunks: Vec::new(),
+            bounds: meshes.iter().flat_map(|m| bounds(m.mesh)).collect(),
             resident: Resident::default(),
             drawn: 0,
             barycentric,
@@ -245,6 +249,10 @@ impl Prerefined {
 }
 
 impl VertexMaker for Prerefined {
+    fn shows(&self, frame: &Frame) -> bool {
+        any_shows(&self.bounds, frame)
+    }
+
     fn wgsl(&self) -> String {
         let barycentric = self.barycentric;
         format!("const BARYCENTRIC: bool = {barycentric};\n{}", WGSL)

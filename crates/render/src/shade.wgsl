@@ -120,8 +120,9 @@ struct Sample {
     @location(0) colour: vec4<f32>,
     // Normal in the view, from -1..1 to 0..1.
     @location(1) normal: vec4<f32>,
-    // µm along the sight. As a colour, since OpenGL cannot load from depth textures.
-    @location(2) depth: f32,
+    // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
+    // draw to floating-point ones.
+    @location(2) depth: vec4<f32>,
     MASK_MEMBER
 }
 
@@ -145,9 +146,9 @@ fn wires(grid: vec2<f32>) -> f32 {
     let width = max(fwidth(g), vec3(1e-6));
     let distance = abs(fract(g - 0.5) - 0.5) / width;
     let nearest = min(distance.x, min(distance.y, distance.z));
-    // Where lines would touch one another they fade.
+    // Where lines would touch one another they fade to a tint.
     let crowded = max(width.x, max(width.y, width.z)) * shade.wire * 4.0;
-    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.0, 1.0);
+    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
 }
 
 fn bayer(p: vec2<u32>) -> f32 {
@@ -176,7 +177,7 @@ fn fragment(in: Varying) -> Sample {
     if shade.wire > 0.0 {
         let luminance = dot(colour, vec3(0.2126, 0.7152, 0.0722));
         let line = select(vec3(0.22), colour * 0.06, luminance > 0.06);
-        colour = mix(colour, line, wires(in.grid));
+        colour = mix(colour, line, wires(in.grid) * (1.0 - in.thin));
     }
     if shade.lit > 0.0 {
         colour = light(colour, n, to_eye);
@@ -184,7 +185,7 @@ fn fragment(in: Varying) -> Sample {
     var out: Sample;
     out.colour = vec4(colour, 1.0);
     out.normal = vec4(n * 0.5 + 0.5, 1.0);
-    out.depth = -dot(in.relative, shade.backward);
+    out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
     MASK_STATEMENT
     return out;
 }

@@ -67,6 +67,26 @@ fn tiles_fit_together() {
 }
 
 #[test]
+fn bounds_hold_the_refined_surface() {
+    let mesh = mesh(CELL);
+    let balls = neurotess_render::bounds(&mesh);
+    let levels = neurotess_refine::Levels::Homogeneous(9);
+    let options = neurotess_refine::RefineOptions::default();
+    let refined = neurotess_refine::Refinement::new(&mesh, &levels, &options);
+    let surface = neurotess_mesh::SurfaceMesh::collect(&refined);
+    for vertex in &surface.vertices {
+        let p = mesh.origin + vertex.position.as_dvec3();
+        assert!(
+            balls
+                .iter()
+                .any(|&(center, radius)| p.distance(center) <= radius)
+        );
+    }
+    let mean = balls.iter().map(|&(_, radius)| radius).sum::<f64>() / balls.len() as f64;
+    assert!(mean < 30.0, "of little use: {mean}");
+}
+
+#[test]
 fn every_size_has_its_picture() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);

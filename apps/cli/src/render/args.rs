@@ -77,18 +77,18 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
           help_heading = "Picture")]
     pub(crate) scale_bar: Option<Fit>,
-    /// How vertices are made
-    #[arg(long, value_enum, default_value_t = LodArg::Prerefined, value_name = "MODE",
-          help_heading = "Refinement")]
-    pub(crate) lod: LodArg,
+    /// How vertices are made [default: adaptive; homogeneous where --level is given]
+    #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
+    pub(crate) lod: Option<LodArg>,
     /// Subdivisions per coarse edge everywhere, 1 to 64, instead of --pixels
     #[arg(long, value_name = "N", help_heading = "Refinement", conflicts_with = "pixels",
           value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) level: Option<u32>,
-    /// Farthest that the surface may be from the level-64 one (pixels)
-    #[arg(long, default_value_t = 0.25, value_name = "P", value_parser = crate::args::positive,
+    /// Farthest that the surface may be from the level-64 one (pixels) [default: 0.25, with
+    /// --wireframe 1]
+    #[arg(long, value_name = "P", value_parser = crate::args::positive,
           help_heading = "Refinement")]
-    pub(crate) pixels: f64,
+    pub(crate) pixels: Option<f64>,
     /// Look from this side; the camera fits the scene
     #[arg(long, value_enum, default_value_t = ViewArg::Front, value_name = "SIDE",
           help_heading = "Camera")]
@@ -171,6 +171,12 @@ pub(crate) struct RenderArgs {
 }
 
 impl RenderArgs {
+    /// Greatest error (pixels): unseen, or such that a wireframe shows triangles and not a grid.
+    pub(crate) fn error(&self) -> f64 {
+        self.pixels
+            .unwrap_or(if self.wireframe { 1.0 } else { 0.25 })
+    }
+
     /// Number of pictures of a series; none: one picture.
     pub(crate) fn series(&self) -> Option<u32> {
         self.turntable.then(|| self.frames.unwrap_or(36))
@@ -199,6 +205,10 @@ pub(crate) enum ColorBy {
 /// `--lod`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LodArg {
+    /// As it is drawn, as fine as --pixels asks for
+    Adaptive,
+    /// As it is drawn, at --level everywhere
+    Homogeneous,
     /// Refined beforehand, whole in the adapter's memory
     Prerefined,
 }
@@ -272,7 +282,7 @@ impl FromStr for Colour {
             other => {
                 let digits = other.strip_prefix('#').unwrap_or(other);
                 let number = u32::from_str_radix(digits, 16).ok();
-                let number = number.filter(|_| digits.len() == 6 && digits.is_ascii());
+                let number = number.filter(|_| digits.len() == 6 && !digits.starts_with('+'));
                 let [_, r, g, b] = number
                     .ok_or("white, black, grey or RRGGBB is needed, as in 102030")?
                     .to_be_bytes();

@@ -7,6 +7,7 @@
 pub(crate) mod args;
 mod cells;
 mod colouring;
+mod maker;
 mod sight;
 mod stats;
 
@@ -14,10 +15,9 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use neurotess::refine::{Levels, RefineOptions};
 use neurotess::render::{
-    Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, Painted,
-    PictureOptions, PngWriter, Prerefined, paint,
+    Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, PictureOptions,
+    PngWriter, paint,
 };
 
 use crate::info::{Entry, MORPHOLOGIES};
@@ -25,9 +25,10 @@ use crate::inputs::Inputs;
 use crate::output::{Output, OutputError, broken, refuse_existing};
 use crate::progress::Progress;
 use crate::report::{Reporter, count, usage};
-use args::{Fit, LodArg, RenderArgs};
+use args::{Fit, RenderArgs};
 use cells::Cell;
 use colouring::Colouring;
+use maker::Maker;
 use stats::Stats;
 
 /// Width (pixels) of the lines of a wireframe.
@@ -36,6 +37,7 @@ const WIRE: f32 = 1.0;
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let files = files(args)?;
+    maker::mode(args)?;
     for file in files.iter().chain(&args.stats) {
         refuse_existing(file, args.force)?;
     }
@@ -59,9 +61,16 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     }
     let colouring = colouring::colouring(&cells, args);
     let (overlay, cameras) = overlay(args, &colouring, cameras, &balls);
-    let stats = draw(
-        &gpu, args, &cells, &colouring, &cameras, &balls, &overlay, &files, reporter,
-    )?;
+    let sitting = Sitting {
+        args,
+        cells: &cells,
+        colouring: &colouring,
+        cameras: &cameras,
+        balls: &balls,
+        overlay: &overlay,
+        files: &files,
+    };
+    let stats = draw(&gpu, &sitting, reporter)?;
     if let Some(path) = &args.stats {
         let mut output = Output::create(path, args.force)?;
         serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
@@ -120,18 +129,27 @@ fn overlay(
     (overlay, cameras)
 }
 
-#[expect(clippy::too_many_arguments, reason = "each is a subject of its own")]
-fn draw(
-    gpu: &Gpu,
-    args: &RenderArgs,
-    cells: &[&Cell],
-    colouring: &Colouring,
-    cameras: &[Camera],
-    balls: &[Ball],
-    overlay: &Overlay,
-    files: &[PathBuf],
-    reporter: &Reporter,
-) -> anyhow::Result<Stats> {
+/// What is drawn, from where, and into which files.
+struct Sitting<'a> {
+    args: &'a RenderArgs,
+    cells: &'a [&'a Cell],
+    colouring: &'a Colouring,
+    cameras: &'a [Camera],
+    balls: &'a [Ball],
+    overlay: &'a Overlay,
+    files: &'a [PathBuf],
+}
+
+fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result<Stats> {
+    let Sitting {
+        args,
+        cells,
+        colouring,
+        cameras,
+        balls,
+        overlay,
+        files,
+    } = *sitting;
     let options = picture_options(args);
     if options.samples_taken() != args.samples {
         let taken = options.samples_taken();
@@ -140,68 +158,26 @@ fn draw(
     if overlay.legend_left_out {
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
-    let painted: Vec<Painted<'_>> = cells
-        .iter()
-        .zip(&colouring.words)
-        .map(|(cell, words)| Painted {
-            mesh: &cell.mesh,
-            words,
-        })
-        .collect();
-    let [width, height] = options.size.map(f64::from);
-    let nearest = cameras
-        .iter()
-        .map(|camera| camera.nearest_seen(width / height, balls));
-    let nearest = nearest.fold(f64::MAX, f64::min);
-    let LodArg::Prerefined = args.lod;
-    let mut maker = Prerefined::new(
-        gpu,
-        &painted,
-        |cell| levels(args, cells[cell], cameras, nearest),
-        &RefineOptions::default(),
-        args.wireframe,
-    )?;
-    let mut stats = Stats::new(gpu, cells, &maker);
+    let mut maker = Maker::new(gpu, args, &options, cells, colouring, cameras, balls)?;
+    let mut stats = Stats::new(gpu, cells.len());
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (camera, file) in cameras.iter().zip(files) {
+        let near = camera.near(balls);
         let cost = write(file, args, |take| {
-            paint(
-                gpu,
-                &mut maker,
-                camera,
-                camera.near(balls),
-                &colouring.table,
-                &options,
-                |top, mut band| {
-                    overlay.lay_on(top, &mut band);
-                    take(&band)
-                },
-            )
-            .map_err(|e| anyhow::anyhow!("{e}"))
+            let lay = |top: u32, mut band: Image| {
+                overlay.lay_on(top, &mut band);
+                take(&band)
+            };
+            let table = &colouring.table;
+            paint(gpu, maker.as_maker(), camera, near, table, &options, lay)
+                .map_err(|e| anyhow::anyhow!("{e}"))
         })?;
-        stats.add(&cost, &maker);
+        stats.add(&cost, maker.made(gpu, camera, near, &options)?);
         progress.done();
     }
     drop(progress);
     reporter.note(&count(files.len(), "picture"));
     Ok(stats)
-}
-
-/// Levels of a cell: as told, or by the error that shows from the one camera; where it moves, from
-/// the nearest that anything seen ever is.
-fn levels(args: &RenderArgs, cell: &Cell, cameras: &[Camera], nearest: f64) -> Levels<'static> {
-    let height = f64::from(args.size.0[1]);
-    match (args.level, cameras) {
-        (Some(level), _) => Levels::Homogeneous(level),
-        (None, [camera]) => Levels::PixelError {
-            view: camera.refine_view(cell.mesh.origin, height, nearest),
-            pixels: args.pixels as f32,
-        },
-        (None, _) => {
-            let slope = cameras.first().map_or(1.0, |c| c.pixel_slope(height));
-            Levels::MaxError((args.pixels * slope * nearest) as f32)
-        }
-    }
 }
 
 fn picture_options(args: &RenderArgs) -> PictureOptions {

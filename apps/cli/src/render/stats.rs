@@ -3,28 +3,28 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use neurotess::render::{Cost, Gpu, Prerefined};
+use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
 
 use super::cells::Cell;
+use super::maker::Made;
 use crate::info::{Entry, Failed};
 
 /// The contract's object; times are of the last picture.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Stats {
     adapter: String,
     backend: String,
     software: bool,
     neurons: usize,
-    patches: usize,
-    patches_drawn: usize,
-    vertices: usize,
-    triangles: usize,
-    triangles_drawn: usize,
+    patches: u64,
+    patches_drawn: u64,
+    vertices: u64,
+    triangles: u64,
     gpu_bytes: BTreeMap<&'static str, u64>,
     bytes_per_point: f64,
     frame_ms: FrameTime,
-    level_histogram: BTreeMap<u32, usize>,
+    level_histogram: BTreeMap<u32, u64>,
     tiles: usize,
     pictures: usize,
 }
@@ -39,39 +39,28 @@ struct FrameTime {
 }
 
 impl Stats {
-    /// Of what is resident.
-    pub(crate) fn new(gpu: &Gpu, cells: &[&Cell], maker: &Prerefined) -> Self {
-        let resident = maker.resident();
-        let bytes = [
-            ("vertices", resident.vertex_bytes),
-            ("corners", resident.corner_bytes),
-        ];
-        let sum: u64 = bytes.iter().map(|(_, bytes)| bytes).sum();
+    /// Of nothing drawn yet.
+    pub(crate) fn new(gpu: &Gpu, neurons: usize) -> Self {
         Self {
             adapter: gpu.adapter.name.clone(),
             backend: gpu.adapter.backend.clone(),
             software: gpu.adapter.software,
-            neurons: cells.len(),
-            patches: resident.patches,
-            patches_drawn: resident.patches,
-            vertices: resident.vertices,
-            triangles: resident.triangles,
-            triangles_drawn: 0,
-            gpu_bytes: bytes.into_iter().collect(),
-            bytes_per_point: sum as f64 / resident.points.max(1) as f64,
-            frame_ms: FrameTime::default(),
-            level_histogram: resident.levels.clone(),
-            tiles: 0,
-            pictures: 0,
+            neurons,
+            ..Self::default()
         }
     }
 
     /// One more picture.
-    pub(crate) fn add(&mut self, cost: &Cost, maker: &Prerefined) {
+    pub(crate) fn add(&mut self, cost: &Cost, made: Made) {
         self.pictures += 1;
         self.tiles = cost.tiles;
-        self.triangles_drawn = maker.drawn();
-        self.patches_drawn = maker.patches_drawn();
+        self.patches = made.patches;
+        self.patches_drawn = made.patches_drawn;
+        self.vertices = made.vertices;
+        self.triangles = made.triangles;
+        self.level_histogram = made.levels;
+        self.bytes_per_point = made.bytes_per_point;
+        self.gpu_bytes = made.bytes;
         self.gpu_bytes.insert("targets", cost.target_bytes);
         self.frame_ms = FrameTime {
             cpu: cost.cpu_ms,

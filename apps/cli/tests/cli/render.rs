@@ -98,9 +98,11 @@ fn every_option_of_the_contract_draws() {
     }
     let plain = picture("").pixels;
     for arguments in [
-        "--level 2",
+        "--level 1",
+        "--lod homogeneous --level 2",
         "--pixels 2",
-        "--lod prerefined --samples 1",
+        "--lod prerefined --level 1",
+        "--samples 1",
         "--background 203040",
         "--transparent",
         "--color-by neurite",
@@ -138,6 +140,37 @@ fn every_option_of_the_contract_draws() {
 }
 
 #[test]
+fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
+    if !can_draw() {
+        return;
+    }
+    let drawn = |arguments: &str| {
+        let (work, _) = drawn(&format!("--stats stats.json {arguments}"));
+        let stats = fs::read_to_string(work.path("stats.json")).expect("stats");
+        let stats: Value = serde_json::from_str(&stats).expect("JSON");
+        (Picture::read(&work, "cell.png").pixels, stats)
+    };
+    let (stored, _) = drawn("--lod prerefined --level 4");
+    let (made, four) = drawn("--level 4");
+    // A line along a pixel's border may fall to either side.
+    let apart = stored
+        .iter()
+        .zip(&made)
+        .filter(|(a, b)| a.abs_diff(**b) > 24)
+        .count();
+    assert!(apart * 200 < stored.len(), "{apart} of {}", stored.len());
+    let (_, sixteen) = drawn("--level 16");
+    assert!(sixteen["triangles"].as_u64() > four["triangles"].as_u64());
+    assert_eq!(sixteen["bytes_per_point"], four["bytes_per_point"]);
+    assert_eq!(
+        four["level_histogram"]
+            .as_object()
+            .map(serde_json::Map::len),
+        Some(1)
+    );
+}
+
+#[test]
 fn transparent_pictures_have_alpha() {
     if !can_draw() {
         return;
@@ -166,7 +199,11 @@ fn stats_have_the_keys_of_the_contract() {
         assert!(stats[key].as_u64().is_some_and(|n| n > 0), "{key}: {stats}");
     }
     assert!(stats["adapter"].is_string() && stats["backend"].is_string());
-    assert!(stats["gpu_bytes"]["vertices"].as_u64() > Some(0));
+    let bytes = stats["gpu_bytes"].as_object().expect("by buffer");
+    assert!(
+        bytes.len() > 3 && bytes.values().all(Value::is_u64),
+        "{bytes:?}"
+    );
     assert!(stats["bytes_per_point"].as_f64() > Some(1.0));
     assert!(stats["frame_ms"]["cpu"].as_f64() > Some(0.0));
     assert!(stats["level_histogram"].is_object());
@@ -266,6 +303,32 @@ fn files_stay_without_force_and_nothing_is_left_half_written() {
     assert_eq!(work.names("."), ["bad.swc", "cell.png", "cell.swc"]);
 }
 
+/// Drivers are hidden by the variables of the loaders that Linux has.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_an_adapter_it_says_what_to_install() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = |arguments: &str| {
+        let mut command = work.command(arguments);
+        for variable in [
+            "VK_DRIVER_FILES",
+            "VK_ICD_FILENAMES",
+            "__EGL_VENDOR_LIBRARY_FILENAMES",
+            "LIBGL_DRIVERS_PATH",
+        ] {
+            command.env(variable, "/nonexistent");
+        }
+        Run(command.output().expect("it runs"))
+    };
+    let drawn = run("render cell.swc -o cell.png").exits(1);
+    assert_eq!(drawn.errors().len(), 1, "{}", drawn.stderr());
+    assert!(drawn.errors()[0].contains("install"), "{}", drawn.stderr());
+    assert_eq!(work.names("."), ["cell.swc"]);
+    let version = run("--version -v").exits(0).stdout();
+    assert!(version.contains("adapter: none"), "{version}");
+}
+
 #[test]
 fn wrong_usage_of_render_exits_with_2() {
     let work = Work::new();
@@ -276,6 +339,7 @@ fn wrong_usage_of_render_exits_with_2() {
         "render cell.swc -o cell.png --size 0x5",
         "render cell.swc -o cell.png --samples 65",
         "render cell.swc -o cell.png --level 65",
+        "render cell.swc -o cell.png --lod adaptive --level 3",
         "render cell.swc -o cell.png --level 3 --pixels 1",
         "render cell.swc -o cell.png --background reddish",
         "render cell.swc -o cell.png --transparent --background white",
