@@ -105,9 +105,9 @@ fn an_edge_whose_faces_disagree_is_found() {
         (
             "select(levels.y, levels.w, i == 0u)",
             "select(max(levels.y / 2u, 1u), levels.w, i == 0u)",
-            0,
+            1,
         ),
-        ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 1),
+        ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 2),
     ] {
         let maker = |drawn: usize| {
             let text = Refiner::vertex_wgsl(drawn);
