@@ -42,7 +42,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
 // Column i and row j of a listed patch. Those beyond its grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     if (decided_kind(listed.y) == DECIDED_TUBE) {
-        if (all(decided_levels(listed.y) == vec4<u32>(1u))) {
+        if (is_whole(listed.y)) {
             return listed_bare_vertex(listed, i, j);
         }
         return listed_tube_vertex(listed, i, j);
@@ -50,13 +50,13 @@ fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     return listed_other_vertex(listed, i, j);
 }
 
-// A tube's patch at level 1 has no vertices but those of its two rings.
+// A whole tube at level 1 has no vertices but those of its two rings.
 fn listed_bare_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let part = placed[owners[listed.x / CLUSTER]];
     let index = listed.x - part.first_slot;
     let point = index / 4u + min(j, 1u);
     let words = point_words(part.base, point);
-    let v = ring_corner(own_ring(part.base, point, words), (index + min(i, 1u)) & 3u);
+    let v = ring_corner(own_ring(part.base, point, words), i & 3u);
     return SurfaceVertex(
         relative(part, v.position),
         turned(part, v.normal) / part.scale,
