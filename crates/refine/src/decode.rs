@@ -6,6 +6,7 @@
 //! | ball, for 32 points | 16 | centre, radius |
 //! | loose vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
 //! | anchor | 32 | centre, reach, radius, tangent, role, word |
+//! | patch of a soma | 6 | four loose vertices |
 //! | loose patch | 8 | four loose vertices, kind |
 //! | cap | 4 | its ring |
 //!

@@ -78,22 +78,53 @@ fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
     return a * (1.0 - t) + b * t;
 }
 
+// A point of the tube between two rings' corners a, b and d, c, with its derivatives.
+struct TubePoint {
+    position: vec3<f32>,
+    by_x: vec3<f32>,
+    by_y: vec3<f32>,
+    // Where the surface faces, not yet of unit length.
+    radial: vec3<f32>,
+    // Point of the centre line.
+    axis: vec3<f32>,
+}
+
+// The one expression for tubes and their edges, so that different shaders find the same bits: a ring
+// from a to b is tube_point(a, b, b, a, x, 0), an edge along the path tube_point(a, a, d, d, 0, y).
+fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: f32) -> TubePoint {
+    let offset_near = blend(a.offset, b.offset, x);
+    let offset_far = blend(d.offset, c.offset, x);
+    let offset = blend(offset_near, offset_far, y);
+    let offset_x = blend(b.offset - a.offset, c.offset - d.offset, y);
+    let offset_y = offset_far - offset_near;
+    let radial_near = blend(a.radial, b.radial, x);
+    let radial_far = blend(d.radial, c.radial, x);
+    let radial = blend(radial_near, radial_far, y);
+    let radial_x = blend(b.radial - a.radial, c.radial - d.radial, y);
+    let radial_y = radial_far - radial_near;
+    let center = center_line(a, d, path, y);
+    let around = over_length(offset, offset_x, radial, radial_x);
+    let along = over_length(offset, offset_y, radial, radial_y);
+    return TubePoint(
+        center.position + around.position,
+        around.derivative,
+        center.derivative + along.derivative,
+        radial,
+        center.position,
+    );
+}
+
 // A point of an edge, t in [0, 1] from a to b.
 fn edge(kind: u32, a: Corner, b: Corner, path: u32, t: f32) -> Jet {
     if (kind == EDGE_SOMA) {
         return cubic(soma_controls(a, b), t);
     }
-    let offset = over_length(
-        blend(a.offset, b.offset, t),
-        b.offset - a.offset,
-        blend(a.radial, b.radial, t),
-        b.radial - a.radial,
-    );
     if (kind == EDGE_RING) {
-        return Jet(a.center + offset.position, offset.derivative);
+        let point = tube_point(a, b, b, a, path, t, 0.0);
+        return Jet(point.position, point.by_x);
     }
-    let center = center_line(a, b, path, t);
-    return Jet(center.position + offset.position, center.derivative + offset.derivative);
+    let point = tube_point(a, a, b, b, path, 0.0, t);
+    return Jet(point.position, point.by_y);
 }
 
 // Control points of a soma edge.
@@ -156,31 +187,19 @@ fn interior(shape: PatchShape, path: u32, caps: u32, x: f32, y: f32) -> Inside {
 }
 
 fn lateral(shape: PatchShape, path: u32, x: f32, y: f32) -> Inside {
-    let a = shape.a;
-    let b = shape.b;
-    let c = shape.c;
-    let d = shape.d;
-    let offset_near = blend(a.offset, b.offset, x);
-    let offset_far = blend(d.offset, c.offset, x);
-    let offset = blend(offset_near, offset_far, y);
-    let offset_x = blend(b.offset - a.offset, c.offset - d.offset, y);
-    let offset_y = offset_far - offset_near;
-    let radial_near = blend(a.radial, b.radial, x);
-    let radial_far = blend(d.radial, c.radial, x);
-    let radial = blend(radial_near, radial_far, y);
-    let radial_x = blend(b.radial - a.radial, c.radial - d.radial, y);
-    let radial_y = radial_far - radial_near;
-    let center = center_line(a, d, path, y);
-    let around = over_length(offset, offset_x, radial, radial_x);
-    let along = over_length(offset, offset_y, radial, radial_y);
-    let outwards = normalize_or(radial, a.normal);
+    let point = tube_point(shape.a, shape.b, shape.c, shape.d, path, x, y);
+    return Inside(point.position, tube_normal(point, shape.a.normal));
+}
+
+// Normal inside a tube's patch.
+fn tube_normal(point: TubePoint, otherwise: vec3<f32>) -> vec3<f32> {
+    let outwards = normalize_or(point.radial, otherwise);
     // A sharp bend folds the surface over; light it as the tube that it is part of.
-    var normal = cross(around.derivative, center.derivative + along.derivative);
-    normal = normalize_or(normal, outwards);
+    let normal = normalize_or(cross(point.by_x, point.by_y), outwards);
     if (!(dot(normal, outwards) > 0.0)) {
-        normal = outwards;
+        return outwards;
     }
-    return Inside(center.position + around.position, normal);
+    return normal;
 }
 
 // A side from corner `from` to corner `to` in the patch's coordinate.

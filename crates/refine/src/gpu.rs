@@ -1,7 +1,7 @@
 //! What shaders share with this crate: constants, structs and the twins of its functions.
 //!
 //! A shader is composed by joining [`prelude`], [`EVALUATE_WGSL`], [`LEVEL_WGSL`],
-//! [`TEMPLATE_WGSL`] and [`PLAN_WGSL`] with its own text: [`compose`]. Constants go one way, from
+//! [`TEMPLATE_WGSL`], [`PLAN_WGSL`] and [`TUBE_WGSL`] with its own text: [`compose`]. Constants go one way, from
 //! Rust into the prelude; layouts are compared field by field in `tests/shaders.rs`.
 
 use std::fmt::Write;
@@ -40,10 +40,19 @@ const LEVELS_DISTANCE: u32 = 3;
 const LEVELS_PIXEL_SIZE: u32 = 4;
 const LEVELS_PIXEL_ERROR: u32 = 5;
 
+/// Vertices of plain tubes, the quick way.
+pub const TUBE_WGSL: &str = include_str!("tube.wgsl");
+
 /// A shader's whole text: constants, the twins, and what is its own.
 pub fn compose(own: &[&str]) -> String {
     let mut text = prelude();
-    for part in [EVALUATE_WGSL, LEVEL_WGSL, TEMPLATE_WGSL, PLAN_WGSL] {
+    for part in [
+        EVALUATE_WGSL,
+        LEVEL_WGSL,
+        TEMPLATE_WGSL,
+        PLAN_WGSL,
+        TUBE_WGSL,
+    ] {
         text.push_str(part);
     }
     own.iter().for_each(|part| text.push_str(part));

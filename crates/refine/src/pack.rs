@@ -7,24 +7,19 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::ball::{ball_around, patch_ball};
-use crate::decode::{
-    LOOSE, OwnRing, POINT_END, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_LOOSE, POINT_NARROWS,
-    POINT_ORDINARY, POINTS_OF_BALL, POSITION_STEPS, from_ball, octahedral, signed16, to_ball,
-    to_octahedral, to_signed16,
-};
+use crate::decode::{OwnRing, POINTS_OF_BALL};
+use crate::loose::accurate;
 use crate::runs::{Run, find_runs, own_ring};
 
 /// Places of patches that a ball is for.
 pub const PLACES_OF_BALL: usize = 4 * POINTS_OF_BALL;
 /// Most loose vertices of a part: their numbers have 15 bits.
 const MOST_LOOSE: usize = 1 << 15;
-/// Most different words of a part's points.
-const MOST_WORDS: usize = 1 << 10;
-/// Largest error of a point's centre, in its radii.
-const MOST_CENTER_ERROR: f32 = 0.002;
+/// Loose vertices whose numbers fit somata's patches: 12 bits.
+const FEW_LOOSE: usize = 1 << 12;
 
 /// Where the arrays of a part begin in its heap, in words, and how many there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,9 +34,13 @@ pub struct Places {
     pub loose: u32,
     /// Anchors.
     pub anchors: u32,
-    /// Loose patches.
+    /// Somata's patches.
+    pub soma: u32,
+    /// Number of somata's patches.
+    pub soma_count: u32,
+    /// Other loose patches.
     pub quads: u32,
-    /// Number of loose patches.
+    /// Number of other loose patches.
     pub quad_count: u32,
     /// Caps.
     pub caps: u32,
@@ -61,9 +60,9 @@ pub struct Part {
     /// Ball around each [`PLACES_OF_BALL`] patches, at any level (µm).
     pub balls: Vec<(Vec3, f32)>,
     /// By vertex of the mesh that is in this part: position and normal as shaders read them.
-    vertices: Vec<(u32, Vec3, Vec3)>,
+    pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
     /// By tracing point: centre, radius and tangent as shaders read them.
-    tracing: Vec<(u32, Vec3, f32, Vec3)>,
+    pub(crate) tracing: Vec<(u32, Vec3, f32, Vec3)>,
 }
 
 impl Part {
@@ -75,12 +74,13 @@ impl Part {
             "balls",
             "loose_vertices",
             "anchors",
+            "soma_patches",
             "loose_patches",
             "caps",
             "words",
         ];
         let starts = [
-            p.points, p.balls, p.loose, p.anchors, p.quads, p.caps, p.words,
+            p.points, p.balls, p.loose, p.anchors, p.soma, p.quads, p.caps, p.words,
         ];
         let ends = starts[1..].iter().copied().chain([self.heap.len() as u32]);
         let sizes = starts
@@ -120,24 +120,36 @@ pub fn dequantized(mesh: &CoarseMesh, parts: &[Part]) -> CoarseMesh {
 
 /// What goes into one part.
 #[derive(Default)]
-struct Pile {
+pub(crate) struct Pile {
     runs: Vec<usize>,
     others: Vec<usize>,
 }
 
-struct Packer<'m> {
-    mesh: &'m CoarseMesh,
+pub(crate) struct Packer<'m> {
+    pub(crate) mesh: &'m CoarseMesh,
     words: &'m [u32],
     values: &'m [u8],
-    runs: Vec<Run>,
-    others: Vec<usize>,
+    pub(crate) runs: Vec<Run>,
+    pub(crate) others: Vec<usize>,
     /// By vertex.
-    loose: Vec<bool>,
+    pub(crate) loose: Vec<bool>,
 }
 
 impl<'m> Packer<'m> {
     fn new(mesh: &'m CoarseMesh, words: &'m [u32], values: &'m [u8]) -> Self {
-        let (runs, others) = find_runs(mesh);
+        let (mut runs, others) = find_runs(mesh);
+        // Runs that are near one another share a ball: it is small, and its points are accurate.
+        let middle = |run: &Run| {
+            let ring = run.rings[run.rings.len() / 2];
+            mesh.tracing[mesh.vertices[ring[0] as usize].tracing as usize].center
+        };
+        let (low, high) = runs
+            .iter()
+            .map(middle)
+            .fold((Vec3::MAX, Vec3::MIN), |(low, high), p| {
+                (low.min(p), high.max(p))
+            });
+        runs.sort_by_key(|run| morton((middle(run) - low) / (high - low).max_element().max(1e-6)));
         let mut packer = Self {
             mesh,
             words,
@@ -150,88 +162,16 @@ impl<'m> Packer<'m> {
         packer
     }
 
-    /// A ring is its own if it is a circle, in one run only, and otherwise in its cap at most.
-    fn find_loose(&mut self) {
-        let mut uses = vec![0_u8; self.mesh.vertices.len()];
-        for ring in self.runs.iter().flat_map(|run| &run.rings) {
-            for &v in ring {
-                uses[v as usize] = uses[v as usize].saturating_add(1);
-            }
-        }
-        let mut at_end = vec![false; self.mesh.vertices.len()];
-        for run in &self.runs {
-            at_end[run.rings[0][0] as usize] = true;
-            at_end[run.rings[run.rings.len() - 1][0] as usize] = true;
-        }
-        for &other in &self.others {
-            let patch = &self.mesh.patches[other];
-            let ring = cap_ring(patch.corners).filter(|&(first, _)| at_end[first as usize]);
-            let plain = patch.kind == PatchKind::Cap && ring.is_some();
-            for v in patch.corners {
-                self.loose[v as usize] |= !plain || uses[v as usize] != 1;
-            }
-        }
-        for run in &self.runs {
-            for &ring in &run.rings {
-                let own = own_ring(self.mesh, ring).is_some();
-                let shared = ring
-                    .iter()
-                    .any(|&v| uses[v as usize] != 1 || self.loose[v as usize]);
-                if !own || shared {
-                    ring.iter().for_each(|&v| self.loose[v as usize] = true);
-                }
-            }
-        }
-        // In the worst of cases a ball holds points of two runs at the mesh's two ends.
-        let reach = |run: &Run| {
-            let centers = run.rings.iter().map(|ring| (self.center(ring[0]), 0.0));
-            ball_around(centers)
-        };
-        let whole = ball_around(self.runs.iter().map(reach)).1;
-        let near = self.runs.iter().any(|run| {
-            let mut rings = run
-                .rings
-                .iter()
-                .filter(|ring| !self.loose[ring[0] as usize]);
-            rings.any(|ring| !accurate(whole * 1.5, self.radius(ring[0])))
-        });
-        if near {
-            self.loosen_inaccurate();
-        }
-    }
-
-    /// Makes loose what the ball that it would be in is too large for.
-    fn loosen_inaccurate(&mut self) {
-        loop {
-            let mut found = Vec::new();
-            for pile in self.piles(usize::MAX) {
-                let rings = self.rings(&pile);
-                for chunk in rings.chunks(POINTS_OF_BALL) {
-                    let radius = self.ball(chunk).1;
-                    let own = chunk.iter().filter_map(|slot| slot.ring);
-                    let own = own.filter(|ring| !self.loose[ring[0] as usize]);
-                    found.extend(own.filter(|ring| !accurate(radius, self.radius(ring[0]))));
-                }
-            }
-            if found.is_empty() {
-                return;
-            }
-            for ring in found {
-                ring.iter().for_each(|&v| self.loose[v as usize] = true);
-            }
-        }
-    }
-
-    fn center(&self, vertex: u32) -> Vec3 {
+    pub(crate) fn center(&self, vertex: u32) -> Vec3 {
         self.mesh.tracing[self.mesh.vertices[vertex as usize].tracing as usize].center
     }
 
-    fn radius(&self, vertex: u32) -> f32 {
+    pub(crate) fn radius(&self, vertex: u32) -> f32 {
         self.mesh.tracing[self.mesh.vertices[vertex as usize].tracing as usize].radius
     }
 
     /// Runs and other patches by part, in the mesh's order.
-    fn piles(&self, most_places: usize) -> Vec<Pile> {
+    pub(crate) fn piles(&self, most_places: usize) -> Vec<Pile> {
         let mut piles = vec![Pile::default()];
         let (mut places, mut loose) = (PLACES_OF_BALL, 0);
         let mut room = |piles: &mut Vec<Pile>, more_places: usize, more_loose: usize| {
@@ -245,7 +185,8 @@ impl<'m> Packer<'m> {
         };
         for (i, run) in self.runs.iter().enumerate() {
             let used = run.rings.iter().filter(|ring| self.loose[ring[0] as usize]);
-            let pile = room(&mut piles, 4 * run.rings.len(), 4 * used.count());
+            let most = run.rings.len() + POINTS_OF_BALL;
+            let pile = room(&mut piles, 4 * most, 4 * used.count());
             piles[pile].runs.push(i);
         }
         for &other in &self.others {
@@ -279,9 +220,15 @@ impl<'m> Packer<'m> {
     }
 
     /// The rings of a pile, one after the other, with the patches that lead on.
-    fn rings(&self, pile: &Pile) -> Vec<Slot> {
+    pub(crate) fn rings(&self, pile: &Pile) -> Vec<Slot> {
         let mut slots = Vec::new();
         for run in pile.runs.iter().map(|&run| &self.runs[run]) {
+            if self.strays(&slots, run) {
+                slots.resize(
+                    slots.len().next_multiple_of(POINTS_OF_BALL),
+                    Slot::default(),
+                );
+            }
             for (i, &ring) in run.rings.iter().enumerate() {
                 let goes_on = i + 1 < run.rings.len();
                 slots.push(Slot {
@@ -297,7 +244,29 @@ impl<'m> Packer<'m> {
         slots
     }
 
-    fn ball(&self, slots: &[Slot]) -> (Vec3, f32) {
+    /// Whether a run had better begin with a ball of its own: a place left empty costs a fifth of what a
+    /// ring costs that is loose because its ball is too large.
+    fn strays(&self, slots: &[Slot], run: &Run) -> bool {
+        let begun = slots.len() % POINTS_OF_BALL;
+        if begun == 0 {
+            return false;
+        }
+        let free = POINTS_OF_BALL - begun;
+        let before = slots[slots.len() - begun..]
+            .iter()
+            .filter_map(|slot| slot.ring);
+        let rings: Vec<[u32; 4]> = before.chain(run.rings.iter().take(free).copied()).collect();
+        let centers = rings
+            .iter()
+            .map(|ring| (self.center(ring[0]), 4.0 * self.radius(ring[0])));
+        let ball = widened(ball_around(centers)).1;
+        let inaccurate = rings
+            .iter()
+            .filter(|ring| !accurate(ball, self.radius(ring[0])));
+        5 * inaccurate.count() > free
+    }
+
+    pub(crate) fn ball(&self, slots: &[Slot]) -> (Vec3, f32) {
         let patches = slots
             .iter()
             .filter_map(|slot| slot.patch)
@@ -310,167 +279,68 @@ impl<'m> Packer<'m> {
 
     fn part(&self, pile: &Pile) -> Part {
         let slots = self.rings(pile);
-        let (quads, caps): (Vec<usize>, Vec<usize>) = pile
+        let (others, caps): (Vec<usize>, Vec<usize>) = pile
             .others
             .iter()
             .partition(|&&other| self.loose[self.mesh.patches[other].corners[0] as usize]);
-        let mut part = Part::default();
-        let places = |slot: &Slot| [0, 1, 2, 3].map(|k| slot.patch.map(|patch| patch + k));
-        let all = slots
-            .iter()
-            .flat_map(places)
-            .chain(quads.iter().chain(&caps).map(|&p| Some(p)));
-        part.patches = all
-            .map(|patch| patch.map_or(u32::MAX, |p| p as u32))
-            .collect();
-        part.balls = slots
-            .chunks(POINTS_OF_BALL)
-            .map(|slots| self.ball(slots))
-            .collect();
-        let others: Vec<usize> = quads.iter().chain(&caps).copied().collect();
-        part.balls
-            .extend(others.chunks(PLACES_OF_BALL).map(|patches| {
-                let balls = patches
-                    .iter()
-                    .map(|&p| patch_ball(self.mesh, &self.mesh.patches[p]));
-                widened(ball_around(balls))
-            }));
-        self.write(&mut part, &slots, &quads, &caps);
-        part
-    }
-
-    fn write(&self, part: &mut Part, slots: &[Slot], quads: &[usize], caps: &[usize]) {
-        let rings = slots.iter().filter_map(|slot| slot.ring);
-        let in_quads = quads
-            .iter()
-            .flat_map(|&quad| self.mesh.patches[quad].corners);
-        let mut loose: Vec<u32> = rings.flatten().chain(in_quads).collect();
+        let corners = |patches: &[usize]| -> Vec<u32> {
+            let patches = patches
+                .iter()
+                .map(|&patch| self.mesh.patches[patch].corners);
+            patches.flatten().collect()
+        };
+        let rings = slots.iter().filter_map(|slot| slot.ring).flatten();
+        let mut loose: Vec<u32> = rings.chain(corners(&others)).collect();
         loose.retain(|&v| self.loose[v as usize]);
         loose.sort_unstable();
         loose.dedup();
-        let loose_id = |v: u32| loose.binary_search(&v).unwrap_or(0) as u32;
-        let own = slots
-            .iter()
-            .filter_map(|slot| slot.ring)
-            .filter_map(|ring| self.own(ring));
-        let words = Words::new(own.map(|own| self.word(own.tracing)));
-        let mut heap = Vec::new();
-        let mut point_of = BTreeMap::new();
-        for (i, slot) in slots.iter().enumerate() {
-            let goes_on = if slot.patch.is_some() {
-                POINT_GOES_ON
-            } else {
-                0
-            };
-            let own = slot
-                .ring
-                .and_then(|ring| self.own(ring).map(|own| (ring, own)));
-            if let Some((ring, own)) = own {
-                point_of.insert(ring[0], i as u32);
-                let ball = part.balls[i / POINTS_OF_BALL];
-                heap.extend(self.own_point(part, ring[0], &own, ball, goes_on, &words));
-            } else {
-                let [a, b, c, d] = slot.ring.map_or([0; 4], |ring| ring.map(loose_id));
-                let kind = POINT_LOOSE << POINT_KIND_SHIFT;
-                heap.extend([a | (b << 16), kind | goes_on, c | (d << 16), 0]);
-            }
-        }
-        let places = &mut part.places;
-        places.point_count = slots.len() as u32;
-        places.balls = heap.len() as u32;
-        for &(center, radius) in &part.balls {
-            heap.extend(center.extend(radius).to_array().map(f32::to_bits));
-        }
-        places.loose = heap.len() as u32;
-        let anchors = Anchors::new(self, &loose);
-        for &v in &loose {
-            let (words, position, normal) = anchors.loose(self, v);
-            heap.extend(words);
-            part.vertices.push((v, position, normal));
-        }
-        places.anchors = heap.len() as u32;
-        anchors.write(self, &mut heap, &mut part.tracing);
-        places.quads = heap.len() as u32;
-        places.quad_count = quads.len() as u32;
-        for patch in quads.iter().map(|&quad| &self.mesh.patches[quad]) {
-            let [a, b, c, d] = patch.corners.map(loose_id);
-            let kind = patch.kind as u32;
-            let (a, b) = (a | ((kind & 1) << 15), b | ((kind >> 1) << 15));
-            heap.extend([a | (b << 16), c | (d << 16)]);
-        }
-        places.caps = heap.len() as u32;
-        for &cap in caps {
-            let (first, reversed) = cap_ring(self.mesh.patches[cap].corners).unwrap_or((0, false));
-            let point = point_of.get(&first).copied().unwrap_or(0);
-            heap.push((point << 1) | u32::from(reversed));
-        }
-        places.words = heap.len() as u32;
-        heap.extend(&words.list);
-        part.heap = heap;
+        let few = loose.get(FEW_LOOSE).copied().unwrap_or(u32::MAX);
+        let (soma, quads): (Vec<usize>, Vec<usize>) = others.into_iter().partition(|&other| {
+            let patch = &self.mesh.patches[other];
+            patch.kind == PatchKind::Soma && patch.corners.iter().all(|&v| v < few)
+        });
+        self.write(&Contents {
+            slots,
+            loose,
+            soma,
+            quads,
+            caps,
+        })
     }
 
-    fn own(&self, ring: [u32; 4]) -> Option<OwnRing> {
+    pub(crate) fn own(&self, ring: [u32; 4]) -> Option<OwnRing> {
         let own = !self.loose[ring[0] as usize];
         own.then(|| own_ring(self.mesh, ring)).flatten()
     }
 
-    fn word(&self, tracing: u32) -> u32 {
+    pub(crate) fn word(&self, tracing: u32) -> u32 {
         self.words.get(tracing as usize).copied().unwrap_or(0)
     }
 
-    fn level(&self, tracing: u32) -> u32 {
+    pub(crate) fn level(&self, tracing: u32) -> u32 {
         let value = self.values.get(tracing as usize).copied().unwrap_or(1);
         u32::from(value.clamp(1, 64))
-    }
-
-    fn own_point(
-        &self,
-        part: &mut Part,
-        first: u32,
-        own: &OwnRing,
-        (middle, reach): (Vec3, f32),
-        goes_on: u32,
-        words: &Words,
-    ) -> [u32; 4] {
-        let point = &self.mesh.tracing[own.tracing as usize];
-        let place = to_ball(middle, reach, point.center);
-        let center = from_ball(middle, reach, place);
-        for k in 0..4 {
-            let (position, normal) = own.corner(center, k);
-            part.vertices.push((first + k, position, normal));
-        }
-        let radius = crate::decode::radius(own.radius);
-        part.tracing
-            .push((own.tracing, center, radius, own.tangent()));
-        let [x, y, z] = place;
-        let kind = if own.role == Role::End {
-            POINT_END
-        } else {
-            POINT_ORDINARY
-        };
-        let (slope, narrows) = own.slope;
-        let narrows = if narrows { POINT_NARROWS } else { 0 };
-        [
-            x | (y << 20),
-            (y >> 12) | (z << 8) | goes_on | narrows | (kind << POINT_KIND_SHIFT),
-            own.radius | (own.turn << 16) | ((self.level(own.tracing) - 1) << 26),
-            own.tangent.0
-                | (own.tangent.1 << 9)
-                | (slope << 18)
-                | (words.place(self.word(own.tracing)) << 22),
-        ]
     }
 }
 
 /// Place for a point: its ring, and the first of the patches that lead on.
 #[derive(Clone, Copy, Debug, Default)]
-struct Slot {
-    ring: Option<[u32; 4]>,
-    patch: Option<usize>,
+pub(crate) struct Slot {
+    pub(crate) ring: Option<[u32; 4]>,
+    pub(crate) patch: Option<usize>,
+}
+
+/// What goes into one part, in its order: patches by index, loose vertices sorted.
+pub(crate) struct Contents {
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) loose: Vec<u32>,
+    pub(crate) soma: Vec<usize>,
+    pub(crate) quads: Vec<usize>,
+    pub(crate) caps: Vec<usize>,
 }
 
 /// First vertex of the ring that a cap closes, and whether it runs the other way round.
-fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
+pub(crate) fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
     let first = corners.into_iter().min()?;
     let forwards = [0, 1, 2, 3].map(|k| first + k);
     let backwards = [3, 2, 1, 0].map(|k| first + k);
@@ -481,119 +351,16 @@ fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
     }
 }
 
-/// Whether a ball is small enough for a point of this radius.
-fn accurate(ball: f32, radius: f32) -> bool {
-    // Half a step in each of three directions.
-    ball / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
+/// Place on a curve that keeps near what is near: the bits of three coordinates from 0 to 1, in turns.
+fn morton(p: Vec3) -> u32 {
+    let spread = |c: f32| {
+        let bits = (c.clamp(0.0, 1.0) * 1023.0) as u32;
+        (0..10).fold(0, |sum, i| sum | (((bits >> i) & 1) << (3 * i)))
+    };
+    spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2)
 }
 
 /// Room for what rounding moves.
-fn widened((center, radius): (Vec3, f32)) -> (Vec3, f32) {
+pub(crate) fn widened((center, radius): (Vec3, f32)) -> (Vec3, f32) {
     (center, radius * 1.01 + 1e-6)
 }
-
-/// Different words of a part's points.
-struct Words {
-    list: Vec<u32>,
-    dropped: u32,
-}
-
-impl Words {
-    fn new(all: impl Iterator<Item = u32>) -> Self {
-        let mut list: Vec<u32> = all.collect();
-        let mut dropped = 0;
-        loop {
-            list.sort_unstable();
-            list.dedup();
-            if list.len() <= MOST_WORDS {
-                return Self { list, dropped };
-            }
-            dropped += 1;
-            list.iter_mut()
-                .for_each(|word| *word = *word >> dropped << dropped);
-        }
-    }
-
-    fn place(&self, word: u32) -> u32 {
-        let word = word >> self.dropped << self.dropped;
-        self.list.binary_search(&word).unwrap_or(0) as u32
-    }
-}
-
-/// What loose vertices are relative to: their tracing points, one for all of a soma.
-struct Anchors {
-    /// By key: index, tracing point and reach.
-    all: BTreeMap<(u32, [u32; 3]), (u32, u32, f32)>,
-}
-
-impl Anchors {
-    fn key(packer: &Packer<'_>, tracing: u32) -> (u32, [u32; 3]) {
-        let point = &packer.mesh.tracing[tracing as usize];
-        if point.role == Role::Soma {
-            (u32::MAX, point.center.to_array().map(f32::to_bits))
-        } else {
-            (tracing, [0; 3])
-        }
-    }
-
-    fn new(packer: &Packer<'_>, loose: &[u32]) -> Self {
-        let mut all = BTreeMap::new();
-        for &v in loose {
-            let vertex = &packer.mesh.vertices[v as usize];
-            let offset = vertex.position - packer.mesh.tracing[vertex.tracing as usize].center;
-            let key = Self::key(packer, vertex.tracing);
-            let entry = all.entry(key).or_insert((0, vertex.tracing, 0.0_f32));
-            entry.2 = entry.2.max(offset.abs().max_element());
-        }
-        for (index, entry) in (0..).zip(all.values_mut()) {
-            entry.0 = index;
-            entry.2 = (entry.2 * 1.000_001).max(f32::MIN_POSITIVE);
-        }
-        Self { all }
-    }
-
-    fn loose(&self, packer: &Packer<'_>, v: u32) -> ([u32; 3], Vec3, Vec3) {
-        let vertex = &packer.mesh.vertices[v as usize];
-        let (anchor, tracing, reach) = self
-            .all
-            .get(&Self::key(packer, vertex.tracing))
-            .copied()
-            .unwrap_or_default();
-        let center = packer.mesh.tracing[tracing as usize].center;
-        let offset = (vertex.position - center) / reach;
-        let [x, y, z] = offset.to_array().map(to_signed16);
-        let (nx, ny) = to_octahedral(vertex.normal, 4095.0);
-        let position = center + Vec3::new(signed16(x), signed16(y), signed16(z)) * reach;
-        let words = [
-            x | (y << 16),
-            z | (anchor << 16),
-            nx | (ny << 12) | (packer.level(vertex.tracing) << 24),
-        ];
-        (words, position, octahedral(nx, ny, 4095.0))
-    }
-
-    fn write(
-        &self,
-        packer: &Packer<'_>,
-        heap: &mut Vec<u32>,
-        read: &mut Vec<(u32, Vec3, f32, Vec3)>,
-    ) {
-        for &(_, tracing, reach) in self.all.values() {
-            let point = &packer.mesh.tracing[tracing as usize];
-            let (x, y) = to_octahedral(point.tangent, 65535.0);
-            heap.extend(point.center.extend(reach).to_array().map(f32::to_bits));
-            heap.extend([
-                point.radius.to_bits(),
-                x | (y << 16),
-                point.role as u32,
-                packer.word(tracing),
-            ]);
-            if point.role != Role::Soma {
-                let tangent = octahedral(x, y, 65535.0);
-                read.push((tracing, point.center, point.radius, tangent));
-            }
-        }
-    }
-}
-
-const _: () = assert!(LOOSE == 1 << 31 && MOST_LOOSE <= 1 << 15);

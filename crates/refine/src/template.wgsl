@@ -14,6 +14,9 @@ struct Base {
     loose: u32,
     // Eight words each.
     anchors: u32,
+    // Somata's patches, three words for two.
+    soma: u32,
+    soma_count: u32,
     // Two words each.
     quads: u32,
     quad_count: u32,
@@ -45,6 +48,17 @@ fn ring_of(point: u32, words: vec4<u32>) -> vec4<u32> {
     return vec4<u32>(4u * point) + vec4<u32>(0u, 1u, 2u, 3u);
 }
 
+// Whether a patch is part of a tube between two points with rings of their own.
+fn patch_is_tube(base: Base, index: u32) -> bool {
+    let point = index / 4u;
+    if (point >= base.point_count) {
+        return false;
+    }
+    let at = base.points + 4u * point + 1u;
+    return (heap[at] >> POINT_KIND_SHIFT) != POINT_LOOSE
+        && (heap[at + 4u] >> POINT_KIND_SHIFT) != POINT_LOOSE;
+}
+
 // Whether there is a patch at a place: a run's last point has none after it.
 fn patch_exists(base: Base, index: u32) -> bool {
     let point = index / 4u;
@@ -60,7 +74,20 @@ fn patch_at(base: Base, index: u32) -> Patch {
         let after = (k + 1u) & 3u;
         return Patch(PATCH_LATERAL, vec4<u32>(ring[k], ring[after], next[after], next[k]));
     }
-    let quad = index - 4u * base.point_count;
+    let soma = index - 4u * base.point_count;
+    if (soma < base.soma_count) {
+        // 48 bits: four loose vertices of 12.
+        let at = base.soma + 3u * soma / 2u;
+        let odd = (soma & 1u) * 16u;
+        let x = heap[at];
+        let y = heap[at + 1u];
+        let low = select(x, (x >> 16u) | (y << 16u), odd != 0u);
+        let high = (y >> odd) & 0xffffu;
+        let corners = vec4<u32>(
+            low & 0xfffu, (low >> 12u) & 0xfffu, (low >> 24u) | ((high & 0xfu) << 8u), high >> 4u);
+        return Patch(PATCH_SOMA, corners | vec4<u32>(LOOSE));
+    }
+    let quad = soma - base.soma_count;
     if (quad < base.quad_count) {
         let x = heap[base.quads + 2u * quad];
         let y = heap[base.quads + 2u * quad + 1u];
@@ -140,21 +167,48 @@ fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     }
 }
 
+// A point with a ring of its own.
+struct OwnRing {
+    center: vec3<f32>,
+    radius: f32,
+    tangent: vec3<f32>,
+    slope: f32,
+    turn: u32,
+    role: u32,
+}
+
+fn own_ring(base: Base, point: u32, words: vec4<u32>) -> OwnRing {
+    let root = f32((words.w >> 18u) & 0xfu) / 15.0;
+    return OwnRing(
+        point_center(base, point, words),
+        point_radius(words),
+        octahedral(words.w & 0x1ffu, (words.w >> 9u) & 0x1ffu, 511.0),
+        select(root * root, -(root * root), (words.y & POINT_NARROWS) != 0u),
+        (words.z >> 16u) & 0x3ffu,
+        select(ROLE_ORDINARY, ROLE_END, (words.y >> POINT_KIND_SHIFT) == POINT_END),
+    );
+}
+
+fn ring_corner(ring: OwnRing, k: u32) -> Corner {
+    let direction = ring_direction(ring.tangent, ring.turn, k);
+    let position = ring.center + direction * ring.radius;
+    let offset = position - ring.center;
+    let normal = normalize_or(direction - ring.tangent * ring.slope, direction);
+    return Corner(
+        position,
+        normal,
+        ring.center,
+        offset,
+        normalize_or(offset, normal),
+        ring.tangent,
+        ring.radius,
+        ring.role,
+    );
+}
+
 fn own_corner(base: Base, vertex: u32) -> Corner {
     let point = vertex >> 2u;
-    let words = point_words(base, point);
-    let center = point_center(base, point, words);
-    let radius = point_radius(words);
-    let tangent = octahedral(words.w & 0x1ffu, (words.w >> 9u) & 0x1ffu, 511.0);
-    let direction = ring_direction(tangent, (words.z >> 16u) & 0x3ffu, vertex & 3u);
-    let root = f32((words.w >> 18u) & 0xfu) / 15.0;
-    let slope = select(root * root, -(root * root), (words.y & POINT_NARROWS) != 0u);
-    let position = center + direction * radius;
-    let offset = position - center;
-    let normal = normalize_or(direction - tangent * slope, direction);
-    let role = select(ROLE_ORDINARY, ROLE_END, (words.y >> POINT_KIND_SHIFT) == POINT_END);
-    return Corner(
-        position, normal, center, offset, normalize_or(offset, normal), tangent, radius, role);
+    return ring_corner(own_ring(base, point, point_words(base, point)), vertex & 3u);
 }
 
 fn anchor_of(base: Base, loose: u32) -> u32 {

@@ -103,8 +103,12 @@ impl VertexMaker for Adaptive {
         balls.is_none_or(|balls| any_shows(balls, frame))
     }
 
-    fn wgsl(&self) -> String {
-        Refiner::vertex_wgsl()
+    fn shaders(&self) -> usize {
+        Refiner::SHADERS
+    }
+
+    fn wgsl(&self, shader: usize) -> String {
+        Refiner::vertex_wgsl(shader)
     }
 
     fn layout(&self) -> &wgpu::BindGroupLayout {
@@ -139,9 +143,9 @@ impl VertexMaker for Adaptive {
         );
     }
 
-    fn draw(&self, round: usize, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>) {
         if let Some(batch) = self.plan.batches.get(round) {
-            self.refiner.draw(pass, batch);
+            self.refiner.draw(pass, batch, shader);
         }
     }
 }

@@ -74,6 +74,8 @@ fn patch_ball(base: Base, p: Patch) -> Ball {
     return Ball(center, radius);
 }
 
+var<workgroup> words: array<u32, CLUSTER>;
+
 @compute @workgroup_size(CLUSTER)
 fn decide(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -99,6 +101,17 @@ fn decide(
             word = decide_patch(place, patch_index);
         }
     }
+    words[lane] = word;
+    workgroupBarrier();
+    // The patches around a tube, all of level 1, are drawn as one: 10 vertices instead of 16.
+    let first = lane & ~3u;
+    var whole = true;
+    for (var k = 0u; k < 4u; k += 1u) {
+        whole = whole && words[first + k] == decision(DECIDED_TUBE, vec4<u32>(1u));
+    }
+    if (whole) {
+        word = select(0u, word | DECISION_WHOLE, lane == first);
+    }
     decisions[slot] = word;
     if (word != 0u) {
         atomicAdd(&counts[bucket_of(word, frame.levels.caps) * batch.sections + slot / SECTION], 1u);
@@ -116,6 +129,7 @@ fn decide_patch(place: Placed, patch_index: u32) -> u32 {
     if (levels.kind == LEVELS_DISTANCE || levels.kind == LEVELS_MAX_ERROR) {
         levels.amount = levels.amount / place.scale;
     }
-    return decision(p.kind, side_levels(base, p, levels, view_of(frame, place)));
+    let kind = select(p.kind, DECIDED_TUBE, patch_is_tube(base, patch_index));
+    return decision(kind, side_levels(base, p, levels, view_of(frame, place)));
 }
 

@@ -27,8 +27,13 @@ pub const SURFACE_VERTEX_WGSL: &str = include_str!("surface_vertex.wgsl");
 
 /// Makes vertices on the GPU, and decides how many.
 pub trait VertexMaker {
-    /// Defines `surface_vertex` and what it needs, with bind group 0.
-    fn wgsl(&self) -> String;
+    /// Number of shaders that it draws with.
+    fn shaders(&self) -> usize {
+        1
+    }
+
+    /// Defines `surface_vertex` and what it needs, with bind group 0, for one of its shaders.
+    fn wgsl(&self, shader: usize) -> String;
 
     /// Layout of bind group 0.
     fn layout(&self) -> &wgpu::BindGroupLayout;
@@ -58,6 +63,6 @@ pub trait VertexMaker {
         });
     }
 
-    /// Draws what was chosen. The pipeline and the groups from 1 on are set.
-    fn draw(&self, round: usize, pass: &mut wgpu::RenderPass<'_>);
+    /// Draws what was chosen for one of its shaders. The pipeline and the groups from 1 on are set.
+    fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>);
 }

@@ -256,11 +256,13 @@ impl<'g> Painter<'g> {
             timestamp_writes: self.timer.render(Pass::Draw),
             ..Default::default()
         });
-        pass.set_pipeline(&self.shader.pipeline);
         pass.set_bind_group(1, group, &[]);
         let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
         pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
-        maker.draw(round, &mut pass);
+        for (shader, pipeline) in self.shader.pipelines.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            maker.draw(round, shader, &mut pass);
+        }
     }
 
     fn compute(

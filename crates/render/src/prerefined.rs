@@ -253,7 +253,7 @@ impl VertexMaker for Prerefined {
         any_shows(&self.bounds, frame)
     }
 
-    fn wgsl(&self) -> String {
+    fn wgsl(&self, _shader: usize) -> String {
         let barycentric = self.barycentric;
         format!("const BARYCENTRIC: bool = {barycentric};\n{}", WGSL)
     }
@@ -300,7 +300,7 @@ impl VertexMaker for Prerefined {
         Ok(1)
     }
 
-    fn draw(&self, _round: usize, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, _round: usize, _shader: usize, pass: &mut wgpu::RenderPass<'_>) {
         for chunk in self.chunks.iter().filter(|chunk| !chunk.shown.is_empty()) {
             let offset = STRIDE as u32 * chunk.mesh as u32;
             pass.set_bind_group(0, &chunk.group, &[offset]);

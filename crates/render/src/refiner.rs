@@ -17,7 +17,7 @@ use wgpu::{BufferUsages, ShaderStages};
 use crate::decide::shows;
 use crate::device::Gpu;
 use crate::error::DeviceError;
-use crate::grids::{BUCKETS, Bucket, buckets};
+use crate::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
 use crate::refining::{BatchWords, CLUSTER, FrameWords, Placed, Refining, SECTION, Sight, compose};
 use crate::scene::Scene;
 use crate::templates::{self, MOST_PATCHES};
@@ -121,10 +121,16 @@ impl Refiner {
         })
     }
 
-    /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn surface_vertex(vertex_index: u32, instance_index: u32) ->
-    /// SurfaceVertex`. Binds group 0.
-    pub fn vertex_wgsl() -> String {
-        compose(&[include_str!("vertices.wgsl")])
+    /// Shaders that draw: one for tubes at level 1, one for other tubes, one for all else.
+    pub const SHADERS: usize = 3;
+
+    /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn
+    /// surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`. Binds group 0.
+    ///
+    /// All shaders find an edge's vertices by the same expressions, and their positions must be
+    /// `@invariant`.
+    pub fn vertex_wgsl(shader: usize) -> String {
+        compose(&[&draws(shader), include_str!("vertices.wgsl")])
     }
 
     /// Layout of group 0 of a pipeline that draws.
@@ -205,11 +211,18 @@ impl Refiner {
         pass.dispatch_workgroups(sections, 1, 1);
     }
 
-    /// Draws a batch that was chosen just before, with the pipeline that is set. Sets group 0.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch) {
+    /// Draws a batch that was chosen just before, with the pipeline of the shader that is set. Sets
+    /// group 0.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, shader: usize) {
         pass.set_bind_group(0, self.drawing_group(batch), &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.multi_draw_indexed_indirect(&self.work.draws, 0, BUCKETS as u32);
+        let buckets = match shader {
+            0 => 0..1,
+            1 => 1..TUBE_BUCKETS,
+            _ => TUBE_BUCKETS..BUCKETS,
+        };
+        let offset = (buckets.start * size_of::<DrawIndexed>()) as u64;
+        pass.multi_draw_indexed_indirect(&self.work.draws, offset, buckets.len() as u32);
     }
 
     /// Group 0 of whoever makes the vertices of a batch.
@@ -231,6 +244,15 @@ impl Refiner {
     pub(crate) fn bucket_buffer(&self) -> &wgpu::Buffer {
         &self.buckets
     }
+}
+
+/// Which of its ways vertices.wgsl goes in a shader.
+pub(crate) fn draws(shader: usize) -> String {
+    let [bare, tubes] = [0, 1];
+    format!(
+        "const DRAWS: u32 = {shader}u;\nconst DRAWS_BARE: u32 = {bare}u;\n\
+         const DRAWS_TUBES: u32 = {tubes}u;\n"
+    )
 }
 
 /// The module of the pass that decides.

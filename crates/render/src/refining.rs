@@ -19,6 +19,10 @@ pub(crate) const CLUSTER: usize = 64;
 /// Patches that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
 const DECISION_KIND_SHIFT: u32 = 28;
+/// Bit of a decision on all four patches around a tube, each at level 1.
+pub(crate) const DECISION_WHOLE: u32 = 1 << 30;
+/// Kind of a lateral patch between two points with rings of their own, in a decision.
+pub(crate) const DECIDED_TUBE: u32 = 3;
 
 /// How finely a scene is drawn, whatever the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,7 +192,7 @@ pub(crate) struct Placed {
     pub(crate) patches: u32,
     pub(crate) instance: u32,
     pub(crate) state: u32,
-    pub(crate) pad: [u32; 3],
+    pub(crate) pad: [u32; 1],
 }
 
 /// Where a part lies in the heap of its page: [`Places`], moved. Twin of the struct of the same name in
@@ -201,6 +205,8 @@ pub(crate) struct Base {
     pub(crate) balls: u32,
     pub(crate) loose: u32,
     pub(crate) anchors: u32,
+    pub(crate) soma: u32,
+    pub(crate) soma_count: u32,
     pub(crate) quads: u32,
     pub(crate) quad_count: u32,
     pub(crate) caps: u32,
@@ -216,6 +222,8 @@ impl Base {
             balls: first + places.balls,
             loose: first + places.loose,
             anchors: first + places.anchors,
+            soma: first + places.soma,
+            soma_count: places.soma_count,
             quads: first + places.quads,
             quad_count: places.quad_count,
             caps: first + places.caps,
@@ -274,7 +282,7 @@ pub(crate) fn decision(kind: u32, levels: [u32; 4]) -> u32 {
 /// Kind and levels of a decision that is not 0.
 pub(crate) fn decided(word: u32) -> (u32, [u32; 4]) {
     let levels = [0, 7, 14, 21].map(|shift| (word >> shift) & 0x7f);
-    (word >> DECISION_KIND_SHIFT, levels)
+    ((word >> DECISION_KIND_SHIFT) & 3, levels)
 }
 
 /// Constants, refine's twins and placed.wgsl, followed by a shader's own text.
@@ -286,6 +294,8 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("BUCKETS", BUCKETS as u32),
         ("GRID_SIZES", GRID_SIZE.len() as u32),
         ("DECISION_KIND_SHIFT", DECISION_KIND_SHIFT),
+        ("DECIDED_TUBE", DECIDED_TUBE),
+        ("DECISION_WHOLE", DECISION_WHOLE),
         ("INDEX_PLACE_MASK", INDEX_PLACE_MASK),
         ("INDEX_ROW_SHIFT", INDEX_ROW_SHIFT),
         ("INDEX_PATCH_SHIFT", INDEX_PATCH_SHIFT),
@@ -313,7 +323,7 @@ mod tests {
     #[test]
     fn decisions_keep_their_levels_and_kind() {
         for levels in [[1, 2, 3, 4], [64, 64, 64, 64], [1, 64, 17, 33]] {
-            for kind in 0..3 {
+            for kind in 0..4 {
                 assert_eq!(decided(decision(kind, levels)), (kind, levels));
             }
         }

@@ -112,17 +112,14 @@ const HALF_WIDTH: f32 = 0.5;
 
 /// Draws samples from a maker's vertices.
 pub(crate) struct Shader {
-    pub(crate) pipeline: wgpu::RenderPipeline,
+    /// One for each of the maker's shaders.
+    pub(crate) pipelines: Vec<wgpu::RenderPipeline>,
     pub(crate) layout: wgpu::BindGroupLayout,
 }
 
 impl Shader {
     pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, samples: u32) -> Self {
         let device = &gpu.device;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("shade"),
-            source: wgpu::ShaderSource::Wgsl(shader_text(&maker.wgsl(), samples).into()),
-        });
         let layout = layout(device);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("shade"),
@@ -136,40 +133,47 @@ impl Shader {
                 write_mask: wgpu::ColorWrites::ALL,
             })
         };
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("shade"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState {
-                cull_mode: Some(wgpu::Face::Back),
-                ..wgpu::PrimitiveState::default()
-            },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState {
-                count: samples,
-                ..wgpu::MultisampleState::default()
-            },
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[COLOUR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { pipeline, layout }
+        let pipeline = |shader: usize| {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("shade"),
+                source: wgpu::ShaderSource::Wgsl(shader_text(&maker.wgsl(shader), samples).into()),
+            });
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("shade"),
+                layout: Some(&pipeline_layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: Some(wgpu::Face::Back),
+                    ..wgpu::PrimitiveState::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    ..wgpu::MultisampleState::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[COLOUR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let pipelines = (0..maker.shaders()).map(pipeline).collect();
+        Self { pipelines, layout }
     }
 }
 

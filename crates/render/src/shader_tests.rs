@@ -29,6 +29,8 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
             balls,
             loose,
             anchors,
+            soma,
+            soma_count,
             quads,
             quad_count,
             caps,

@@ -51,7 +51,8 @@ fn normals(in: Varying) -> @location(0) vec4<f32> {
 
 /// A pipeline with its target.
 pub(crate) struct Drawer {
-    pipelines: [wgpu::RenderPipeline; 2],
+    /// By shader: of front faces and of back faces.
+    pipelines: [[wgpu::RenderPipeline; 2]; Refiner::SHADERS],
     clip: wgpu::Buffer,
     group: wgpu::BindGroup,
     color: wgpu::Texture,
@@ -61,22 +62,25 @@ pub(crate) struct Drawer {
 }
 
 impl Drawer {
-    /// `maker`: what makes vertices; `entry`: `sides` or `normals`.
+    /// `maker`: what makes vertices, by shader; `entry`: `sides` or `normals`.
     pub(crate) fn new(
         gpu: &Gpu,
         refiner: &Refiner,
-        maker: &str,
+        maker: &dyn Fn(usize) -> String,
         entry: &str,
         size: [u32; 2],
     ) -> Self {
         let device = &gpu.device;
         let [width, height] = size;
         let size_text = format!("const SIZE = vec2<f32>({width}.0, {height}.0);");
-        let text = [SURFACE_VERTEX_WGSL, maker, &size_text, SHADE].concat();
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
+        let module = |shader| {
+            let text = [SURFACE_VERTEX_WGSL, &maker(shader), &size_text, SHADE].concat();
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: None,
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            })
+        };
+        let modules = [0, 1, 2].map(module);
         let own = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -95,18 +99,18 @@ impl Drawer {
             bind_group_layouts: &[Some(refiner.layout()), Some(&own)],
             immediate_size: 0,
         });
-        let pipeline = |vertex, cull_mode| {
+        let pipeline = |module, vertex, cull_mode| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: None,
                 layout: Some(&layout),
                 vertex: wgpu::VertexState {
-                    module: &module,
+                    module,
                     entry_point: Some(vertex),
                     compilation_options: Default::default(),
                     buffers: &[],
                 },
                 fragment: Some(wgpu::FragmentState {
-                    module: &module,
+                    module,
                     entry_point: Some(entry),
                     compilation_options: Default::default(),
                     targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
@@ -127,10 +131,11 @@ impl Drawer {
                 cache: None,
             })
         };
-        let pipelines = [
-            pipeline("vertex", wgpu::Face::Back),
-            pipeline("vertex_back", wgpu::Face::Front),
-        ];
+        let both = |module| {
+            let front = pipeline(module, "vertex", wgpu::Face::Back);
+            [front, pipeline(module, "vertex_back", wgpu::Face::Front)]
+        };
+        let pipelines = [both(&modules[0]), both(&modules[1]), both(&modules[2])];
         let texture = |format, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
@@ -244,11 +249,14 @@ impl Drawer {
                 }),
                 ..Default::default()
             });
-            for pipeline in &self.pipelines {
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, &self.group, &[]);
-                if let Some(batch) = batch {
-                    refiner.draw(&mut pass, batch);
+            // Front faces of all, then back faces.
+            for face in 0..2 {
+                for (shader, pipelines) in self.pipelines.iter().enumerate() {
+                    pass.set_pipeline(&pipelines[face]);
+                    pass.set_bind_group(1, &self.group, &[]);
+                    if let Some(batch) = batch {
+                        refiner.draw(&mut pass, batch, shader);
+                    }
                 }
             }
         }
