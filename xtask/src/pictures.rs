@@ -20,7 +20,7 @@ const PICTURES: &[(&str, &str)] = &[
     ),
     (
         "wireframe",
-        "samples/pyramidal.swc --size 480x360 --eye 30,20,70 --target 0,0,0 --wireframe --level 2 --no-legend",
+        "samples/pyramidal.swc --size 400x300 --eye 30,20,70 --target 0,0,0 --wireframe --level 2 --no-legend",
     ),
     (
         "order",

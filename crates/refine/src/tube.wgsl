@@ -99,6 +99,7 @@ fn tube_vertex(
     return v;
 }
 
-fn tube_word(base: Base, v: TubeVertex) -> u32 {
-    return heap[base.words + (v.words.w >> 22u)];
+// The renderer's word of a point.
+fn tube_word(base: Base, words: vec4<u32>) -> u32 {
+    return heap[base.words + (words.w >> 22u)];
 }

@@ -1,10 +1,10 @@
 //! The maker of vertices that refines on the fly: a scene and how it is refined.
 
 use crate::bounds::any_shows;
-use crate::camera::Ball;
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::Frame;
+use crate::framing::Ball;
 use crate::maker::VertexMaker;
 use crate::readback::FrameStats;
 use crate::refiner::{FramePlan, Refiner};

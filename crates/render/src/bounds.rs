@@ -6,8 +6,8 @@
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, Role};
 
-use crate::camera::Ball;
 use crate::frame::{Frame, shows};
+use crate::framing::Ball;
 
 /// Patches in a ball: neighbours, as patches follow the tree.
 const TOGETHER: usize = 8;

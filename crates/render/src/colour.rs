@@ -215,6 +215,14 @@ impl Palette {
         soma
     }
 
+    /// Number of different colours of things that are merely told apart.
+    pub fn distinct_count(self) -> usize {
+        match self {
+            Self::OkabeIto => OKABE_ITO.len(),
+            Self::NeuroM | Self::NeuroMorpho => DISTINCT.len(),
+        }
+    }
+
     /// Colour of the index-th of things that are merely told apart; they repeat after ten.
     pub fn distinct(self, index: usize) -> Rgb {
         if self == Self::OkabeIto {

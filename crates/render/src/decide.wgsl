@@ -74,6 +74,8 @@ fn patch_ball(base: Base, p: Patch) -> Ball {
     return Ball(center, radius);
 }
 
+var<workgroup> words: array<u32, CLUSTER>;
+
 @compute @workgroup_size(CLUSTER)
 fn decide(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -98,6 +100,17 @@ fn decide(
             && patch_exists(place.base, patch_index)) {
             word = decide_patch(place, patch_index);
         }
+    }
+    words[lane] = word;
+    workgroupBarrier();
+    // The patches around a tube, all of level 1, are drawn as one: 10 vertices instead of 16.
+    let first = lane & ~3u;
+    var whole = true;
+    for (var k = 0u; k < 4u; k += 1u) {
+        whole = whole && words[first + k] == decision(DECIDED_TUBE, vec4<u32>(1u));
+    }
+    if (whole) {
+        word = select(0u, word | DECISION_WHOLE, lane == first);
     }
     decisions[slot] = word;
     if (word != 0u) {

@@ -9,7 +9,7 @@ use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::maker::SURFACE_VERTEX_WGSL;
 use crate::readback::read;
-use crate::refiner::{Batch, Refiner, storage};
+use crate::refiner::{Batch, Refiner, draws, storage};
 use crate::refining::compose;
 
 /// Workgroups in a row of a dispatch.
@@ -51,7 +51,10 @@ pub struct Wanted {
 
 /// The module of the pass.
 pub(crate) fn expand_wgsl() -> String {
-    let row = format!("const EXPAND_ROW: u32 = {ROW}u;\nconst DRAWS_TUBES: bool = false;\n");
+    let row = format!(
+        "const EXPAND_ROW: u32 = {ROW}u;\n{}",
+        draws(Refiner::SHADERS - 1)
+    );
     let vertices = include_str!("vertices.wgsl");
     let expand = include_str!("expand.wgsl");
     compose(&[&row, SURFACE_VERTEX_WGSL, vertices, expand])

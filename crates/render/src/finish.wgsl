@@ -39,7 +39,7 @@ fn depth_at(p: vec2<i32>) -> f32 {
     if any(p < vec2(0)) || any(p >= vec2<i32>(finish.tile_size)) {
         return 0.0;
     }
-    return textureLoad(depths, p, 0).x;
+    return bitcast<f32>(pack4x8unorm(textureLoad(depths, p, 0)));
 }
 
 // Place in the view (µm): right, up, backward.

@@ -1,4 +1,15 @@
-//! Pictures of coarse meshes on the GPU.
+//! Pictures of coarse meshes on the GPU, without a window.
+//!
+//! A [`Gpu`] is an open device. A **camera** ([`Camera`]) is where one looks from. A **maker**
+//! ([`VertexMaker`]) makes vertices and decides how many: [`Adaptive`] refines a [`Scene`] as it is
+//! drawn, [`Prerefined`] keeps a refined surface in memory. A **word** per tracing point says its
+//! colour, which a [`ColourTable`] knows. [`paint`] draws a picture of any size, tile by tile, and
+//! hands it over in **bands**; an [`Overlay`] lays legend and scale bar over them, a [`PngWriter`]
+//! writes them.
+//!
+//! ```text
+//! maker: levels, vertices ─▶ shade.wgsl: light, lines, wires ─▶ occlusion.wgsl ─▶ finish.wgsl: bytes
+//! ```
 #![forbid(unsafe_code)]
 
 mod adaptive;
@@ -11,6 +22,7 @@ mod error;
 mod expand;
 mod finish;
 mod frame;
+mod framing;
 mod grids;
 mod image;
 mod legend;
@@ -36,7 +48,7 @@ mod work;
 
 pub use adaptive::Adaptive;
 pub use bounds::{any_shows, bounds};
-pub use camera::{Ball, Camera, DEFAULT_FOV, Side};
+pub use camera::Camera;
 pub use colour::{
     CATEGORY_BIT, ColourMap, ColourTable, Palette, Rgb, SCALE_ENTRIES, category, fraction, is_dark,
     linear,
@@ -46,6 +58,7 @@ pub use device::{ADAPTER_VARIABLE, AdapterName, Gpu, adapters, optional_features
 pub use error::{CameraError, DeviceError};
 pub use expand::{ExpandedVertex, Wanted};
 pub use frame::{Frame, Tile, shows};
+pub use framing::{Ball, DEFAULT_FOV, Side};
 pub use image::{Image, PngWriter};
 pub use legend::{Legend, nice_length, scale_bar};
 pub use maker::{SURFACE_VERTEX_WGSL, VertexMaker};

@@ -1,7 +1,8 @@
 //! Legend and scale bar in the corners of a picture.
 
-use crate::camera::{Ball, Camera};
+use crate::camera::Camera;
 use crate::colour::{Rgb, is_dark};
+use crate::framing::Ball;
 use crate::image::Image;
 use crate::legend::{Legend, nice_length, scale_bar};
 

@@ -118,13 +118,14 @@ impl PictureOptions {
     }
 
     /// Sub-pixels of a pixel, along a side.
-    pub fn sub_pixels(&self) -> u32 {
-        ((f64::from(self.samples_taken()) / 4.0).sqrt() as u32).max(1)
+    pub fn sub_pixels(&self, gpu: &Gpu) -> u32 {
+        let in_each = f64::from(samples_in_sub_pixel(gpu, self.samples_taken()));
+        ((f64::from(self.samples_taken()) / in_each).sqrt() as u32).max(1)
     }
 
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
         let wanted = self.samples_taken();
-        let scale = self.sub_pixels();
+        let scale = self.sub_pixels(gpu);
         let height = f64::from(self.size[1] * scale);
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
         let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);
@@ -142,11 +143,21 @@ impl PictureOptions {
         let inner = (largest.saturating_sub(2 * margin) / scale).max(32);
         Parting {
             scale,
-            samples: if wanted == 1 { 1 } else { 4 },
+            samples: samples_in_sub_pixel(gpu, wanted),
             margin,
             step: self.size.map(|n| inner.min(n.max(1))),
             occlusion,
         }
+    }
+}
+
+/// Four, or one: where that is all there is, and on OpenGL, for which naga 30 writes the mask of samples
+/// wrongly.
+fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
+    if samples == 1 || gpu.adapter.backend == "gl" {
+        1
+    } else {
+        4
     }
 }
 

@@ -64,7 +64,12 @@ fn decided_levels(word: u32) -> vec4<u32> {
 }
 
 fn decided_kind(word: u32) -> u32 {
-    return word >> DECISION_KIND_SHIFT;
+    return (word >> DECISION_KIND_SHIFT) & 3u;
+}
+
+// Whether it is the decision on all four patches around a tube, each at level 1.
+fn is_whole(word: u32) -> bool {
+    return (word & DECISION_WHOLE) != 0u;
 }
 
 // Place of a level in the set of grid sizes: the smallest that holds it.
@@ -82,7 +87,8 @@ fn bucket_of(word: u32, caps: u32) -> u32 {
     let grid = patch_grid(kind, caps, decided_levels(word));
     let size = size_class(grid.ny) * GRID_SIZES + size_class(grid.nx);
     if (kind == DECIDED_TUBE) {
-        return size;
+        // The first bucket is for whole tubes; a single patch at level 1 goes to the next.
+        return select(max(size, 1u), 0u, is_whole(word));
     }
     return size + select(2u, 1u, kind == PATCH_LATERAL) * GRID_SIZES * GRID_SIZES;
 }

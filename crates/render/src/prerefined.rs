@@ -13,10 +13,10 @@ use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, SurfaceVertex};
 use neurotess_refine::{Levels, RefineOptions, Refinement};
 
 use crate::bounds::{any_shows, bounds};
-use crate::camera::Ball;
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::{Frame, shows};
+use crate::framing::Ball;
 use crate::maker::VertexMaker;
 
 /// Triangles in a run: some thousand, so that tests for showing cost nothing beside drawing.

@@ -8,7 +8,7 @@ use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::grids::{BUCKETS, Bucket};
 use crate::refiner::{Batch, Refiner};
-use crate::refining::{CLUSTER, DECIDED_TUBE, decided};
+use crate::refining::{CLUSTER, DECIDED_TUBE, DECISION_WHOLE, Placed, decided};
 use crate::scene::Scene;
 
 /// A patch that is drawn.
@@ -20,6 +20,10 @@ pub struct Chosen {
     pub instance: u32,
     /// Index of the patch in the template's mesh.
     pub patch: u32,
+    /// First column of its grid: other than 0 where patches around a tube are drawn as one.
+    pub column: u32,
+    /// Whether it is drawn with the other three around the tube.
+    pub whole: bool,
     /// Levels of its four sides.
     pub levels: [u32; 4],
     /// What it covers.
@@ -56,7 +60,11 @@ impl FrameStats {
         for patch in chosen {
             let (nx, ny, triangles) = patch_triangles(patch.kind, caps, patch.levels);
             self.patches_drawn += 1;
-            self.vertices += u64::from((nx + 1) * (ny + 1));
+            self.vertices += match (patch.whole, patch.column) {
+                (true, 0) => 10,
+                (true, _) => 0,
+                (false, _) => u64::from((nx + 1) * (ny + 1)),
+            };
             self.triangles += triangles as u64;
             for level in patch.levels {
                 self.level_histogram[level.min(HIGHEST_LEVEL) as usize] += 1;
@@ -83,9 +91,10 @@ impl Refiner {
         let list: Vec<[u32; 2]> = read(gpu, &self.work.list, count as usize)?;
         let owners: Vec<u32> = read(gpu, &self.work.owners, slots / CLUSTER)?;
         let last = batch.words.first + batch.words.placed;
-        let placed = read(gpu, &self.work.placed, last as usize)?;
-        let chosen = (0..).zip(list).map(|(place, [slot, word])| {
-            let owner: &crate::refining::Placed = &placed[owners[slot as usize / CLUSTER] as usize];
+        let placed: Vec<Placed> = read(gpu, &self.work.placed, last as usize)?;
+        let mut chosen = Vec::with_capacity(list.len());
+        for (place, [slot, word]) in (0..).zip(list) {
+            let owner: &Placed = &placed[owners[slot as usize / CLUSTER] as usize];
             let instance = scene.instances()[owner.instance as usize];
             let parts = scene.templates().template(instance.template);
             let part = parts
@@ -93,19 +102,25 @@ impl Refiner {
                 .flat_map(|t| &t.parts)
                 .find(|part| part.page == batch.page && part.base == owner.base);
             let (kind, levels) = decided(word);
-            Chosen {
-                place,
-                instance: owner.instance,
-                patch: part.map_or(0, |part| part.in_mesh[(slot - owner.first_slot) as usize]),
-                levels,
-                kind: match kind {
-                    0 | DECIDED_TUBE => PatchKind::Lateral,
-                    1 => PatchKind::Cap,
-                    _ => PatchKind::Soma,
-                },
+            let whole = word & DECISION_WHOLE != 0;
+            for column in 0..if whole { 4 } else { 1 } {
+                let at = (slot - owner.first_slot + column) as usize;
+                chosen.push(Chosen {
+                    place,
+                    instance: owner.instance,
+                    patch: part.map_or(0, |part| part.in_mesh[at]),
+                    column,
+                    whole,
+                    levels,
+                    kind: match kind {
+                        0 | DECIDED_TUBE => PatchKind::Lateral,
+                        1 => PatchKind::Cap,
+                        _ => PatchKind::Soma,
+                    },
+                });
             }
-        });
-        Ok(chosen.collect())
+        }
+        Ok(chosen)
     }
 }
 

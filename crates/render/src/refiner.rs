@@ -121,17 +121,16 @@ impl Refiner {
         })
     }
 
-    /// Shaders that draw: one for tubes, one for all else.
-    pub const SHADERS: usize = 2;
+    /// Shaders that draw: one for tubes at level 1, one for other tubes, one for all else.
+    pub const SHADERS: usize = 3;
 
     /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn
     /// surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`. Binds group 0.
     ///
-    /// Both shaders find an edge's vertices by the same expressions, and their positions must be
+    /// All shaders find an edge's vertices by the same expressions, and their positions must be
     /// `@invariant`.
     pub fn vertex_wgsl(shader: usize) -> String {
-        let tubes = format!("const DRAWS_TUBES: bool = {};\n", shader == 0);
-        compose(&[&tubes, include_str!("vertices.wgsl")])
+        compose(&[&draws(shader), include_str!("vertices.wgsl")])
     }
 
     /// Layout of group 0 of a pipeline that draws.
@@ -218,7 +217,8 @@ impl Refiner {
         pass.set_bind_group(0, self.drawing_group(batch), &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         let buckets = match shader {
-            0 => 0..TUBE_BUCKETS,
+            0 => 0..1,
+            1 => 1..TUBE_BUCKETS,
             _ => TUBE_BUCKETS..BUCKETS,
         };
         let offset = (buckets.start * size_of::<DrawIndexed>()) as u64;
@@ -244,6 +244,15 @@ impl Refiner {
     pub(crate) fn bucket_buffer(&self) -> &wgpu::Buffer {
         &self.buckets
     }
+}
+
+/// Which of its ways vertices.wgsl goes in a shader.
+pub(crate) fn draws(shader: usize) -> String {
+    let [bare, tubes] = [0, 1];
+    format!(
+        "const DRAWS: u32 = {shader}u;\nconst DRAWS_BARE: u32 = {bare}u;\n\
+         const DRAWS_TUBES: u32 = {tubes}u;\n"
+    )
 }
 
 /// The module of the pass that decides.

@@ -19,6 +19,8 @@ pub(crate) const CLUSTER: usize = 64;
 /// Patches that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
 const DECISION_KIND_SHIFT: u32 = 28;
+/// Bit of a decision on all four patches around a tube, each at level 1.
+pub(crate) const DECISION_WHOLE: u32 = 1 << 30;
 /// Kind of a lateral patch between two points with rings of their own, in a decision.
 pub(crate) const DECIDED_TUBE: u32 = 3;
 
@@ -280,7 +282,7 @@ pub(crate) fn decision(kind: u32, levels: [u32; 4]) -> u32 {
 /// Kind and levels of a decision that is not 0.
 pub(crate) fn decided(word: u32) -> (u32, [u32; 4]) {
     let levels = [0, 7, 14, 21].map(|shift| (word >> shift) & 0x7f);
-    (word >> DECISION_KIND_SHIFT, levels)
+    ((word >> DECISION_KIND_SHIFT) & 3, levels)
 }
 
 /// Constants, refine's twins and placed.wgsl, followed by a shader's own text.
@@ -293,6 +295,7 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("GRID_SIZES", GRID_SIZE.len() as u32),
         ("DECISION_KIND_SHIFT", DECISION_KIND_SHIFT),
         ("DECIDED_TUBE", DECIDED_TUBE),
+        ("DECISION_WHOLE", DECISION_WHOLE),
         ("INDEX_PLACE_MASK", INDEX_PLACE_MASK),
         ("INDEX_ROW_SHIFT", INDEX_ROW_SHIFT),
         ("INDEX_PATCH_SHIFT", INDEX_PATCH_SHIFT),

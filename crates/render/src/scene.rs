@@ -7,7 +7,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use thiserror::Error;
 
-use crate::camera::Ball;
+use crate::framing::Ball;
 use crate::templates::Templates;
 
 /// A template among those of a [`Templates`].

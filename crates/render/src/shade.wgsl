@@ -120,8 +120,9 @@ struct Sample {
     @location(0) colour: vec4<f32>,
     // Normal in the view, from -1..1 to 0..1.
     @location(1) normal: vec4<f32>,
-    // µm along the sight. As a colour, since OpenGL cannot load from depth textures.
-    @location(2) depth: f32,
+    // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
+    // draw to floating-point ones.
+    @location(2) depth: vec4<f32>,
     MASK_MEMBER
 }
 
@@ -184,7 +185,7 @@ fn fragment(in: Varying) -> Sample {
     var out: Sample;
     out.colour = vec4(colour, 1.0);
     out.normal = vec4(n * 0.5 + 0.5, 1.0);
-    out.depth = -dot(in.relative, shade.backward);
+    out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
     MASK_STATEMENT
     return out;
 }

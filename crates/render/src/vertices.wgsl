@@ -30,7 +30,10 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let listed = list[bucket.start + place];
     let i = vertex_index & INDEX_PLACE_MASK;
     let j = (vertex_index >> INDEX_ROW_SHIFT) & INDEX_PLACE_MASK;
-    if (DRAWS_TUBES) {
+    if (DRAWS == DRAWS_BARE) {
+        return listed_bare_vertex(listed, i, j);
+    }
+    if (DRAWS == DRAWS_TUBES) {
         return listed_tube_vertex(listed, i, j);
     }
     return listed_other_vertex(listed, i, j);
@@ -39,9 +42,30 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
 // Column i and row j of a listed patch. Those beyond its grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     if (decided_kind(listed.y) == DECIDED_TUBE) {
+        if (is_whole(listed.y)) {
+            return listed_bare_vertex(listed, i, j);
+        }
         return listed_tube_vertex(listed, i, j);
     }
     return listed_other_vertex(listed, i, j);
+}
+
+// A whole tube at level 1 has no vertices but those of its two rings.
+fn listed_bare_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
+    let part = placed[owners[listed.x / CLUSTER]];
+    let index = listed.x - part.first_slot;
+    let point = index / 4u + min(j, 1u);
+    let words = point_words(part.base, point);
+    let v = ring_corner(own_ring(part.base, point, words), i & 3u);
+    return SurfaceVertex(
+        relative(part, v.position),
+        turned(part, v.normal) / part.scale,
+        relative(part, v.center),
+        v.radius * part.scale,
+        tube_word(part.base, words),
+        part.instance,
+        vec2<f32>(f32(i), -f32(j)),
+    );
 }
 
 fn listed_tube_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
@@ -57,7 +81,7 @@ fn listed_tube_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
         turned(part, v.normal) / part.scale,
         relative(part, v.axis),
         v.radius * part.scale,
-        tube_word(part.base, v),
+        tube_word(part.base, v.words),
         part.instance,
         wire_grid(PATCH_LATERAL, grid, column, row),
     );

@@ -91,9 +91,9 @@ fn count(gpu: &Gpu, maker: &dyn Fn(usize) -> String, cells: u64, trials: usize) 
 #[test]
 fn no_back_face_shows_through_a_closed_surface() {
     let Some(gpu) = gpu() else { return };
-    let (front, back) = count(&gpu, &Refiner::vertex_wgsl, 6, 8);
-    println!("96 pictures, {front} pixels of front faces, {back} of back faces");
-    assert!(front > 1_000_000, "{front}");
+    let (front, back) = count(&gpu, &Refiner::vertex_wgsl, 3, 8);
+    println!("48 pictures, {front} pixels of front faces, {back} of back faces");
+    assert!(front > 500_000, "{front}");
     assert_eq!(back, 0);
 }
 
@@ -105,9 +105,9 @@ fn an_edge_whose_faces_disagree_is_found() {
         (
             "select(levels.y, levels.w, i == 0u)",
             "select(max(levels.y / 2u, 1u), levels.w, i == 0u)",
-            0,
+            1,
         ),
-        ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 1),
+        ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 2),
     ] {
         let maker = |drawn: usize| {
             let text = Refiner::vertex_wgsl(drawn);

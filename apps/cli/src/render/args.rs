@@ -282,7 +282,7 @@ impl FromStr for Colour {
             other => {
                 let digits = other.strip_prefix('#').unwrap_or(other);
                 let number = u32::from_str_radix(digits, 16).ok();
-                let number = number.filter(|_| digits.len() == 6 && digits.is_ascii());
+                let number = number.filter(|_| digits.len() == 6 && !digits.starts_with('+'));
                 let [_, r, g, b] = number
                     .ok_or("white, black, grey or RRGGBB is needed, as in 102030")?
                     .to_be_bytes();

@@ -35,9 +35,6 @@ impl Paint {
     }
 }
 
-/// Most entries of a legend that lists things.
-const MOST_ENTRIES: usize = 12;
-
 /// Chooses the colours.
 pub(crate) fn colouring(cells: &[&Cell], args: &RenderArgs) -> Colouring {
     let background = (!args.transparent).then_some(args.background.0);
@@ -151,7 +148,7 @@ fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) ->
         .copied()
         .zip(names.iter().cloned())
         .collect();
-    let title = if entries.len() > MOST_ENTRIES {
+    let title = if entries.len() > paint.palette.distinct_count() {
         entries.clear();
         format!("{} {thing}s, colours repeat", names.len())
     } else {

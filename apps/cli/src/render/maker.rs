@@ -82,7 +82,7 @@ impl Maker {
             choice,
             ..Refining::default()
         };
-        let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels())?;
+        let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
         maker.set_bounds(cells.iter().flat_map(|cell| bounds(&cell.mesh)).collect());
         Ok(Self::OnTheFly(Box::new(maker)))
     }
@@ -106,7 +106,7 @@ impl Maker {
         match self {
             Self::Stored(maker) => Ok(resident(maker)),
             Self::OnTheFly(maker) => {
-                let size = options.size.map(|n| n * options.sub_pixels());
+                let size = options.size.map(|n| n * options.sub_pixels(gpu));
                 let frame = Frame {
                     camera: *camera,
                     near,

@@ -303,6 +303,32 @@ fn files_stay_without_force_and_nothing_is_left_half_written() {
     assert_eq!(work.names("."), ["bad.swc", "cell.png", "cell.swc"]);
 }
 
+/// Drivers are hidden by the variables of the loaders that Linux has.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_an_adapter_it_says_what_to_install() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = |arguments: &str| {
+        let mut command = work.command(arguments);
+        for variable in [
+            "VK_DRIVER_FILES",
+            "VK_ICD_FILENAMES",
+            "__EGL_VENDOR_LIBRARY_FILENAMES",
+            "LIBGL_DRIVERS_PATH",
+        ] {
+            command.env(variable, "/nonexistent");
+        }
+        Run(command.output().expect("it runs"))
+    };
+    let drawn = run("render cell.swc -o cell.png").exits(1);
+    assert_eq!(drawn.errors().len(), 1, "{}", drawn.stderr());
+    assert!(drawn.errors()[0].contains("install"), "{}", drawn.stderr());
+    assert_eq!(work.names("."), ["cell.swc"]);
+    let version = run("--version -v").exits(0).stdout();
+    assert!(version.contains("adapter: none"), "{version}");
+}
+
 #[test]
 fn wrong_usage_of_render_exits_with_2() {
     let work = Work::new();

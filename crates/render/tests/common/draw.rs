@@ -80,7 +80,7 @@ impl Drawer {
                 source: wgpu::ShaderSource::Wgsl(text.into()),
             })
         };
-        let modules = [module(0), module(1)];
+        let modules = [0, 1, 2].map(module);
         let own = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -135,7 +135,7 @@ impl Drawer {
             let front = pipeline(module, "vertex", wgpu::Face::Back);
             [front, pipeline(module, "vertex_back", wgpu::Face::Front)]
         };
-        let pipelines = [both(&modules[0]), both(&modules[1])];
+        let pipelines = [both(&modules[0]), both(&modules[1]), both(&modules[2])];
         let texture = |format, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
