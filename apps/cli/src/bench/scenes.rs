@@ -3,14 +3,14 @@
 use glam::DVec3;
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
-use neurotess::render::{
-    Ball, Camera, ColourTable, DEFAULT_FOV, Frame, Palette, Side, Tile, bounds, category,
-};
+use neurotess::render::{Ball, Camera, ColourTable, Frame, Palette, Side, Tile, bounds, category};
 use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 
 /// Distance (µm) of neighbours: dendrites meet.
 const APART: f64 = 120.0;
+/// Angle of view (radians): wide, so that some neurons are near and others far.
+const FOV: f64 = 60.0 * std::f64::consts::PI / 180.0;
 /// Types that colours are told by; the others look like the last.
 const TYPES: i32 = 8;
 
@@ -92,7 +92,7 @@ impl Scene {
             })
             .collect();
         let aspect = f64::from(size[0]) / f64::from(size[1]);
-        let camera = Camera::fit(Side::Iso, DEFAULT_FOV, aspect, 0.02, &balls)?;
+        let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &balls)?;
         let distance = |&(center, radius): &Ball| center.distance(camera.eye()) + radius;
         Ok(Self {
             frame: Frame {
