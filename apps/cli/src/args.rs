@@ -9,6 +9,7 @@ use neurotess::mesh::Format;
 use neurotess::morphology::NeuriteKind;
 use neurotess::synth::Kind;
 
+pub(crate) use crate::bench::BenchArgs;
 pub(crate) use crate::render::args::RenderArgs;
 
 /// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
@@ -85,6 +86,8 @@ pub(crate) enum Command {
     Convert(ConvertArgs),
     /// Grow synthetic neurons, the same for the same seed on every machine
     Synth(SynthArgs),
+    /// Benchmarks to repeat on one's own machine
+    Bench(Box<BenchArgs>),
     /// Print the completions of a shell
     Completions {
         /// The shell

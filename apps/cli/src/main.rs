@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod bench;
 mod check;
 mod convert;
 mod info;
@@ -48,6 +49,7 @@ fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
         Some(Command::Check(args)) => check::run(args, reporter),
         Some(Command::Convert(args)) => convert::run(args, reporter),
         Some(Command::Render(args)) => render::run(args, reporter),
+        Some(Command::Bench(args)) => bench::run(args, reporter),
         Some(Command::Synth(args)) => synth::run(args, reporter),
         Some(Command::Completions { shell }) => {
             let mut text = Vec::new();

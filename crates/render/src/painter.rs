@@ -180,6 +180,45 @@ impl<'g> Painter<'g> {
         Ok(pixels)
     }
 
+    /// Chooses and draws a frame, waits for it, and leaves it where it is: for stopwatches.
+    pub(crate) fn draw_only(
+        &mut self,
+        maker: &mut dyn VertexMaker,
+        frame: &Frame,
+        look: &Look,
+    ) -> Result<(), DeviceError> {
+        let size = [frame.tile.width, frame.tile.height];
+        if self.targets.as_ref().is_none_or(|t| t.size != size) {
+            self.targets = Some(Targets::new(self.gpu, size, self.samples));
+            self.gpu.check()?;
+        }
+        let Some(targets) = &self.targets else {
+            return Ok(());
+        };
+        let shade = Shade::new(frame, look, 1, self.scale_entries);
+        let queue = &self.gpu.queue;
+        queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
+        let (shade_group, finish_group) = self.groups(targets);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let rounds = maker.prepare(self.gpu, frame)?.max(1);
+        for round in 0..rounds {
+            maker.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
+            self.draw(maker, round, rounds, targets, &shade_group, &mut encoder);
+        }
+        // Passes that do nothing: their times are read with the others'.
+        let idle = [
+            (&self.finisher.occlude, Pass::Occlude),
+            (&self.finisher.blur, Pass::Blur),
+            (&self.finisher.gather, Pass::Gather),
+        ];
+        for (pipeline, name) in idle {
+            self.compute(pipeline, &finish_group, [0, 0], name, &mut encoder);
+        }
+        self.timer.resolve(&mut encoder);
+        queue.submit([encoder.finish()]);
+        self.gpu.wait()
+    }
+
     fn groups(&self, targets: &Targets) -> (wgpu::BindGroup, wgpu::BindGroup) {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view = wgpu::BindingResource::TextureView;

@@ -36,6 +36,15 @@ pub struct Painted<'m> {
     pub words: &'m [u32],
 }
 
+/// Where a surface is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// What to add to its coordinates (µm).
+    pub translation: DVec3,
+}
+
 /// Twin of `StoredVertex` in `prerefined.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -96,14 +105,16 @@ struct Chunk {
     group: wgpu::BindGroup,
     corners: wgpu::Buffer,
     runs: Vec<Run>,
-    shown: Vec<Range<u32>>,
+    /// Place and corners.
+    shown: Vec<(u32, Range<u32>)>,
 }
 
 /// A refined surface in the GPU's memory.
 pub struct Prerefined {
     layout: wgpu::BindGroupLayout,
     placements: wgpu::Buffer,
-    origins: Vec<DVec3>,
+    /// Mesh, and what its coordinates are relative to.
+    places: Vec<(usize, DVec3)>,
     chunks: Vec<Chunk>,
     bounds: Vec<Ball>,
     resident: Resident,
@@ -125,18 +136,55 @@ impl Prerefined {
         options: &RefineOptions,
         barycentric: bool,
     ) -> Result<Self, DeviceError> {
+        let own = (0..meshes.len()).map(|mesh| Place {
+            mesh,
+            translation: DVec3::ZERO,
+        });
+        let places: Vec<Place> = own.collect();
+        Self::placed(gpu, meshes, &places, levels, options, barycentric)
+    }
+
+    /// As [`Prerefined::new`], each mesh drawn at any number of places.
+    ///
+    /// # Errors
+    /// They do not fit the device.
+    ///
+    /// # Panics
+    /// If a place is of no mesh.
+    pub fn placed(
+        gpu: &Gpu,
+        meshes: &[Painted<'_>],
+        places: &[Place],
+        levels: impl Fn(usize) -> Levels<'static>,
+        options: &RefineOptions,
+        barycentric: bool,
+    ) -> Result<Self, DeviceError> {
         let placements = buffer(
             gpu,
             "placements",
-            STRIDE * meshes.len().max(1) as u64,
+            STRIDE * places.len().max(1) as u64,
             wgpu::BufferUsages::UNIFORM,
         )?;
         let mut made = Self {
             layout: layout(&gpu.device),
             placements,
-            origins: meshes.iter().map(|m| m.mesh.origin).collect(),
+            places: places
+                .iter()
+                .map(|place| {
+                    (
+                        place.mesh,
+                        meshes[place.mesh].mesh.origin + place.translation,
+                    )
+                })
+                .collect(),
             chunks: Vec::new(),
-            bounds: meshes.iter().flat_map(|m| bounds(m.mesh)).collect(),
+            bounds: places
+                .iter()
+                .flat_map(|place| {
+                    let balls = bounds(meshes[place.mesh].mesh).into_iter();
+                    balls.map(|(center, radius)| (center + place.translation, radius))
+                })
+                .collect(),
             resident: Resident::default(),
             drawn: 0,
             barycentric,
@@ -171,6 +219,12 @@ impl Prerefined {
     /// Triangles of the runs that showed in any frame.
     pub fn drawn(&self) -> usize {
         self.drawn
+    }
+
+    /// Triangles of the runs that show in the frame that was prepared last, at all places.
+    pub fn shown(&self) -> usize {
+        let shown = self.chunks.iter().flat_map(|chunk| &chunk.shown);
+        shown.map(|(_, corners)| corners.len() / 3).sum()
     }
 
     /// About as many patches as made those triangles.
@@ -263,11 +317,12 @@ impl VertexMaker for Prerefined {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        let eye = frame.camera.eye();
         let offsets = self
-            .origins
+            .places
             .iter()
-            .map(|&origin| origin - frame.camera.eye());
-        let offsets: Vec<Vec3> = offsets.map(DVec3::as_vec3).collect();
+            .map(|&(_, origin)| (origin - eye).as_vec3());
+        let offsets: Vec<Vec3> = offsets.collect();
         for (index, offset) in offsets.iter().enumerate() {
             let placement = Placement {
                 relative_from_mesh: offset.to_array(),
@@ -280,20 +335,25 @@ impl VertexMaker for Prerefined {
         let planes = frame.frustum();
         for chunk in &mut self.chunks {
             chunk.shown.clear();
-            for run in &mut chunk.runs {
-                // Widened to a pixel, a run reaches farther by half of one: 4 sub-pixels.
-                let center = run.center + offsets[chunk.mesh];
-                let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
-                if !shows(&planes, center, run.radius + pixels) {
-                    continue;
-                }
-                if !run.drawn {
-                    self.drawn += run.corners.len() / 3;
-                    run.drawn = true;
-                }
-                match chunk.shown.last_mut() {
-                    Some(last) if last.end == run.corners.start => last.end = run.corners.end,
-                    _ => chunk.shown.push(run.corners.clone()),
+            let here = self.places.iter().zip(&offsets).zip(0_u32..);
+            for ((_, &offset), place) in here.filter(|((place, _), _)| place.0 == chunk.mesh) {
+                for run in &mut chunk.runs {
+                    // Widened to a pixel, a run reaches farther by half of one: 4 sub-pixels.
+                    let center = run.center + offset;
+                    let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
+                    if !shows(&planes, center, run.radius + pixels) {
+                        continue;
+                    }
+                    if !run.drawn {
+                        self.drawn += run.corners.len() / 3;
+                        run.drawn = true;
+                    }
+                    match chunk.shown.last_mut() {
+                        Some((of, last)) if *of == place && last.end == run.corners.start => {
+                            last.end = run.corners.end;
+                        }
+                        _ => chunk.shown.push((place, run.corners.clone())),
+                    }
                 }
             }
         }
@@ -302,12 +362,11 @@ impl VertexMaker for Prerefined {
 
     fn draw(&self, _round: usize, _shader: usize, pass: &mut wgpu::RenderPass<'_>) {
         for chunk in self.chunks.iter().filter(|chunk| !chunk.shown.is_empty()) {
-            let offset = STRIDE as u32 * chunk.mesh as u32;
-            pass.set_bind_group(0, &chunk.group, &[offset]);
             if !self.barycentric {
                 pass.set_index_buffer(chunk.corners.slice(..), wgpu::IndexFormat::Uint32);
             }
-            for shown in &chunk.shown {
+            for (place, shown) in &chunk.shown {
+                pass.set_bind_group(0, &chunk.group, &[STRIDE as u32 * place]);
                 if self.barycentric {
                     pass.draw(shown.clone(), 0..1);
                 } else {

@@ -114,6 +114,11 @@ impl Timer {
         Ok(())
     }
 
+    /// Forgets the times so far.
+    pub(crate) fn reset(&mut self) {
+        self.milliseconds = [0.0; PASSES.len()];
+    }
+
     /// Milliseconds of all tiles by pass; none where the GPU cannot tell.
     pub(crate) fn milliseconds(&self) -> Option<[f64; PASSES.len()]> {
         self.queries.as_ref().map(|_| self.milliseconds)
