@@ -78,8 +78,8 @@ fn panel(
         .light_line_style(TRANSPARENT)
         .x_desc("level")
         .y_desc("frame (ms)")
-        .x_labels(here.len().min(8))
-        .x_label_formatter(&|level| format!("{level:.0}"))
+        .x_labels(2 * (highest - lowest) as usize + 3)
+        .x_label_formatter(&|level| whole(*level))
         .draw()
         .map_err(fault)?;
     for (method, name, colour) in CURVES {
@@ -105,6 +105,15 @@ fn panel(
         .draw()
         .map_err(fault)?;
     Ok(())
+}
+
+/// Label of a level; none between levels.
+fn whole(level: f64) -> String {
+    if (level - level.round()).abs() < 1e-6 {
+        format!("{level:.0}")
+    } else {
+        String::new()
+    }
 }
 
 fn with_level(rows: &[Row]) -> impl Iterator<Item = (&Row, u32)> {

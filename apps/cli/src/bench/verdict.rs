@@ -179,6 +179,6 @@ mod tests {
 
     #[test]
     fn nothing_measured_says_nothing() {
-        assert!(super::ratios(&[]).is_empty());
+        assert!(ratios(&[]).is_empty());
     }
 }

@@ -1,5 +1,6 @@
 //! The command line as scripts see it: one test for each row of its contract.
 
+mod bench;
 mod check;
 mod convert;
 mod help;

@@ -9,7 +9,7 @@ use crate::work::{BROKEN, Run, SMALL, Work};
 
 /// Whether pictures can be drawn here; says so where not.
 #[expect(clippy::print_stdout, reason = "a test says what it skips")]
-fn can_draw() -> bool {
+pub(crate) fn can_draw() -> bool {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let run = work.run("render cell.swc -o cell.png --size 8x8");
