@@ -28,6 +28,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["neurotess-morphology", "neurotess-mesh"],
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
+    ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
     (
         "neurotess",
         &[
@@ -38,6 +39,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-synth",
             "neurotess-generate",
             "neurotess-refine",
+            "neurotess-render",
         ],
     ),
     ("neurotess-cli", &["neurotess"]),

@@ -19,43 +19,71 @@ const MESHES: &[(&str, &str)] = &[
 /// Runs the command.
 pub(crate) fn run() -> anyhow::Result<()> {
     let mut steps = Steps::default();
-    steps.step("build", || {
-        steps::run(&mut cargo(
-            "build --release --locked --package neurotess-cli",
-        ))
-        .map(|()| "the program neurotess".into())
-    })?;
-    let program = program()?;
-    let neurotess = |arguments: &str| {
-        let mut command = Command::new(&program);
-        command
-            .args(arguments.split_whitespace())
-            .current_dir(root());
-        command
-    };
+    steps.step("build", build)?;
     steps.step("samples", || {
-        steps::run(&mut neurotess("info samples")).map(|()| "what is in samples/".into())
+        steps::run(&mut neurotess("info samples")?).map(|()| "what is in samples/".into())
     })?;
     for (folder, options) in MESHES {
         steps.step("mesh", || {
             let arguments = format!("mesh samples -o out/{folder} --force {options}");
-            steps::run(&mut neurotess(&arguments))?;
+            steps::run(&mut neurotess(&arguments)?)?;
             Ok(format!("{} files in out/{folder}", count(folder)?))
         })?;
     }
-    steps.step("check", || check(&mut neurotess("check out/ply --json")))?;
+    steps.step("check", || check(&mut neurotess("check out/ply --json")?))?;
+    steps.step("draw", draw)?;
     steps.summary();
     println!(
-        "\nLook at out/ply in MeshLab or ParaView, at out/glb in Blender or any viewer of glTF;"
+        "\nLook at the pictures in out/pictures; at out/ply in MeshLab or ParaView, at out/glb in Blender or any viewer of glTF;"
     );
     println!(
         "out/stl is for printing and simulators, out/coarse holds the quads before refinement."
     );
     println!(
         "Your own cell: {} mesh cell.swc -o cell.ply",
-        shown(&program)
+        shown(&program()?)
     );
     Ok(())
+}
+
+/// Builds the program.
+pub(crate) fn build() -> anyhow::Result<String> {
+    let build = "build --release --locked --package neurotess-cli";
+    steps::run(&mut cargo(build)).map(|()| "the program neurotess".into())
+}
+
+/// The program with arguments, in the workspace.
+pub(crate) fn neurotess(arguments: &str) -> anyhow::Result<Command> {
+    let mut command = Command::new(program()?);
+    command
+        .args(arguments.split_whitespace())
+        .current_dir(root());
+    Ok(command)
+}
+
+/// A picture of each sample; where no adapter is, the word of the program on what to install.
+fn draw() -> anyhow::Result<String> {
+    let mut samples: Vec<PathBuf> = fs::read_dir(root().join("samples"))?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<anyhow::Result<_>>()?;
+    samples.retain(|path| path.extension().is_some_and(|e| e == "swc"));
+    samples.sort();
+    for sample in &samples {
+        let name = sample.file_stem().unwrap_or_default().to_string_lossy();
+        let arguments =
+            format!("render samples/{name}.swc -o out/pictures/{name}.png --scale-bar --force -q");
+        let mut command = neurotess(&arguments)?;
+        let drawn = command.output().context("the program")?;
+        if !drawn.status.success() {
+            let words = String::from_utf8_lossy(&drawn.stderr);
+            let words = words.lines().rfind(|line| line.starts_with("error: "));
+            return Ok(format!(
+                "no pictures: {}",
+                words.unwrap_or("the program failed")
+            ));
+        }
+    }
+    Ok(format!("{} pictures in out/pictures", samples.len()))
 }
 
 fn check(command: &mut Command) -> anyhow::Result<String> {

@@ -23,6 +23,8 @@ const ALLOWED: &[&str] = &[
     "CC0-1.0",
     "ISC",
     "MPL-2.0",
+    "OFL-1.1",
+    "Ubuntu-font-1.0",
     "Unicode-3.0",
     "Unlicense",
     "Zlib",
@@ -33,6 +35,15 @@ const ALLOWED: &[&str] = &[
 const DUPLICATES: &[(&str, &str)] = &[
     ("equator", "faer and its kernels are a release apart"),
     ("equator-macro", "the same"),
+    (
+        "hashbrown",
+        "wgpu's allocator for DirectX is a release behind wgpu",
+    ),
+    (
+        "jni-sys",
+        "wgpu's bindings for Android have the old one in front of the new",
+    ),
+    ("miniz_oxide", "png is a release behind flate2"),
     (
         "syn",
         "runs at build time only; faer's macros are older than serde's",

@@ -12,7 +12,9 @@ mod bench;
 mod demo;
 mod licences;
 mod metadata;
+mod pictures;
 mod python;
+mod setup;
 mod steps;
 mod tests;
 
@@ -20,10 +22,12 @@ use std::process::ExitCode;
 
 const USAGE: &str = "cargo xtask COMMAND
 
-  demo    mesh the built-in samples into out/, check the meshes, say where to look
-  test    set up, then every check: formatting, clippy, tests, docs, licences, architecture
-  bench   time reading and meshing beside other tools; figures in out/bench/benchmarks.md
-  setup   the Python environment in which other readers check our files (where Python 3 is)
+  demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
+  test      set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
+  setup     a software Vulkan driver where there is none, and the Python environment in which other
+            readers check our files (where Python 3 is)
+  pictures  draw the README's pictures; with --golden those that tests compare with
 ";
 
 fn main() -> ExitCode {
@@ -32,7 +36,8 @@ fn main() -> ExitCode {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
         Some("bench") => bench::run(),
-        Some("setup") => python::set_up(&python::TESTS).map(|said| println!("{said}")),
+        Some("setup") => setup::run().map(|said| println!("{said}")),
+        Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),
         _ => {
             println!("{USAGE}");
             return ExitCode::from(2);

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::steps::{self, Steps, cargo, run_listening};
-use crate::{architecture, licences, metadata, python};
+use crate::{architecture, licences, metadata, setup};
 
 /// Runs the command. The last line tells how many tests there were.
 pub(crate) fn run() -> anyhow::Result<()> {
@@ -17,7 +17,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
 /// Runs all steps, the cheap ones first.
 fn all(steps: &mut Steps) -> anyhow::Result<Counts> {
     let mut counts = Counts::default();
-    steps.step("setup", || python::set_up(&python::TESTS))?;
+    steps.step("setup", setup::run)?;
     steps.step("format", || {
         steps::run(&mut cargo("fmt --all --check")).map(|()| "as rustfmt has it".into())
     })?;

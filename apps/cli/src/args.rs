@@ -4,11 +4,14 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use neurotess::generate::SomaMethod;
 use neurotess::mesh::Format;
 use neurotess::morphology::NeuriteKind;
 use neurotess::synth::Kind;
 
+pub(crate) use crate::bench::BenchArgs;
 use crate::circuit::CellArgs;
+pub(crate) use crate::render::args::RenderArgs;
 
 /// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
 #[derive(Debug, Parser)]
@@ -19,6 +22,7 @@ use crate::circuit::CellArgs;
 )]
 #[command(after_help = "Examples:
   neurotess mesh cell.swc -o cell.ply
+  neurotess render cell.swc -o cell.png
   neurotess info cells/ --json
   neurotess mesh cells/ -o meshes/ --format glb --resume --log meshes.jsonl
   neurotess check cell.ply
@@ -75,12 +79,16 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// From tracings to closed surface meshes
     Mesh(Box<MeshArgs>),
+    /// Draw cells, without a window
+    Render(Box<RenderArgs>),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
     Check(CheckArgs),
     /// Write morphologies in another format
     Convert(ConvertArgs),
     /// Grow synthetic neurons, the same for the same seed on every machine
     Synth(SynthArgs),
+    /// Benchmarks to repeat on one's own machine
+    Bench(Box<BenchArgs>),
     /// Print the completions of a shell
     Completions {
         /// The shell
@@ -295,6 +303,18 @@ pub(crate) enum SomaArg {
     None,
 }
 
+impl SomaArg {
+    /// As the library has it.
+    pub(crate) fn method(self) -> SomaMethod {
+        match self {
+            Self::Fem => SomaMethod::Fem,
+            Self::Sphere => SomaMethod::Sphere,
+            Self::Profile => SomaMethod::Profile,
+            Self::None => SomaMethod::None,
+        }
+    }
+}
+
 /// `--soma-sphere`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SphereArg {
@@ -371,7 +391,7 @@ fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
         _ => Err("a number above 0 is needed".into()),

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod bench;
 mod check;
 mod circuit;
 mod convert;
@@ -11,6 +12,7 @@ mod interrupt;
 mod mesh;
 mod output;
 mod progress;
+mod render;
 mod report;
 mod synth;
 mod targets;
@@ -47,6 +49,8 @@ fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
         Some(Command::Mesh(args)) => mesh::run(args, reporter),
         Some(Command::Check(args)) => check::run(args, reporter),
         Some(Command::Convert(args)) => convert::run(args, reporter),
+        Some(Command::Render(args)) => render::run(args, reporter),
+        Some(Command::Bench(args)) => bench::run(args, reporter),
         Some(Command::Synth(args)) => synth::run(args, reporter),
         Some(Command::Completions { shell }) => {
             let mut text = Vec::new();

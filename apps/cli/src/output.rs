@@ -21,6 +21,8 @@ impl std::fmt::Display for OutputError {
     }
 }
 
+impl std::error::Error for OutputError {}
+
 /// A file being written.
 pub(crate) struct Output {
     file: Option<File>,

@@ -1,11 +1,17 @@
 //! `neurotess --version`.
 
 use neurotess::mesh::Format;
+use neurotess::render::{AdapterName, DeviceError, Gpu};
 use serde_json::json;
 
 use crate::convert;
 use crate::info::MORPHOLOGIES;
 use crate::report::Reporter;
+
+/// The adapter that pictures would be drawn with.
+fn adapter() -> Result<AdapterName, DeviceError> {
+    Gpu::open(None).map(|gpu| gpu.adapter)
+}
 
 /// Prints the version; with -v what this build can do.
 pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
@@ -13,16 +19,22 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
     let meshes = Format::ALL.map(Format::extension);
     reporter.result(&format!("neurotess {version}"));
     if reporter.verbose() {
-        reporter.result("adapter: none (this build does not draw)");
+        reporter.result(&match adapter() {
+            Ok(adapter) => format!("adapter: {adapter}"),
+            Err(e) => format!("adapter: none: {e}"),
+        });
         reporter.result(&format!("reads: {}", MORPHOLOGIES.join(" ")));
         reporter.result(&format!("writes: {}", convert::written().join(" ")));
         reporter.result(&format!("meshes: {}", meshes.join(" ")));
         let system = (std::env::consts::OS, std::env::consts::ARCH);
         reporter.result(&format!("system: {} {}", system.0, system.1));
     }
+    if !reporter.json() {
+        return Ok(());
+    }
     reporter.document(&json!({
         "version": version,
-        "adapter": null,
+        "adapter": adapter().ok().map(|adapter| adapter.to_string()),
         "reads": MORPHOLOGIES,
         "writes": convert::written(),
         "meshes": meshes,

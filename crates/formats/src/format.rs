@@ -29,6 +29,16 @@ impl Format {
     /// Those that can be written.
     pub const WRITTEN: [Self; 3] = [Self::Swc, Self::Asc, Self::H5];
 
+    /// Short name, as reports have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Swc => "swc",
+            Self::Asc => "asc",
+            Self::H5 => "h5",
+            Self::NeuroMl => "neuroml",
+        }
+    }
+
     /// Its extensions in lower case, the usual one first.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {

@@ -39,7 +39,9 @@ use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
 pub use format::{EXTENSIONS, Format, write};
+use text::Located;
 pub use warning::Warning;
+use warning::Warnings;
 
 /// How to read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,4 +86,22 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
         Some(Format::H5) => h5::read_bytes(bytes, &name, options),
         None => Err(ReadError::of_file(&name, Fault::UnknownFormat)),
     }
+}
+
+/// Reads a format that has lines: `interpret` gets the cell's name and collects warnings.
+fn read_text(
+    format: Format,
+    name: &str,
+    options: &ReadOptions,
+    interpret: impl FnOnce(&str, &mut Warnings) -> Located<Morphology>,
+) -> Result<Read, ReadError> {
+    let mut warnings = Warnings::default();
+    let stem = text::stem(name, format.extensions());
+    let morphology =
+        interpret(stem, &mut warnings).map_err(|located| ReadError::at(name, located))?;
+    Ok(Read {
+        morphology,
+        format: format.name(),
+        warnings: warnings.finish(name, options)?,
+    })
 }

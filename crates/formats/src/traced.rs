@@ -8,7 +8,7 @@
 //! outline. Outlines that are within each other's reach are slices of one soma.
 
 use glam::DVec3;
-use neurotess_morphology::{BuildError, BuildNote, Morphology, NeuriteKind, Node};
+use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
 
 use crate::Fault;
 use crate::text::Located;
@@ -81,15 +81,7 @@ impl Tracing {
                     (1, Fault::TooMany)
                 }
             })?;
-        for BuildNote {
-            oddity,
-            node,
-            count,
-        } in built.notes
-        {
-            let line = lines[node as usize];
-            warnings.add_many(line, oddity.code(), &oddity.to_string(), count);
-        }
+        warnings.add_notes(built.notes, |node| lines[node as usize]);
         Ok(built.morphology)
     }
 

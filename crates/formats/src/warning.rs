@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use neurotess_morphology::BuildNote;
+
 use crate::{Fault, ReadError, ReadOptions};
 
 /// Something odd in a file that could be read all the same.
@@ -46,6 +48,14 @@ impl Warnings {
                 message: message.into(),
                 count,
             });
+        }
+    }
+
+    /// Takes over what was odd about the nodes; `line` gives a node's line.
+    pub(crate) fn add_notes(&mut self, notes: Vec<BuildNote>, line: impl Fn(u32) -> u64) {
+        for note in notes {
+            let message = note.oddity.to_string();
+            self.add_many(line(note.node), note.oddity.code(), &message, note.count);
         }
     }
 

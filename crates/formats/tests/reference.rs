@@ -164,7 +164,8 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
         ("six_columns.swc", "six_columns.swc:2: 6 columns"),
         ("soma_with_neurite_parent.swc", "soma_not_root"),
         ("utf16.swc", "UTF-16"),
-        ("simple.unknown", "not a format known"),
+        // Neurolucida by its content.
+        ("simple.unknown", "soma_of_one_point"),
     ];
     let manifest = Table::read(&data.join("MANIFEST.tsv"));
     let listed = manifest.rows(|file| file.starts_with("malformed/") && file.ends_with(".swc"));

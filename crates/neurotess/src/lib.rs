@@ -62,6 +62,7 @@
 //! | [`synth`] | synthetic neurons and circuits |
 //! | [`generate`] | from a morphology to a coarse mesh |
 //! | [`refine`] | from a coarse mesh to a surface |
+//! | [`render`] | from coarse meshes to pictures |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
 #![forbid(unsafe_code)]
 
@@ -71,4 +72,5 @@ pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
 pub use neurotess_refine as refine;
+pub use neurotess_render as render;
 pub use neurotess_synth as synth;

@@ -113,7 +113,7 @@ pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
 /// the example `fidelity`: the largest that keeps the median distance to the traced cones under
 /// 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113, 0.20 on
 /// IF4_140201). The price is visible corners on thin axons of long segments.
-const MOST_SWAY: f32 = 0.12;
+pub(crate) const MOST_SWAY: f32 = 0.12;
 
 /// Tangents of the centre line: the orientations times the segment's length, so that it makes no
 /// loops, shortened where it would sway too far; the segment itself at a joint, whose tubes have no

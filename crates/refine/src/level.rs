@@ -6,14 +6,22 @@
 use glam::Vec3;
 
 use crate::evaluate::{Corner, EdgeKind, hermite_tangents, soma_controls};
-use crate::{Levels, Path};
+use crate::{Levels, Path, View};
 
 /// Highest level.
 pub const HIGHEST_LEVEL: u32 = 64;
 
 /// The share of the permitted error that one direction of a patch may take: around, along, and a
 /// rest for what flat triangles lose on a twisted quad. Checked by `adaptive_error_is_kept`.
-const SHARE: f32 = 0.3;
+pub(crate) const SHARE: f32 = 0.3;
+
+/// What is taken off before a level is rounded up. Two devices that compute a level from the same
+/// numbers differ by a few 10⁻⁷ of it; geometry made of round numbers lands exactly on whole levels,
+/// and there the last bit would decide. A level too low by this much errs by 10⁻⁴ of the error.
+pub(crate) const SLACK: f32 = 1e-4;
+
+/// Steepest half turn between two corners that a level is made for: tan 1.3.
+pub(crate) const STEEPEST: f32 = 3.6;
 
 /// Level of an edge between tracing points `ta` and `tb`.
 pub(crate) fn edge_level(
@@ -30,6 +38,14 @@ pub(crate) fn edge_level(
             of(ta).max(of(tb))
         }
         Levels::MaxError(error) => by_error(error.max(1e-6) * SHARE, path, kind, a, b),
+        Levels::Distance { view, level, far } => by_distance(view, *level, *far, a, b),
+        Levels::PixelSize { view, pixels } => {
+            let size = pixels * um_per_pixel(view, a, b);
+            round_up((b.position - a.position).length() / size)
+        }
+        Levels::PixelError { view, pixels } => {
+            by_error(pixels * um_per_pixel(view, a, b) * SHARE, path, kind, a, b)
+        }
     };
     level.clamp(1, HIGHEST_LEVEL)
 }
@@ -45,9 +61,26 @@ fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u
             second(p0, p1, p2).max(second(p1, p2, p3))
         }
     };
-    let cuts = (bend / (8.0 * error)).sqrt().ceil();
-    if cuts.is_finite() {
-        cuts as u32
+    round_up((bend / (8.0 * error)).sqrt())
+}
+
+/// The paper's importance, from the mean of the two ends.
+fn by_distance(view: &View, level: u32, far: f32, a: &Corner, b: &Corner) -> u32 {
+    let importance = |k: &Corner| (1.0 - (k.center - view.eye).length() / far).clamp(0.0, 1.0);
+    (level as f32 * 0.5 * (importance(a) + importance(b)) + 0.5) as u32
+}
+
+/// Size (µm) of a pixel at the nearer end of an edge.
+fn um_per_pixel(view: &View, a: &Corner, b: &Corner) -> f32 {
+    let depth = |k: &Corner| view.forward.dot(k.center - view.eye) - k.offset.length();
+    let nearer = depth(a).min(depth(b)).max(view.near);
+    view.slope * nearer + view.flat
+}
+
+fn round_up(cuts: f32) -> u32 {
+    // Also where it is not a number.
+    if cuts < HIGHEST_LEVEL as f32 {
+        (cuts - SLACK).ceil().max(1.0) as u32
     } else {
         HIGHEST_LEVEL
     }
@@ -57,8 +90,13 @@ fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u
 /// normalised mixture of two directions θ apart turns by at most 2 tan(θ/2) per unit.
 fn turning(a: &Corner, b: &Corner) -> f32 {
     let (ra, rb) = (a.offset.length(), b.offset.length());
-    let half = (0.5 * a.radial.angle_between(b.radial)).min(1.3);
-    let speed = 2.0 * half.tan();
+    // tan(θ/2) of unit vectors without the arc cosine, which GPUs have to few digits only.
+    let (apart, together) = (
+        (a.radial - b.radial).length(),
+        (a.radial + b.radial).length(),
+    );
+    let half = (apart / together.max(1e-6)).min(STEEPEST);
+    let speed = 2.0 * half;
     ra.max(rb) * speed * speed + 2.0 * (ra - rb).abs() * speed
 }
 

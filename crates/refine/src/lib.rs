@@ -13,17 +13,30 @@
 //!   └─────┴─────┘   coarser side, level 2
 //! ```
 //!
-//! This is the reference for the shaders: plain arrays in, no allocation per patch.
+//! This is the reference for the shaders: plain arrays in, no allocation per patch. The shaders' own
+//! text lies beside each file under the same stem; [`gpu`] hands it out, with the resident form of a
+//! mesh that they read ([`pack`]).
 #![forbid(unsafe_code)]
 
+mod ball;
 mod coarse_surface;
+mod decode;
 mod evaluate;
+pub mod gpu;
+mod heap;
 mod level;
+mod loose;
 mod options;
+mod pack;
 mod plan;
 mod refinement;
+mod runs;
 
+pub use ball::{ball_around, patch_ball};
 pub use coarse_surface::CoarseSurface;
+pub use decode::POINTS_OF_BALL;
 pub use level::HIGHEST_LEVEL;
-pub use options::{Caps, Levels, Path, RefineOptions};
+pub use options::{Caps, Levels, Path, RefineOptions, View};
+pub use pack::{PLACES_OF_BALL, Part, Places, dequantized, pack};
+pub use plan::patch_triangles;
 pub use refinement::Refinement;

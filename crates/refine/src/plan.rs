@@ -78,13 +78,7 @@ impl Plan {
 
     pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {
         let levels = self.patch_edges[patch].map(|e| u32::from(self.edges[e as usize].level));
-        let (mut nx, mut ny) = (levels[0].max(levels[2]), levels[1].max(levels[3]));
-        if mesh.patches[patch].kind == PatchKind::Cap && options.caps == Caps::Round {
-            // A half sphere turns by 180° where the ring's side turns by 90°.
-            let finer = |n: u32| if n > 1 { (2 * n).min(HIGHEST_LEVEL) } else { 1 };
-            (nx, ny) = (finer(nx.max(ny)), finer(nx.max(ny)));
-        }
-        Grid { nx, ny, levels }
+        Grid::new(mesh.patches[patch].kind, options.caps, levels)
     }
 
     /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those of
@@ -179,7 +173,23 @@ fn cell(quad: [u32; 4], falling: bool, quads: bool, out: &mut Faces) {
     }
 }
 
+/// Columns, rows and triangles of a patch whose four sides have these levels.
+pub fn patch_triangles(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> (u32, u32, usize) {
+    let grid = Grid::new(kind, caps, levels);
+    (grid.nx, grid.ny, grid.face_counts(false).0)
+}
+
 impl Grid {
+    fn new(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> Self {
+        let (mut nx, mut ny) = (levels[0].max(levels[2]), levels[1].max(levels[3]));
+        if kind == PatchKind::Cap && caps == Caps::Round {
+            // A half sphere turns by 180° where the ring's side turns by 90°.
+            let finer = |n: u32| if n > 1 { (2 * n).min(HIGHEST_LEVEL) } else { 1 };
+            (nx, ny) = (finer(nx.max(ny)), finer(nx.max(ny)));
+        }
+        Self { nx, ny, levels }
+    }
+
     /// Triangles and quads. Every step of a side that snapping makes empty takes one triangle away.
     pub(crate) fn face_counts(&self, quads: bool) -> (usize, usize) {
         let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);

@@ -1,11 +1,13 @@
 //! The refined surface, made block by block from the coarse mesh.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Faces, Role, Surface, SurfaceVertex, TracingPoint};
 use rayon::prelude::*;
 
 use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
-use crate::plan::{Edge, Plan};
+use crate::plan::{Edge, Grid, Plan};
 use crate::{Levels, RefineOptions};
 
 /// A coarse mesh with levels. Holds no refined vertex: a [`Surface`] whose blocks are evaluated when
@@ -37,12 +39,55 @@ impl<'m> Refinement<'m> {
         (3 * self.plan.triangles + 4 * self.plan.quads) / 2
     }
 
+    /// Number of coarse edges by level, lowest first.
+    pub fn level_histogram(&self) -> BTreeMap<u32, usize> {
+        let mut histogram = BTreeMap::new();
+        for edge in &self.plan.edges {
+            *histogram.entry(u32::from(edge.level)).or_default() += 1;
+        }
+        histogram
+    }
+
     /// Number of faces of one patch; those of all patches follow one another in the patches' order,
     /// triangles and quads apart.
     pub fn patch_face_count(&self, patch: usize) -> usize {
         let grid = self.plan.grid(self.mesh, &self.options, patch);
         let (triangles, quads) = grid.face_counts(self.options.quads);
         triangles + quads
+    }
+
+    /// Levels of the four sides of a patch: those along x at y = 0 and 1 are the first and third,
+    /// those along y at x = 1 and 0 the second and fourth.
+    pub fn patch_levels(&self, patch: usize) -> [u32; 4] {
+        self.plan.patch_edges[patch].map(|e| u32::from(self.plan.edges[e as usize].level))
+    }
+
+    /// Columns and rows of cells in the grid of a patch.
+    pub fn patch_grid(&self, patch: usize) -> (u32, u32) {
+        let grid = self.plan.grid(self.mesh, &self.options, patch);
+        (grid.nx, grid.ny)
+    }
+
+    /// The vertex at column i and row j of a patch's grid: one of the surface's, those on the sides
+    /// perhaps several times. What the GPU makes must equal this.
+    pub fn grid_vertex(&self, patch: usize, i: u32, j: u32) -> SurfaceVertex {
+        let corners = self.mesh.patches[patch].corners;
+        let grid = self.plan.grid(self.mesh, &self.options, patch);
+        let index = self.plan.vertex(corners, patch, &grid, i, j);
+        if let Some(inner) = index.checked_sub(self.plan.patch_first[patch]) {
+            let (x, y) = (inner % (grid.nx - 1) + 1, inner / (grid.nx - 1) + 1);
+            return self.inner_vertex(patch, &self.shape(patch), &grid, x, y);
+        }
+        let on_edge = |&e: &u32| {
+            let edge = &self.plan.edges[e as usize];
+            let k = (index + 1).checked_sub(edge.first)?;
+            (1..u32::from(edge.level))
+                .contains(&k)
+                .then(|| self.edge_vertex(edge, k))
+        };
+        let edges = &self.plan.patch_edges[patch];
+        let found = edges.iter().find_map(on_edge);
+        found.unwrap_or_else(|| self.coarse_vertex(index as usize))
     }
 
     /// Volume (µm³) and area (µm²) of the refined surface; evaluates all of it, on all cores.
@@ -169,27 +214,30 @@ impl<'m> Refinement<'m> {
             return;
         }
         let shape = self.shape(patch);
-        let corners = self.mesh.patches[patch].corners;
-        let tracing = corners.map(|v| self.tracing(v));
-        let soma = tracing.into_iter().find(|t| t.role == Role::Soma);
-        let radii = tracing.map(|t| t.radius);
         for j in 1..grid.ny {
-            let y = j as f32 / grid.ny as f32;
             for i in 1..grid.nx {
-                let x = i as f32 / grid.nx as f32;
-                let (position, normal) = shape.interior(&self.options, x, y);
-                let nearest =
-                    tracing[usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5))];
-                let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)
-                    + (radii[3] * (1.0 - x) + radii[2] * x) * y;
-                out.push(attributed(
-                    position,
-                    normal,
-                    soma.unwrap_or(nearest),
-                    radius,
-                ));
+                out.push(self.inner_vertex(patch, &shape, &grid, i, j));
             }
         }
+    }
+
+    fn inner_vertex(
+        &self,
+        patch: usize,
+        shape: &PatchShape,
+        grid: &Grid,
+        i: u32,
+        j: u32,
+    ) -> SurfaceVertex {
+        let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
+        let (position, normal) = shape.interior(&self.options, x, y);
+        let tracing = self.mesh.patches[patch].corners.map(|v| self.tracing(v));
+        let soma = tracing.into_iter().find(|t| t.role == Role::Soma);
+        let nearest = tracing[usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5))];
+        let radii = tracing.map(|t| t.radius);
+        let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)
+            + (radii[3] * (1.0 - x) + radii[2] * x) * y;
+        attributed(position, normal, soma.unwrap_or(nearest), radius)
     }
 }
 

@@ -1,10 +1,10 @@
 //! From the command line's words to the library's options.
 
-use neurotess::generate::{GenerateOptions, SomaMethod, SphereKind};
+use neurotess::generate::{GenerateOptions, SphereKind};
 use neurotess::mesh::Format;
 use neurotess::refine::{Caps, Path, RefineOptions};
 
-use crate::args::{CapsArg, MeshArgs, PathArg, SomaArg, SphereArg};
+use crate::args::{CapsArg, MeshArgs, PathArg, SphereArg};
 use crate::inputs::Inputs;
 use crate::report::usage;
 use crate::targets;
@@ -93,12 +93,6 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
 }
 
 fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
-    let soma = match args.soma {
-        SomaArg::Fem => SomaMethod::Fem,
-        SomaArg::Sphere => SomaMethod::Sphere,
-        SomaArg::Profile => SomaMethod::Profile,
-        SomaArg::None => SomaMethod::None,
-    };
     let sphere = match args.soma_sphere {
         Some(SphereArg::Octahedron) => SphereKind::Octahedron,
         Some(SphereArg::Cube) => SphereKind::Cube,
@@ -117,7 +111,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
     }
     let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
     Ok(GenerateOptions {
-        soma,
+        soma: args.soma.method(),
         poisson: args.poisson,
         soma_scale: args.soma_scale,
         sphere,

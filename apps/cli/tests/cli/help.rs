@@ -5,12 +5,21 @@ use crate::work::{BROKEN, SMALL, Work};
 #[test]
 fn help_is_as_agreed() {
     let work = Work::new();
-    for command in ["", "info", "mesh", "check", "convert", "synth"] {
+    for command in [
+        "",
+        "info",
+        "mesh",
+        "render",
+        "check",
+        "convert",
+        "synth",
+        "bench refinement",
+    ] {
         let help = work.run(&format!("{command} --help")).exits(0).stdout();
         // Windows adds `.exe`.
         let help = help.replace("neurotess.exe", "neurotess");
         let name = if command.is_empty() { "help" } else { command };
-        insta::assert_snapshot!(format!("help_{name}"), help);
+        insta::assert_snapshot!(format!("help_{}", name.replace(' ', "_")), help);
     }
 }
 

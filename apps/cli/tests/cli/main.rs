@@ -1,5 +1,6 @@
 //! The command line as scripts see it: one test for each row of its contract.
 
+mod bench;
 mod check;
 mod circuit;
 mod convert;
@@ -8,5 +9,6 @@ mod info;
 mod inputs;
 mod kill;
 mod mesh;
+mod render;
 mod synth;
 mod work;

@@ -49,7 +49,9 @@ impl Work {
         command
             .current_dir(self.0.path())
             .args(arguments.split_whitespace())
-            .env_remove("NO_COLOR");
+            .env_remove("NO_COLOR")
+            // Mesa's layer that selects devices complains where there is no Wayland display.
+            .env("NODEVICE_SELECT", "1");
         command
     }
 
@@ -87,7 +89,7 @@ fn collect(folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
 }
 
 /// What a run left.
-pub(crate) struct Run(Output);
+pub(crate) struct Run(pub(crate) Output);
 
 impl Run {
     pub(crate) fn code(&self) -> i32 {

@@ -12,9 +12,9 @@ mod write;
 
 use neurotess_morphology::Morphology;
 
-use crate::text::{BOM, Located, refuse_other_text, stem};
+use crate::text::{BOM, Located, refuse_other_text};
 use crate::warning::Warnings;
-use crate::{Read, ReadError, ReadOptions};
+use crate::{Format, Read, ReadError, ReadOptions, read_text};
 pub use write::write;
 
 /// Extensions of the format's files, in lower case.
@@ -27,13 +27,8 @@ pub const EXTENSIONS: [&str; 1] = ["asc"];
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
-    let mut warnings = Warnings::default();
-    let morphology = interpret(bytes, stem(name, &EXTENSIONS), &mut warnings)
-        .map_err(|located| ReadError::at(name, located))?;
-    Ok(Read {
-        morphology,
-        format: "asc",
-        warnings: warnings.finish(name, options)?,
+    read_text(Format::Asc, name, options, |name, warnings| {
+        interpret(bytes, name, warnings)
     })
 }
 

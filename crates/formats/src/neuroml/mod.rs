@@ -12,12 +12,12 @@ mod xml;
 use std::collections::HashMap;
 
 use glam::DVec3;
-use neurotess_morphology::{BuildError, BuildNote, Morphology, NeuriteKind, Node};
+use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
 
-use crate::text::{Located, refuse_other_text, stem};
+use crate::text::{Located, refuse_other_text};
 use crate::traced::Sample;
 use crate::warning::Warnings;
-use crate::{Fault, Read, ReadError, ReadOptions};
+use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 use xml::{Records, Segment};
 
 /// Extensions of the format's files, in lower case.
@@ -28,13 +28,8 @@ pub const EXTENSIONS: [&str; 2] = ["nml", "neuroml"];
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
-    let mut warnings = Warnings::default();
-    let morphology = interpret(bytes, stem(name, &EXTENSIONS), &mut warnings)
-        .map_err(|located| ReadError::at(name, located))?;
-    Ok(Read {
-        morphology,
-        format: "neuroml",
-        warnings: warnings.finish(name, options)?,
+    read_text(Format::NeuroMl, name, options, |name, warnings| {
+        interpret(bytes, name, warnings)
     })
 }
 
@@ -76,15 +71,7 @@ fn interpret(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Located<Morph
         }
         BuildError::UnknownParent { .. } | BuildError::TooMany { .. } => (1, Fault::TooMany),
     })?;
-    for BuildNote {
-        oddity,
-        node,
-        count,
-    } in built.notes
-    {
-        let line = lines[node as usize];
-        warnings.add_many(line, oddity.code(), &oddity.to_string(), count);
-    }
+    warnings.add_notes(built.notes, |node| lines[node as usize]);
     Ok(built.morphology)
 }
 

@@ -21,11 +21,11 @@ mod number;
 mod rows;
 mod write;
 
-use neurotess_morphology::{BuildError, BuildNote, Morphology};
+use neurotess_morphology::{BuildError, Morphology};
 
-use crate::text::{Located, refuse_foreign, stem};
+use crate::text::{Located, refuse_foreign};
 use crate::warning::Warnings;
-use crate::{Fault, Read, ReadError, ReadOptions};
+use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 use rows::Records;
 pub use write::write;
 
@@ -40,14 +40,9 @@ pub const EXTENSIONS: [&str; 2] = ["swc", "eswc"];
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
-    let mut warnings = Warnings::default();
     let extended = name.to_ascii_lowercase().ends_with(".eswc");
-    let morphology = interpret(bytes, stem(name, &EXTENSIONS), extended, &mut warnings)
-        .map_err(|located| ReadError::at(name, located))?;
-    Ok(Read {
-        morphology,
-        format: "swc",
-        warnings: warnings.finish(name, options)?,
+    read_text(Format::Swc, name, options, |name, warnings| {
+        interpret(bytes, name, extended, warnings)
     })
 }
 
@@ -92,13 +87,6 @@ fn interpret(
             ),
             BuildError::UnknownParent { .. } | BuildError::TooMany { .. } => (1, Fault::TooMany),
         })?;
-    for BuildNote {
-        oddity,
-        node,
-        count,
-    } in built.notes
-    {
-        warnings.add_many(line(node), oddity.code(), &oddity.to_string(), count);
-    }
+    warnings.add_notes(built.notes, line);
     Ok(built.morphology)
 }

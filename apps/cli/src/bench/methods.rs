@@ -1,0 +1,254 @@
+//! The ways of drawing that are compared, and how a frame of each is timed.
+
+use neurotess::mesh::{CoarseMesh, Surface};
+use neurotess::refine::{Levels, RefineOptions, Refinement};
+use neurotess::render::{
+    Adaptive, Choice, ColourTable, FrameTime, Gpu, Instance, Meter, Painted, Place, Placement,
+    Prerefined, Refining, Scene as Placed, Template, Templates, VertexMaker,
+};
+use serde::Serialize;
+
+use super::args::RefinementArgs;
+use super::scenes::{Neuron, Scene};
+
+/// Bytes of a stored triangle: its corners, and half a vertex.
+const BYTES_OF_TRIANGLE: u64 = 12 + 12;
+
+/// Ways of drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Method {
+    /// Refined beforehand, in memory.
+    Prerefined,
+    /// On the fly, one level everywhere.
+    Homogeneous,
+    /// On the fly, the level falling with the distance.
+    Adaptive,
+    /// On the fly, by the error in pixels.
+    PixelError,
+    /// Refined beforehand with the very levels of the one before.
+    PrerefinedPixelError,
+}
+
+/// A frame's figures.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Row {
+    pub(crate) neurons: u32,
+    pub(crate) method: Method,
+    /// Of the three ways that have one.
+    pub(crate) level: Option<u32>,
+    /// Median frame: the GPU's time where it can tell, else that waited (ms).
+    pub(crate) ms: f64,
+    /// Median time waited (ms), what the processor does included.
+    pub(crate) waited_ms: f64,
+    /// Median time of choosing levels (ms), where the GPU can tell.
+    pub(crate) choose_ms: Option<f64>,
+    pub(crate) triangles: u64,
+    /// On the device, but for the picture.
+    pub(crate) bytes: u64,
+}
+
+/// Draws scenes.
+pub(crate) struct Drawing<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) args: &'a RefinementArgs,
+    pub(crate) neurons: &'a [Neuron],
+    pub(crate) colours: ColourTable,
+}
+
+impl Drawing<'_> {
+    /// Stored surfaces of a level; none if they need more memory than is allowed.
+    pub(crate) fn prerefined(&self, scene: &Scene, level: u32) -> anyhow::Result<Option<Row>> {
+        let used = self.neurons.len().min(scene.places.len());
+        let patches: usize = self.neurons[..used]
+            .iter()
+            .map(|n| n.mesh.patches.len())
+            .sum();
+        let triangles = patches as u64 * 2 * u64::from(level).pow(2);
+        if triangles * BYTES_OF_TRIANGLE > self.args.memory << 20 {
+            return Ok(None);
+        }
+        let painted: Vec<Painted<'_>> = self.neurons[..used].iter().map(Neuron::painted).collect();
+        let places: Vec<Place> = scene
+            .places
+            .iter()
+            .map(|&(mesh, translation)| Place { mesh, translation })
+            .collect();
+        let levels = |_| Levels::Homogeneous(level);
+        let options = RefineOptions::default();
+        let mut maker = Prerefined::placed(self.gpu, &painted, &places, levels, &options, false)?;
+        let times = self.times(&mut maker, scene)?;
+        let resident = maker.resident();
+        let bytes = resident.vertex_bytes + resident.corner_bytes;
+        let triangles = maker.shown() as u64;
+        Ok(Some(row(
+            scene,
+            Method::Prerefined,
+            Some(level),
+            &times,
+            triangles,
+            bytes,
+        )))
+    }
+
+    /// Stored surfaces with the levels that the error in pixels asks for, each neuron for itself.
+    pub(crate) fn prerefined_by_error(&self, scene: &Scene) -> anyhow::Result<Row> {
+        let moved: Vec<CoarseMesh> = scene
+            .places
+            .iter()
+            .map(|&(neuron, translation)| {
+                let mut mesh = self.neurons[neuron].mesh.clone();
+                mesh.origin += translation;
+                mesh
+            })
+            .collect();
+        let painted: Vec<Painted<'_>> = scene
+            .places
+            .iter()
+            .zip(&moved)
+            .map(|(&(neuron, _), mesh)| Painted {
+                mesh,
+                words: &self.neurons[neuron].words,
+            })
+            .collect();
+        let frame = &scene.frame;
+        let height = f64::from(frame.size[1]);
+        let levels = |mesh: usize| Levels::PixelError {
+            view: frame
+                .camera
+                .refine_view(moved[mesh].origin, height, frame.near),
+            pixels: self.args.pixels as f32,
+        };
+        let options = RefineOptions::default();
+        let mut maker = Prerefined::new(self.gpu, &painted, levels, &options, false)?;
+        let times = self.times(&mut maker, scene)?;
+        let resident = maker.resident();
+        let bytes = resident.vertex_bytes + resident.corner_bytes;
+        let triangles = maker.shown() as u64;
+        Ok(row(
+            scene,
+            Method::PrerefinedPixelError,
+            None,
+            &times,
+            triangles,
+            bytes,
+        ))
+    }
+
+    /// What draws a scene on the fly.
+    pub(crate) fn on_the_fly(&self, scene: &Scene) -> anyhow::Result<Adaptive> {
+        let used = self.neurons.len().min(scene.places.len());
+        let list: Vec<Template<'_>> = self.neurons[..used].iter().map(Neuron::template).collect();
+        let mut templates = Templates::new();
+        let ids = templates.add(self.gpu, &list)?;
+        let instances = scene.places.iter().map(|&(neuron, translation)| {
+            // Placements start from the template's coordinates, as translations do.
+            let placement = Placement {
+                translation,
+                ..Placement::default()
+            };
+            Instance {
+                placement,
+                ..Instance::new(ids[neuron])
+            }
+        });
+        let placed = Placed::new(templates, instances.collect())?;
+        Ok(Adaptive::new(self.gpu, placed, Refining::default(), 1)?)
+    }
+
+    /// Times a way of refining on the fly. `count`: whether triangles are counted, which reads lists
+    /// back.
+    pub(crate) fn refined(
+        &self,
+        maker: &mut Adaptive,
+        scene: &Scene,
+        (method, level): (Method, Option<u32>),
+        count: bool,
+    ) -> anyhow::Result<Row> {
+        let level_of = level.unwrap_or(1);
+        let choice = match method {
+            Method::Homogeneous => Choice::Homogeneous(level_of),
+            Method::Adaptive => Choice::Distance {
+                level: level_of,
+                far: scene.far as f32,
+            },
+            _ => Choice::PixelError(self.args.pixels as f32),
+        };
+        maker.set_refining(Refining {
+            choice,
+            ..Refining::default()
+        });
+        let times = self.times(maker, scene)?;
+        let triangles = if count {
+            maker.stats(self.gpu)?.triangles
+        } else {
+            0
+        };
+        let bytes = maker.bytes().iter().map(|(_, bytes)| bytes).sum();
+        Ok(row(scene, method, level, &times, triangles, bytes))
+    }
+
+    /// Times of some frames, after one that is not counted; of one only where it takes long.
+    fn times(&self, maker: &mut dyn VertexMaker, scene: &Scene) -> anyhow::Result<Vec<FrameTime>> {
+        let mut meter = Meter::new(self.gpu, maker, &self.colours)?;
+        let first = meter.time(maker, &scene.frame)?;
+        if first.waited_ms > 1e3 * self.args.patience {
+            return Ok(vec![first]);
+        }
+        (0..self.args.frames)
+            .map(|_| Ok(meter.time(maker, &scene.frame)?))
+            .collect()
+    }
+}
+
+impl Neuron {
+    fn painted(&self) -> Painted<'_> {
+        Painted {
+            mesh: &self.mesh,
+            words: &self.words,
+        }
+    }
+
+    fn template(&self) -> Template<'_> {
+        Template {
+            mesh: &self.mesh,
+            words: &self.words,
+            values: &[],
+        }
+    }
+
+    /// Triangles of a level.
+    pub(crate) fn triangles(&self, level: u32) -> usize {
+        let levels = Levels::Homogeneous(level);
+        Refinement::new(&self.mesh, &levels, &RefineOptions::default()).triangle_count()
+    }
+}
+
+fn row(
+    scene: &Scene,
+    method: Method,
+    level: Option<u32>,
+    times: &[FrameTime],
+    triangles: u64,
+    bytes: u64,
+) -> Row {
+    let choose = times
+        .iter()
+        .filter_map(|time| Some(time.gpu_ms?[0]))
+        .collect();
+    Row {
+        neurons: scene.places.len() as u32,
+        method,
+        level,
+        ms: median(times.iter().map(FrameTime::best_ms).collect()).unwrap_or(0.0),
+        waited_ms: median(times.iter().map(|t| t.waited_ms).collect()).unwrap_or(0.0),
+        choose_ms: median(choose),
+        triangles,
+        bytes,
+    }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

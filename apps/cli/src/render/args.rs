@@ -1,0 +1,357 @@
+//! `neurotess render`: its options.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::{DVec3, Vec3};
+use neurotess::render::{ColourMap, LARGEST, Light, Palette, Rgb};
+
+use crate::args::{SomaArg, Types};
+
+/// `neurotess render`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  neurotess render cell.swc -o cell.png
+  neurotess render cell.swc -o cell.png --color-by depth --colormap magma --scale-bar
+  neurotess render cell.swc -o close.png --eye 0,20,80 --target 0,20,0 --wireframe --level 3
+  neurotess render a.swc b.swc -o both.png --color-by neuron --transparent
+  neurotess render cell.swc -o turn.png --turntable --frames 120")]
+pub(crate) struct RenderArgs {
+    /// Morphology files, folders (searched recursively) or globs; all in one picture
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The picture; with --frames NAME_0000.png and so on
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(crate) out: PathBuf,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Width and height (pixels), up to 32768
+    #[arg(
+        long,
+        default_value = "1280x960",
+        value_name = "WxH",
+        help_heading = "Picture"
+    )]
+    pub(crate) size: Size,
+    /// Samples of a pixel, 1 to 64: smoother edges; 1, 4, 16, 36 and 64 are there
+    #[arg(long, default_value_t = 16, value_name = "N", help_heading = "Picture",
+          value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) samples: u32,
+    /// Colour behind everything: a name (white, black, grey) or RRGGBB
+    #[arg(
+        long,
+        default_value = "white",
+        value_name = "COLOUR",
+        help_heading = "Picture"
+    )]
+    pub(crate) background: Colour,
+    /// Leave the background out
+    #[arg(long, conflicts_with = "background", help_heading = "Picture")]
+    pub(crate) transparent: bool,
+    /// What colours tell
+    #[arg(long, value_enum, default_value_t = ColorBy::Type, value_name = "WHAT",
+          help_heading = "Colours")]
+    pub(crate) color_by: ColorBy,
+    /// Colours of types and of things told apart: neurom, neuromorpho, okabe-ito
+    #[arg(
+        long,
+        default_value = "neurom",
+        value_name = "NAME",
+        help_heading = "Colours"
+    )]
+    pub(crate) palette: Palette,
+    /// Colours of numbers: viridis, magma, inferno, plasma, cividis
+    #[arg(
+        long,
+        default_value = "viridis",
+        value_name = "NAME",
+        help_heading = "Colours"
+    )]
+    pub(crate) colormap: ColourMap,
+    /// Draw no legend
+    #[arg(long, help_heading = "Colours")]
+    pub(crate) no_legend: bool,
+    /// Draw a scale bar, of this length (µm) or one that fits
+    #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
+          help_heading = "Picture")]
+    pub(crate) scale_bar: Option<Fit>,
+    /// How vertices are made [default: adaptive; homogeneous where --level is given]
+    #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
+    pub(crate) lod: Option<LodArg>,
+    /// Subdivisions per coarse edge everywhere, 1 to 64, instead of --pixels
+    #[arg(long, value_name = "N", help_heading = "Refinement", conflicts_with = "pixels",
+          value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) level: Option<u32>,
+    /// Farthest that the surface may be from the level-64 one (pixels) [default: 0.25, with
+    /// --wireframe 1]
+    #[arg(long, value_name = "P", value_parser = crate::args::positive,
+          help_heading = "Refinement")]
+    pub(crate) pixels: Option<f64>,
+    /// Look from this side; the camera fits the scene
+    #[arg(long, value_enum, default_value_t = ViewArg::Front, value_name = "SIDE",
+          help_heading = "Camera")]
+    pub(crate) view: ViewArg,
+    /// Position of the eye (µm)
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        requires = "target",
+        conflicts_with = "view",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    pub(crate) eye: Option<Triple>,
+    /// What the eye looks at (µm)
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        requires = "eye",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    pub(crate) target: Option<Triple>,
+    /// What is upwards in the picture
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        default_value = "0,1,0",
+        requires = "eye",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    pub(crate) up: Triple,
+    /// Vertical angle of view (degrees)
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 20.0,
+        help_heading = "Camera"
+    )]
+    pub(crate) fov: f64,
+    /// Go once around the scene, in --frames pictures
+    #[arg(long, help_heading = "Camera")]
+    pub(crate) turntable: bool,
+    /// Number of pictures: OUT_0000.png and so on [default: 36]
+    #[arg(long, value_name = "N", requires = "turntable", help_heading = "Camera",
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) frames: Option<u32>,
+    /// Show the triangles by thin lines
+    #[arg(long, help_heading = "Look")]
+    pub(crate) wireframe: bool,
+    /// soft, flat (bare colours), or where the light comes from: right, up, towards you
+    #[arg(
+        long,
+        default_value = "soft",
+        value_name = "LIGHT",
+        allow_hyphen_values = true,
+        help_heading = "Look"
+    )]
+    pub(crate) light: LightArg,
+    /// Radius (µm) within which corners darken one another; 0: not at all [default: what fits]
+    #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
+          help_heading = "Look")]
+    pub(crate) ao: Option<Fit>,
+    /// How the soma is made
+    #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD")]
+    pub(crate) soma: SomaArg,
+    /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
+    #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
+    pub(crate) types: Vec<Types>,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// Write what the picture cost to this file (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stats: Option<PathBuf>,
+    /// Take every warning of the reader as an error
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+impl RenderArgs {
+    /// Greatest error (pixels): unseen, or such that a wireframe shows triangles and not a grid.
+    pub(crate) fn error(&self) -> f64 {
+        self.pixels
+            .unwrap_or(if self.wireframe { 1.0 } else { 0.25 })
+    }
+
+    /// Number of pictures of a series; none: one picture.
+    pub(crate) fn series(&self) -> Option<u32> {
+        self.turntable.then(|| self.frames.unwrap_or(36))
+    }
+}
+
+/// `--color-by`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorBy {
+    /// SWC type
+    Type,
+    /// Every neurite its own
+    Neurite,
+    /// Neighbouring sections differ
+    Section,
+    /// Number of forks from the neurite's start
+    Order,
+    /// Radius (µm)
+    Radius,
+    /// Way along the neurite from its start (µm)
+    Depth,
+    /// Every input its own
+    Neuron,
+}
+
+/// `--lod`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LodArg {
+    /// As it is drawn, as fine as --pixels asks for
+    Adaptive,
+    /// As it is drawn, at --level everywhere
+    Homogeneous,
+    /// Refined beforehand, whole in the adapter's memory
+    Prerefined,
+}
+
+/// `--view`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewArg {
+    /// Along −z, y upwards
+    Front,
+    /// Along +z
+    Back,
+    /// Along +x
+    Left,
+    /// Along −x
+    Right,
+    /// Along −y
+    Top,
+    /// Along +y
+    Bottom,
+    /// From the right, above and before
+    Iso,
+}
+
+/// `--size`
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size(pub(crate) [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.split_once(['x', 'X', '×']);
+        let sides = sides.and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+        match sides {
+            Some(size) if size.iter().all(|n| (1..=LARGEST).contains(n)) => Ok(Self(size)),
+            _ => Err(format!(
+                "width x height is needed, 1 to {LARGEST}, as in 1280x960"
+            )),
+        }
+    }
+}
+
+/// Three numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Triple(pub(crate) DVec3);
+
+impl FromStr for Triple {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y, z]) => Ok(Self(DVec3::new(x, y, z))),
+            _ => Err("three numbers X,Y,Z are needed, as in 0,20,80".into()),
+        }
+    }
+}
+
+/// A colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Colour(pub(crate) Rgb);
+
+impl FromStr for Colour {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let rgb = match text.to_ascii_lowercase().as_str() {
+            "white" => [255; 3],
+            "black" => [0; 3],
+            "grey" | "gray" => [128; 3],
+            other => {
+                let digits = other.strip_prefix('#').unwrap_or(other);
+                let number = u32::from_str_radix(digits, 16).ok();
+                let number = number.filter(|_| digits.len() == 6 && !digits.starts_with('+'));
+                let [_, r, g, b] = number
+                    .ok_or("white, black, grey or RRGGBB is needed, as in 102030")?
+                    .to_be_bytes();
+                [r, g, b]
+            }
+        };
+        Ok(Self(rgb))
+    }
+}
+
+/// A length, or whatever fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fit {
+    /// What fits.
+    Auto,
+    /// µm
+    Length(f64),
+}
+
+impl FromStr for Fit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse() {
+            Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(Self::Length(length)),
+            _ if text == "fit" => Ok(Self::Auto),
+            _ => Err("a length in µm is needed, or none".into()),
+        }
+    }
+}
+
+/// `--light`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightArg(pub(crate) Light);
+
+impl FromStr for LightArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let light = match text {
+            "soft" => Light::Soft,
+            "flat" => Light::Flat,
+            other => {
+                let direction = other.parse::<Triple>().map(|triple| triple.0.as_vec3());
+                let direction = direction.ok().filter(|d| d.is_finite() && *d != Vec3::ZERO);
+                Light::From(direction.ok_or("use soft, flat or a direction X,Y,Z, as in -1,1,1")?)
+            }
+        };
+        Ok(Self(light))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_colours_and_places_are_read() {
+        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        for wrong in ["640", "0x1", "1x99999", "x", "1x1x1"] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+        assert_eq!("#102030".parse(), Ok(Colour([16, 32, 48])));
+        assert_eq!("White".parse(), Ok(Colour([255; 3])));
+        for wrong in ["12345", "reddish", "#ééé", "+12345"] {
+            assert!(wrong.parse::<Colour>().is_err(), "{wrong}");
+        }
+        assert_eq!("1,-2,3e1".parse(), Ok(Triple(DVec3::new(1.0, -2.0, 30.0))));
+        assert!("1,2".parse::<Triple>().is_err());
+        assert!("0,0,0".parse::<LightArg>().is_err());
+    }
+}

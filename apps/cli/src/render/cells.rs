@@ -1,0 +1,101 @@
+//! Inputs to coarse meshes.
+
+use neurotess::formats::{self, ReadOptions, Warning};
+use neurotess::generate::{self, GenerateOptions};
+use neurotess::mesh::{CoarseMesh, TracingPoint};
+use neurotess::morphology::Morphology;
+use neurotess::render::Ball;
+
+use super::args::RenderArgs;
+use crate::info::{Entry, each};
+use crate::inputs::{Input, Inputs};
+use crate::report::{Failure, Reporter};
+
+/// A cell that can be drawn.
+pub(crate) struct Cell {
+    pub(crate) file: String,
+    pub(crate) morphology: Morphology,
+    pub(crate) mesh: CoarseMesh,
+    warnings: Vec<Warning>,
+    mended: Vec<String>,
+}
+
+/// Reads and meshes all inputs on all cores; tells of those that fail.
+pub(crate) fn read(
+    inputs: &Inputs,
+    args: &RenderArgs,
+    reporter: &Reporter,
+) -> anyhow::Result<Vec<Entry<Cell>>> {
+    let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
+    let options = GenerateOptions {
+        soma: args.soma.method(),
+        kinds: (!args.types.is_empty()).then(|| kinds.collect()),
+        ..GenerateOptions::default()
+    };
+    let read = ReadOptions {
+        strict: args.strict,
+    };
+    let entries = each(inputs, reporter, |input| cell(input, read, &options))?;
+    let one = entries.len() == 1;
+    for entry in &entries {
+        if let Entry::Done(cell) = entry {
+            warn(cell, one || reporter.verbose(), reporter);
+        }
+    }
+    Ok(entries)
+}
+
+fn cell(input: &Input, read: ReadOptions, options: &GenerateOptions) -> Result<Cell, Failure> {
+    let read = formats::read(&input.path, &read).map_err(|e| Failure(e.to_string()))?;
+    let generated = generate::generate(&read.morphology, options);
+    let mended = generated.warnings.iter();
+    Ok(Cell {
+        file: input.path.display().to_string(),
+        mended: mended.map(|w| format!("{w} ({})", w.code)).collect(),
+        morphology: read.morphology,
+        mesh: generated.mesh,
+        warnings: read.warnings,
+    })
+}
+
+fn warn(cell: &Cell, all: bool, reporter: &Reporter) {
+    let file = &cell.file;
+    if cell.mesh.patches.is_empty() {
+        reporter.warning(&format!(
+            "{file}: nothing is left to draw: check --types and --soma"
+        ));
+    }
+    if !all {
+        return;
+    }
+    for Warning {
+        line,
+        message,
+        code,
+        ..
+    } in &cell.warnings
+    {
+        let line = line.map_or(String::new(), |line| format!("{line}:"));
+        reporter.warning(&format!("{file}:{line} {message} ({code})"));
+    }
+    for mended in &cell.mended {
+        reporter.warning(&format!("{file}: {mended}"));
+    }
+}
+
+/// Balls around all that the cell's surface shows.
+pub(crate) fn balls(cell: &Cell) -> impl Iterator<Item = Ball> {
+    let origin = cell.mesh.origin;
+    let used = cell
+        .mesh
+        .vertices
+        .iter()
+        .map(|vertex| vertex.tracing as usize);
+    let mut seen = vec![false; cell.mesh.tracing.len()];
+    used.for_each(|index| seen[index] = true);
+    let tracing = cell.mesh.tracing.iter().zip(seen);
+    let shown = tracing.filter(|(_, seen)| *seen).map(|(point, _)| point);
+    shown.map(move |TracingPoint { center, radius, .. }| {
+        (origin + center.as_dvec3(), f64::from(radius.max(0.0)))
+    })
+}

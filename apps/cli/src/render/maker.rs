@@ -1,0 +1,204 @@
+//! Who makes the vertices: `--lod`, and what it says of itself.
+
+use std::collections::BTreeMap;
+
+use neurotess::refine::{Levels, RefineOptions};
+use neurotess::render::{
+    Adaptive, Ball, Camera, Choice, Frame, Gpu, Instance, Painted, PictureOptions, Prerefined,
+    Refining, Scene, Template, Templates, Tile, VertexMaker, bounds,
+};
+
+use super::args::{LodArg, RenderArgs};
+use super::cells::Cell;
+use super::colouring::Colouring;
+use crate::report::usage;
+
+/// A maker of any kind.
+pub(crate) enum Maker {
+    /// In memory.
+    Stored(Box<Prerefined>),
+    /// As it is drawn.
+    OnTheFly(Box<Adaptive>),
+}
+
+/// What a maker draws and holds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Made {
+    pub(crate) patches: u64,
+    pub(crate) patches_drawn: u64,
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) levels: BTreeMap<u32, u64>,
+    pub(crate) bytes: BTreeMap<&'static str, u64>,
+    pub(crate) bytes_per_point: f64,
+}
+
+/// The mode that options ask for.
+///
+/// # Errors
+/// Wrong usage: a level where levels follow from the error.
+pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodArg> {
+    match (args.lod, args.level) {
+        (Some(LodArg::Adaptive), Some(_)) => usage(
+            "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
+        ),
+        (Some(mode), _) => Ok(mode),
+        (None, Some(_)) => Ok(LodArg::Homogeneous),
+        (None, None) => Ok(LodArg::Adaptive),
+    }
+}
+
+impl Maker {
+    /// Uploads the cells.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        args: &RenderArgs,
+        options: &PictureOptions,
+        cells: &[&Cell],
+        colouring: &Colouring,
+        cameras: &[Camera],
+        balls: &[Ball],
+    ) -> anyhow::Result<Self> {
+        let choice = match mode(args)? {
+            LodArg::Prerefined => {
+                return stored(gpu, args, cells, colouring, cameras, balls);
+            }
+            LodArg::Homogeneous => Choice::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
+            LodArg::Adaptive => Choice::PixelError(args.error() as f32),
+        };
+        let list: Vec<Template<'_>> = cells
+            .iter()
+            .zip(&colouring.words)
+            .map(|(cell, words)| Template {
+                mesh: &cell.mesh,
+                words,
+                values: &[],
+            })
+            .collect();
+        let mut templates = Templates::new();
+        let ids = templates.add(gpu, &list)?;
+        let scene = Scene::new(templates, ids.into_iter().map(Instance::new).collect())?;
+        let refining = Refining {
+            choice,
+            ..Refining::default()
+        };
+        let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
+        maker.set_bounds(cells.iter().flat_map(|cell| bounds(&cell.mesh)).collect());
+        Ok(Self::OnTheFly(Box::new(maker)))
+    }
+
+    /// As the painter takes it.
+    pub(crate) fn as_maker(&mut self) -> &mut dyn VertexMaker {
+        match self {
+            Self::Stored(maker) => maker.as_mut(),
+            Self::OnTheFly(maker) => maker.as_mut(),
+        }
+    }
+
+    /// What it draws of a whole picture.
+    pub(crate) fn made(
+        &mut self,
+        gpu: &Gpu,
+        camera: &Camera,
+        near: f64,
+        options: &PictureOptions,
+    ) -> anyhow::Result<Made> {
+        match self {
+            Self::Stored(maker) => Ok(resident(maker)),
+            Self::OnTheFly(maker) => {
+                let size = options.size.map(|n| n * options.sub_pixels(gpu));
+                let frame = Frame {
+                    camera: *camera,
+                    near,
+                    size,
+                    tile: Tile {
+                        x: 0,
+                        y: 0,
+                        width: size[0],
+                        height: size[1],
+                    },
+                };
+                maker.prepare(gpu, &frame)?;
+                let stats = maker.stats(gpu)?;
+                let levels = (0..).zip(&stats.level_histogram);
+                let levels = levels.filter(|&(_, &sides)| sides > 0);
+                Ok(Made {
+                    patches: stats.patches,
+                    patches_drawn: stats.patches_drawn,
+                    vertices: stats.vertices,
+                    triangles: stats.triangles,
+                    levels: levels.map(|(level, &sides)| (level, sides)).collect(),
+                    bytes: maker.bytes().into_iter().collect(),
+                    bytes_per_point: maker.bytes_per_point(),
+                })
+            }
+        }
+    }
+}
+
+/// Level where none is given.
+const DEFAULT_LEVEL: u32 = 4;
+
+fn stored(
+    gpu: &Gpu,
+    args: &RenderArgs,
+    cells: &[&Cell],
+    colouring: &Colouring,
+    cameras: &[Camera],
+    balls: &[Ball],
+) -> anyhow::Result<Maker> {
+    let painted: Vec<Painted<'_>> = cells
+        .iter()
+        .zip(&colouring.words)
+        .map(|(cell, words)| Painted {
+            mesh: &cell.mesh,
+            words,
+        })
+        .collect();
+    let levels = |cell: usize| levels(args, cells[cell], cameras, balls);
+    let options = RefineOptions::default();
+    let maker = Prerefined::new(gpu, &painted, levels, &options, args.wireframe)?;
+    Ok(Maker::Stored(Box::new(maker)))
+}
+
+/// Levels of a cell: as told, or by the error that shows from the one camera; where it moves, from
+/// the nearest that anything seen ever is.
+fn levels(args: &RenderArgs, cell: &Cell, cameras: &[Camera], balls: &[Ball]) -> Levels<'static> {
+    let [width, height] = args.size.0.map(f64::from);
+    let nearest = |camera: &Camera| camera.nearest_seen(width / height, balls);
+    match (args.level, cameras) {
+        (Some(level), _) => Levels::Homogeneous(level),
+        (None, [camera]) => Levels::PixelError {
+            view: camera.refine_view(cell.mesh.origin, height, nearest(camera)),
+            pixels: args.error() as f32,
+        },
+        (None, _) => {
+            let error =
+                |camera: &Camera| camera.pixel_slope(height) * nearest(camera) * args.error();
+            let least = cameras.iter().map(error).fold(f64::MAX, f64::min);
+            Levels::MaxError(least as f32)
+        }
+    }
+}
+
+fn resident(maker: &Prerefined) -> Made {
+    let resident = maker.resident();
+    let bytes = [
+        ("vertices", resident.vertex_bytes),
+        ("corners", resident.corner_bytes),
+    ];
+    let sum: u64 = bytes.iter().map(|(_, bytes)| bytes).sum();
+    Made {
+        patches: resident.patches as u64,
+        patches_drawn: maker.patches_drawn() as u64,
+        vertices: resident.vertices as u64,
+        triangles: resident.triangles as u64,
+        levels: resident
+            .levels
+            .iter()
+            .map(|(&l, &n)| (l, n as u64))
+            .collect(),
+        bytes: bytes.into_iter().collect(),
+        bytes_per_point: sum as f64 / resident.points.max(1) as f64,
+    }
+}

@@ -1,0 +1,216 @@
+//! `neurotess render`: pictures of cells, without a window.
+//!
+//! ```text
+//! arguments ─▶ Inputs ─read, mesh─▶ cells ─▶ cameras, colouring, maker ─paint─▶ bands ─▶ PNG, stats
+//! ```
+
+pub(crate) mod args;
+mod cells;
+mod colouring;
+mod maker;
+mod sight;
+mod stats;
+
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use neurotess::render::{
+    Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, PictureOptions,
+    PngWriter, paint,
+};
+
+use crate::info::{Entry, MORPHOLOGIES};
+use crate::inputs::Inputs;
+use crate::output::{Output, OutputError, broken, refuse_existing};
+use crate::progress::Progress;
+use crate::report::{Reporter, count, usage};
+use args::{Fit, RenderArgs};
+use cells::Cell;
+use colouring::Colouring;
+use maker::Maker;
+use stats::Stats;
+
+/// Width (pixels) of the lines of a wireframe.
+const WIRE: f32 = 1.0;
+
+/// Runs the command.
+pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    let files = files(args)?;
+    maker::mode(args)?;
+    for file in files.iter().chain(&args.stats) {
+        refuse_existing(file, args.force)?;
+    }
+    let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
+    let entries = cells::read(&inputs, args, reporter)?;
+    let cells: Vec<&Cell> = entries
+        .iter()
+        .filter_map(|entry| match entry {
+            Entry::Done(cell) => Some(cell),
+            Entry::Failed(_) => None,
+        })
+        .collect();
+    if cells.is_empty() {
+        return reporter.document(&stats::Document::new(&entries, &[], None));
+    }
+    let balls: Vec<Ball> = cells.iter().copied().flat_map(cells::balls).collect();
+    let cameras = sight::cameras(args, &balls)?;
+    let gpu = Gpu::open(args.adapter.as_deref())?;
+    if gpu.adapter.software {
+        reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
+    }
+    let colouring = colouring::colouring(&cells, args);
+    let (overlay, cameras) = overlay(args, &colouring, cameras, &balls);
+    let sitting = Sitting {
+        args,
+        cells: &cells,
+        colouring: &colouring,
+        cameras: &cameras,
+        balls: &balls,
+        overlay: &overlay,
+        files: &files,
+    };
+    let stats = draw(&gpu, &sitting, reporter)?;
+    if let Some(path) = &args.stats {
+        let mut output = Output::create(path, args.force)?;
+        serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
+        output.finish()?;
+    }
+    for file in &files {
+        reporter.result(&format!("{}: {}", file.display(), stats.line()));
+    }
+    reporter.document(&stats::Document::new(&entries, &files, Some(&stats)))
+}
+
+/// Names of the pictures.
+fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
+    let out = &args.out;
+    let png = out
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    let Some(stem) = out.file_stem().filter(|_| png) else {
+        return usage(format!(
+            "{}: pictures are PNG files: name it OUT.png",
+            out.display()
+        ));
+    };
+    let Some(frames) = args.series() else {
+        return Ok(vec![out.clone()]);
+    };
+    let stem = stem.to_string_lossy();
+    let name = |frame| out.with_file_name(format!("{stem}_{frame:04}.png"));
+    Ok((0..frames).map(name).collect())
+}
+
+/// Legend and scale bar, and the cameras: where the legend would cover something, the scene makes
+/// room for it if it can.
+fn overlay(
+    args: &RenderArgs,
+    colouring: &Colouring,
+    mut cameras: Vec<Camera>,
+    balls: &[Ball],
+) -> (Overlay, Vec<Camera>) {
+    let options = OverlayOptions {
+        legend: (!args.no_legend).then(|| colouring.legend.clone()),
+        scale_bar: args.scale_bar.map(|bar| match bar {
+            Fit::Auto => 0.0,
+            Fit::Length(length) => length,
+        }),
+        background: (!args.transparent).then_some(args.background.0),
+    };
+    let mut overlay = Overlay::new(&options, args.size.0, &cameras, balls);
+    let beside = overlay
+        .covering
+        .and_then(|share| sight::beside(args, balls, share));
+    if let Some(camera) = beside {
+        cameras = vec![camera];
+        overlay = Overlay::new(&options, args.size.0, &cameras, balls);
+    }
+    (overlay, cameras)
+}
+
+/// What is drawn, from where, and into which files.
+struct Sitting<'a> {
+    args: &'a RenderArgs,
+    cells: &'a [&'a Cell],
+    colouring: &'a Colouring,
+    cameras: &'a [Camera],
+    balls: &'a [Ball],
+    overlay: &'a Overlay,
+    files: &'a [PathBuf],
+}
+
+fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result<Stats> {
+    let Sitting {
+        args,
+        cells,
+        colouring,
+        cameras,
+        balls,
+        overlay,
+        files,
+    } = *sitting;
+    let options = picture_options(args);
+    if options.samples_taken() != args.samples {
+        let taken = options.samples_taken();
+        reporter.warning(&format!("{} samples: {taken} are taken", args.samples));
+    }
+    if overlay.legend_left_out {
+        reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
+    }
+    let mut maker = Maker::new(gpu, args, &options, cells, colouring, cameras, balls)?;
+    let mut stats = Stats::new(gpu, cells.len());
+    let progress = Progress::new(reporter, files.len(), "pictures");
+    for (camera, file) in cameras.iter().zip(files) {
+        let near = camera.near(balls);
+        let cost = write(file, args, |take| {
+            let lay = |top: u32, mut band: Image| {
+                overlay.lay_on(top, &mut band);
+                take(&band)
+            };
+            let table = &colouring.table;
+            paint(gpu, maker.as_maker(), camera, near, table, &options, lay)
+                .map_err(|e| anyhow::anyhow!("{e}"))
+        })?;
+        stats.add(&cost, maker.made(gpu, camera, near, &options)?);
+        progress.done();
+    }
+    drop(progress);
+    reporter.note(&count(files.len(), "picture"));
+    Ok(stats)
+}
+
+fn picture_options(args: &RenderArgs) -> PictureOptions {
+    PictureOptions {
+        size: args.size.0,
+        samples: args.samples,
+        background: (!args.transparent).then_some(args.background.0),
+        look: Look {
+            light: args.light.0,
+            wire: if args.wireframe { WIRE } else { 0.0 },
+        },
+        occlusion: match args.ao {
+            None | Some(Fit::Auto) => Occlusion::Fit,
+            Some(Fit::Length(0.0)) => Occlusion::Off,
+            Some(Fit::Length(radius)) => Occlusion::Within(radius as f32),
+        },
+        ..PictureOptions::default()
+    }
+}
+
+/// Writes a picture as its bands come; it appears whole or not at all.
+fn write(
+    path: &Path,
+    args: &RenderArgs,
+    paint: impl FnOnce(&mut dyn FnMut(&Image) -> Result<(), OutputError>) -> anyhow::Result<Cost>,
+) -> anyhow::Result<Cost> {
+    let mut output = Output::create(path, args.force)?;
+    let file = output.file().try_clone().map_err(|e| broken(path, &e))?;
+    let fault = |e: std::io::Error| broken(path, &e);
+    let mut png =
+        PngWriter::new(BufWriter::new(file), args.size.0, args.transparent).map_err(fault)?;
+    let cost = paint(&mut |band| png.write(band).map_err(fault))?;
+    png.finish().map_err(fault)?;
+    output.finish()?;
+    Ok(cost)
+}

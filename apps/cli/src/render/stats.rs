@@ -1,0 +1,114 @@
+//! What a picture cost: `--stats` and `--json`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use neurotess::render::{Cost, Gpu};
+use serde::Serialize;
+
+use super::cells::Cell;
+use super::maker::Made;
+use crate::info::{Entry, Failed};
+
+/// The contract's object; times are of the last picture.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Stats {
+    adapter: String,
+    backend: String,
+    software: bool,
+    neurons: usize,
+    patches: u64,
+    patches_drawn: u64,
+    vertices: u64,
+    triangles: u64,
+    gpu_bytes: BTreeMap<&'static str, u64>,
+    bytes_per_point: f64,
+    frame_ms: FrameTime,
+    level_histogram: BTreeMap<u32, u64>,
+    tiles: usize,
+    pictures: usize,
+}
+
+/// Milliseconds.
+#[derive(Clone, Debug, Default, Serialize)]
+struct FrameTime {
+    /// From the first command to the last byte.
+    cpu: f64,
+    /// By pass, where the GPU can tell.
+    gpu: Option<BTreeMap<&'static str, f64>>,
+}
+
+impl Stats {
+    /// Of nothing drawn yet.
+    pub(crate) fn new(gpu: &Gpu, neurons: usize) -> Self {
+        Self {
+            adapter: gpu.adapter.name.clone(),
+            backend: gpu.adapter.backend.clone(),
+            software: gpu.adapter.software,
+            neurons,
+            ..Self::default()
+        }
+    }
+
+    /// One more picture.
+    pub(crate) fn add(&mut self, cost: &Cost, made: Made) {
+        self.pictures += 1;
+        self.tiles = cost.tiles;
+        self.patches = made.patches;
+        self.patches_drawn = made.patches_drawn;
+        self.vertices = made.vertices;
+        self.triangles = made.triangles;
+        self.level_histogram = made.levels;
+        self.bytes_per_point = made.bytes_per_point;
+        self.gpu_bytes = made.bytes;
+        self.gpu_bytes.insert("targets", cost.target_bytes);
+        self.frame_ms = FrameTime {
+            cpu: cost.cpu_ms,
+            gpu: cost.gpu_ms.as_ref().map(|ms| ms.iter().copied().collect()),
+        };
+    }
+
+    /// For people.
+    pub(crate) fn line(&self) -> String {
+        format!(
+            "{} triangles of {} neurons in {:.2} s",
+            self.triangles,
+            self.neurons,
+            self.frame_ms.cpu / 1e3
+        )
+    }
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+pub(crate) struct Document<'a> {
+    files: Vec<String>,
+    inputs: Vec<Input<'a>>,
+    #[serde(flatten)]
+    stats: Option<&'a Stats>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Input<'a> {
+    Done { file: &'a str },
+    Failed(&'a Failed),
+}
+
+impl<'a> Document<'a> {
+    pub(crate) fn new(
+        entries: &'a [Entry<Cell>],
+        files: &[PathBuf],
+        stats: Option<&'a Stats>,
+    ) -> Self {
+        let input = |entry: &'a Entry<Cell>| match entry {
+            Entry::Done(cell) => Input::Done { file: &cell.file },
+            Entry::Failed(failed) => Input::Failed(failed),
+        };
+        Self {
+            files: files.iter().map(|f| f.display().to_string()).collect(),
+            inputs: entries.iter().map(input).collect(),
+            stats,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! `neurotess bench`, in small.
+
+use std::fs;
+
+use crate::render::can_draw;
+use crate::work::Work;
+
+const SMALL: &str = "bench refinement --neurons 1,3 --levels 1,2 --grow 4 --distinct 2 --points 60 \
+                     --frames 1 --size 48x48";
+
+#[test]
+fn refinement_gives_tables_json_and_a_plot() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    let json = work
+        .run(&format!("{SMALL} --json -o figures"))
+        .exits(0)
+        .json();
+    let rows = json["rows"].as_array().expect("rows");
+    // Three ways at two levels, and two by the error, in two scenes.
+    assert_eq!(rows.len(), 2 * (3 * 2 + 2));
+    for row in rows {
+        assert!(row["ms"].as_f64().is_some_and(|ms| ms > 0.0), "{row}");
+        assert!(row["triangles"].as_u64().is_some_and(|n| n > 0), "{row}");
+        assert!(row["bytes"].as_u64().is_some_and(|n| n > 0), "{row}");
+    }
+    let triangles = |method: &str, level: u64| {
+        let row = rows
+            .iter()
+            .find(|r| r["method"] == method && r["level"] == level);
+        row.expect("the row")["triangles"]
+            .as_u64()
+            .expect("a number")
+    };
+    assert!(triangles("homogeneous", 2) > 2 * triangles("homogeneous", 1));
+    assert_eq!(json["growth"][0]["neurons"], 4);
+    assert!(
+        json["ratios"]
+            .as_array()
+            .is_some_and(|ratios| ratios.len() >= 5)
+    );
+    let svg = fs::read_to_string(work.path("figures/refinement.svg")).expect("a plot");
+    assert!(svg.contains("3 neurons") && svg.contains("adaptive"));
+    assert_eq!(work.names("figures"), ["refinement.json", "refinement.svg"]);
+    work.run(&format!("{SMALL} -o figures")).exits(1);
+    let table = work.run(SMALL).exits(0).stdout();
+    assert!(
+        table.contains("neurons: 3") && table.contains("<= 1.5"),
+        "{table}"
+    );
+}
+
+#[test]
+fn what_memory_does_not_allow_is_left_out_and_told() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    let run = work.run(&format!("{SMALL} --memory 0 --json")).exits(0);
+    assert!(run.stderr().contains("left out"), "{}", run.stderr());
+    let json = run.json();
+    let rows = json["rows"].as_array().expect("rows");
+    assert!(rows.iter().all(|row| row["method"] != "prerefined"));
+}

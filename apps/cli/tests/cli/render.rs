@@ -1,0 +1,365 @@
+//! `neurotess render`. Where no adapter is, what it does without one is all that is tested.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use serde_json::Value;
+
+use crate::work::{BROKEN, Run, SMALL, Work};
+
+/// Whether pictures can be drawn here; says so where not.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
+pub(crate) fn can_draw() -> bool {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = work.run("render cell.swc -o cell.png --size 8x8");
+    if run.code() == 0 {
+        return true;
+    }
+    assert_eq!(run.code(), 1, "{}", run.stderr());
+    assert!(run.errors()[0].contains("install"), "{}", run.stderr());
+    println!("SKIPPED: {}", run.errors()[0]);
+    false
+}
+
+/// A picture: width, height, samples of a pixel, bytes.
+struct Picture {
+    size: (u32, u32),
+    channels: usize,
+    pixels: Vec<u8>,
+}
+
+impl Picture {
+    fn read(work: &Work, name: &str) -> Self {
+        let file = fs::File::open(work.path(name)).expect("a picture");
+        let decoder = png::Decoder::new(std::io::BufReader::new(file));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        let info = reader.next_frame(&mut pixels).expect("whole");
+        Self {
+            size: (info.width, info.height),
+            channels: info.color_type.samples(),
+            pixels,
+        }
+    }
+
+    /// The different colours, reduced to 3 bits a channel.
+    fn hues(&self) -> BTreeSet<Vec<u8>> {
+        let pixels = self.pixels.chunks(self.channels);
+        pixels
+            .map(|p| p[..3].iter().map(|c| c >> 5).collect())
+            .collect()
+    }
+
+    /// Pixels of which red (0) or blue (2) is far above the other.
+    fn count(&self, channel: usize) -> usize {
+        let pixels = self.pixels.chunks(self.channels);
+        let other = 2 - channel;
+        pixels
+            .filter(|p| p[channel] > p[other].saturating_add(30))
+            .count()
+    }
+}
+
+/// Draws the small cell.
+fn drawn(arguments: &str) -> (Work, Run) {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = work
+        .run(&format!(
+            "render cell.swc -o cell.png --size 120x90 {arguments}"
+        ))
+        .exits(0);
+    (work, run)
+}
+
+fn picture(arguments: &str) -> Picture {
+    Picture::read(&drawn(arguments).0, "cell.png")
+}
+
+#[test]
+fn a_cell_becomes_a_picture_in_the_colours_of_its_types() {
+    if !can_draw() {
+        return;
+    }
+    let picture = picture("");
+    assert_eq!((picture.size, picture.channels), ((120, 90), 3));
+    assert_eq!(picture.pixels[..3], [255; 3], "white behind");
+    assert!(picture.count(0) > 50, "red dendrites");
+    assert!(picture.count(2) > 10, "a blue axon");
+    let other = self::picture("--palette neuromorpho");
+    assert!(other.count(2) < picture.count(2) && other.pixels != picture.pixels);
+}
+
+#[test]
+fn every_option_of_the_contract_draws() {
+    if !can_draw() {
+        return;
+    }
+    let plain = picture("").pixels;
+    for arguments in [
+        "--level 1",
+        "--lod homogeneous --level 2",
+        "--pixels 2",
+        "--lod prerefined --level 1",
+        "--samples 1",
+        "--background 203040",
+        "--transparent",
+        "--color-by neurite",
+        "--color-by section",
+        "--color-by order",
+        "--color-by radius --colormap cividis",
+        "--color-by depth --colormap magma",
+        "--color-by neuron",
+        "--wireframe",
+        "--light flat",
+        "--light 1,0,0.5",
+        "--ao 0",
+        "--ao 12",
+        "--scale-bar",
+        "--scale-bar 20",
+        "--no-legend",
+        "--view back",
+        "--view left",
+        "--view right",
+        "--view top",
+        "--view bottom",
+        "--view iso",
+        "--eye 0,-10,90 --target 0,10,0",
+        "--eye 0,-10,90 --target 0,10,0 --up 1,0,0 --fov 40",
+        "--types axon",
+        "--soma sphere",
+    ] {
+        let other = picture(arguments);
+        assert!(other.pixels != plain, "{arguments}");
+        assert!(other.hues().len() > 3, "{arguments}: {:?}", other.hues());
+    }
+    let asked =
+        picture("--view front --samples 16 --palette neurom --light soft --ao --pixels 0.25");
+    assert!(asked.pixels == plain, "defaults are what help says");
+}
+
+#[test]
+fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
+    if !can_draw() {
+        return;
+    }
+    let drawn = |arguments: &str| {
+        let (work, _) = drawn(&format!("--stats stats.json {arguments}"));
+        let stats = fs::read_to_string(work.path("stats.json")).expect("stats");
+        let stats: Value = serde_json::from_str(&stats).expect("JSON");
+        (Picture::read(&work, "cell.png").pixels, stats)
+    };
+    let (stored, _) = drawn("--lod prerefined --level 4");
+    let (made, four) = drawn("--level 4");
+    // A line along a pixel's border may fall to either side.
+    let apart = stored
+        .iter()
+        .zip(&made)
+        .filter(|(a, b)| a.abs_diff(**b) > 24)
+        .count();
+    assert!(apart * 200 < stored.len(), "{apart} of {}", stored.len());
+    let (_, sixteen) = drawn("--level 16");
+    assert!(sixteen["triangles"].as_u64() > four["triangles"].as_u64());
+    assert_eq!(sixteen["bytes_per_point"], four["bytes_per_point"]);
+    assert_eq!(
+        four["level_histogram"]
+            .as_object()
+            .map(serde_json::Map::len),
+        Some(1)
+    );
+}
+
+#[test]
+fn transparent_pictures_have_alpha() {
+    if !can_draw() {
+        return;
+    }
+    let picture = picture("--transparent --no-legend");
+    assert_eq!(picture.channels, 4);
+    let alphas: BTreeSet<u8> = picture.pixels.chunks(4).map(|p| p[3]).collect();
+    assert!(alphas.contains(&0) && alphas.contains(&255) && alphas.len() > 6);
+}
+
+#[test]
+fn stats_have_the_keys_of_the_contract() {
+    if !can_draw() {
+        return;
+    }
+    let (work, run) = drawn("--stats stats.json --json");
+    let text = fs::read_to_string(work.path("stats.json")).expect("stats");
+    let stats: Value = serde_json::from_str(&text).expect("JSON");
+    for key in [
+        "neurons",
+        "patches",
+        "patches_drawn",
+        "vertices",
+        "triangles",
+    ] {
+        assert!(stats[key].as_u64().is_some_and(|n| n > 0), "{key}: {stats}");
+    }
+    assert!(stats["adapter"].is_string() && stats["backend"].is_string());
+    let bytes = stats["gpu_bytes"].as_object().expect("by buffer");
+    assert!(
+        bytes.len() > 3 && bytes.values().all(Value::is_u64),
+        "{bytes:?}"
+    );
+    assert!(stats["bytes_per_point"].as_f64() > Some(1.0));
+    assert!(stats["frame_ms"]["cpu"].as_f64() > Some(0.0));
+    assert!(stats["level_histogram"].is_object());
+    let json = run.json();
+    assert_eq!(json["files"][0], "cell.png");
+    assert_eq!(json["inputs"][0]["file"], "cell.swc");
+    assert_eq!(json["triangles"], stats["triangles"]);
+}
+
+#[test]
+fn turntables_are_numbered_and_turn() {
+    if !can_draw() {
+        return;
+    }
+    let (work, _) = {
+        let work = Work::new();
+        work.file("cell.swc", SMALL);
+        let run = work
+            .run("render cell.swc -o t.png --turntable --frames 4 --size 60x60 --no-legend")
+            .exits(0);
+        (work, run)
+    };
+    let names = [
+        "cell.swc",
+        "t_0000.png",
+        "t_0001.png",
+        "t_0002.png",
+        "t_0003.png",
+    ];
+    assert_eq!(work.names("."), names);
+    let [a, b] = ["t_0000.png", "t_0001.png"].map(|name| Picture::read(&work, name).pixels);
+    assert!(a != b);
+}
+
+#[test]
+fn several_cells_stand_in_one_picture_and_a_broken_one_is_told() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    work.file("cells/a.swc", SMALL);
+    work.file("cells/b.swc", BROKEN);
+    let moved = SMALL.replace("1 1 0 0 0 5 -1", "1 1 90 0 0 5 -1");
+    work.file("cells/c.swc", &moved);
+    let run = work
+        .run("render cells -o all.png --size 90x60 --color-by neuron --json")
+        .exits(1);
+    assert_eq!(run.errors().len(), 1, "{}", run.stderr());
+    let json = run.json();
+    assert_eq!(json["neurons"], 2);
+    assert!(json["inputs"][1]["error"].is_string());
+    assert_eq!(Picture::read(&work, "all.png").size, (90, 60));
+}
+
+#[test]
+fn nothing_to_draw_is_a_picture_of_nothing() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = work
+        .run("render cell.swc -o none.png --size 20x20 --soma none --types custom_9")
+        .exits(0);
+    assert!(
+        run.stderr().contains("nothing is left to draw"),
+        "{}",
+        run.stderr()
+    );
+    assert!(
+        Picture::read(&work, "none.png")
+            .pixels
+            .iter()
+            .all(|&byte| byte == 255)
+    );
+}
+
+#[test]
+fn files_stay_without_force_and_nothing_is_left_half_written() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    work.file("cell.png", "precious");
+    let run = work.run("render cell.swc -o cell.png").exits(1);
+    assert!(run.errors()[0].contains("--force"), "{}", run.stderr());
+    assert_eq!(fs::read(work.path("cell.png")).expect("there"), b"precious");
+    work.file("bad.swc", BROKEN);
+    let run = work.run("render bad.swc -o bad.png").exits(1);
+    assert!(
+        run.errors()[0].starts_with("error: bad.swc:2: "),
+        "{}",
+        run.stderr()
+    );
+    let run = work
+        .run("render cell.swc -o new.png --adapter nonsense")
+        .exits(1);
+    assert_eq!(run.errors().len(), 1, "{}", run.stderr());
+    assert_eq!(work.names("."), ["bad.swc", "cell.png", "cell.swc"]);
+}
+
+/// Drivers are hidden by the variables of the loaders that Linux has.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_an_adapter_it_says_what_to_install() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = |arguments: &str| {
+        let mut command = work.command(arguments);
+        for variable in [
+            "VK_DRIVER_FILES",
+            "VK_ICD_FILENAMES",
+            "__EGL_VENDOR_LIBRARY_FILENAMES",
+            "LIBGL_DRIVERS_PATH",
+        ] {
+            command.env(variable, "/nonexistent");
+        }
+        Run(command.output().expect("it runs"))
+    };
+    let drawn = run("render cell.swc -o cell.png").exits(1);
+    assert_eq!(drawn.errors().len(), 1, "{}", drawn.stderr());
+    assert!(drawn.errors()[0].contains("install"), "{}", drawn.stderr());
+    assert_eq!(work.names("."), ["cell.swc"]);
+    let version = run("--version -v").exits(0).stdout();
+    assert!(version.contains("adapter: none"), "{version}");
+}
+
+#[test]
+fn wrong_usage_of_render_exits_with_2() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    for wrong in [
+        "render cell.swc",
+        "render cell.swc -o cell.jpg",
+        "render cell.swc -o cell.png --size 0x5",
+        "render cell.swc -o cell.png --samples 65",
+        "render cell.swc -o cell.png --level 65",
+        "render cell.swc -o cell.png --lod adaptive --level 3",
+        "render cell.swc -o cell.png --level 3 --pixels 1",
+        "render cell.swc -o cell.png --background reddish",
+        "render cell.swc -o cell.png --transparent --background white",
+        "render cell.swc -o cell.png --color-by luck",
+        "render cell.swc -o cell.png --colormap jet",
+        "render cell.swc -o cell.png --palette mine",
+        "render cell.swc -o cell.png --eye 1,2,3",
+        "render cell.swc -o cell.png --eye 1,2,3 --target 1,2,3",
+        "render cell.swc -o cell.png --eye nan,2,3 --target 0,0,0",
+        "render cell.swc -o cell.png --eye 0,9,0 --target 0,0,0 --up 0,1,0",
+        "render cell.swc -o cell.png --fov 200",
+        "render cell.swc -o cell.png --frames 3",
+        "render cell.swc -o cell.png --light dim",
+        "render cell.swc -o cell.png --ao -3",
+    ] {
+        let run = work.run(wrong).exits(2);
+        assert!(
+            run.stdout().is_empty() && !run.stderr().is_empty(),
+            "{wrong}"
+        );
+    }
+    assert_eq!(work.names("."), ["cell.swc"]);
+}

@@ -1,0 +1,177 @@
+//! The resident form of a coarse mesh, read: what shaders make of its words. Twin: template.wgsl.
+//!
+//! | what | bytes | holds |
+//! | --- | --- | --- |
+//! | point | 16 | centre in its ball (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), word (10), kind and run (3) |
+//! | ball, for 32 points | 16 | centre, radius |
+//! | loose vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
+//! | anchor | 32 | centre, reach, radius, tangent, role, word |
+//! | patch of a soma | 6 | four loose vertices |
+//! | loose patch | 8 | four loose vertices, kind |
+//! | cap | 4 | its ring |
+//!
+//! A point has a ring of its own, four vertices a quarter turn apart, and four lateral patches to the
+//! next: rings and lateral patches are derived from points alone. Joints, insertions and somata are
+//! loose vertices around anchors. Errors: at most 0.2 % of the radius for the centre (a point for which
+//! the ball is too large becomes loose), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the
+//! turn; loose vertices: 2⁻¹⁶ of their distance from the anchor. All together under a hundredth of
+//! the radius: `resident_form_is_within_a_hundredth_of_the_radius`.
+
+use glam::Vec3;
+use neurotess_mesh::Role;
+
+/// Points whose centres are relative to the same ball.
+pub const POINTS_OF_BALL: usize = 32;
+/// Bit of a vertex that is loose.
+pub(crate) const LOOSE: u32 = 1 << 31;
+pub(crate) const POINT_KIND_SHIFT: u32 = 30;
+/// Kinds of a point: a ring of its own, the same at an end, a ring of loose vertices.
+pub(crate) const POINT_ORDINARY: u32 = 0;
+pub(crate) const POINT_END: u32 = 1;
+pub(crate) const POINT_LOOSE: u32 = 2;
+/// The tube narrows here.
+pub(crate) const POINT_NARROWS: u32 = 1 << 29;
+/// Lateral patches lead on to the next point.
+pub(crate) const POINT_GOES_ON: u32 = 1 << 28;
+/// Steps of a coordinate from one side of the ball's box to the other.
+pub(crate) const POSITION_STEPS: f32 = ((1 << 20) - 1) as f32;
+/// Radii are floats of 5 bits of exponent, 2⁻¹⁶ to 2¹⁶ µm, and 11 of fraction.
+pub(crate) const RADIUS_BASE: u32 = 111 << 11;
+
+/// Unit vector from its place on an octahedron, each coordinate one of `most` + 1 steps.
+pub(crate) fn octahedral(x: u32, y: u32, most: f32) -> Vec3 {
+    let px = x as f32 * (2.0 / most) - 1.0;
+    let py = y as f32 * (2.0 / most) - 1.0;
+    let z = 1.0 - px.abs() - py.abs();
+    let fold = (-z).max(0.0);
+    let away = |p: f32| if p >= 0.0 { -fold } else { fold };
+    normalize_or(Vec3::new(px + away(px), py + away(py), z), Vec3::Z)
+}
+
+/// As in evaluate.wgsl.
+pub(crate) fn normalize_or(v: Vec3, otherwise: Vec3) -> Vec3 {
+    v.normalize_or(otherwise)
+}
+
+/// Place of a unit vector on an octahedron.
+pub(crate) fn to_octahedral(v: Vec3, most: f32) -> (u32, u32) {
+    let p = v / (v.x.abs() + v.y.abs() + v.z.abs()).max(f32::MIN_POSITIVE);
+    let (mut x, mut y) = (p.x, p.y);
+    if p.z < 0.0 {
+        let side = |p: f32| if p >= 0.0 { 1.0 } else { -1.0 };
+        (x, y) = ((1.0 - p.y.abs()) * side(p.x), (1.0 - p.x.abs()) * side(p.y));
+    }
+    let word = |c: f32| ((c + 1.0) * 0.5 * most + 0.5).clamp(0.0, most) as u32;
+    (word(x), word(y))
+}
+
+/// Two directions that make a right-handed frame with a third: Duff et al., Building an orthonormal
+/// basis, revisited, 2017.
+pub(crate) fn basis(tangent: Vec3) -> (Vec3, Vec3) {
+    let sign = if tangent.z >= 0.0 { 1.0 } else { -1.0 };
+    let a = -1.0 / (sign + tangent.z);
+    let b = tangent.x * tangent.y * a;
+    let u = Vec3::new(
+        1.0 + sign * tangent.x * tangent.x * a,
+        sign * b,
+        -sign * tangent.x,
+    );
+    let v = Vec3::new(b, sign + tangent.y * tangent.y * a, -tangent.y);
+    (u, v)
+}
+
+/// Corner k of a ring, relative to the centre: a quarter turn about the tangent each.
+pub(crate) fn ring_direction(tangent: Vec3, turn: u32, k: u32) -> Vec3 {
+    let (u, v) = basis(tangent);
+    let t = (turn & 0xff) as f32 / 256.0;
+    let scale = 1.0 / (1.0 + t * t);
+    let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
+    match (k + (turn >> 8)) & 3 {
+        0 => u * c + v * s,
+        1 => v * c - u * s,
+        2 => -(u * c) - v * s,
+        _ => u * s - v * c,
+    }
+}
+
+/// Turn of a ring whose corner 0 lies in this direction.
+pub(crate) fn to_turn(tangent: Vec3, direction: Vec3) -> u32 {
+    let (u, v) = basis(tangent);
+    let angle = direction.dot(v).atan2(direction.dot(u));
+    let angle = angle.rem_euclid(std::f32::consts::TAU);
+    let quarter = (angle / std::f32::consts::FRAC_PI_2).floor().min(3.0);
+    let rest = angle - quarter * std::f32::consts::FRAC_PI_2;
+    let step = ((rest / 2.0).tan() * 256.0 + 0.5) as u32;
+    ((quarter as u32) * 256 + step) & 0x3ff
+}
+
+/// A radius as 16 bits, if it is one of those there are.
+pub(crate) fn to_radius(radius: f32) -> Option<u32> {
+    // Rounded to the nearest fraction.
+    let code = ((radius.to_bits() + (1 << 11)) >> 12).checked_sub(RADIUS_BASE)?;
+    (radius > 0.0 && code < 1 << 16).then_some(code)
+}
+
+pub(crate) fn radius(code: u32) -> f32 {
+    f32::from_bits((code + RADIUS_BASE) << 12)
+}
+
+/// Taper as 4 bits and a sign: fine where it is small.
+pub(crate) fn to_slope(slope: f32) -> (u32, bool) {
+    let root = slope.abs().min(1.0).sqrt();
+    ((root * 15.0 + 0.5) as u32, slope < 0.0)
+}
+
+pub(crate) fn slope(code: u32, narrows: bool) -> f32 {
+    let root = code as f32 / 15.0;
+    if narrows { -(root * root) } else { root * root }
+}
+
+/// A coordinate in a ball's box.
+pub(crate) fn from_ball(center: Vec3, ball_radius: f32, [x, y, z]: [u32; 3]) -> Vec3 {
+    let step = ball_radius * (2.0 / POSITION_STEPS);
+    let from_ball = Vec3::new(x as f32, y as f32, z as f32) * step - Vec3::splat(ball_radius);
+    center + from_ball
+}
+
+pub(crate) fn to_ball(center: Vec3, ball_radius: f32, p: Vec3) -> [u32; 3] {
+    let step = ball_radius * (2.0 / POSITION_STEPS);
+    let place = (p - center + ball_radius) / step.max(f32::MIN_POSITIVE);
+    let word = |c: f32| (c + 0.5).clamp(0.0, POSITION_STEPS) as u32;
+    [word(place.x), word(place.y), word(place.z)]
+}
+
+/// A number of 16 bits from −1 to 1.
+pub(crate) fn signed16(word: u32) -> f32 {
+    (word & 0xffff) as f32 * (2.0 / 65535.0) - 1.0
+}
+
+pub(crate) fn to_signed16(value: f32) -> u32 {
+    ((value + 1.0) * 0.5 * 65535.0 + 0.5).clamp(0.0, 65535.0) as u32
+}
+
+/// What a ring of its own is stored as.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OwnRing {
+    pub(crate) tracing: u32,
+    pub(crate) radius: u32,
+    pub(crate) tangent: (u32, u32),
+    pub(crate) turn: u32,
+    pub(crate) slope: (u32, bool),
+    pub(crate) role: Role,
+}
+
+impl OwnRing {
+    pub(crate) fn tangent(&self) -> Vec3 {
+        octahedral(self.tangent.0, self.tangent.1, 511.0)
+    }
+
+    /// Position and normal of corner k around a centre.
+    pub(crate) fn corner(&self, center: Vec3, k: u32) -> (Vec3, Vec3) {
+        let tangent = self.tangent();
+        let direction = ring_direction(tangent, self.turn, k);
+        let slope = slope(self.slope.0, self.slope.1);
+        let normal = normalize_or(direction - tangent * slope, direction);
+        (center + direction * radius(self.radius), normal)
+    }
+}

@@ -1,0 +1,262 @@
+// The refined surface as a function: edges, patches, normals.
+//
+// Called by the shaders that draw and by the one that expands patches for the parity test.
+// Rust twin: evaluate.rs, with the theory. Constants come from the prelude (gpu.rs).
+
+struct Jet {
+    position: vec3<f32>,
+    derivative: vec3<f32>,
+}
+
+struct Corner {
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    center: vec3<f32>,
+    offset: vec3<f32>,
+    radial: vec3<f32>,
+    tangent: vec3<f32>,
+    radius: f32,
+    role: u32,
+}
+
+fn normalize_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
+    let size = length(v);
+    if (size > 1e-30) {
+        return v * (1.0 / size);
+    }
+    return otherwise;
+}
+
+fn soma_normal(corner: Corner) -> vec3<f32> {
+    if (corner.role == ROLE_SOMA) {
+        return corner.normal;
+    }
+    return corner.radial;
+}
+
+// Centre line between two tracing points, y in [0, 1].
+fn center_line(a: Corner, b: Corner, path: u32, y: f32) -> Jet {
+    let way = b.center - a.center;
+    if (path == PATH_LINEAR) {
+        return Jet(a.center * (1.0 - y) + b.center * y, way);
+    }
+    let m0 = hermite_tangent(a, a, b);
+    let m1 = hermite_tangent(b, a, b);
+    let y2 = y * y;
+    let y3 = y * y * y;
+    let position = a.center * (2.0 * y3 - 3.0 * y2 + 1.0)
+        + m0 * (y3 - 2.0 * y2 + y)
+        + b.center * (3.0 * y2 - 2.0 * y3)
+        + m1 * (y3 - y2);
+    let derivative =
+        way * (6.0 * y - 6.0 * y2) + m0 * (3.0 * y2 - 4.0 * y + 1.0) + m1 * (3.0 * y2 - 2.0 * y);
+    return Jet(position, derivative);
+}
+
+// Tangent of the centre line from a to b at one of its ends.
+fn hermite_tangent(end: Corner, a: Corner, b: Corner) -> vec3<f32> {
+    let way = b.center - a.center;
+    let span = length(way);
+    let direction = way / max(span, 1e-37);
+    let most = MOST_SWAY * min(a.radius, b.radius) * (27.0 / 4.0);
+    if (end.role == ROLE_JOINT) {
+        return way;
+    }
+    let across = end.tangent - direction * dot(end.tangent, direction);
+    let sway = length(across) * span;
+    return end.tangent * (span * (most / max(max(sway, most), 1e-37)));
+}
+
+// a / |b| and its derivative.
+fn over_length(a: vec3<f32>, a_dot: vec3<f32>, b: vec3<f32>, b_dot: vec3<f32>) -> Jet {
+    let inverse = 1.0 / max(length(b), 1e-3);
+    let derivative = a_dot * inverse - a * (dot(b, b_dot) * inverse * inverse * inverse);
+    return Jet(a * inverse, derivative);
+}
+
+fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
+    return a * (1.0 - t) + b * t;
+}
+
+// A point of the tube between two rings' corners a, b and d, c, with its derivatives.
+struct TubePoint {
+    position: vec3<f32>,
+    by_x: vec3<f32>,
+    by_y: vec3<f32>,
+    // Where the surface faces, not yet of unit length.
+    radial: vec3<f32>,
+    // Point of the centre line.
+    axis: vec3<f32>,
+}
+
+// The one expression for tubes and their edges, so that different shaders find the same bits: a ring
+// from a to b is tube_point(a, b, b, a, x, 0), an edge along the path tube_point(a, a, d, d, 0, y).
+fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: f32) -> TubePoint {
+    let offset_near = blend(a.offset, b.offset, x);
+    let offset_far = blend(d.offset, c.offset, x);
+    let offset = blend(offset_near, offset_far, y);
+    let offset_x = blend(b.offset - a.offset, c.offset - d.offset, y);
+    let offset_y = offset_far - offset_near;
+    let radial_near = blend(a.radial, b.radial, x);
+    let radial_far = blend(d.radial, c.radial, x);
+    let radial = blend(radial_near, radial_far, y);
+    let radial_x = blend(b.radial - a.radial, c.radial - d.radial, y);
+    let radial_y = radial_far - radial_near;
+    let center = center_line(a, d, path, y);
+    let around = over_length(offset, offset_x, radial, radial_x);
+    let along = over_length(offset, offset_y, radial, radial_y);
+    return TubePoint(
+        center.position + around.position,
+        around.derivative,
+        center.derivative + along.derivative,
+        radial,
+        center.position,
+    );
+}
+
+// A point of an edge, t in [0, 1] from a to b.
+fn edge(kind: u32, a: Corner, b: Corner, path: u32, t: f32) -> Jet {
+    if (kind == EDGE_SOMA) {
+        return cubic(soma_controls(a, b), t);
+    }
+    if (kind == EDGE_RING) {
+        let point = tube_point(a, b, b, a, path, t, 0.0);
+        return Jet(point.position, point.by_x);
+    }
+    let point = tube_point(a, a, b, b, path, 0.0, t);
+    return Jet(point.position, point.by_y);
+}
+
+// Control points of a soma edge.
+fn soma_controls(a: Corner, b: Corner) -> array<vec3<f32>, 4> {
+    let way = b.position - a.position;
+    let na = soma_normal(a);
+    let nb = soma_normal(b);
+    return array<vec3<f32>, 4>(
+        a.position,
+        a.position + (way - na * dot(way, na)) / 3.0,
+        b.position - (way - nb * dot(way, nb)) / 3.0,
+        b.position,
+    );
+}
+
+fn cubic(p: array<vec3<f32>, 4>, t: f32) -> Jet {
+    let s = 1.0 - t;
+    let position =
+        p[0] * (s * s * s) + p[1] * (3.0 * s * s * t) + p[2] * (3.0 * s * t * t) + p[3] * (t * t * t);
+    let derivative = (p[1] - p[0]) * (3.0 * s * s)
+        + (p[2] - p[1]) * (6.0 * s * t)
+        + (p[3] - p[2]) * (3.0 * t * t);
+    return Jet(position, derivative);
+}
+
+// Normal on an edge: that of the corners, made perpendicular to the edge's own direction.
+fn edge_normal(a: Corner, b: Corner, derivative: vec3<f32>, t: f32) -> vec3<f32> {
+    let along = normalize_or(derivative, vec3<f32>(0.0));
+    let normal = blend(a.normal, b.normal, t);
+    let otherwise = normalize_or(normal, vec3<f32>(0.0, 1.0, 0.0));
+    return normalize_or(normal - along * dot(normal, along), otherwise);
+}
+
+struct Inside {
+    position: vec3<f32>,
+    normal: vec3<f32>,
+}
+
+// A patch ready to be evaluated inside. Sides: EDGE_ kind, plus SIDE_REVERSED where the edge runs
+// against the patch's coordinate.
+struct PatchShape {
+    kind: u32,
+    a: Corner,
+    b: Corner,
+    c: Corner,
+    d: Corner,
+    sides: vec4<u32>,
+}
+
+// A point inside with its normal, x and y in (0, 1).
+fn interior(shape: PatchShape, path: u32, caps: u32, x: f32, y: f32) -> Inside {
+    if (shape.kind == PATCH_LATERAL) {
+        return lateral(shape, path, x, y);
+    }
+    let flat = coons(shape, x, y);
+    if (shape.kind == PATCH_SOMA) {
+        return flat;
+    }
+    return cap(shape, caps, flat.position);
+}
+
+fn lateral(shape: PatchShape, path: u32, x: f32, y: f32) -> Inside {
+    let point = tube_point(shape.a, shape.b, shape.c, shape.d, path, x, y);
+    return Inside(point.position, tube_normal(point, shape.a.normal));
+}
+
+// Normal inside a tube's patch.
+fn tube_normal(point: TubePoint, otherwise: vec3<f32>) -> vec3<f32> {
+    let outwards = normalize_or(point.radial, otherwise);
+    // A sharp bend folds the surface over; light it as the tube that it is part of.
+    let normal = normalize_or(cross(point.by_x, point.by_y), outwards);
+    if (!(dot(normal, outwards) > 0.0)) {
+        return outwards;
+    }
+    return normal;
+}
+
+// A side from corner `from` to corner `to` in the patch's coordinate.
+fn side(shape: u32, from_corner: Corner, to_corner: Corner, t: f32) -> Jet {
+    let kind = shape & SIDE_KIND;
+    if ((shape & SIDE_REVERSED) != 0u) {
+        let jet = edge(kind, to_corner, from_corner, PATH_HERMITE, 1.0 - t);
+        return Jet(jet.position, -jet.derivative);
+    }
+    return edge(kind, from_corner, to_corner, PATH_HERMITE, t);
+}
+
+// Bilinearly blended Coons patch.
+fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
+    let near = side(shape.sides.x, shape.a, shape.b, x);
+    let right = side(shape.sides.y, shape.b, shape.c, y);
+    let far = side(shape.sides.z, shape.d, shape.c, x);
+    let left = side(shape.sides.w, shape.a, shape.d, y);
+    let a = shape.a.position;
+    let b = shape.b.position;
+    let c = shape.c.position;
+    let d = shape.d.position;
+    let position = blend(near.position, far.position, y) + blend(left.position, right.position, x)
+        - blend(blend(a, b, x), blend(d, c, x), y);
+    let by_x = blend(near.derivative, far.derivative, y) + right.position
+        - left.position
+        - blend(b - a, c - d, y);
+    let by_y = blend(left.derivative, right.derivative, x) + far.position
+        - near.position
+        - blend(d - a, c - b, x);
+    let mean = normalize_or(
+        shape.a.normal + shape.b.normal + shape.c.normal + shape.d.normal,
+        vec3<f32>(0.0, 1.0, 0.0),
+    );
+    return Inside(position, normalize_or(cross(by_x, by_y), mean));
+}
+
+// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the distance
+// from the disk's centre. `flat`: the point of the disk.
+fn cap(shape: PatchShape, caps: u32, flat: vec3<f32>) -> Inside {
+    let a = shape.a;
+    let outwards = cross(shape.b.offset - a.offset, shape.d.offset - a.offset);
+    var axis = a.tangent;
+    if (dot(outwards, a.tangent) < 0.0) {
+        axis = -a.tangent;
+    }
+    if (caps == CAPS_FLAT) {
+        return Inside(flat, axis);
+    }
+    let radius = length(a.offset);
+    let across = flat - a.center;
+    let share = min(length(across) / max(radius, 1e-37), 1.0);
+    let angle = share * HALF_PI;
+    var stretch = HALF_PI;
+    if (share > 1e-4) {
+        stretch = sin(angle) / share;
+    }
+    let dome = across * stretch + axis * (radius * cos(angle));
+    return Inside(a.center + dome, normalize_or(dome, axis));
+}

@@ -1,0 +1,122 @@
+// The level of an edge, 1 to 64, from what the edge itself knows.
+//
+// Called by the shader that decides levels and by the one of the parity test.
+// Rust twin: level.rs. Constants come from the prelude (gpu.rs).
+
+struct View {
+    eye: vec3<f32>,
+    slope: f32,
+    forward: vec3<f32>,
+    flat: f32,
+    near: f32,
+}
+
+// Who chooses levels: `kind` is a LEVELS_ constant, `amount` its length or number of pixels.
+struct Criterion {
+    kind: u32,
+    level: u32,
+    amount: f32,
+    path: u32,
+    caps: u32,
+}
+
+// Level of an edge; `value_a` and `value_b` are the users' levels at its tracing points.
+fn edge_level(
+    levels: Criterion,
+    view: View,
+    kind: u32,
+    a: Corner,
+    value_a: u32,
+    b: Corner,
+    value_b: u32,
+) -> u32 {
+    var level = levels.level;
+    switch (levels.kind) {
+        case LEVELS_PER_POINT: {
+            level = max(value_a, value_b);
+        }
+        case LEVELS_MAX_ERROR: {
+            level = by_error(max(levels.amount, 1e-6) * SHARE, levels.path, kind, a, b);
+        }
+        case LEVELS_DISTANCE: {
+            level = by_distance(view, levels.level, levels.amount, a, b);
+        }
+        case LEVELS_PIXEL_SIZE: {
+            let size = levels.amount * um_per_pixel(view, a, b);
+            level = round_up(length(b.position - a.position) / size);
+        }
+        case LEVELS_PIXEL_ERROR: {
+            let error = levels.amount * um_per_pixel(view, a, b) * SHARE;
+            level = by_error(error, levels.path, kind, a, b);
+        }
+        default: {}
+    }
+    return clamp(level, 1u, HIGHEST_LEVEL);
+}
+
+// A curve of second derivative M, cut in n, is at most M / (8 n^2) from its chords.
+fn by_error(error: f32, path: u32, kind: u32, a: Corner, b: Corner) -> u32 {
+    var bend = 0.0;
+    if (kind == EDGE_RING) {
+        bend = turning(a, b);
+    } else if (kind == EDGE_ALONG) {
+        bend = center_bend(a, b, path) + turning(a, b);
+    } else {
+        let p = soma_controls(a, b);
+        bend = max(second(p[0], p[1], p[2]), second(p[1], p[2], p[3]));
+    }
+    return round_up(sqrt(bend / (8.0 * error)));
+}
+
+fn second(p: vec3<f32>, q: vec3<f32>, r: vec3<f32>) -> f32 {
+    return length(p - q * 2.0 + r) * 6.0;
+}
+
+fn importance(view: View, far: f32, k: Corner) -> f32 {
+    return clamp(1.0 - length(k.center - view.eye) / far, 0.0, 1.0);
+}
+
+// The paper's importance, from the mean of the two ends.
+fn by_distance(view: View, level: u32, far: f32, a: Corner, b: Corner) -> u32 {
+    return u32(f32(level) * 0.5 * (importance(view, far, a) + importance(view, far, b)) + 0.5);
+}
+
+fn near_depth(view: View, k: Corner) -> f32 {
+    return dot(view.forward, k.center - view.eye) - length(k.offset);
+}
+
+// Size (micrometres) of a pixel at the nearer end of an edge.
+fn um_per_pixel(view: View, a: Corner, b: Corner) -> f32 {
+    let nearer = max(min(near_depth(view, a), near_depth(view, b)), view.near);
+    return view.slope * nearer + view.flat;
+}
+
+fn round_up(cuts: f32) -> u32 {
+    if (cuts < f32(HIGHEST_LEVEL)) {
+        return u32(max(ceil(cuts - SLACK), 1.0));
+    }
+    return HIGHEST_LEVEL;
+}
+
+// Bound of the second derivative of the offset as it turns from one corner to the other.
+fn turning(a: Corner, b: Corner) -> f32 {
+    let ra = length(a.offset);
+    let rb = length(b.offset);
+    let apart = length(a.radial - b.radial);
+    let together = length(a.radial + b.radial);
+    let half = min(apart / max(together, 1e-6), STEEPEST);
+    let speed = 2.0 * half;
+    return max(ra, rb) * speed * speed + 2.0 * abs(ra - rb) * speed;
+}
+
+fn center_bend(a: Corner, b: Corner, path: u32) -> f32 {
+    if (path == PATH_LINEAR) {
+        return 0.0;
+    }
+    let way = b.center - a.center;
+    let m0 = hermite_tangent(a, a, b);
+    let m1 = hermite_tangent(b, a, b);
+    let start = way * 6.0 - m0 * 4.0 - m1 * 2.0;
+    let end = m0 * 2.0 + m1 * 4.0 - way * 6.0;
+    return max(length(start), length(end));
+}

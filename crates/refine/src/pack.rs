@@ -1,0 +1,366 @@
+//! The resident form of a coarse mesh, written: what goes to the GPU once. Its layout: decode.rs.
+//!
+//! A mesh is cut into **parts** where it would not fit. Vertices that two parts or two runs share are
+//! loose, and loose vertices keep the mesh's order, so that both sides of every edge have the same bits
+//! and run along it in the same direction: no crack opens.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use neurotess_mesh::{CoarseMesh, PatchKind};
+
+use crate::ball::{ball_around, patch_ball};
+use crate::decode::{OwnRing, POINTS_OF_BALL};
+use crate::loose::accurate;
+use crate::runs::{Run, find_runs, own_ring};
+
+/// Places of patches that a ball is for.
+pub const PLACES_OF_BALL: usize = 4 * POINTS_OF_BALL;
+/// Most loose vertices of a part: their numbers have 15 bits.
+const MOST_LOOSE: usize = 1 << 15;
+/// Loose vertices whose numbers fit somata's patches: 12 bits.
+const FEW_LOOSE: usize = 1 << 12;
+
+/// Where the arrays of a part begin in its heap, in words, and how many there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Places {
+    /// Points.
+    pub points: u32,
+    /// Number of points.
+    pub point_count: u32,
+    /// Balls.
+    pub balls: u32,
+    /// Loose vertices.
+    pub loose: u32,
+    /// Anchors.
+    pub anchors: u32,
+    /// Somata's patches.
+    pub soma: u32,
+    /// Number of somata's patches.
+    pub soma_count: u32,
+    /// Other loose patches.
+    pub quads: u32,
+    /// Number of other loose patches.
+    pub quad_count: u32,
+    /// Caps.
+    pub caps: u32,
+    /// Words.
+    pub words: u32,
+}
+
+/// A piece of a coarse mesh that fits a device.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// All that is resident.
+    pub heap: Vec<u32>,
+    /// Where what lies.
+    pub places: Places,
+    /// By place: the mesh's patch, or `u32::MAX` where there is none.
+    pub patches: Vec<u32>,
+    /// Ball around each [`PLACES_OF_BALL`] patches, at any level (µm).
+    pub balls: Vec<(Vec3, f32)>,
+    /// By vertex of the mesh that is in this part: position and normal as shaders read them.
+    pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
+    /// By tracing point: centre, radius and tangent as shaders read them.
+    pub(crate) tracing: Vec<(u32, Vec3, f32, Vec3)>,
+}
+
+impl Part {
+    /// Bytes by the name of what they hold.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let p = &self.places;
+        let names = [
+            "points",
+            "balls",
+            "loose_vertices",
+            "anchors",
+            "soma_patches",
+            "loose_patches",
+            "caps",
+            "words",
+        ];
+        let starts = [
+            p.points, p.balls, p.loose, p.anchors, p.soma, p.quads, p.caps, p.words,
+        ];
+        let ends = starts[1..].iter().copied().chain([self.heap.len() as u32]);
+        let sizes = starts
+            .iter()
+            .zip(ends)
+            .map(|(start, end)| u64::from(end - start) * 4);
+        names.into_iter().zip(sizes).collect()
+    }
+}
+
+/// Packs a mesh into parts of at most `most_places` places for patches. `words`: one per tracing point
+/// for the renderer; `values`: one level per tracing point. Missing ones are 0 and 1.
+///
+/// A soma has the word of its first vertex. More than 1,024 different words of a part's points lose
+/// their lowest bits.
+pub fn pack(mesh: &CoarseMesh, words: &[u32], values: &[u8], most_places: usize) -> Vec<Part> {
+    let packer = Packer::new(mesh, words, values);
+    let piles = packer.piles(most_places.max(4 * PLACES_OF_BALL));
+    piles.iter().map(|pile| packer.part(pile)).collect()
+}
+
+/// The mesh as shaders read it: the same patches, with positions, radii and directions rounded.
+pub fn dequantized(mesh: &CoarseMesh, parts: &[Part]) -> CoarseMesh {
+    let mut rounded = mesh.clone();
+    for part in parts {
+        for &(vertex, position, normal) in &part.vertices {
+            let vertex = &mut rounded.vertices[vertex as usize];
+            (vertex.position, vertex.normal) = (position, normal);
+        }
+        for &(point, center, radius, tangent) in &part.tracing {
+            let point = &mut rounded.tracing[point as usize];
+            (point.center, point.radius, point.tangent) = (center, radius, tangent);
+        }
+    }
+    rounded
+}
+
+/// What goes into one part.
+#[derive(Default)]
+pub(crate) struct Pile {
+    runs: Vec<usize>,
+    others: Vec<usize>,
+}
+
+pub(crate) struct Packer<'m> {
+    pub(crate) mesh: &'m CoarseMesh,
+    words: &'m [u32],
+    values: &'m [u8],
+    pub(crate) runs: Vec<Run>,
+    pub(crate) others: Vec<usize>,
+    /// By vertex.
+    pub(crate) loose: Vec<bool>,
+}
+
+impl<'m> Packer<'m> {
+    fn new(mesh: &'m CoarseMesh, words: &'m [u32], values: &'m [u8]) -> Self {
+        let (mut runs, others) = find_runs(mesh);
+        // Runs that are near one another share a ball: it is small, and its points are accurate.
+        let middle = |run: &Run| {
+            let ring = run.rings[run.rings.len() / 2];
+            mesh.tracing[mesh.vertices[ring[0] as usize].tracing as usize].center
+        };
+        let (low, high) = runs
+            .iter()
+            .map(middle)
+            .fold((Vec3::MAX, Vec3::MIN), |(low, high), p| {
+                (low.min(p), high.max(p))
+            });
+        runs.sort_by_key(|run| morton((middle(run) - low) / (high - low).max_element().max(1e-6)));
+        let mut packer = Self {
+            mesh,
+            words,
+            values,
+            runs,
+            others,
+            loose: vec![false; mesh.vertices.len()],
+        };
+        packer.find_loose();
+        packer
+    }
+
+    pub(crate) fn center(&self, vertex: u32) -> Vec3 {
+        self.mesh.tracing[self.mesh.vertices[vertex as usize].tracing as usize].center
+    }
+
+    pub(crate) fn radius(&self, vertex: u32) -> f32 {
+        self.mesh.tracing[self.mesh.vertices[vertex as usize].tracing as usize].radius
+    }
+
+    /// Runs and other patches by part, in the mesh's order.
+    pub(crate) fn piles(&self, most_places: usize) -> Vec<Pile> {
+        let mut piles = vec![Pile::default()];
+        let (mut places, mut loose) = (PLACES_OF_BALL, 0);
+        let mut room = |piles: &mut Vec<Pile>, more_places: usize, more_loose: usize| {
+            places += more_places;
+            loose += more_loose;
+            if places > most_places || loose > MOST_LOOSE {
+                piles.push(Pile::default());
+                (places, loose) = (PLACES_OF_BALL + more_places, more_loose);
+            }
+            piles.len() - 1
+        };
+        for (i, run) in self.runs.iter().enumerate() {
+            let used = run.rings.iter().filter(|ring| self.loose[ring[0] as usize]);
+            let most = run.rings.len() + POINTS_OF_BALL;
+            let pile = room(&mut piles, 4 * most, 4 * used.count());
+            piles[pile].runs.push(i);
+        }
+        for &other in &self.others {
+            let corners = self.mesh.patches[other].corners;
+            if self.loose[corners[0] as usize] {
+                let pile = room(&mut piles, 1, 4);
+                piles[pile].others.push(other);
+            }
+        }
+        // A cap of an own ring goes where its ring is.
+        let mut owner = BTreeMap::new();
+        for (p, pile) in piles.iter().enumerate() {
+            for &run in &pile.runs {
+                let rings = &self.runs[run].rings;
+                for ring in [rings[0], rings[rings.len() - 1]] {
+                    owner.insert(ring[0], p);
+                }
+            }
+        }
+        for &other in &self.others {
+            let corners = self.mesh.patches[other].corners;
+            if !self.loose[corners[0] as usize] {
+                let first = corners.into_iter().min().unwrap_or(0);
+                if let Some(&pile) = owner.get(&first) {
+                    piles[pile].others.push(other);
+                }
+            }
+        }
+        piles.retain(|pile| !pile.runs.is_empty() || !pile.others.is_empty());
+        piles
+    }
+
+    /// The rings of a pile, one after the other, with the patches that lead on.
+    pub(crate) fn rings(&self, pile: &Pile) -> Vec<Slot> {
+        let mut slots = Vec::new();
+        for run in pile.runs.iter().map(|&run| &self.runs[run]) {
+            if self.strays(&slots, run) {
+                slots.resize(
+                    slots.len().next_multiple_of(POINTS_OF_BALL),
+                    Slot::default(),
+                );
+            }
+            for (i, &ring) in run.rings.iter().enumerate() {
+                let goes_on = i + 1 < run.rings.len();
+                slots.push(Slot {
+                    ring: Some(ring),
+                    patch: goes_on.then_some(run.first_patch + 4 * i),
+                });
+            }
+        }
+        slots.resize(
+            slots.len().next_multiple_of(POINTS_OF_BALL),
+            Slot::default(),
+        );
+        slots
+    }
+
+    /// Whether a run had better begin with a ball of its own: a place left empty costs a fifth of what a
+    /// ring costs that is loose because its ball is too large.
+    fn strays(&self, slots: &[Slot], run: &Run) -> bool {
+        let begun = slots.len() % POINTS_OF_BALL;
+        if begun == 0 {
+            return false;
+        }
+        let free = POINTS_OF_BALL - begun;
+        let before = slots[slots.len() - begun..]
+            .iter()
+            .filter_map(|slot| slot.ring);
+        let rings: Vec<[u32; 4]> = before.chain(run.rings.iter().take(free).copied()).collect();
+        let centers = rings
+            .iter()
+            .map(|ring| (self.center(ring[0]), 4.0 * self.radius(ring[0])));
+        let ball = widened(ball_around(centers)).1;
+        let inaccurate = rings
+            .iter()
+            .filter(|ring| !accurate(ball, self.radius(ring[0])));
+        5 * inaccurate.count() > free
+    }
+
+    pub(crate) fn ball(&self, slots: &[Slot]) -> (Vec3, f32) {
+        let patches = slots
+            .iter()
+            .filter_map(|slot| slot.patch)
+            .flat_map(|patch| patch..patch + 4);
+        let patches = patches.map(|patch| patch_ball(self.mesh, &self.mesh.patches[patch]));
+        let centers = slots.iter().filter_map(|slot| slot.ring);
+        let centers = centers.map(|ring| (self.center(ring[0]), 0.0));
+        widened(ball_around(patches.chain(centers)))
+    }
+
+    fn part(&self, pile: &Pile) -> Part {
+        let slots = self.rings(pile);
+        let (others, caps): (Vec<usize>, Vec<usize>) = pile
+            .others
+            .iter()
+            .partition(|&&other| self.loose[self.mesh.patches[other].corners[0] as usize]);
+        let corners = |patches: &[usize]| -> Vec<u32> {
+            let patches = patches
+                .iter()
+                .map(|&patch| self.mesh.patches[patch].corners);
+            patches.flatten().collect()
+        };
+        let rings = slots.iter().filter_map(|slot| slot.ring).flatten();
+        let mut loose: Vec<u32> = rings.chain(corners(&others)).collect();
+        loose.retain(|&v| self.loose[v as usize]);
+        loose.sort_unstable();
+        loose.dedup();
+        let few = loose.get(FEW_LOOSE).copied().unwrap_or(u32::MAX);
+        let (soma, quads): (Vec<usize>, Vec<usize>) = others.into_iter().partition(|&other| {
+            let patch = &self.mesh.patches[other];
+            patch.kind == PatchKind::Soma && patch.corners.iter().all(|&v| v < few)
+        });
+        self.write(&Contents {
+            slots,
+            loose,
+            soma,
+            quads,
+            caps,
+        })
+    }
+
+    pub(crate) fn own(&self, ring: [u32; 4]) -> Option<OwnRing> {
+        let own = !self.loose[ring[0] as usize];
+        own.then(|| own_ring(self.mesh, ring)).flatten()
+    }
+
+    pub(crate) fn word(&self, tracing: u32) -> u32 {
+        self.words.get(tracing as usize).copied().unwrap_or(0)
+    }
+
+    pub(crate) fn level(&self, tracing: u32) -> u32 {
+        let value = self.values.get(tracing as usize).copied().unwrap_or(1);
+        u32::from(value.clamp(1, 64))
+    }
+}
+
+/// Place for a point: its ring, and the first of the patches that lead on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Slot {
+    pub(crate) ring: Option<[u32; 4]>,
+    pub(crate) patch: Option<usize>,
+}
+
+/// What goes into one part, in its order: patches by index, loose vertices sorted.
+pub(crate) struct Contents {
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) loose: Vec<u32>,
+    pub(crate) soma: Vec<usize>,
+    pub(crate) quads: Vec<usize>,
+    pub(crate) caps: Vec<usize>,
+}
+
+/// First vertex of the ring that a cap closes, and whether it runs the other way round.
+pub(crate) fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
+    let first = corners.into_iter().min()?;
+    let forwards = [0, 1, 2, 3].map(|k| first + k);
+    let backwards = [3, 2, 1, 0].map(|k| first + k);
+    match corners {
+        c if c == forwards => Some((first, false)),
+        c if c == backwards => Some((first, true)),
+        _ => None,
+    }
+}
+
+/// Place on a curve that keeps near what is near: the bits of three coordinates from 0 to 1, in turns.
+fn morton(p: Vec3) -> u32 {
+    let spread = |c: f32| {
+        let bits = (c.clamp(0.0, 1.0) * 1023.0) as u32;
+        (0..10).fold(0, |sum, i| sum | (((bits >> i) & 1) << (3 * i)))
+    };
+    spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2)
+}
+
+/// Room for what rounding moves.
+pub(crate) fn widened((center, radius): (Vec3, f32)) -> (Vec3, f32) {
+    (center, radius * 1.01 + 1e-6)
+}

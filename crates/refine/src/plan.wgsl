@@ -1,0 +1,246 @@
+// Which vertex is where in a patch's grid.
+//
+// Called by everything that evaluates patches. Rust twin: plan.rs; where that numbers the vertices of
+// the whole surface, this evaluates one vertex of one patch's grid, which is the same point.
+
+// A side of a patch as an edge in its own direction.
+struct Side {
+    start: u32,
+    end: u32,
+    kind: u32,
+    reversed: bool,
+}
+
+struct Grid {
+    nx: u32,
+    ny: u32,
+}
+
+struct SurfacePoint {
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    // Point of the tube's centre line and the radius there; a radius of 0 on somata.
+    axis: vec3<f32>,
+    radius: f32,
+    // The vertex whose attributes it has.
+    nearest: u32,
+}
+
+fn patch_side(base: Base, p: Patch, index: u32) -> Side {
+    var start = p.corners.x;
+    var end = p.corners.y;
+    if (index == 1u) {
+        start = p.corners.y;
+        end = p.corners.z;
+    } else if (index == 2u) {
+        start = p.corners.w;
+        end = p.corners.z;
+    } else if (index == 3u) {
+        start = p.corners.x;
+        end = p.corners.w;
+    }
+    if (p.kind == PATCH_LATERAL && (index & 1u) == 1u) {
+        return Side(start, end, EDGE_ALONG, false);
+    }
+    var kind = EDGE_RING;
+    if (p.kind == PATCH_SOMA) {
+        let around = tracing_of(base, start) == tracing_of(base, end);
+        if (!around || role_of(base, start) == ROLE_SOMA) {
+            kind = EDGE_SOMA;
+        }
+    }
+    if (start < end) {
+        return Side(start, end, kind, false);
+    }
+    return Side(end, start, kind, true);
+}
+
+// Levels of the four sides. A loop, so that one piece of code decides for both faces of an edge.
+fn side_levels(base: Base, p: Patch, levels: Criterion, view: View) -> vec4<u32> {
+    var found = vec4<u32>(1u);
+    for (var index = 0u; index < 4u; index += 1u) {
+        let s = patch_side(base, p, index);
+        let a = corner(base, s.start);
+        let b = corner(base, s.end);
+        found[index] = edge_level(
+            levels, view, s.kind, a, value_of(base, s.start), b, value_of(base, s.end));
+    }
+    return found;
+}
+
+fn finer(n: u32) -> u32 {
+    if (n > 1u) {
+        return min(2u * n, HIGHEST_LEVEL);
+    }
+    return 1u;
+}
+
+fn patch_grid(kind: u32, caps: u32, levels: vec4<u32>) -> Grid {
+    let nx = max(levels.x, levels.z);
+    let ny = max(levels.y, levels.w);
+    if (kind == PATCH_CAP && caps == CAPS_ROUND) {
+        // A half sphere turns by 180 degrees where the ring's side turns by 90.
+        let n = finer(max(nx, ny));
+        return Grid(n, n);
+    }
+    return Grid(nx, ny);
+}
+
+// Place on an edge of `level` parts that is nearest to place i of n; every place is hit if
+// level <= n.
+fn snap(i: u32, n: u32, level: u32) -> u32 {
+    return (2u * i * level + n) / (2u * n);
+}
+
+// Vertex at column i and row j of a patch's grid. On a side it is that of the side's edge.
+fn grid_vertex(
+    base: Base,
+    p: Patch,
+    options: Criterion,
+    levels: vec4<u32>,
+    grid: Grid,
+    i: u32,
+    j: u32,
+) -> SurfacePoint {
+    var index = 4u;
+    var place = i;
+    var count = grid.nx;
+    var level = 1u;
+    if (j == 0u) {
+        index = 0u;
+        level = levels.x;
+    } else if (j == grid.ny) {
+        index = 2u;
+        level = levels.z;
+    } else if (i == 0u) {
+        index = 3u;
+        level = levels.w;
+    } else if (i == grid.nx) {
+        index = 1u;
+        level = levels.y;
+    }
+    if (index == 4u) {
+        return inner_vertex(base, p, options, grid, i, j);
+    }
+    if ((index & 1u) == 1u) {
+        place = j;
+        count = grid.ny;
+    }
+    place = snap(place, count, level);
+    let s = patch_side(base, p, index);
+    if (s.reversed) {
+        place = level - place;
+    }
+    return edge_vertex(base, options, s, place, level);
+}
+
+// Vertex k of an edge of `level` parts, both ends included.
+fn edge_vertex(base: Base, options: Criterion, s: Side, k: u32, level: u32) -> SurfacePoint {
+    if (k == 0u) {
+        return coarse_vertex(base, s.start);
+    }
+    if (k == level) {
+        return coarse_vertex(base, s.end);
+    }
+    let a = corner(base, s.start);
+    let b = corner(base, s.end);
+    let t = f32(k) / f32(level);
+    let jet = edge(s.kind, a, b, options.path, t);
+    let normal = edge_normal(a, b, jet.derivative, t);
+    var nearest = s.end;
+    if (t < 0.5) {
+        nearest = s.start;
+    }
+    if (s.kind == EDGE_SOMA) {
+        // A soma's edges belong to the soma up to the neurite's ring.
+        if (a.role == ROLE_SOMA) {
+            nearest = s.start;
+        } else if (b.role == ROLE_SOMA) {
+            nearest = s.end;
+        }
+        return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest);
+    }
+    let radius = a.radius * (1.0 - t) + b.radius * t;
+    if (s.kind == EDGE_RING) {
+        return SurfacePoint(jet.position, normal, a.center, radius, nearest);
+    }
+    let axis = center_line(a, b, options.path, t).position;
+    return SurfacePoint(jet.position, normal, axis, radius, nearest);
+}
+
+fn coarse_vertex(base: Base, vertex: u32) -> SurfacePoint {
+    let k = corner(base, vertex);
+    if (k.role == ROLE_SOMA) {
+        return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex);
+    }
+    return SurfacePoint(k.position, k.normal, k.center, k.radius, vertex);
+}
+
+fn inner_vertex(
+    base: Base,
+    p: Patch,
+    options: Criterion,
+    grid: Grid,
+    i: u32,
+    j: u32,
+) -> SurfacePoint {
+    let x = f32(i) / f32(grid.nx);
+    let y = f32(j) / f32(grid.ny);
+    let shape = patch_shape(base, p);
+    let inside = interior(shape, options.path, options.caps, x, y);
+    var nearest = p.corners.x;
+    if (x >= 0.5 && y < 0.5) {
+        nearest = p.corners.y;
+    } else if (x >= 0.5) {
+        nearest = p.corners.z;
+    } else if (y >= 0.5) {
+        nearest = p.corners.w;
+    }
+    if (p.kind == PATCH_SOMA) {
+        nearest = first_of_soma(shape, p, nearest);
+        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest);
+    }
+    let radius = (shape.a.radius * (1.0 - x) + shape.b.radius * x) * (1.0 - y)
+        + (shape.d.radius * (1.0 - x) + shape.c.radius * x) * y;
+    var axis = shape.a.center;
+    if (p.kind == PATCH_LATERAL) {
+        axis = center_line(shape.a, shape.d, options.path, y).position;
+    }
+    return SurfacePoint(inside.position, inside.normal, axis, radius, nearest);
+}
+
+fn first_of_soma(shape: PatchShape, p: Patch, otherwise: u32) -> u32 {
+    if (shape.a.role == ROLE_SOMA) {
+        return p.corners.x;
+    }
+    if (shape.b.role == ROLE_SOMA) {
+        return p.corners.y;
+    }
+    if (shape.c.role == ROLE_SOMA) {
+        return p.corners.z;
+    }
+    if (shape.d.role == ROLE_SOMA) {
+        return p.corners.w;
+    }
+    return otherwise;
+}
+
+fn patch_shape(base: Base, p: Patch) -> PatchShape {
+    return PatchShape(
+        p.kind,
+        corner(base, p.corners.x),
+        corner(base, p.corners.y),
+        corner(base, p.corners.z),
+        corner(base, p.corners.w),
+        vec4<u32>(
+            side_word(patch_side(base, p, 0u)),
+            side_word(patch_side(base, p, 1u)),
+            side_word(patch_side(base, p, 2u)),
+            side_word(patch_side(base, p, 3u)),
+        ),
+    );
+}
+
+fn side_word(s: Side) -> u32 {
+    return select(s.kind, s.kind | SIDE_REVERSED, s.reversed);
+}

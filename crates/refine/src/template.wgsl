@@ -1,0 +1,289 @@
+// What is resident of a coarse mesh, and how a patch and its corners are found in it.
+//
+// Called by everything that evaluates patches. This is the only file that knows the layout: another
+// layout is another file with the same functions. Rust twin: decode.rs; pack.rs writes it.
+
+// Where the arrays of a part begin in the heap, in words.
+struct Base {
+    // Four words each; PATCHES_OF_POINT lateral patches from each to the next.
+    points: u32,
+    point_count: u32,
+    // A ball for every POINTS_OF_BALL points, four words each.
+    balls: u32,
+    // Three words each.
+    loose: u32,
+    // Eight words each.
+    anchors: u32,
+    // Somata's patches, three words for two.
+    soma: u32,
+    soma_count: u32,
+    // Two words each.
+    quads: u32,
+    quad_count: u32,
+    // One word each.
+    caps: u32,
+    words: u32,
+}
+
+// A patch by its kind and the vertices at its corners. A vertex is a corner of a point's own ring,
+// four times the point plus the corner, or, with LOOSE, a loose vertex.
+struct Patch {
+    kind: u32,
+    corners: vec4<u32>,
+}
+
+@group(0) @binding(0) var<storage, read> heap: array<u32>;
+
+fn point_words(base: Base, point: u32) -> vec4<u32> {
+    let at = base.points + 4u * point;
+    return vec4<u32>(heap[at], heap[at + 1u], heap[at + 2u], heap[at + 3u]);
+}
+
+// Vertices of the ring at a point, four of them.
+fn ring_of(point: u32, words: vec4<u32>) -> vec4<u32> {
+    if ((words.y >> POINT_KIND_SHIFT) == POINT_LOOSE) {
+        return vec4<u32>(words.x & 0xffffu, words.x >> 16u, words.z & 0xffffu, words.z >> 16u)
+            | vec4<u32>(LOOSE);
+    }
+    return vec4<u32>(4u * point) + vec4<u32>(0u, 1u, 2u, 3u);
+}
+
+// Whether a patch is part of a tube between two points with rings of their own.
+fn patch_is_tube(base: Base, index: u32) -> bool {
+    let point = index / 4u;
+    if (point >= base.point_count) {
+        return false;
+    }
+    let at = base.points + 4u * point + 1u;
+    return (heap[at] >> POINT_KIND_SHIFT) != POINT_LOOSE
+        && (heap[at + 4u] >> POINT_KIND_SHIFT) != POINT_LOOSE;
+}
+
+// Whether there is a patch at a place: a run's last point has none after it.
+fn patch_exists(base: Base, index: u32) -> bool {
+    let point = index / 4u;
+    return point >= base.point_count || (heap[base.points + 4u * point + 1u] & POINT_GOES_ON) != 0u;
+}
+
+fn patch_at(base: Base, index: u32) -> Patch {
+    if (index < 4u * base.point_count) {
+        let point = index / 4u;
+        let k = index & 3u;
+        let ring = ring_of(point, point_words(base, point));
+        let next = ring_of(point + 1u, point_words(base, point + 1u));
+        let after = (k + 1u) & 3u;
+        return Patch(PATCH_LATERAL, vec4<u32>(ring[k], ring[after], next[after], next[k]));
+    }
+    let soma = index - 4u * base.point_count;
+    if (soma < base.soma_count) {
+        // 48 bits: four loose vertices of 12.
+        let at = base.soma + 3u * soma / 2u;
+        let odd = (soma & 1u) * 16u;
+        let x = heap[at];
+        let y = heap[at + 1u];
+        let low = select(x, (x >> 16u) | (y << 16u), odd != 0u);
+        let high = (y >> odd) & 0xffffu;
+        let corners = vec4<u32>(
+            low & 0xfffu, (low >> 12u) & 0xfffu, (low >> 24u) | ((high & 0xfu) << 8u), high >> 4u);
+        return Patch(PATCH_SOMA, corners | vec4<u32>(LOOSE));
+    }
+    let quad = soma - base.soma_count;
+    if (quad < base.quad_count) {
+        let x = heap[base.quads + 2u * quad];
+        let y = heap[base.quads + 2u * quad + 1u];
+        let corners = vec4<u32>(x & 0xffffu, x >> 16u, y & 0xffffu, y >> 16u);
+        let kind = (corners.x >> 15u) | ((corners.y >> 15u) << 1u);
+        return Patch(kind, (corners & vec4<u32>(0x7fffu)) | vec4<u32>(LOOSE));
+    }
+    let packed = heap[base.caps + quad - base.quad_count];
+    let first = 4u * (packed >> 1u);
+    if ((packed & 1u) != 0u) {
+        return Patch(PATCH_CAP, vec4<u32>(first) + vec4<u32>(3u, 2u, 1u, 0u));
+    }
+    return Patch(PATCH_CAP, vec4<u32>(first) + vec4<u32>(0u, 1u, 2u, 3u));
+}
+
+// Unit vector from its place on an octahedron (Meyer et al., On floating-point normal vectors, 2010),
+// each coordinate one of `most` + 1 steps from -1 to 1.
+fn octahedral(x: u32, y: u32, most: f32) -> vec3<f32> {
+    let px = f32(x) * (2.0 / most) - 1.0;
+    let py = f32(y) * (2.0 / most) - 1.0;
+    let z = 1.0 - abs(px) - abs(py);
+    let fold = max(-z, 0.0);
+    let v = vec3<f32>(
+        px + select(fold, -fold, px >= 0.0),
+        py + select(fold, -fold, py >= 0.0),
+        z,
+    );
+    return normalize_or(v, vec3<f32>(0.0, 0.0, 1.0));
+}
+
+fn point_center(base: Base, point: u32, words: vec4<u32>) -> vec3<f32> {
+    let at = base.balls + 4u * (point / POINTS_OF_BALL);
+    let radius = bitcast<f32>(heap[at + 3u]);
+    let step = radius * (2.0 / POSITION_STEPS);
+    let x = words.x & 0xfffffu;
+    let y = (words.x >> 20u) | ((words.y & 0xffu) << 12u);
+    let z = (words.y >> 8u) & 0xfffffu;
+    let from_ball = vec3<f32>(f32(x), f32(y), f32(z)) * step - vec3<f32>(radius);
+    let ball = vec3<f32>(
+        bitcast<f32>(heap[at]),
+        bitcast<f32>(heap[at + 1u]),
+        bitcast<f32>(heap[at + 2u]),
+    );
+    return ball + from_ball;
+}
+
+fn point_radius(words: vec4<u32>) -> f32 {
+    return bitcast<f32>(((words.z & 0xffffu) + RADIUS_BASE) << 12u);
+}
+
+// Corner k of the ring at a point, relative to the centre: a quarter turn about the tangent each.
+fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
+    // Duff et al., Building an orthonormal basis, revisited, 2017.
+    let sign = select(-1.0, 1.0, tangent.z >= 0.0);
+    let a = -1.0 / (sign + tangent.z);
+    let b = tangent.x * tangent.y * a;
+    let u = vec3<f32>(1.0 + sign * tangent.x * tangent.x * a, sign * b, -sign * tangent.x);
+    let v = vec3<f32>(b, sign + tangent.y * tangent.y * a, -tangent.y);
+    // cos and sin of the angle whose quarter turns are `turn` / 256, by the tangent of its half.
+    let t = f32(turn & 0xffu) / 256.0;
+    let scale = 1.0 / (1.0 + t * t);
+    let c = (1.0 - t * t) * scale;
+    let s = 2.0 * t * scale;
+    switch ((k + (turn >> 8u)) & 3u) {
+        case 0u: {
+            return u * c + v * s;
+        }
+        case 1u: {
+            return v * c - u * s;
+        }
+        case 2u: {
+            return -(u * c) - v * s;
+        }
+        default: {
+            return u * s - v * c;
+        }
+    }
+}
+
+// A point with a ring of its own.
+struct OwnRing {
+    center: vec3<f32>,
+    radius: f32,
+    tangent: vec3<f32>,
+    slope: f32,
+    turn: u32,
+    role: u32,
+}
+
+fn own_ring(base: Base, point: u32, words: vec4<u32>) -> OwnRing {
+    let root = f32((words.w >> 18u) & 0xfu) / 15.0;
+    return OwnRing(
+        point_center(base, point, words),
+        point_radius(words),
+        octahedral(words.w & 0x1ffu, (words.w >> 9u) & 0x1ffu, 511.0),
+        select(root * root, -(root * root), (words.y & POINT_NARROWS) != 0u),
+        (words.z >> 16u) & 0x3ffu,
+        select(ROLE_ORDINARY, ROLE_END, (words.y >> POINT_KIND_SHIFT) == POINT_END),
+    );
+}
+
+fn ring_corner(ring: OwnRing, k: u32) -> Corner {
+    let direction = ring_direction(ring.tangent, ring.turn, k);
+    let position = ring.center + direction * ring.radius;
+    let offset = position - ring.center;
+    let normal = normalize_or(direction - ring.tangent * ring.slope, direction);
+    return Corner(
+        position,
+        normal,
+        ring.center,
+        offset,
+        normalize_or(offset, normal),
+        ring.tangent,
+        ring.radius,
+        ring.role,
+    );
+}
+
+fn own_corner(base: Base, vertex: u32) -> Corner {
+    let point = vertex >> 2u;
+    return ring_corner(own_ring(base, point, point_words(base, point)), vertex & 3u);
+}
+
+fn anchor_of(base: Base, loose: u32) -> u32 {
+    return base.anchors + 8u * (heap[base.loose + 3u * (loose & ~LOOSE) + 1u] >> 16u);
+}
+
+// A number of 16 bits from -1 to 1.
+fn signed16(word: u32) -> f32 {
+    return f32(word & 0xffffu) * (2.0 / 65535.0) - 1.0;
+}
+
+fn loose_corner(base: Base, vertex: u32) -> Corner {
+    let at = base.loose + 3u * (vertex & ~LOOSE);
+    let x = heap[at];
+    let y = heap[at + 1u];
+    let z = heap[at + 2u];
+    let anchor = anchor_of(base, vertex);
+    let center = vec3<f32>(
+        bitcast<f32>(heap[anchor]),
+        bitcast<f32>(heap[anchor + 1u]),
+        bitcast<f32>(heap[anchor + 2u]),
+    );
+    let reach = bitcast<f32>(heap[anchor + 3u]);
+    let position = center + vec3<f32>(signed16(x), signed16(x >> 16u), signed16(y)) * reach;
+    let offset = position - center;
+    let normal = octahedral(z & 0xfffu, (z >> 12u) & 0xfffu, 4095.0);
+    let direction = heap[anchor + 5u];
+    let tangent = octahedral(direction & 0xffffu, direction >> 16u, 65535.0);
+    return Corner(
+        position,
+        normal,
+        center,
+        offset,
+        normalize_or(offset, normal),
+        tangent,
+        bitcast<f32>(heap[anchor + 4u]),
+        heap[anchor + 6u],
+    );
+}
+
+fn corner(base: Base, vertex: u32) -> Corner {
+    if ((vertex & LOOSE) != 0u) {
+        return loose_corner(base, vertex);
+    }
+    return own_corner(base, vertex);
+}
+
+// What tells tracing points apart.
+fn tracing_of(base: Base, vertex: u32) -> u32 {
+    if ((vertex & LOOSE) != 0u) {
+        return anchor_of(base, vertex) | LOOSE;
+    }
+    return vertex >> 2u;
+}
+
+fn role_of(base: Base, vertex: u32) -> u32 {
+    if ((vertex & LOOSE) != 0u) {
+        return heap[anchor_of(base, vertex) + 6u];
+    }
+    let kind = heap[base.points + 4u * (vertex >> 2u) + 1u] >> POINT_KIND_SHIFT;
+    return select(ROLE_ORDINARY, ROLE_END, kind == POINT_END);
+}
+
+// The user's level at a vertex.
+fn value_of(base: Base, vertex: u32) -> u32 {
+    if ((vertex & LOOSE) != 0u) {
+        return heap[base.loose + 3u * (vertex & ~LOOSE) + 2u] >> 24u;
+    }
+    return (heap[base.points + 4u * (vertex >> 2u) + 2u] >> 26u) + 1u;
+}
+
+// What the renderer put beside a vertex's tracing point: its colour.
+fn word_of(base: Base, vertex: u32) -> u32 {
+    if ((vertex & LOOSE) != 0u) {
+        return heap[anchor_of(base, vertex) + 7u];
+    }
+    return heap[base.words + (heap[base.points + 4u * (vertex >> 2u) + 3u] >> 22u)];
+}

@@ -1,0 +1,47 @@
+//! The shaders' text is valid in every language, and its structs are ours.
+mod languages;
+
+use neurotess_refine::gpu::{self, Criterion, GpuView};
+
+/// Uses every twin, so that no function escapes translation.
+const ENTRY: &str = "
+struct Asked { view: View, levels: Criterion, base: Base }
+@group(0) @binding(1) var<storage, read> asked: Asked;
+@group(0) @binding(2) var<storage, read_write> out: array<SurfacePoint>;
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let p = patch_at(asked.base, id.x);
+    let levels = side_levels(asked.base, p, asked.levels, asked.view);
+    let grid = patch_grid(p.kind, asked.levels.caps, levels);
+    out[id.x] = grid_vertex(asked.base, p, asked.levels, levels, grid, id.y, id.z);
+}
+";
+
+#[test]
+fn twins_are_valid_in_every_language() {
+    languages::check("twins", &gpu::compose(&[ENTRY]));
+}
+
+#[test]
+fn structs_have_one_layout() {
+    let module = languages::check("twins", &gpu::compose(&[ENTRY]));
+    assert_layout!(
+        &module,
+        "Criterion",
+        Criterion,
+        [kind, level, amount, path, caps]
+    );
+    let (fields, size) = languages::fields(&module, "View");
+    let names: Vec<&str> = fields.iter().map(|(name, ..)| name.as_str()).collect();
+    assert_eq!(names, ["eye", "slope", "forward", "flat", "near"]);
+    assert_eq!(size, size_of::<GpuView>());
+    let offsets: Vec<usize> = fields.iter().map(|&(_, offset, _)| offset).collect();
+    let ours = [
+        std::mem::offset_of!(GpuView, eye),
+        std::mem::offset_of!(GpuView, slope),
+        std::mem::offset_of!(GpuView, forward),
+        std::mem::offset_of!(GpuView, flat),
+        std::mem::offset_of!(GpuView, near),
+    ];
+    assert_eq!(offsets, ours);
+}

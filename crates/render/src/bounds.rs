@@ -1,0 +1,55 @@
+//! Balls around a mesh, to tell which tiles of a picture are empty.
+//!
+//! An empty tile costs as much as a full one in passes over its sub-pixels: of a cell drawn 4096 pixels
+//! high, nine tiles of ten are empty.
+
+use glam::{DVec3, Vec3};
+use neurotess_mesh::{CoarseMesh, Patch, Role};
+
+use crate::frame::{Frame, shows};
+use crate::framing::Ball;
+
+/// Patches in a ball: neighbours, as patches follow the tree.
+const TOGETHER: usize = 8;
+/// How far a surface may bulge beyond its corners, by their distance from the middle.
+const BULGE: f32 = 1.5;
+
+/// Balls that hold the refined surface of a mesh, whatever its levels.
+pub fn bounds(mesh: &CoarseMesh) -> Vec<Ball> {
+    mesh.patches
+        .chunks(TOGETHER)
+        .map(|patches| ball(mesh, patches))
+        .collect()
+}
+
+fn ball(mesh: &CoarseMesh, patches: &[Patch]) -> Ball {
+    let corners = || patches.iter().flat_map(|patch| patch.corners);
+    let positions = || corners().map(|v| mesh.vertices[v as usize].position);
+    let low = positions().fold(Vec3::MAX, Vec3::min);
+    let high = positions().fold(Vec3::MIN, Vec3::max);
+    let center = (low + high) / 2.0;
+    // A tube bulges by its radius, at its end too; a soma's radius is its own size.
+    let radius = corners()
+        .map(|v| &mesh.tracing[mesh.vertices[v as usize].tracing as usize])
+        .filter(|point| point.role != Role::Soma)
+        .map(|point| point.radius)
+        .fold(0.0, f32::max);
+    let reach = positions().map(|p| p.distance(center)).fold(0.0, f32::max);
+    let origin: DVec3 = mesh.origin;
+    (
+        origin + center.as_dvec3(),
+        f64::from(BULGE * reach + radius),
+    )
+}
+
+/// Whether any ball may show in a frame, lines widened to a pixel.
+pub fn any_shows(balls: &[Ball], frame: &Frame) -> bool {
+    let planes = frame.frustum();
+    let eye = frame.camera.eye();
+    balls.iter().any(|&(center, radius)| {
+        let center = (center - eye).as_vec3();
+        // Half a pixel is at most four sub-pixels; twice that for the corners of the picture.
+        let pixels = 8.0 * (f64::from(center.length()) + radius) * frame.slope();
+        shows(&planes, center, (radius + pixels) as f32)
+    })
+}

@@ -1,0 +1,68 @@
+//! The seam between who makes vertices and who shades them.
+//!
+//! A **maker** gives WGSL with one function, and draws by it:
+//!
+//! ```wgsl
+//! struct SurfaceVertex {
+//!     position: vec3<f32>,  // µm, relative to the eye, after the instance's transform
+//!     normal: vec3<f32>,    // unit, outwards
+//!     axis: vec3<f32>,      // point of the tube's centre line, relative to the eye
+//!     radius: f32,          // µm; 0 on somata, which are never widened
+//!     word: u32,            // word of the tracing point: what the colour is looked up by
+//!     instance: u32,
+//!     grid: vec2<f32>,      // for wireframes: lines run where x, y or x + y is a whole number
+//! }
+//! fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex
+//! ```
+//!
+//! The struct stands in [`SURFACE_VERTEX_WGSL`], which comes first; then the maker's text, then the
+//! shading. Bind group 0 is the maker's, groups from 1 on are the shading's.
+
+use crate::device::Gpu;
+use crate::error::DeviceError;
+use crate::frame::Frame;
+
+/// The struct that makers return.
+pub const SURFACE_VERTEX_WGSL: &str = include_str!("surface_vertex.wgsl");
+
+/// Makes vertices on the GPU, and decides how many.
+pub trait VertexMaker {
+    /// Number of shaders that it draws with.
+    fn shaders(&self) -> usize {
+        1
+    }
+
+    /// Defines `surface_vertex` and what it needs, with bind group 0, for one of its shaders.
+    fn wgsl(&self, shader: usize) -> String;
+
+    /// Layout of bind group 0.
+    fn layout(&self) -> &wgpu::BindGroupLayout;
+
+    /// Whether anything may show in a frame: tiles in which nothing does are not drawn.
+    fn shows(&self, _frame: &Frame) -> bool {
+        true
+    }
+
+    /// What must be uploaded before a frame can be drawn. Gives the number of rounds that draw it:
+    /// one after the other, each chosen, then drawn.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError>;
+
+    /// The compute pass of a round. Nothing to do is still a pass: its times are read.
+    fn choose(
+        &self,
+        _round: usize,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("choose"),
+            timestamp_writes: timestamps,
+        });
+    }
+
+    /// Draws what was chosen for one of its shaders. The pipeline and the groups from 1 on are set.
+    fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>);
+}

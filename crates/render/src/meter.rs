@@ -1,0 +1,72 @@
+//! A stopwatch for frames: they are chosen and drawn as a viewer's would be, one sample a pixel, and
+//! neither finished nor read back.
+
+use std::time::Instant;
+
+use crate::colour::ColourTable;
+use crate::device::Gpu;
+use crate::error::DeviceError;
+use crate::frame::Frame;
+use crate::maker::VertexMaker;
+use crate::painter::Painter;
+use crate::shade::Look;
+use crate::timing::Pass;
+
+/// What a frame took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameTime {
+    /// Milliseconds from the first thing done on the processor until the GPU had finished.
+    pub waited_ms: f64,
+    /// Milliseconds of the passes that choose and that draw, where the GPU can tell.
+    pub gpu_ms: Option<[f64; 2]>,
+}
+
+impl FrameTime {
+    /// The GPU's milliseconds where it can tell, else those waited.
+    pub fn best_ms(&self) -> f64 {
+        self.gpu_ms
+            .map_or(self.waited_ms, |[choose, draw]| choose + draw)
+    }
+}
+
+/// Times frames of one maker.
+pub struct Meter<'g> {
+    gpu: &'g Gpu,
+    painter: Painter<'g>,
+}
+
+impl<'g> Meter<'g> {
+    /// Makes what all frames of a maker share.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn new(
+        gpu: &'g Gpu,
+        maker: &dyn VertexMaker,
+        table: &ColourTable,
+    ) -> Result<Self, DeviceError> {
+        let painter = Painter::new(gpu, maker, table, 1)?;
+        Ok(Self { gpu, painter })
+    }
+
+    /// Draws a frame and waits for it.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn time(
+        &mut self,
+        maker: &mut dyn VertexMaker,
+        frame: &Frame,
+    ) -> Result<FrameTime, DeviceError> {
+        self.painter.timer.reset();
+        let clock = Instant::now();
+        self.painter.draw_only(maker, frame, &Look::default())?;
+        let waited_ms = clock.elapsed().as_secs_f64() * 1e3;
+        self.painter.timer.read(self.gpu)?;
+        let gpu_ms = self.painter.timer.milliseconds();
+        Ok(FrameTime {
+            waited_ms,
+            gpu_ms: gpu_ms.map(|ms| [ms[Pass::Choose as usize], ms[Pass::Draw as usize]]),
+        })
+    }
+}

@@ -1,0 +1,72 @@
+//! The shaders of pictures are valid in every language, and their structs are ours.
+
+use crate::assert_layout;
+use crate::finish::{Finish, finish_text};
+use crate::prerefined::{Placement, StoredVertex, WGSL};
+use crate::shade::{Shade, shader_text};
+use crate::shader_tests::languages;
+
+#[test]
+fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
+    for samples in [1, 4] {
+        for barycentric in [false, true] {
+            let maker = format!("const BARYCENTRIC: bool = {barycentric};\n{WGSL}");
+            let module = languages::check("shade", &shader_text(&maker, samples));
+            assert_layout!(
+                &module,
+                "Shade",
+                Shade,
+                [
+                    clip_from_relative,
+                    right,
+                    near,
+                    up,
+                    slope,
+                    backward,
+                    half_width,
+                    key,
+                    wire,
+                    size,
+                    tile_origin,
+                    viewport_origin,
+                    viewport_size,
+                    lit,
+                    scale_entries
+                ]
+            );
+            assert_layout!(
+                &module,
+                "StoredVertex",
+                StoredVertex,
+                [x, y, z, radius, normal, word]
+            );
+            assert_layout!(
+                &module,
+                "Placement",
+                Placement,
+                [relative_from_mesh, instance]
+            );
+        }
+        let module = languages::check("finish", &finish_text(samples));
+        assert_layout!(
+            &module,
+            "Finish",
+            Finish,
+            [
+                tile_size,
+                tile_origin,
+                half_size,
+                slope,
+                scale,
+                radius,
+                most,
+                margin,
+                clear,
+                kept,
+                spare,
+                empty,
+                background
+            ]
+        );
+    }
+}

@@ -1,0 +1,94 @@
+// What the shaders of a frame share: the frame's choices, placed parts and the words of decisions.
+//
+// Called by decide.wgsl, list.wgsl and vertices.wgsl. Structs as in refining.rs; constants come from its prelude.
+
+// One for the whole frame. Lengths in micrometres; planes are relative to the eye.
+struct Frame {
+    planes: array<vec4<f32>, 5>,
+    slope: f32,
+    flat: f32,
+    smallest: f32,
+    // A struct in a uniform buffer begins at a multiple of 16 bytes.
+    spare: f32,
+    levels: Criterion,
+}
+
+// One part of a template where an instance puts it.
+struct Placed {
+    // Rows of the transform from the part's coordinates to those relative to the eye.
+    row_x: vec4<f32>,
+    row_y: vec4<f32>,
+    row_z: vec4<f32>,
+    // The eye in the part's coordinates.
+    eye: vec3<f32>,
+    scale: f32,
+    forward: vec3<f32>,
+    near: f32,
+    base: Base,
+    first_slot: u32,
+    patches: u32,
+    instance: u32,
+    state: u32,
+}
+
+// What is drawn together.
+struct Batch {
+    first: u32,
+    placed: u32,
+    slots: u32,
+    sections: u32,
+}
+
+fn view_of(frame: Frame, place: Placed) -> View {
+    return View(place.eye, frame.slope, place.forward, frame.flat / place.scale, place.near);
+}
+
+// Coordinates relative to the eye.
+fn relative(place: Placed, p: vec3<f32>) -> vec3<f32> {
+    let q = vec4<f32>(p, 1.0);
+    return vec3<f32>(dot(place.row_x, q), dot(place.row_y, q), dot(place.row_z, q));
+}
+
+fn turned(place: Placed, v: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(place.row_x.xyz, v), dot(place.row_y.xyz, v), dot(place.row_z.xyz, v));
+}
+
+// A decision: the levels of a patch's four sides and its kind; 0 where it is not drawn.
+fn decision(kind: u32, levels: vec4<u32>) -> u32 {
+    let sides = levels.x | (levels.y << 7u) | (levels.z << 14u) | (levels.w << 21u);
+    return sides | (kind << DECISION_KIND_SHIFT);
+}
+
+fn decided_levels(word: u32) -> vec4<u32> {
+    return (vec4<u32>(word) >> vec4<u32>(0u, 7u, 14u, 21u)) & vec4<u32>(0x7fu);
+}
+
+fn decided_kind(word: u32) -> u32 {
+    return (word >> DECISION_KIND_SHIFT) & 3u;
+}
+
+// Whether it is the decision on all four patches around a tube, each at level 1.
+fn is_whole(word: u32) -> bool {
+    return (word & DECISION_WHOLE) != 0u;
+}
+
+// Place of a level in the set of grid sizes: the smallest that holds it.
+fn size_class(level: u32) -> u32 {
+    for (var k = 0u; k < GRID_SIZES; k += 1u) {
+        if (GRID_SIZE[k] >= level) {
+            return k;
+        }
+    }
+    return GRID_SIZES - 1u;
+}
+
+fn bucket_of(word: u32, caps: u32) -> u32 {
+    let kind = decided_kind(word);
+    let grid = patch_grid(kind, caps, decided_levels(word));
+    let size = size_class(grid.ny) * GRID_SIZES + size_class(grid.nx);
+    if (kind == DECIDED_TUBE) {
+        // The first bucket is for whole tubes; a single patch at level 1 goes to the next.
+        return select(max(size, 1u), 0u, is_whole(word));
+    }
+    return size + select(2u, 1u, kind == PATCH_LATERAL) * GRID_SIZES * GRID_SIZES;
+}

@@ -1,0 +1,226 @@
+//! The pipeline that shades a maker's vertices. Twin of the uniform in `shade.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use crate::colour::CATEGORY_BIT;
+use crate::device::Gpu;
+use crate::frame::Frame;
+use crate::maker::{SURFACE_VERTEX_WGSL, VertexMaker};
+
+/// Linear colour, premultiplied.
+pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Normals in the view.
+pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Depths (µm): the bytes of an f32.
+pub(crate) const DISTANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Reversed depth keeps its digits in floating point only.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// How surfaces look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Where the key light comes from.
+    pub light: Light,
+    /// Width (pixels) of the wires that show the triangles; 0: none.
+    pub wire: f32,
+}
+
+/// What surfaces are lit by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Light {
+    /// A soft key light from the upper left, a weak fill and the sky.
+    #[default]
+    Soft,
+    /// The same with the key light in this direction, seen from the picture: right, up, towards
+    /// the viewer. Any length but 0.
+    From(Vec3),
+    /// None: the bare colours.
+    Flat,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            light: Light::Soft,
+            wire: 0.0,
+        }
+    }
+}
+
+/// Direction of [`Light::Soft`]'s key.
+const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
+
+/// Twin of `Shade` in `shade.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Shade {
+    pub(crate) clip_from_relative: [f32; 16],
+    pub(crate) right: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) up: [f32; 3],
+    pub(crate) slope: f32,
+    pub(crate) backward: [f32; 3],
+    pub(crate) half_width: f32,
+    pub(crate) key: [f32; 3],
+    pub(crate) wire: f32,
+    pub(crate) size: [f32; 2],
+    pub(crate) tile_origin: [f32; 2],
+    pub(crate) viewport_origin: [f32; 2],
+    pub(crate) viewport_size: [f32; 2],
+    pub(crate) lit: f32,
+    pub(crate) scale_entries: u32,
+    pub(crate) pad: [u32; 2],
+}
+
+impl Shade {
+    /// `scale`: sub-pixels per pixel along a side; `scale_entries`: of the colour table.
+    pub(crate) fn new(frame: &Frame, look: &Look, scale: u32, scale_entries: u32) -> Self {
+        let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
+        let (key, lit) = match look.light {
+            Light::Soft => (KEY, 1.0),
+            Light::From(direction) => (direction, 1.0),
+            Light::Flat => (KEY, 0.0),
+        };
+        Self {
+            clip_from_relative: frame.clip_from_relative().to_cols_array(),
+            right,
+            near: frame.near as f32,
+            up,
+            slope: frame.slope() as f32,
+            backward,
+            half_width: HALF_WIDTH * scale as f32,
+            key: key.normalize_or(KEY).to_array(),
+            wire: 0.5 * look.wire * scale as f32,
+            size: frame.size.map(|n| n as f32),
+            tile_origin: [frame.tile.x as f32, frame.tile.y as f32],
+            viewport_origin: [frame.tile.x, frame.tile.y].map(|n| n as f32 - GUARD),
+            viewport_size: [frame.tile.width, frame.tile.height].map(|n| n as f32 + 2.0 * GUARD),
+            lit,
+            scale_entries,
+            pad: [0; 2],
+        }
+    }
+}
+
+/// Sub-pixels by which the viewport reaches beyond the tile on each side. Software rasterisers clip at
+/// the viewport, and a clipped edge covers other samples: one in 600,000 at the borders of tiles.
+pub(crate) const GUARD: f32 = 512.0;
+
+/// Half the width (pixels) of the thinnest thing drawn: below a pixel, lines look dotted.
+const HALF_WIDTH: f32 = 0.5;
+
+/// Draws samples from a maker's vertices.
+pub(crate) struct Shader {
+    /// One for each of the maker's shaders.
+    pub(crate) pipelines: Vec<wgpu::RenderPipeline>,
+    pub(crate) layout: wgpu::BindGroupLayout,
+}
+
+impl Shader {
+    pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, samples: u32) -> Self {
+        let device = &gpu.device;
+        let layout = layout(device);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("shade"),
+            bind_group_layouts: &[Some(maker.layout()), Some(&layout)],
+            immediate_size: 0,
+        });
+        let target = |format: wgpu::TextureFormat| {
+            Some(wgpu::ColorTargetState {
+                format,
+                blend: None,
+                write_mask: wgpu::ColorWrites::ALL,
+            })
+        };
+        let pipeline = |shader: usize| {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("shade"),
+                source: wgpu::ShaderSource::Wgsl(shader_text(&maker.wgsl(shader), samples).into()),
+            });
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("shade"),
+                layout: Some(&pipeline_layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: Some(wgpu::Face::Back),
+                    ..wgpu::PrimitiveState::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    ..wgpu::MultisampleState::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[COLOUR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let pipelines = (0..maker.shaders()).map(pipeline).collect();
+        Self { pipelines, layout }
+    }
+}
+
+/// The whole text for a maker, with this many samples per sub-pixel.
+pub(crate) fn shader_text(maker: &str, samples: u32) -> String {
+    // With one sample a mask is of no use: what covers less than half is left out instead.
+    let (member, statement) = if samples > 1 {
+        (
+            "@builtin(sample_mask) mask: u32,",
+            "out.mask = mask_of(in.coverage, in.position);",
+        )
+    } else {
+        (
+            "",
+            "if mask_of(in.coverage, in.position) == 0u { discard; }",
+        )
+    };
+    let shading = include_str!("shade.wgsl")
+        .replace("MASK_MEMBER", member)
+        .replace("MASK_STATEMENT", statement);
+    format!(
+        "const SAMPLES: u32 = {samples}u;\nconst CATEGORY_BIT: u32 = {CATEGORY_BIT}u;\n\
+         {SURFACE_VERTEX_WGSL}{maker}{shading}"
+    )
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let binding = |binding, ty, visibility| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let table = wgpu::BufferBindingType::Storage { read_only: true };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shade"),
+        entries: &[
+            binding(
+                0,
+                wgpu::BufferBindingType::Uniform,
+                wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ),
+            binding(1, table, wgpu::ShaderStages::VERTEX),
+        ],
+    })
+}

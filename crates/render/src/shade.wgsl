@@ -1,0 +1,191 @@
+// From a maker's vertices to lit samples: projection, widening of thin tubes, colour, light, wires.
+// Called by painter.rs; comes after surface_vertex.wgsl and the maker's text. Rust twin of the
+// uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
+
+struct Shade {
+    clip_from_relative: mat4x4<f32>,
+    right: vec3<f32>,
+    near: f32,
+    up: vec3<f32>,
+    // µm per sub-pixel at unit depth.
+    slope: f32,
+    backward: vec3<f32>,
+    // Half the width (sub-pixels) of the thinnest thing drawn.
+    half_width: f32,
+    // Unit direction to the key light in the view: right, up, backward.
+    key: vec3<f32>,
+    // Half the width (sub-pixels) of wires; 0: none.
+    wire: f32,
+    size: vec2<f32>,
+    tile_origin: vec2<f32>,
+    // Of the viewport, which reaches beyond the tile (sub-pixels of the whole picture).
+    viewport_origin: vec2<f32>,
+    viewport_size: vec2<f32>,
+    // 1: lit, 0: the bare colour.
+    lit: f32,
+    // Number of scale entries at the start of the table; categories follow.
+    scale_entries: u32,
+}
+
+@group(1) @binding(0) var<uniform> shade: Shade;
+// Linear colours.
+@group(1) @binding(1) var<storage, read> table: array<vec4<f32>>;
+
+struct Varying {
+    @invariant @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) colour: vec3<f32>,
+    @location(2) relative: vec3<f32>,
+    @location(3) grid: vec2<f32>,
+    @location(4) coverage: f32,
+    // From 0, a tube two pixels wide, to 1, nothing.
+    @location(5) thin: f32,
+}
+
+// A category counts from the end of the scale; anything else is a fraction of the scale.
+fn colour_of(word: u32) -> vec3<f32> {
+    if (word & CATEGORY_BIT) != 0u {
+        let last = arrayLength(&table) - 1u;
+        return table[min(shade.scale_entries + (word & ~CATEGORY_BIT), last)].rgb;
+    }
+    let place = f32(word) / f32(CATEGORY_BIT) * f32(max(shade.scale_entries, 1u) - 1u);
+    let low = u32(place);
+    let high = min(low + 1u, max(shade.scale_entries, 1u) - 1u);
+    return mix(table[low].rgb, table[high].rgb, fract(place));
+}
+
+// Rasterisers keep 1/256 of a pixel. Here it is rounded in the whole picture's coordinates, so that
+// a triangle covers the same samples whatever tile it is drawn in. The quarter keeps away from ties.
+fn snapped(clip: vec4<f32>) -> vec4<f32> {
+    let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size;
+    let local = floor(pixel * 256.0) / 256.0 - shade.viewport_origin + 0.25 / 256.0;
+    let ndc = (local / shade.viewport_size * 2.0 - 1.0) * vec2(1.0, -1.0);
+    return vec4(ndc * clip.w, clip.z, clip.w);
+}
+
+// Behind the near plane nothing can be divided; this is the same up to rounding.
+fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
+    let scale = shade.size / shade.viewport_size;
+    let shift = (shade.size - 2.0 * shade.viewport_origin) / shade.viewport_size - 1.0;
+    return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
+}
+
+// Ink of a line by the share of a pixel that it fills. Spread by area alone, the axons of a whole cell
+// fade from sight: 0.3 of a pixel in linear light is hardly seen on white. This rises with the width
+// and is 0.9 there, 0.5 at a twentieth. Chosen by eye on the samples and on real cells of 1 to 3 mm.
+fn ink_of(share: f32) -> f32 {
+    let rest = 1.0 - sqrt(share);
+    return 1.0 - rest * rest * rest;
+}
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) vertex_index: u32,
+    @builtin(instance_index) instance_index: u32,
+) -> Varying {
+    let v = surface_vertex(vertex_index, instance_index);
+    var relative = v.position;
+    var coverage = 1.0;
+    var thin = 0.0;
+    if v.radius > 0.0 {
+        // What is thinner than a pixel is widened to one and made fainter.
+        let depth = max(-dot(v.axis, shade.backward), shade.near);
+        let narrowest = shade.half_width * shade.slope * depth;
+        thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
+        if v.radius < narrowest {
+            let offset = v.position - v.axis;
+            let away = select(v.normal, normalize(offset), dot(offset, offset) > 0.0);
+            relative += away * (narrowest - v.radius);
+            coverage = ink_of(v.radius / narrowest);
+        }
+    }
+    let clip = shade.clip_from_relative * vec4(relative, 1.0);
+    var out: Varying;
+    if clip.w > shade.near {
+        out.position = snapped(clip);
+    } else {
+        out.position = unsnapped(clip);
+    }
+    out.normal = v.normal;
+    out.colour = colour_of(v.word);
+    out.relative = relative;
+    out.grid = v.grid;
+    out.coverage = coverage;
+    out.thin = thin;
+    return out;
+}
+
+struct Sample {
+    // Linear, premultiplied by coverage through the mask.
+    @location(0) colour: vec4<f32>,
+    // Normal in the view, from -1..1 to 0..1.
+    @location(1) normal: vec4<f32>,
+    // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
+    // draw to floating-point ones.
+    @location(2) depth: vec4<f32>,
+    MASK_MEMBER
+}
+
+// A key light from the upper left, a weak fill from the lower right, a sky brighter than the ground.
+// Weights were chosen by eye on real cells so that a side that faces the viewer has the colour of
+// the legend.
+fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
+    let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
+    let sky = 0.5 + 0.5 * n.y;
+    let diffuse = 0.85 * key * key + 0.18 * fill + mix(0.22, 0.52, sky);
+    // A broad sheen, so that black things have a shape.
+    let half = normalize(shade.key + to_eye);
+    let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
+    return albedo * diffuse + sheen;
+}
+
+// How much of a wire is here: lines run where x, y or x + y is a whole number.
+fn wires(grid: vec2<f32>) -> f32 {
+    let g = vec3(grid, grid.x + grid.y);
+    let width = max(fwidth(g), vec3(1e-6));
+    let distance = abs(fract(g - 0.5) - 0.5) / width;
+    let nearest = min(distance.x, min(distance.y, distance.z));
+    // Where lines would touch one another they fade to a tint.
+    let crowded = max(width.x, max(width.y, width.z)) * shade.wire * 4.0;
+    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
+}
+
+fn bayer(p: vec2<u32>) -> f32 {
+    let q = p & vec2(1u);
+    return (f32((q.x ^ q.y) * 2u + q.y) + 0.5) / 4.0;
+}
+
+// As many samples as the coverage asks for, dithered over neighbouring sub-pixels.
+fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
+    let p = vec2<u32>(position.xy + shade.tile_origin + 4096.0);
+    let count = u32(min(coverage, 1.0) * f32(SAMPLES) + bayer(p));
+    let turn = (p.x + 2u * p.y) % SAMPLES;
+    let bits = ((1u << count) - 1u) << turn;
+    return (bits | (bits >> SAMPLES)) & ((1u << SAMPLES) - 1u);
+}
+
+@fragment
+fn fragment(in: Varying) -> Sample {
+    let world = normalize(in.normal);
+    let axes = mat3x3(shade.right, shade.up, shade.backward);
+    let to_eye = -normalize(in.relative) * axes;
+    // A line shows no sides: it gets the light of a face towards the viewer, so its colour is the
+    // legend's. Means over all sides were a third darker, and thin things looked grey.
+    let n = normalize(mix(world * axes, to_eye, in.thin));
+    var colour = in.colour;
+    if shade.wire > 0.0 {
+        let luminance = dot(colour, vec3(0.2126, 0.7152, 0.0722));
+        let line = select(vec3(0.22), colour * 0.06, luminance > 0.06);
+        colour = mix(colour, line, wires(in.grid) * (1.0 - in.thin));
+    }
+    if shade.lit > 0.0 {
+        colour = light(colour, n, to_eye);
+    }
+    var out: Sample;
+    out.colour = vec4(colour, 1.0);
+    out.normal = vec4(n * 0.5 + 0.5, 1.0);
+    out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
+    MASK_STATEMENT
+    return out;
+}

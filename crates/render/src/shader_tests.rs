@@ -1,0 +1,83 @@
+//! Our shaders are valid in every language, and their structs are ours.
+
+#[path = "../../refine/tests/languages/mod.rs"]
+pub(crate) mod languages;
+
+use crate::assert_layout;
+use crate::expand::{ExpandedVertex, Wanted, expand_wgsl};
+use crate::grids::Bucket;
+use crate::refiner::{DrawIndexed, decide_wgsl, list_wgsl};
+use crate::refining::{Base, BatchWords, FrameWords, Placed};
+
+#[test]
+fn shaders_are_valid_in_every_language_and_have_our_layouts() {
+    let decide = languages::check("decide", &decide_wgsl());
+    let list = languages::check("list", &list_wgsl());
+    assert_layout!(
+        &decide,
+        "Frame",
+        FrameWords,
+        [planes, slope, flat, smallest, spare, levels]
+    );
+    assert_layout!(
+        &decide,
+        "Base",
+        Base,
+        [
+            points,
+            point_count,
+            balls,
+            loose,
+            anchors,
+            soma,
+            soma_count,
+            quads,
+            quad_count,
+            caps,
+            words
+        ]
+    );
+    assert_layout!(
+        &decide,
+        "Placed",
+        Placed,
+        [
+            row_x, row_y, row_z, eye, scale, forward, near, base, first_slot, patches, instance,
+            state
+        ]
+    );
+    assert_layout!(
+        &decide,
+        "Batch",
+        BatchWords,
+        [first, placed, slots, sections]
+    );
+    let expand = languages::check("expand", &expand_wgsl());
+    for module in [&list, &expand] {
+        assert_layout!(
+            module,
+            "Bucket",
+            Bucket,
+            [start, count, together, indices, first_index]
+        );
+    }
+    assert_layout!(
+        &list,
+        "DrawIndexed",
+        DrawIndexed,
+        [
+            index_count,
+            instance_count,
+            first_index,
+            base_vertex,
+            first_instance
+        ]
+    );
+    assert_layout!(&expand, "Wanted", Wanted, [place, i, j]);
+    assert_layout!(
+        &expand,
+        "SurfaceVertex",
+        ExpandedVertex,
+        [position, normal, axis, radius, word, instance, grid]
+    );
+}

@@ -1,0 +1,190 @@
+//! Templates on the device: uploaded once, in pages that fit a binding.
+
+use glam::{DVec3, Vec3};
+use neurotess_mesh::{CoarseMesh, Role};
+use neurotess_refine::{Part, ball_around, pack};
+use wgpu::util::DeviceExt;
+
+use crate::device::Gpu;
+use crate::error::DeviceError;
+use crate::refining::{Base, CLUSTER};
+use crate::scene::TemplateId;
+
+/// Most places for patches of a part: a batch holds at least one.
+pub(crate) const MOST_PATCHES: usize = 1 << 20;
+/// Most words of a part per place for a patch: a loose patch, four loose vertices with anchors.
+const WORDS_OF_PATCH: usize = 2 + 4 * (3 + 8);
+
+/// A coarse mesh to be uploaded.
+#[derive(Clone, Copy, Debug)]
+pub struct Template<'t> {
+    /// The mesh.
+    pub mesh: &'t CoarseMesh,
+    /// One word per tracing point for whoever shades: its colour. Missing ones are 0.
+    pub words: &'t [u32],
+    /// One level per tracing point, for [`Choice::PerPoint`](crate::Choice::PerPoint). Missing ones
+    /// are 1.
+    pub values: &'t [u8],
+}
+
+/// The heap of a page with its bind group.
+#[derive(Debug)]
+pub(crate) struct Page {
+    pub(crate) heap: wgpu::Buffer,
+    pub(crate) group: wgpu::BindGroup,
+}
+
+/// Where a part of a template lies.
+#[derive(Clone, Debug)]
+pub(crate) struct TemplatePart {
+    pub(crate) page: usize,
+    pub(crate) base: Base,
+    /// Number of places for patches.
+    pub(crate) places: u32,
+    /// Number of patches.
+    pub(crate) patches: u32,
+    /// By place: the mesh's patch.
+    pub(crate) in_mesh: Vec<u32>,
+    /// Ball around each cluster of patches, relative to the template's origin (µm).
+    pub(crate) balls: Vec<(Vec3, f32)>,
+    /// Ball around all of them.
+    pub(crate) ball: (Vec3, f32),
+}
+
+/// What the host remembers of a template.
+#[derive(Clone, Debug)]
+pub(crate) struct StoredTemplate {
+    pub(crate) origin: DVec3,
+    pub(crate) parts: Vec<TemplatePart>,
+    points: usize,
+}
+
+/// Templates on a device.
+#[derive(Debug, Default)]
+pub struct Templates {
+    pub(crate) pages: Vec<Page>,
+    templates: Vec<StoredTemplate>,
+    bytes: Vec<(&'static str, u64)>,
+}
+
+impl Templates {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Uploads templates, with numbers that follow those already there.
+    ///
+    /// # Errors
+    /// The device has no memory left, or refuses.
+    pub fn add(
+        &mut self,
+        gpu: &Gpu,
+        templates: &[Template<'_>],
+    ) -> Result<Vec<TemplateId>, DeviceError> {
+        let layout = layout(&gpu.device);
+        let most_words = usize::try_from(gpu.largest_binding() / 4).unwrap_or(usize::MAX);
+        let most = (most_words / WORDS_OF_PATCH).clamp(CLUSTER, MOST_PATCHES);
+        let mut heap = Vec::new();
+        let first = self.templates.len();
+        for template in templates {
+            let mut stored = StoredTemplate {
+                origin: template.mesh.origin,
+                parts: Vec::new(),
+                points: points(template.mesh),
+            };
+            for part in pack(template.mesh, template.words, template.values, most) {
+                if heap.len() + part.heap.len() > most_words {
+                    self.finish(gpu, &layout, &heap);
+                    heap.clear();
+                }
+                self.count(&part);
+                stored.parts.push(TemplatePart {
+                    page: self.pages.len(),
+                    base: Base::new(heap.len() as u32, &part.places),
+                    places: part.patches.len() as u32,
+                    patches: part.patches.iter().filter(|&&p| p != u32::MAX).count() as u32,
+                    ball: ball_around(part.balls.iter().copied()),
+                    balls: part.balls,
+                    in_mesh: part.patches,
+                });
+                heap.extend(part.heap);
+            }
+            self.templates.push(stored);
+        }
+        self.finish(gpu, &layout, &heap);
+        gpu.check()?;
+        let ids = first..self.templates.len();
+        Ok(ids.map(|id| TemplateId(id as u32)).collect())
+    }
+
+    fn count(&mut self, part: &Part) {
+        for (name, bytes) in part.bytes() {
+            match self.bytes.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, sum)) => *sum += bytes,
+                None => self.bytes.push((name, bytes)),
+            }
+        }
+    }
+
+    fn finish(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, heap: &[u32]) {
+        if heap.is_empty() {
+            return;
+        }
+        let heap = gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("heap of templates"),
+                contents: bytemuck::cast_slice(heap),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("page of templates"),
+            layout,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: heap.as_entire_binding(),
+            }],
+        });
+        self.pages.push(Page { heap, group });
+    }
+
+    pub(crate) fn template(&self, id: TemplateId) -> Option<&StoredTemplate> {
+        self.templates.get(id.0 as usize)
+    }
+
+    /// Number of templates.
+    pub fn count_of_templates(&self) -> usize {
+        self.templates.len()
+    }
+
+    /// Number of tracing points of all templates, those that stand for somata's vertices aside.
+    pub fn point_count(&self) -> usize {
+        self.templates.iter().map(|template| template.points).sum()
+    }
+
+    /// Bytes on the device per tracing point.
+    pub fn bytes_per_point(&self) -> f64 {
+        let bytes: u64 = self.pages.iter().map(|page| page.heap.size()).sum();
+        bytes as f64 / self.point_count().max(1) as f64
+    }
+
+    /// Bytes on the device by what they hold.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        self.bytes.clone()
+    }
+}
+
+fn points(mesh: &CoarseMesh) -> usize {
+    let tracing = mesh.tracing.iter();
+    tracing.filter(|point| point.role != Role::Soma).count()
+}
+
+/// Group 0 of the pass that decides: the heap.
+pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let compute = wgpu::ShaderStages::COMPUTE;
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("page of templates"),
+        entries: &[crate::refiner::storage(0, compute, true)],
+    })
+}

@@ -1,0 +1,248 @@
+//! Pictures that are refined on the fly: as those of a stored surface, and in awkward cases.
+mod common;
+
+use common::{cell, extent, gpu, smooth_cell};
+use glam::{DQuat, DVec3};
+use neurotess_mesh::{CoarseMesh, Surface};
+use neurotess_refine::{Levels, RefineOptions, Refinement};
+use neurotess_render::{
+    Adaptive, Camera, Choice, ColourTable, Gpu, Image, Instance, Occlusion, Painted, Palette,
+    PictureOptions, Placement, Prerefined, Refining, Scene, SceneError, Template, TemplateId,
+    Templates, VertexMaker, category, paint,
+};
+
+fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, size: [u32; 2]) -> Image {
+    let options = PictureOptions {
+        size,
+        samples: 4,
+        occlusion: Occlusion::Off,
+        ..PictureOptions::default()
+    };
+    let table = ColourTable {
+        categories: [3, 1].map(|kind| Palette::default().of_type(kind)).to_vec(),
+        ..ColourTable::default()
+    };
+    let mut whole = Image::default();
+    paint(gpu, maker, camera, 0.1, &table, &options, |_, band| {
+        whole = band;
+        Ok::<(), std::convert::Infallible>(())
+    })
+    .expect("painted");
+    whole
+}
+
+fn words(mesh: &CoarseMesh) -> Vec<u32> {
+    mesh.tracing
+        .iter()
+        .map(|t| category(u32::from(t.kind == 1)))
+        .collect()
+}
+
+fn adaptive(gpu: &Gpu, meshes: &[CoarseMesh], instances: &[Instance], choice: Choice) -> Adaptive {
+    let words: Vec<Vec<u32>> = meshes.iter().map(words).collect();
+    let list: Vec<Template<'_>> = meshes
+        .iter()
+        .zip(&words)
+        .map(|(mesh, words)| Template {
+            mesh,
+            words,
+            values: &[],
+        })
+        .collect();
+    let mut templates = Templates::new();
+    templates.add(gpu, &list).expect("uploaded");
+    let scene = Scene::new(templates, instances.to_vec()).expect("a scene");
+    let refining = Refining {
+        choice,
+        ..Refining::default()
+    };
+    Adaptive::new(gpu, scene, refining, 1).expect("a maker")
+}
+
+fn before(mesh: &CoarseMesh, distance: f64) -> Camera {
+    let (middle, reach) = extent(mesh);
+    let eye = middle + DVec3::new(0.3, 0.2, 1.0).normalize_or(DVec3::Z) * reach * distance;
+    Camera::new(eye, middle, DVec3::Y, 0.6).expect("a camera")
+}
+
+#[test]
+fn a_picture_is_that_of_the_stored_surface() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = smooth_cell(1);
+    let camera = before(&mesh, 2.5);
+    let mut stored = Prerefined::new(
+        &gpu,
+        &[Painted {
+            mesh: &mesh,
+            words: &words(&mesh),
+        }],
+        |_| Levels::Homogeneous(4),
+        &RefineOptions::default(),
+        false,
+    )
+    .expect("stored");
+    let wanted = picture(&gpu, &mut stored, &camera, [320, 240]);
+    let instance = Instance::new(TemplateId(0));
+    let mut maker = adaptive(&gpu, &[mesh], &[instance], Choice::Homogeneous(4));
+    let found = picture(&gpu, &mut maker, &camera, [320, 240]);
+    let differing = wanted
+        .pixels
+        .chunks(4)
+        .zip(found.pixels.chunks(4))
+        .filter(|(a, b)| {
+            let apart = a.iter().zip(*b).map(|(a, b)| a.abs_diff(*b)).max();
+            apart.unwrap_or(0) > 12
+        });
+    let (differing, drawn) = (
+        differing.count(),
+        wanted.pixels.chunks(4).filter(|p| p[0] < 250).count(),
+    );
+    println!("{differing} of {drawn} pixels differ");
+    assert!(drawn > 3000, "{drawn}");
+    // Normals are stored in 32 bits there; diagonals of grids between two sizes differ.
+    assert!(differing * 200 < drawn, "{differing} of {drawn}");
+}
+
+#[test]
+fn statistics_are_those_of_the_stored_surface_and_memory_of_the_coarse_one() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = cell(3, 12);
+    let camera = before(&mesh, 4.0);
+    let mut bytes = Vec::new();
+    for level in [1, 5, 64] {
+        let meshes = std::slice::from_ref(&mesh);
+        let instance = Instance::new(TemplateId(0));
+        let mut maker = adaptive(&gpu, meshes, &[instance], Choice::Homogeneous(level));
+        picture(&gpu, &mut maker, &camera, [64, 48]);
+        let stats = maker.stats(&gpu).expect("statistics");
+        let stored = Refinement::new(
+            &mesh,
+            &Levels::Homogeneous(level),
+            &RefineOptions::default(),
+        );
+        assert_eq!(stats.triangles, stored.triangle_count() as u64);
+        assert_eq!(stats.patches, mesh.patches.len() as u64);
+        assert_eq!(stats.patches_drawn, stats.patches);
+        assert_eq!(stats.level_histogram[level as usize], 4 * stats.patches);
+        bytes.push(maker.bytes());
+    }
+    assert_eq!(bytes[0], bytes[1]);
+    assert_eq!(bytes[0], bytes[2]);
+}
+
+#[test]
+fn nothing_at_all_is_a_picture_of_the_background() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = cell(5, 8);
+    let camera = before(&mesh, 3.0);
+    let hidden = Instance {
+        hidden: true,
+        ..Instance::new(TemplateId(0))
+    };
+    for (meshes, instances) in [(vec![], vec![]), (vec![mesh.clone()], vec![hidden])] {
+        for size in [[1, 1], [40, 30]] {
+            let mut maker = adaptive(&gpu, &meshes, &instances, Choice::default());
+            let image = picture(&gpu, &mut maker, &camera, size);
+            assert_eq!(image.pixels.len(), 4 * (size[0] * size[1]) as usize);
+            assert!(image.pixels.iter().all(|&byte| byte == 255));
+            assert_eq!(maker.stats(&gpu).expect("statistics").patches_drawn, 0);
+        }
+    }
+    let mut empty = adaptive(
+        &gpu,
+        &[CoarseMesh::default()],
+        &[Instance::new(TemplateId(0))],
+        Choice::default(),
+    );
+    assert!(
+        picture(&gpu, &mut empty, &camera, [8, 8])
+            .pixels
+            .iter()
+            .all(|&byte| byte == 255)
+    );
+}
+
+#[test]
+fn one_pixel_shows_what_fills_it() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = smooth_cell(2);
+    let camera = Camera::new(DVec3::Z * 8.0, DVec3::ZERO, DVec3::Y, 0.1).expect("a camera");
+    let instance = Instance::new(TemplateId(0));
+    let mut maker = adaptive(&gpu, &[mesh], &[instance], Choice::default());
+    let image = picture(&gpu, &mut maker, &camera, [1, 1]);
+    assert!(image.at(0, 0)[0] < 200, "{:?}", image.pixels);
+}
+
+#[test]
+fn impossible_instances_are_errors() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = cell(5, 8);
+    let words = words(&mesh);
+    let scene = |instance: Instance| {
+        let mut templates = Templates::new();
+        let template = Template {
+            mesh: &mesh,
+            words: &words,
+            values: &[],
+        };
+        templates.add(&gpu, &[template]).expect("uploaded");
+        Scene::new(templates, vec![instance]).map(|_| ())
+    };
+    let good = Instance::new(TemplateId(0));
+    assert_eq!(scene(good), Ok(()));
+    for placement in [
+        Placement {
+            scale: 0.0,
+            ..Placement::default()
+        },
+        Placement {
+            scale: f64::NAN,
+            ..Placement::default()
+        },
+        Placement {
+            translation: DVec3::NAN,
+            ..Placement::default()
+        },
+        Placement {
+            rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0),
+            ..Placement::default()
+        },
+    ] {
+        assert_eq!(
+            scene(Instance { placement, ..good }),
+            Err(SceneError::Placement(0))
+        );
+    }
+    assert!(matches!(
+        scene(Instance::new(TemplateId(1))),
+        Err(SceneError::Template { template: 1, .. })
+    ));
+}
+
+#[test]
+fn scenes_beyond_a_million_patches_are_drawn_in_rounds() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = cell(6, 24);
+    let count = (1 << 20) / mesh.patches.len() + 40;
+    // In a row, away from the eye, at the far end of a circuit.
+    let away = DVec3::new(3e4, -2e4, 5e4);
+    let instances: Vec<Instance> = (0..count)
+        .map(|i| Instance {
+            placement: Placement {
+                translation: away - DVec3::Z * 100.0 * i as f64,
+                ..Placement::default()
+            },
+            ..Instance::new(TemplateId(0))
+        })
+        .collect();
+    let camera = Camera::new(away + DVec3::Z * 300.0, away, DVec3::Y, 0.9).expect("a camera");
+    let mut maker = adaptive(&gpu, &[mesh], &instances, Choice::PixelError(4.0));
+    let image = picture(&gpu, &mut maker, &camera, [64, 64]);
+    assert!(image.pixels.chunks(4).any(|p| p[0] < 128));
+    let stats = maker.stats(&gpu).expect("statistics");
+    assert!(stats.patches > 1 << 20);
+    // All lie in the cone of sight, all but a few as large as nothing.
+    assert!(stats.patches_drawn > 1 << 20, "{stats:?}");
+    let small: u64 = stats.level_histogram[1];
+    assert!(small * 10 > 9 * 4 * stats.patches_drawn, "{stats:?}");
+}

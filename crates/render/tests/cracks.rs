@@ -1,0 +1,124 @@
+//! No crack: through a closed surface no back face shows, whatever the levels.
+mod common;
+#[path = "common/draw.rs"]
+mod draw;
+
+use common::{Random, extent, gpu, random_values, smooth_cell};
+use draw::{BACK, BACKGROUND, Drawer, FRONT};
+use neurotess_mesh::CoarseMesh;
+use neurotess_refine::{Caps, Path};
+use neurotess_render::{
+    Camera, Choice, Gpu, Instance, Refiner, Refining, Scene, Template, Templates,
+};
+
+fn scene(gpu: &Gpu, mesh: &CoarseMesh, values: &[u8]) -> Scene {
+    let mut templates = Templates::new();
+    let template = Template {
+        mesh,
+        words: &[],
+        values,
+    };
+    let ids = templates.add(gpu, &[template]).expect("uploaded");
+    Scene::new(templates, vec![Instance::new(ids[0])]).expect("a scene")
+}
+
+/// From outside of everything, as through a long lens, at some point of the surface.
+fn outside(mesh: &CoarseMesh, random: &mut Random) -> (Camera, f64) {
+    let (middle, reach) = extent(mesh);
+    let distance = reach * random.real(1.1, 4.0);
+    let eye = middle + random.direction() * distance;
+    let vertex = &mesh.vertices[random.whole(mesh.vertices.len() as u64) as usize];
+    let target = vertex.position.as_dvec3() + mesh.origin;
+    let fov = 0.02 * 50_f64.powf(random.real(0.0, 1.0));
+    let up = (target - eye).any_orthogonal_vector();
+    let camera = Camera::new(eye, target, up, fov).expect("a camera");
+    (camera, distance * 0.01)
+}
+
+fn refining(trial: usize, random: &mut Random) -> Refining {
+    let choice = match trial % 8 {
+        0 => Choice::PixelError(random.real(0.1, 8.0) as f32),
+        1 => Choice::PixelSize(random.real(2.0, 60.0) as f32),
+        2 => Choice::Distance {
+            level: 30,
+            far: 100.0,
+        },
+        _ => Choice::PerPoint,
+    };
+    let either = |random: &mut Random| random.whole(2) == 0;
+    Refining {
+        choice,
+        path: if either(random) {
+            Path::Linear
+        } else {
+            Path::Hermite
+        },
+        caps: if either(random) {
+            Caps::Flat
+        } else {
+            Caps::Round
+        },
+        smallest: 0.0,
+    }
+}
+
+/// Pixels of front and back faces in pictures of random cells at random levels.
+fn count(gpu: &Gpu, maker: &dyn Fn(usize) -> String, cells: u64, trials: usize) -> (usize, usize) {
+    let mut refiner = Refiner::new(gpu).expect("a refiner");
+    let drawer = Drawer::new(gpu, &refiner, maker, "sides", [256, 256]);
+    let mut random = Random(5);
+    let (mut front, mut back) = (0, 0);
+    for seed in 0..cells {
+        let mesh = smooth_cell(seed);
+        for trial in 0..trials {
+            let values = random_values(&mesh, random.whole(1 << 40));
+            let scene = scene(gpu, &mesh, &values);
+            let refining = refining(trial, &mut random);
+            for _ in 0..2 {
+                let (camera, near) = outside(&mesh, &mut random);
+                let pixels = drawer.draw(gpu, &mut refiner, &scene, &camera, near, &refining);
+                for pixel in &pixels {
+                    assert!([FRONT, BACK, BACKGROUND].contains(pixel), "{pixel:?}");
+                    front += usize::from(*pixel == FRONT);
+                    back += usize::from(*pixel == BACK);
+                }
+            }
+        }
+    }
+    (front, back)
+}
+
+#[test]
+fn no_back_face_shows_through_a_closed_surface() {
+    let Some(gpu) = gpu() else { return };
+    let (front, back) = count(&gpu, &Refiner::vertex_wgsl, 3, 8);
+    println!("48 pictures, {front} pixels of front faces, {back} of back faces");
+    assert!(front > 500_000, "{front}");
+    assert_eq!(back, 0);
+}
+
+#[test]
+fn an_edge_whose_faces_disagree_is_found() {
+    let Some(gpu) = gpu() else { return };
+    // Once what draws tubes is wrong about their sides, once what draws all else.
+    for (honest, torn, shader) in [
+        (
+            "select(levels.y, levels.w, i == 0u)",
+            "select(max(levels.y / 2u, 1u), levels.w, i == 0u)",
+            1,
+        ),
+        ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 2),
+    ] {
+        let maker = |drawn: usize| {
+            let text = Refiner::vertex_wgsl(drawn);
+            assert!(text.contains(honest), "{honest}");
+            if drawn == shader {
+                text.replace(honest, torn)
+            } else {
+                text
+            }
+        };
+        let (_, back) = count(&gpu, &maker, 1, 8);
+        assert!(back > 10, "{honest}: {back}");
+    }
+}

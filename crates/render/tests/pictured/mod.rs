@@ -1,0 +1,123 @@
+//! A device, a cell and its picture.
+#![allow(dead_code)]
+
+use neurotess_formats::{ReadOptions, swc};
+use neurotess_generate::{GenerateOptions, generate};
+use neurotess_mesh::CoarseMesh;
+use neurotess_refine::{Levels, RefineOptions};
+use neurotess_render::{
+    Ball, Camera, ColourTable, DEFAULT_FOV, Gpu, Image, Painted, Palette, PictureOptions,
+    Prerefined, Rgb, Side, category, paint,
+};
+
+/// A soma, an axon, and a dendrite that forks.
+pub(crate) const CELL: &str = "1 1 0 0 0 5 -1
+2 2 0 -9 0 0.4 1
+3 2 3 -30 2 0.3 2
+4 2 -4 -44 6 0.05 3
+5 3 0 9 0 1.6 1
+6 3 2 25 0 1.2 5
+7 3 12 40 3 0.9 6
+8 3 -9 42 -4 0.8 6
+9 4 -12 2 9 1.5 1
+10 4 -30 9 20 1 9
+";
+
+/// The device, or `None` with a word on why tests are skipped.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
+pub(crate) fn gpu() -> Option<Gpu> {
+    match Gpu::open(None) {
+        Ok(gpu) => Some(gpu),
+        Err(e) => {
+            println!("SKIPPED: {e}");
+            None
+        }
+    }
+}
+
+/// The coarse mesh of a tracing.
+pub(crate) fn mesh(swc_text: &str) -> CoarseMesh {
+    let read = swc::read_bytes(swc_text.as_bytes(), "cell.swc", &ReadOptions::default());
+    let morphology = read.expect("a cell").morphology;
+    generate(&morphology, &GenerateOptions::default()).mesh
+}
+
+/// Balls around a mesh.
+pub(crate) fn balls(mesh: &CoarseMesh) -> Vec<Ball> {
+    let tracing = mesh.tracing.iter();
+    let ball = tracing.map(|t| {
+        let center = mesh.origin + t.center.as_dvec3();
+        (center, f64::from(t.radius))
+    });
+    ball.collect()
+}
+
+/// A camera that fits.
+pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &balls(mesh)).expect("fits")
+}
+
+/// Words and table by type.
+pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColourTable) {
+    let words = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
+    let table = ColourTable {
+        scale: Vec::new(),
+        categories: (0..8).map(|kind| Palette::NeuroM.of_type(kind)).collect(),
+    };
+    (words.collect(), table)
+}
+
+/// The whole picture of a mesh at level 4, in the colours of its types.
+pub(crate) fn picture(
+    gpu: &Gpu,
+    mesh: &CoarseMesh,
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let (words, table) = by_type(mesh);
+    draw(gpu, mesh, &words, &table, camera, options)
+}
+
+/// The same on a scale.
+pub(crate) fn picture_of(
+    gpu: &Gpu,
+    mesh: &CoarseMesh,
+    words: &[u32],
+    scale: &[Rgb],
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let table = ColourTable {
+        scale: scale.to_vec(),
+        categories: Vec::new(),
+    };
+    draw(gpu, mesh, words, &table, camera, options)
+}
+
+fn draw(
+    gpu: &Gpu,
+    mesh: &CoarseMesh,
+    words: &[u32],
+    table: &ColourTable,
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let painted = Painted { mesh, words };
+    let mut maker = Prerefined::new(
+        gpu,
+        &[painted],
+        |_| Levels::Homogeneous(4),
+        &RefineOptions::default(),
+        options.look.wire > 0.0,
+    )
+    .expect("uploaded");
+    let mut whole = Image::new(options.size[0], options.size[1]);
+    let near = camera.near(&balls(mesh));
+    let taken = |top: u32, band: Image| {
+        whole.lay(0, i64::from(top), &band);
+        Ok::<(), std::convert::Infallible>(())
+    };
+    paint(gpu, &mut maker, camera, near, table, options, taken).expect("painted");
+    whole
+}

@@ -1,0 +1,57 @@
+//! `cargo xtask pictures`: the pictures of the README, from the built-in samples.
+
+use std::fs;
+
+use anyhow::Context;
+
+use crate::demo::neurotess;
+use crate::steps::{self, Steps, cargo, root};
+
+/// Name, and arguments of `neurotess render`. Small: all together stay below 300 kB.
+const PICTURES: &[(&str, &str)] = &[
+    ("types", "samples/pyramidal.swc --size 480x640 --scale-bar"),
+    (
+        "depth",
+        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar",
+    ),
+    (
+        "soma",
+        "samples/pyramidal.swc --size 480x360 --eye 60,40,140 --target 0,0,0 --no-legend",
+    ),
+    (
+        "wireframe",
+        "samples/pyramidal.swc --size 400x300 --eye 30,20,70 --target 0,0,0 --wireframe --level 2 --no-legend",
+    ),
+    (
+        "order",
+        "samples/motor.swc --size 480x480 --color-by order --samples 16",
+    ),
+];
+
+/// Runs the command; `golden`: renews the pictures that tests compare with, instead.
+pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
+    let mut steps = Steps::default();
+    if golden {
+        steps.step("golden", || {
+            let mut test = cargo("test --locked --package neurotess-render --test golden");
+            steps::run(test.env("NEUROTESS_GOLDEN", "renew"))?;
+            Ok("look at the changes in crates/render/tests/golden before committing them".into())
+        })?;
+        return Ok(());
+    }
+    steps.step("build", crate::demo::build)?;
+    let mut bytes = 0;
+    for (name, arguments) in PICTURES {
+        steps.step("picture", || {
+            let out = format!("docs/pictures/{name}.png");
+            steps::run(&mut neurotess(&format!(
+                "render {arguments} -o {out} --force -q"
+            ))?)?;
+            bytes += fs::metadata(root().join(&out)).context("a picture")?.len();
+            Ok(out)
+        })?;
+    }
+    steps.summary();
+    println!("\n{} kB in docs/pictures", bytes / 1000);
+    Ok(())
+}

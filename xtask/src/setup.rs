@@ -1,0 +1,94 @@
+//! `cargo xtask setup`: what tests want beside Rust. A software Vulkan driver where no other is, for
+//! pictures and their tests, and the Python environment.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::{python, steps};
+
+/// Folders in which the Vulkan loader looks for drivers on Linux.
+const DRIVERS: &[&str] = &[
+    "/usr/share/vulkan/icd.d",
+    "/usr/local/share/vulkan/icd.d",
+    "/etc/vulkan/icd.d",
+];
+
+/// Debian's packages: Mesa's drivers, lavapipe among them, and the loader.
+const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
+
+/// Sets up all that tests want; says how it is.
+pub(crate) fn run() -> anyhow::Result<String> {
+    let adapter = adapter();
+    Ok(format!("{}; {adapter}", python::set_up(&python::TESTS)?))
+}
+
+/// Installs lavapipe where no Vulkan driver is, on Debian and its kin; says how it is. Never fails:
+/// without a driver all but pictures works, and their tests say that they skip.
+fn adapter() -> String {
+    if !cfg!(target_os = "linux") {
+        return "this system has graphics of its own".into();
+    }
+    if has_driver() {
+        return "a Vulkan driver is there".into();
+    }
+    let by_hand = format!(
+        "install {} to draw; tests of pictures skip",
+        PACKAGES.join(" ")
+    );
+    if !starts("apt-get", "--version") {
+        return format!("no Vulkan driver: {by_hand}");
+    }
+    let installed = apt(&["update", "-qq"]).and_then(|()| {
+        apt(&[
+            "install",
+            "-y",
+            "-qq",
+            "--no-install-recommends",
+            PACKAGES[0],
+            PACKAGES[1],
+        ])
+    });
+    match installed {
+        Ok(()) if has_driver() => "installed lavapipe, a Vulkan driver in software".into(),
+        Ok(()) => format!("no Vulkan driver even so: {by_hand}"),
+        Err(e) => {
+            println!("   {e:#}");
+            format!("no Vulkan driver: {by_hand}")
+        }
+    }
+}
+
+fn has_driver() -> bool {
+    let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+    let has_files = |folder: &&str| {
+        let entries = std::fs::read_dir(Path::new(folder));
+        entries.is_ok_and(|mut entries| entries.next().is_some())
+    };
+    named.iter().any(|name| std::env::var_os(name).is_some()) || DRIVERS.iter().any(has_files)
+}
+
+/// `apt-get` as the administrator, who is not asked for a password.
+fn apt(arguments: &[&str]) -> anyhow::Result<()> {
+    let mut command = if starts("sudo", "--version") {
+        let mut sudo = Command::new("sudo");
+        sudo.args(["-n", "apt-get"]);
+        sudo
+    } else {
+        Command::new("apt-get")
+    };
+    steps::run(
+        command
+            .args(arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive"),
+    )
+}
+
+fn starts(program: &str, argument: &str) -> bool {
+    let mut command = Command::new(program);
+    let status = command
+        .arg(argument)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    status.is_ok_and(|status| status.success())
+}
