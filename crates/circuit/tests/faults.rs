@@ -130,6 +130,40 @@ fn configurations_are_refused_with_file_and_key() {
 }
 
 #[test]
+fn morphologies_of_types_may_be_called_by_numbers() {
+    let config = r#"{"components": {"morphologies_dir": "."}, "networks": {"nodes": [
+        {"nodes_file": "only_types.h5", "node_types_file": "types.csv"}]}}"#;
+    let (folder, path) = circuit(config, &Columns::good());
+    let mut file = FileBuilder::new();
+    let mut nodes = file.create_group("nodes");
+    let mut population = nodes.create_group("p");
+    population
+        .create_dataset("node_type_id")
+        .with_i64_data(&[7, 8, 7]);
+    let mut group = population.create_group("0");
+    for axis in ["x", "y", "z"] {
+        group.create_dataset(axis).with_f64_data(&[1.0; 3]);
+    }
+    population.add_group(group.finish());
+    nodes.add_group(population.finish());
+    file.add_group(nodes.finish());
+    let file = file.finish().expect("bytes");
+    fs::write(folder.path().join("only_types.h5"), file).expect("written");
+    fs::write(folder.path().join("471087815.swc"), CELL).expect("written");
+    let types = "node_type_id morphology rotation_angle_zaxis\n7 471087815 1.5\n8 NULL NULL\n";
+    fs::write(folder.path().join("types.csv"), types).expect("written");
+    let circuit = Circuit::open(path).expect("a circuit");
+    assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
+    assert_eq!(circuit.n_shown(), 2);
+    let angles = circuit.populations[0].rotations.iter();
+    let angles: Vec<f64> = angles.map(|q| q.to_axis_angle().1).collect();
+    assert!(
+        (angles[0] - 1.5).abs() < 1e-12 && angles[1] == 0.0,
+        "{angles:?}"
+    );
+}
+
+#[test]
 fn one_bad_part_leaves_the_others() {
     let config = r#"{"components": {"morphologies_dir": "."}, "networks": {"nodes": [
         {"nodes_file": "gone.h5"}, {"nodes_file": "nodes.h5"}],

@@ -177,7 +177,8 @@ impl<'a> Table<'a> {
             .iter()
             .map(|(&id, text)| (id, text.parse().ok()))
             .collect();
-        if parsed.values().all(Option::is_some) {
+        // A file may be called 471087815.
+        if name != "morphology" && parsed.values().all(Option::is_some) {
             let number = |id| parsed.get(id).copied().flatten().unwrap_or(f64::NAN);
             return Some(Attribute::Numbers(
                 self.type_ids.iter().map(number).collect(),
