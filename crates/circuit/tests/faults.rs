@@ -391,7 +391,8 @@ fn reports_are_refused_with_file_and_dataset() {
         let short = Report::open(report(folder.path(), &[0, 3], &ids, &time, old));
         assert_eq!(short.expect("a report").populations[0].elements_of(1), 3..5);
     }
-    let cases: [(&[u64], &[u32], &[f64], &str); 7] = [
+    type Case<'a> = (&'a [u64], &'a [u32], &'a [f64], &'a str);
+    let cases: [Case; 7] = [
         (
             &[0, 9, 5],
             &ids,
