@@ -11,7 +11,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-morphology", &[]),
     ("neurotess-mesh", &[]),
     ("neurotess-formats", &["neurotess-morphology"]),
-    ("neurotess-synth", &["neurotess-morphology"]),
+    (
+        "neurotess-circuit",
+        &["neurotess-morphology", "neurotess-formats"],
+    ),
+    (
+        "neurotess-synth",
+        &[
+            "neurotess-morphology",
+            "neurotess-formats",
+            "neurotess-circuit",
+        ],
+    ),
     (
         "neurotess-generate",
         &["neurotess-morphology", "neurotess-mesh"],
@@ -24,6 +35,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-morphology",
             "neurotess-mesh",
             "neurotess-formats",
+            "neurotess-circuit",
             "neurotess-synth",
             "neurotess-generate",
             "neurotess-refine",

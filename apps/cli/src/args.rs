@@ -10,6 +10,7 @@ use neurotess::morphology::NeuriteKind;
 use neurotess::synth::Kind;
 
 pub(crate) use crate::bench::BenchArgs;
+use crate::circuit::CellArgs;
 pub(crate) use crate::render::args::RenderArgs;
 
 /// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
@@ -74,10 +75,10 @@ pub(crate) enum Color {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// What is in a morphology: counts, lengths, areas, the soma, warnings
+    /// What is in a morphology or a circuit: counts, lengths, the soma, populations, warnings
     Info(InfoArgs),
     /// From tracings to closed surface meshes
-    Mesh(MeshArgs),
+    Mesh(Box<MeshArgs>),
     /// Draw cells, without a window
     Render(Box<RenderArgs>),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
@@ -98,7 +99,8 @@ pub(crate) enum Command {
 /// `neurotess info`
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// Morphology files, folders (searched recursively) or globs
+    /// Morphology files, folders (searched recursively) or globs; circuits (a SONATA configuration or
+    /// the folder of one, a scene)
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// Take every warning of the reader as an error
@@ -152,11 +154,13 @@ pub(crate) struct OutArgs {
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   neurotess synth pyramidal -o cell.swc --seed 7
-  neurotess synth purkinje -o cells/ --count 1000 --points 5000")]
+  neurotess synth purkinje -o cells/ --count 1000 --points 5000
+  neurotess synth circuit -o circuit/ --neurons 10000 --morphologies 100")]
 pub(crate) struct SynthArgs {
-    /// Kind of cell: pyramidal, purkinje, granule, basket, motor or star
-    #[arg(value_parser = crate::synth::kind)]
-    pub(crate) kind: Kind,
+    /// Kind of cell: pyramidal, purkinje, granule, basket, motor or star; or circuit: many cells, with
+    /// spikes and a report, as SONATA
+    #[arg(value_parser = crate::synth::what)]
+    pub(crate) kind: What,
     #[command(flatten)]
     pub(crate) out: OutArgs,
     /// Seed of the first cell; the next ones count up
@@ -168,6 +172,27 @@ pub(crate) struct SynthArgs {
     /// Number of cells; more than one makes OUT a folder
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub(crate) count: usize,
+    /// Cells of the circuit, up to 10 million
+    #[arg(long, default_value_t = 1000, value_name = "N", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) neurons: u32,
+    /// Distinct morphologies of the circuit
+    #[arg(long, default_value_t = 10, value_name = "M", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) morphologies: u32,
+    /// Cells that the circuit's report has voltages of
+    #[arg(long, default_value_t = 100, value_name = "N", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) reported: u32,
+}
+
+/// What `neurotess synth` makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum What {
+    /// Cells of a kind.
+    Cells(Kind),
+    /// A circuit.
+    Circuit,
 }
 
 /// `neurotess mesh`
@@ -177,11 +202,13 @@ pub(crate) struct SynthArgs {
   neurotess mesh cell.swc -o cell.glb --max-error 0.05
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
+  neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
 and radius (µm).")]
 pub(crate) struct MeshArgs {
-    /// Morphology files, folders (searched recursively) or globs
+    /// Morphology files, folders (searched recursively) or globs; or one circuit, whose cells are
+    /// written in its coordinates
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -241,6 +268,8 @@ pub(crate) struct MeshArgs {
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
 }
 
 /// `--path`

@@ -1,10 +1,12 @@
-//! `neurotess info`: what is in a morphology.
+//! `neurotess info`: what is in a morphology; circuits go to `circuit::info`.
 
 use neurotess::formats::{self, ReadOptions};
 use neurotess::morphology::Measures;
-use serde::Serialize;
+use serde::ser::SerializeSeq;
+use serde::{Serialize, Serializer};
 
 use crate::args::InfoArgs;
+use crate::circuit;
 use crate::inputs::{Input, Inputs};
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count};
@@ -78,7 +80,11 @@ pub(crate) enum Entry<T> {
 
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
+    let (circuits, others) = circuit::partition(&args.inputs);
+    let mut inputs = Inputs::default();
+    if !others.is_empty() {
+        inputs = Inputs::find(&others, &MORPHOLOGIES);
+    }
     let options = ReadOptions {
         strict: args.strict,
     };
@@ -93,7 +99,24 @@ pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
             warn(info, several, reporter);
         }
     }
-    reporter.document(&results)
+    let described = circuit::info::describe_all(&circuits, reporter)?;
+    reporter.document(&(Chained(results, described)))
+}
+
+/// One list of two.
+struct Chained<A, B>(Vec<A>, Vec<B>);
+
+impl<A: Serialize, B: Serialize> Serialize for Chained<A, B> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(Some(self.0.len() + self.1.len()))?;
+        self.0
+            .iter()
+            .try_for_each(|item| list.serialize_element(item))?;
+        self.1
+            .iter()
+            .try_for_each(|item| list.serialize_element(item))?;
+        list.end()
+    }
 }
 
 /// Does some work for all inputs in parallel, and tells of failures. Results are in order.

@@ -4,6 +4,7 @@
 mod args;
 mod bench;
 mod check;
+mod circuit;
 mod convert;
 mod info;
 mod inputs;

@@ -6,13 +6,13 @@ use neurotess::formats::Format;
 use neurotess::synth::{self, Kind, Options};
 use serde::Serialize;
 
-use crate::args::SynthArgs;
-use crate::convert;
+use crate::args::{SynthArgs, What};
 use crate::info::{Entry, Failed, bug};
 use crate::output::refuse_existing;
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use crate::workers;
+use crate::{circuit, convert};
 
 /// One object of the JSON list.
 #[derive(Serialize)]
@@ -25,7 +25,11 @@ struct Grown {
 
 /// Runs the command.
 pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    let cells = plan(args)?;
+    let kind = match args.kind {
+        What::Cells(kind) => kind,
+        What::Circuit => return circuit::synth::run(args, reporter),
+    };
+    let cells = plan(args, kind)?;
     let progress = Progress::new(reporter, cells.len(), "cells");
     let order: Vec<usize> = (0..cells.len()).collect();
     let results = workers::run(&cells, &order, reporter.threads(), |(options, out)| {
@@ -52,7 +56,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
 }
 
 /// The cells and their files.
-fn plan(args: &SynthArgs) -> anyhow::Result<Vec<(Options, PathBuf)>> {
+fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>> {
     let out = &args.out.out;
     let extension = out.extension().unwrap_or_default();
     let folder = args.count > 1 || out.is_dir() || extension.is_empty();
@@ -74,7 +78,7 @@ fn plan(args: &SynthArgs) -> anyhow::Result<Vec<(Options, PathBuf)>> {
     };
     let cells = (args.seed..=last).map(|seed| {
         let options = Options {
-            kind: args.kind,
+            kind,
             seed,
             points: args.points.map(|points| points as usize),
         };
@@ -119,7 +123,12 @@ fn tell(entries: &[Entry<Grown>], out: &Path, reporter: &Reporter) {
     }
 }
 
-/// The kind of a name, for the command line.
-pub(crate) fn kind(name: &str) -> Result<Kind, String> {
-    name.parse::<Kind>().map_err(|e| e.to_string())
+/// What a name stands for, for the command line.
+pub(crate) fn what(name: &str) -> Result<What, String> {
+    if name == "circuit" {
+        return Ok(What::Circuit);
+    }
+    let kind = name.parse::<Kind>();
+    kind.map(What::Cells)
+        .map_err(|e| format!("{e}, or circuit"))
 }

@@ -58,13 +58,15 @@
 //! | --- | --- |
 //! | [`morphology`] | the traced cell and its measures |
 //! | [`formats`] | morphology files, there and back |
-//! | [`synth`] | synthetic neurons |
+//! | [`circuit`] | many neurons: circuits, scenes, reports |
+//! | [`synth`] | synthetic neurons and circuits |
 //! | [`generate`] | from a morphology to a coarse mesh |
 //! | [`refine`] | from a coarse mesh to a surface |
 //! | [`render`] | from coarse meshes to pictures |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
 #![forbid(unsafe_code)]
 
+pub use neurotess_circuit as circuit;
 pub use neurotess_formats as formats;
 pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;

@@ -26,6 +26,7 @@
 #![forbid(unsafe_code)]
 
 mod branch;
+pub mod circuit;
 mod kind;
 mod kinds;
 mod random;

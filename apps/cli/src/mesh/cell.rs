@@ -3,9 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
+use glam::{DAffine3, DVec3};
+use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
-use neurotess::mesh::{self as surfaces, CoarseMesh, Surface};
+use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
 use neurotess::refine::{CoarseSurface, Levels, Refinement};
 use serde::Serialize;
 
@@ -21,6 +23,9 @@ use crate::targets::Job;
 pub(crate) struct Cell {
     pub(crate) file: String,
     pub(crate) out: String,
+    /// Of a circuit: which cell this is.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub(crate) node: Option<Node>,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
     pub(crate) quads: usize,
@@ -36,6 +41,13 @@ pub(crate) struct Cell {
     pub(crate) soma_volume: f64,
     pub(crate) seconds: Seconds,
     pub(crate) warnings: Vec<CellWarning>,
+}
+
+/// A cell of a circuit.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Node {
+    pub(crate) population: String,
+    pub(crate) node_id: u64,
 }
 
 /// Where the time went.
@@ -63,43 +75,84 @@ pub(crate) struct CellWarning {
     pub(crate) count: u64,
 }
 
+/// A cell read and generated, to be written as often as it is wanted.
+pub(crate) struct Prepared {
+    file: String,
+    generated: Generated,
+    read: Vec<formats::Warning>,
+    seconds: Seconds,
+    /// Of the tracing, in its own coordinates (µm).
+    pub(crate) soma_center: DVec3,
+}
+
 /// Makes the mesh of one cell and writes it.
 pub(crate) fn mesh(
     job: &Job,
     recipe: &Recipe,
     progress: Option<&Progress<'_>>,
 ) -> Result<Cell, Failure> {
-    let file = job.input.display().to_string();
+    let file = job.input.display();
     let failed = |e: OutputError| Failure(format!("{file}: {e}"));
     refuse_existing(&job.out, recipe.force).map_err(failed)?;
+    let prepared = prepare(&job.input, recipe)?;
+    finish(&prepared, recipe, &job.out, None, progress)
+}
+
+/// Reads a cell and generates its coarse mesh.
+pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure> {
+    let file = input.display().to_string();
     let mut seconds = Seconds::default();
     let clock = Instant::now();
     let options = ReadOptions {
         strict: recipe.strict,
     };
-    let read = formats::read(&job.input, &options).map_err(|e| Failure(e.to_string()))?;
+    let read = formats::read(input, &options).map_err(|e| Failure(e.to_string()))?;
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
     let generated = generate::generate(&read.morphology, &recipe.generate);
     seconds.soma = generated.soma_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
-    drop(read.morphology);
     if generated.mesh.patches.is_empty() {
         return Err(Failure(format!(
             "{file}: nothing is left to mesh: check --types and --soma"
         )));
     }
+    Ok(Prepared {
+        file,
+        generated,
+        soma_center: soma_center(&read.morphology),
+        read: read.warnings,
+        seconds,
+    })
+}
 
-    let written = write(&generated.mesh, recipe, &job.out, progress, &mut seconds);
+/// Refines a cell and writes it, perhaps somewhere else than it was traced.
+pub(crate) fn finish(
+    prepared: &Prepared,
+    recipe: &Recipe,
+    out: &Path,
+    world_from_cell: Option<DAffine3>,
+    progress: Option<&Progress<'_>>,
+) -> Result<Cell, Failure> {
+    let Prepared {
+        file, generated, ..
+    } = prepared;
+    let mut seconds = prepared.seconds;
+    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    let mesh = &generated.mesh;
+    let written = write(mesh, recipe, out, world_from_cell, progress, &mut seconds);
     let written = written.map_err(failed)?;
     let clock = Instant::now();
-    let topology = generated.mesh.topology();
-    let measured = recipe.measure.then(|| measure(&generated.mesh, recipe));
+    let topology = mesh.topology();
+    let growth = world_from_cell.map_or(1.0, |placed| placed.matrix3.determinant());
+    let measured = recipe.measure.then(|| measure(mesh, recipe));
+    let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
     seconds.measure = clock.elapsed().as_secs_f64();
     Ok(Cell {
         file: file.clone(),
-        out: job.out.display().to_string(),
+        out: out.display().to_string(),
+        node: None,
         vertices: written.vertices,
         triangles: written.triangles,
         quads: written.quads,
@@ -110,9 +163,9 @@ pub(crate) fn mesh(
         volume: measured.map(|(volume, _)| volume),
         area: measured.map(|(_, area)| area),
         // An empty sum is −0.
-        soma_volume: generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
+        soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
         seconds,
-        warnings: warnings(read.warnings, &generated),
+        warnings: warnings(&prepared.read, generated),
     })
 }
 
@@ -127,6 +180,7 @@ fn write(
     mesh: &CoarseMesh,
     recipe: &Recipe,
     out: &Path,
+    world_from_cell: Option<DAffine3>,
     progress: Option<&Progress<'_>>,
     seconds: &mut Seconds,
 ) -> Result<Written, OutputError> {
@@ -143,6 +197,8 @@ fn write(
             &coarse
         }
     };
+    let placed = world_from_cell.map(|placed| Placed::new(surface, placed));
+    let surface: &dyn Surface = placed.as_ref().map_or(surface, |placed| placed);
     let planned = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
@@ -183,12 +239,12 @@ fn measure(mesh: &CoarseMesh, recipe: &Recipe) -> (f64, f64) {
     }
 }
 
-fn warnings(read: Vec<formats::Warning>, generated: &Generated) -> Vec<CellWarning> {
-    let of_file = read.into_iter().map(|w| CellWarning {
+fn warnings(read: &[formats::Warning], generated: &Generated) -> Vec<CellWarning> {
+    let of_file = read.iter().map(|w| CellWarning {
         line: w.line,
         sample: None,
         code: w.code,
-        message: w.message,
+        message: w.message.clone(),
         count: w.count,
     });
     let of_mesh = generated.warnings.iter().map(|w| CellWarning {

@@ -9,6 +9,7 @@ mod cell;
 mod log;
 mod observed;
 mod options;
+mod placed;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,10 +18,11 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::args::MeshArgs;
+use crate::circuit;
 use crate::info::{Failed, MORPHOLOGIES, bug};
 use crate::inputs::Inputs;
 use crate::progress::Progress;
-use crate::report::{Failure, Reporter, count};
+use crate::report::{Failure, Reporter, count, usage};
 use crate::targets::{self, Job};
 use crate::workers;
 use cell::Cell;
@@ -44,6 +46,18 @@ enum Entry {
 /// Runs the command.
 pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let clock = Instant::now();
+    let (circuits, others) = circuit::partition(&args.inputs);
+    if let [path] = &circuits[..]
+        && others.is_empty()
+    {
+        return placed::run(args, path, reporter);
+    }
+    if !circuits.is_empty() {
+        return usage("a circuit is meshed alone: leave out the other inputs");
+    }
+    if args.cells.any() {
+        return usage("no input is a circuit: leave out what chooses cells of one");
+    }
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
     let recipe = Recipe::new(args, &inputs, measure)?;

@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod circuit;
 mod convert;
 mod help;
 mod info;

@@ -1,0 +1,325 @@
+//! HDF5 behind a small window: what circuits and reports ask of a file.
+//!
+//! Reports are larger than memory: of them only parts are read, where they lie.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOptions};
+
+use crate::{CircuitError, Fault};
+
+/// A file, open for reading.
+pub(crate) struct Store {
+    file: File,
+    name: String,
+}
+
+/// A dataset of one value per row.
+pub(crate) enum Column {
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// Words, each as its place in a list.
+    Words {
+        library: Vec<String>,
+        indices: Vec<u32>,
+    },
+}
+
+/// Most rows that one dataset of nodes may have: their number is 32 bits wide.
+const MAX_ROWS: u64 = u32::MAX as u64;
+
+impl Store {
+    /// Opens a file that is read in parts, where they lie.
+    pub(crate) fn open(path: &Path) -> Result<Self, CircuitError> {
+        Self::open_by(path, File::open_streaming)
+    }
+
+    /// Opens a file that is read nearly whole. Up to a gigabyte is read at once: strings lie one by
+    /// one, and a million calls to the system for each column of them take longer than all else.
+    pub(crate) fn open_whole(path: &Path) -> Result<Self, CircuitError> {
+        let size = std::fs::metadata(path).map_or(0, |data| data.len());
+        if size <= 1 << 30 {
+            Self::open_by(path, File::open)
+        } else {
+            Self::open(path)
+        }
+    }
+
+    fn open_by<'a>(
+        path: &'a Path,
+        open: impl FnOnce(&'a Path) -> Result<File, hdf5_pure::Error>,
+    ) -> Result<Self, CircuitError> {
+        let name = path.display().to_string();
+        if !path.is_file() {
+            let fault = Fault::Io(std::io::ErrorKind::NotFound.into());
+            return Err(CircuitError::of_file(&name, fault));
+        }
+        match open(path) {
+            Ok(file) => Ok(Self { file, name }),
+            Err(e) => Err(CircuitError::of_file(&name, hdf5(&e))),
+        }
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(crate) fn fault(&self, path: &str, fault: Fault) -> CircuitError {
+        CircuitError::new(&self.name, path, fault)
+    }
+
+    pub(crate) fn has(&self, path: &str) -> bool {
+        self.file.dataset(path).is_ok()
+    }
+
+    pub(crate) fn has_group(&self, path: &str) -> bool {
+        self.file.group(path).is_ok()
+    }
+
+    /// Names of the groups in a group, sorted; none where there is no such group.
+    pub(crate) fn groups(&self, path: &str) -> Vec<String> {
+        let mut names = self
+            .file
+            .group(path)
+            .and_then(|g| g.groups())
+            .unwrap_or_default();
+        names.sort();
+        names
+    }
+
+    /// Names of the datasets in a group, sorted; none where there is no such group.
+    pub(crate) fn datasets(&self, path: &str) -> Vec<String> {
+        let mut names = self
+            .file
+            .group(path)
+            .and_then(|g| g.datasets())
+            .unwrap_or_default();
+        names.sort();
+        names
+    }
+
+    /// The path of the first dataset that is there.
+    pub(crate) fn first_of(&self, paths: &[String]) -> Option<String> {
+        paths.iter().find(|path| self.has(path)).cloned()
+    }
+
+    pub(crate) fn dataset(&self, path: &str) -> Result<Dataset, CircuitError> {
+        let dataset = self.file.dataset(path);
+        dataset.map_err(|e| self.fault(path, hdf5(&e)))
+    }
+
+    pub(crate) fn shape(&self, path: &str) -> Result<Vec<u64>, CircuitError> {
+        let shape = self.dataset(path)?.shape();
+        shape.map_err(|e| self.fault(path, hdf5(&e)))
+    }
+
+    /// Rows of a dataset that must have one dimension.
+    pub(crate) fn rows(&self, path: &str) -> Result<u64, CircuitError> {
+        match self.shape(path)?[..] {
+            [rows] if rows <= MAX_ROWS => Ok(rows),
+            [count] => Err(self.fault(path, Fault::TooMany { count })),
+            ref other => {
+                let (found, expected) = (other.to_vec(), "one dimension".into());
+                Err(self.fault(path, Fault::Shape { found, expected }))
+            }
+        }
+    }
+
+    pub(crate) fn reals(&self, path: &str) -> Result<Vec<f64>, CircuitError> {
+        self.read(path, Dataset::read_f64)
+    }
+
+    pub(crate) fn wholes(&self, path: &str) -> Result<Vec<i64>, CircuitError> {
+        self.read(path, Dataset::read_i64)
+    }
+
+    pub(crate) fn naturals(&self, path: &str) -> Result<Vec<u64>, CircuitError> {
+        self.read(path, Dataset::read_u64)
+    }
+
+    fn read<T>(
+        &self,
+        path: &str,
+        read: impl FnOnce(&Dataset) -> Result<Vec<T>, hdf5_pure::Error>,
+    ) -> Result<Vec<T>, CircuitError> {
+        let rows = self.rows(path)?;
+        let values = read(&self.dataset(path)?).map_err(|e| self.fault(path, hdf5(&e)))?;
+        if values.len() as u64 != rows {
+            let (found, expected) = (vec![values.len() as u64], format!("[{rows}]"));
+            return Err(self.fault(path, Fault::Shape { found, expected }));
+        }
+        Ok(values)
+    }
+
+    /// Some rows of natural numbers.
+    pub(crate) fn naturals_of(
+        &self,
+        path: &str,
+        from: u64,
+        count: u64,
+    ) -> Result<Vec<u64>, CircuitError> {
+        let rows = self.dataset(path)?.read_u64_rows(from, count);
+        rows.map_err(|e| self.fault(path, hdf5(&e)))
+    }
+
+    /// Some rows of real numbers.
+    pub(crate) fn reals_of(
+        &self,
+        path: &str,
+        from: u64,
+        count: u64,
+    ) -> Result<Vec<f64>, CircuitError> {
+        let rows = self.dataset(path)?.read_f64_rows(from, count);
+        rows.map_err(|e| self.fault(path, hdf5(&e)))
+    }
+
+    /// A dataset of numbers, strings or an enumeration. `library`: path of the words that its numbers
+    /// stand for, where there are such.
+    pub(crate) fn column(&self, path: &str, library: &str) -> Result<Column, CircuitError> {
+        let datatype = self.dataset(path)?.datatype();
+        let datatype = datatype.map_err(|e| self.fault(path, hdf5(&e)))?;
+        if let Datatype::Enumeration { .. } = datatype {
+            return self.coded(path, &enumeration(&datatype));
+        }
+        if is_string(&datatype) {
+            return self.words(path);
+        }
+        if self.has(library) {
+            let words = self.strings(library)?;
+            return self.coded(path, &(0..).zip(words).collect());
+        }
+        Ok(Column::Numbers(self.reals(path)?))
+    }
+
+    /// Strings, each distinct one kept once: a million of four letters are not a million allocations.
+    fn words(&self, path: &str) -> Result<Column, CircuitError> {
+        let rows = self.rows(path)?;
+        let dataset = self.dataset(path)?;
+        let mut distinct = Distinct::default();
+        let visited = dataset
+            .visit_vlen_strings(VlenStringReadOptions::default(), |word| distinct.push(word));
+        if visited.is_err() {
+            // Strings of a fixed length; or whatever is wrong, told again.
+            distinct = Distinct::default();
+            for word in self.strings(path)? {
+                distinct.push(&word);
+            }
+        }
+        let Distinct {
+            library, indices, ..
+        } = distinct;
+        if indices.len() as u64 != rows {
+            let (found, expected) = (vec![indices.len() as u64], format!("[{rows}]"));
+            return Err(self.fault(path, Fault::Shape { found, expected }));
+        }
+        Ok(Column::Words { library, indices })
+    }
+
+    fn strings(&self, path: &str) -> Result<Vec<String>, CircuitError> {
+        self.read(path, Dataset::read_string)
+    }
+
+    /// Words by their numbers; a number without a word stands for itself.
+    fn coded(&self, path: &str, words: &HashMap<i64, String>) -> Result<Column, CircuitError> {
+        let codes = self.wholes(path)?;
+        let mut library: Vec<String> = Vec::new();
+        let mut places: HashMap<i64, u32> = HashMap::new();
+        let mut last = (i64::MIN, 0);
+        let mut indices = Vec::with_capacity(codes.len());
+        for code in codes {
+            if code != last.0 || indices.is_empty() {
+                let place = *places.entry(code).or_insert_with(|| {
+                    let word = words.get(&code).cloned();
+                    library.push(word.unwrap_or_else(|| code.to_string()));
+                    library.len() as u32 - 1
+                });
+                last = (code, place);
+            }
+            indices.push(last.1);
+        }
+        Ok(Column::Words { library, indices })
+    }
+
+    /// A text attribute of a dataset or a group.
+    pub(crate) fn text_attribute(&self, path: &str, name: &str) -> Option<String> {
+        let of_dataset = self.file.dataset(path).and_then(|d| d.attrs());
+        let all = of_dataset.or_else(|_| self.file.group(path).and_then(|g| g.attrs()));
+        all.ok()?.get(name)?.as_str().map(str::to_owned)
+    }
+}
+
+/// The fault that the library's error stands for.
+pub(crate) fn hdf5(error: &hdf5_pure::Error) -> Fault {
+    Fault::Hdf5 {
+        reason: error.to_string(),
+    }
+}
+
+fn is_string(datatype: &Datatype) -> bool {
+    matches!(
+        datatype,
+        Datatype::String { .. }
+            | Datatype::VariableLength {
+                is_string: true,
+                ..
+            }
+    )
+}
+
+/// Names of an enumeration by their numbers, of which members hold the bytes.
+fn enumeration(datatype: &Datatype) -> HashMap<i64, String> {
+    let Datatype::Enumeration {
+        base_type, members, ..
+    } = datatype
+    else {
+        return HashMap::new();
+    };
+    let big = matches!(
+        **base_type,
+        Datatype::FixedPoint {
+            byte_order: DatatypeByteOrder::BigEndian,
+            ..
+        }
+    );
+    let mut names = HashMap::new();
+    for member in members {
+        let mut bytes: Vec<u8> = member.value.iter().take(8).copied().collect();
+        if big {
+            bytes.reverse();
+        }
+        // With and without a sign: which of them is meant, the numbers in the dataset tell.
+        for sign in [
+            0,
+            u8::from(bytes.last().is_some_and(|b| b & 0x80 != 0)) * 0xff,
+        ] {
+            let mut wide = [sign; 8];
+            wide[..bytes.len()].copy_from_slice(&bytes);
+            names.insert(i64::from_le_bytes(wide), member.name.clone());
+        }
+    }
+    names
+}
+
+/// Words without their repetitions, in the order of their first appearance.
+#[derive(Default)]
+struct Distinct {
+    places: HashMap<String, u32>,
+    library: Vec<String>,
+    indices: Vec<u32>,
+}
+
+impl Distinct {
+    fn push(&mut self, word: &str) {
+        let place = match self.places.get(word) {
+            Some(&place) => place,
+            None => {
+                let place = self.library.len() as u32;
+                self.library.push(word.into());
+                self.places.insert(word.into(), place);
+                place
+            }
+        };
+        self.indices.push(place);
+    }
+}

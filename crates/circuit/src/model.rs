@@ -1,0 +1,207 @@
+//! A circuit: populations of placed nodes, and the distinct morphologies that they show.
+
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DQuat, DVec3};
+
+use crate::template::{Template, TemplateId};
+use crate::{CircuitError, Groups, NodeSets, Warning};
+
+/// Many neurons, placed.
+#[derive(Debug)]
+pub struct Circuit {
+    /// The configuration or scene as it was named.
+    pub file: String,
+    /// Short name of the format: `sonata`, `nsol` or `scene`.
+    pub format: &'static str,
+    /// Populations in the order of the files, each in a file by name.
+    pub populations: Vec<Population>,
+    /// Distinct morphology files; read when they are asked for.
+    pub templates: Vec<Template>,
+    /// Named choices of nodes.
+    pub node_sets: NodeSets,
+    /// Connections; counted, not read.
+    pub edges: Vec<crate::Edges>,
+    /// Files of simulation reports by name; those that exist.
+    pub reports: BTreeMap<String, std::path::PathBuf>,
+    /// What was odd.
+    pub warnings: Vec<Warning>,
+    /// Parts that could not be opened; the rest is there.
+    pub failures: Vec<CircuitError>,
+}
+
+/// Nodes of one kind, as parallel arrays: node `i` is row `i` of each.
+#[derive(Clone, Debug, Default)]
+pub struct Population {
+    /// Its name.
+    pub name: String,
+    /// The configuration's word for it: `biophysical`, `virtual`, …; empty where it has none.
+    pub kind: String,
+    /// Ids that the file gives its nodes: 0, 1, 2, … if it gives none.
+    pub ids: Vec<u64>,
+    /// Where the soma's centre goes (µm); NaN for nodes that have no place.
+    pub positions: Vec<DVec3>,
+    /// From the morphology's axes to the circuit's; unit quaternions.
+    pub rotations: Vec<DQuat>,
+    /// Factors on the morphology's size; empty if all are 1.
+    pub scales: Vec<f64>,
+    /// Whether the soma's centre is moved to the origin before the cell is turned; empty if all are.
+    pub recentred: Vec<bool>,
+    /// Morphologies; `None` for nodes that show nothing.
+    pub templates: Vec<Option<TemplateId>>,
+    /// Everything else that nodes have, by name.
+    pub attributes: BTreeMap<String, Attribute>,
+}
+
+/// A column of attributes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Attribute {
+    /// Numbers; NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Words, each as its place in a list of distinct ones.
+    Words {
+        /// Distinct words in the order of their first appearance.
+        library: Vec<String>,
+        /// Places in `library`; [`Attribute::NONE`] where there is none.
+        indices: Vec<u32>,
+    },
+}
+
+impl Attribute {
+    /// The index of no word.
+    pub const NONE: u32 = u32::MAX;
+
+    /// The word of a row, if this is a column of words and the row has one.
+    pub fn word(&self, row: usize) -> Option<&str> {
+        match self {
+            Self::Numbers(_) => None,
+            Self::Words { library, indices } => {
+                let place = *indices.get(row)?;
+                library.get(place as usize).map(String::as_str)
+            }
+        }
+    }
+
+    /// The number of a row, if this is a column of numbers and the row has one.
+    pub fn number(&self, row: usize) -> Option<f64> {
+        match self {
+            Self::Numbers(values) => values.get(row).copied().filter(|v| !v.is_nan()),
+            Self::Words { .. } => None,
+        }
+    }
+}
+
+/// A node: a row of a population.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeRef {
+    /// Index in [`Circuit::populations`].
+    pub population: u32,
+    /// Row in the population.
+    pub row: u32,
+}
+
+/// A node that shows a morphology: all that a renderer needs to know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// Which node.
+    pub node: NodeRef,
+    /// Its id in the file.
+    pub id: u64,
+    /// What it shows.
+    pub template: TemplateId,
+    /// Where the soma's centre goes (µm), if `recentred`; else where the morphology's origin goes.
+    pub position: DVec3,
+    /// From the morphology's axes to the circuit's.
+    pub rotation: DQuat,
+    /// Factor on its size.
+    pub scale: f64,
+    /// Whether the soma's centre is moved to the origin first.
+    pub recentred: bool,
+    /// Cells of one group have one colour: place in [`Groups::words`]; 0 without a grouping.
+    pub group: u32,
+}
+
+impl Instance {
+    /// From the morphology's coordinates (µm) to the circuit's: the soma's centre moves to the origin,
+    /// then the cell turns, then it goes to its place. This is how the SONATA guide has it; bmtk does
+    /// so, and bluepysnap leaves the first step out.
+    ///
+    /// `soma_center`: in the morphology's coordinates, its origin included (see
+    /// [`crate::soma_center`]); zero for a cell without a soma.
+    pub fn world_from_cell(&self, soma_center: DVec3) -> DAffine3 {
+        let center = if self.recentred {
+            soma_center
+        } else {
+            DVec3::ZERO
+        };
+        DAffine3::from_scale_rotation_translation(
+            DVec3::splat(self.scale),
+            self.rotation,
+            self.position,
+        ) * DAffine3::from_translation(-center)
+    }
+}
+
+impl Population {
+    /// How many nodes there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is no node.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Where a node is (µm), if it has a place.
+    pub fn position(&self, row: usize) -> Option<DVec3> {
+        self.positions.get(row).copied().filter(|p| p.is_finite())
+    }
+}
+
+impl Circuit {
+    /// How many nodes there are.
+    pub fn n_neurons(&self) -> usize {
+        self.populations.iter().map(Population::len).sum()
+    }
+
+    /// How many nodes show a morphology.
+    pub fn n_shown(&self) -> usize {
+        let shown = |p: &Population| p.templates.iter().flatten().count();
+        self.populations.iter().map(shown).sum()
+    }
+
+    /// Smallest box (µm) around the places of all nodes; `None` if no node has one.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let places = self.populations.iter().flat_map(|p| &p.positions);
+        places
+            .filter(|p| p.is_finite())
+            .fold(None, |bounds, &p| match bounds {
+                None => Some((p, p)),
+                Some((min, max)) => Some((p.min(min), p.max(max))),
+            })
+    }
+
+    /// The nodes among these that show a morphology, in the same order; `groups` tells their groups.
+    ///
+    /// # Panics
+    /// If a node is not of this circuit.
+    pub fn instances(&self, nodes: &[NodeRef], groups: Option<&Groups>) -> Vec<Instance> {
+        let instance = |&node: &NodeRef| {
+            let population = &self.populations[node.population as usize];
+            let row = node.row as usize;
+            let template = population.templates[row]?;
+            Some(Instance {
+                node,
+                id: population.ids[row],
+                template,
+                position: population.positions[row],
+                rotation: population.rotations[row],
+                scale: population.scales.get(row).copied().unwrap_or(1.0),
+                recentred: population.recentred.get(row).copied().unwrap_or(true),
+                group: groups.map_or(0, |groups| groups.of(node)),
+            })
+        };
+        nodes.iter().filter_map(instance).collect()
+    }
+}

@@ -1,0 +1,329 @@
+//! Named choices of nodes, as SONATA's `node_sets.json` has them.
+//!
+//! ```json
+//! {
+//!   "layer 2 or 3": {"layer": ["L2", "L3"], "population": "cortex"},
+//!   "tall":         {"y": {"$gt": 1000}, "mtype": {"$regex": "L5_.*"}},
+//!   "some":         {"node_id": [0, 5, 7]},
+//!   "all of these": ["layer 2 or 3", "some"]
+//! }
+//! ```
+//!
+//! All rules of a set must hold; a list of names is the union of those sets. The empty set `{}` is all
+//! nodes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use regex_lite::Regex;
+use serde_json::Value;
+
+use crate::json::{Document, Json};
+use crate::{Attribute, Circuit, CircuitError, Fault, NodeRef, Population};
+
+/// Named choices of nodes.
+#[derive(Debug, Default)]
+pub struct NodeSets {
+    sets: BTreeMap<String, Set>,
+}
+
+#[derive(Debug)]
+struct Set {
+    file: String,
+    choice: Choice,
+}
+
+#[derive(Debug)]
+enum Choice {
+    /// Nodes for which all rules hold.
+    Rules(Vec<(String, Rule)>),
+    /// Nodes of any of these sets.
+    Union(Vec<String>),
+}
+
+#[derive(Debug)]
+enum Rule {
+    /// One of these words or numbers.
+    OneOf(Vec<String>, Vec<f64>),
+    /// Words that match from end to end.
+    Matches(Regex),
+    /// Numbers on one side of another.
+    Compares(Compare, f64),
+    /// All of these.
+    All(Vec<Rule>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Compare {
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+}
+
+impl NodeSets {
+    /// Names of all sets, sorted.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.sets.keys().map(String::as_str)
+    }
+
+    /// Adds the sets of a file; sets that are there already are replaced.
+    pub(crate) fn add_file(&mut self, path: &Path) -> Result<(), CircuitError> {
+        self.add(&Document::open(path)?)
+    }
+
+    pub(crate) fn add(&mut self, document: &Document) -> Result<(), CircuitError> {
+        for (name, json) in document.root().entries()? {
+            let choice = if json.value.is_array() {
+                let names = json.items()?;
+                let names = names.iter().map(|item| item.text().map(str::to_owned));
+                Choice::Union(names.collect::<Result<_, _>>()?)
+            } else {
+                let rules = json.entries()?.into_iter();
+                let rules =
+                    rules.map(|(attribute, rule)| Ok((attribute.into(), Rule::read(&rule)?)));
+                Choice::Rules(rules.collect::<Result<_, CircuitError>>()?)
+            };
+            let file = json.file.into();
+            self.sets.insert(name.into(), Set { file, choice });
+        }
+        Ok(())
+    }
+
+    /// The nodes of a set, in the circuit's order.
+    ///
+    /// # Errors
+    /// There is no such set, it needs itself, or it asks for an attribute that no population has.
+    pub fn nodes(&self, circuit: &Circuit, name: &str) -> Result<Vec<NodeRef>, CircuitError> {
+        let mut found = BTreeSet::new();
+        self.collect(
+            circuit,
+            name,
+            &mut Vec::new(),
+            &mut BTreeSet::new(),
+            &mut found,
+        )?;
+        Ok(found.into_iter().collect())
+    }
+
+    fn collect<'a>(
+        &'a self,
+        circuit: &Circuit,
+        name: &'a str,
+        way: &mut Vec<&'a str>,
+        done: &mut BTreeSet<&'a str>,
+        found: &mut BTreeSet<NodeRef>,
+    ) -> Result<(), CircuitError> {
+        let Some(set) = self.sets.get(name) else {
+            let file = way.last().and_then(|last| self.sets.get(*last));
+            let file = file.map_or(circuit.file.as_str(), |set| &set.file);
+            let fault = Fault::NoNodeSet {
+                name: name.into(),
+                there: self.names().collect::<Vec<_>>().join(", "),
+            };
+            return Err(CircuitError {
+                file: file.into(),
+                key: way.last().map(|&last| last.into()),
+                fault,
+            });
+        };
+        if way.contains(&name) || way.len() > 100 {
+            way.push(name);
+            let way = way.join(" → ");
+            return Err(CircuitError::new(&set.file, name, Fault::Cycle { way }));
+        }
+        match &set.choice {
+            Choice::Union(names) => {
+                way.push(name);
+                for inner in names {
+                    if !done.contains(inner.as_str()) {
+                        self.collect(circuit, inner, way, done, found)?;
+                    }
+                }
+                way.pop();
+            }
+            Choice::Rules(rules) => {
+                for (attribute, _) in rules {
+                    let known = |p: &Population| column(p, attribute).is_some();
+                    if !circuit.populations.iter().any(known) {
+                        let key = format!("{name}.{attribute}");
+                        let name = attribute.clone();
+                        return Err(CircuitError::new(
+                            &set.file,
+                            key,
+                            Fault::NoAttribute { name },
+                        ));
+                    }
+                }
+                for (population, index) in circuit.populations.iter().zip(0..) {
+                    let rows = rows(population, rules);
+                    found.extend(rows.map(|row| NodeRef {
+                        population: index,
+                        row,
+                    }));
+                }
+            }
+        }
+        done.insert(name);
+        Ok(())
+    }
+}
+
+/// What a rule is about.
+enum Of<'a> {
+    Id(&'a [u64]),
+    Name(&'a str),
+    Place(&'a Population, usize),
+    Attribute(&'a Attribute),
+}
+
+fn column<'a>(population: &'a Population, attribute: &str) -> Option<Of<'a>> {
+    match attribute {
+        "node_id" => Some(Of::Id(&population.ids)),
+        "population" => Some(Of::Name(&population.name)),
+        "x" => Some(Of::Place(population, 0)),
+        "y" => Some(Of::Place(population, 1)),
+        "z" => Some(Of::Place(population, 2)),
+        other => population.attributes.get(other).map(Of::Attribute),
+    }
+}
+
+/// Rows for which all rules hold; none if the population lacks an attribute.
+fn rows<'a>(
+    population: &'a Population,
+    rules: &'a [(String, Rule)],
+) -> impl Iterator<Item = u32> + 'a {
+    let columns = rules.iter();
+    let tests: Option<Vec<Test<'a>>> = columns
+        .map(|(attribute, rule)| Some(Test::new(&column(population, attribute)?, rule)))
+        .collect();
+    let n = if tests.is_some() { population.len() } else { 0 };
+    let holds = move |row: &u32| tests.iter().flatten().all(|test| test.holds(*row as usize));
+    (0..n as u32).filter(holds)
+}
+
+/// A rule made ready for a column: words are judged once each.
+enum Test<'a> {
+    All(bool),
+    Words(&'a [u32], Vec<bool>),
+    Numbers(Box<dyn Fn(usize) -> f64 + 'a>, &'a Rule),
+    Ids(&'a [u64], BTreeSet<u64>, &'a Rule),
+}
+
+impl<'a> Test<'a> {
+    fn new(of: &Of<'a>, rule: &'a Rule) -> Self {
+        match *of {
+            Of::Name(name) => Self::All(rule.holds_for_word(name)),
+            Of::Id(ids) => {
+                let set = match rule {
+                    Rule::OneOf(_, numbers) => numbers.iter().map(|&n| n as u64).collect(),
+                    _ => BTreeSet::new(),
+                };
+                Self::Ids(ids, set, rule)
+            }
+            Of::Place(population, axis) => {
+                Self::Numbers(Box::new(move |row| population.positions[row][axis]), rule)
+            }
+            Of::Attribute(Attribute::Numbers(values)) => {
+                Self::Numbers(Box::new(move |row| values[row]), rule)
+            }
+            Of::Attribute(Attribute::Words { library, indices }) => {
+                let holds = library.iter().map(|word| rule.holds_for_word(word));
+                Self::Words(indices, holds.collect())
+            }
+        }
+    }
+
+    fn holds(&self, row: usize) -> bool {
+        match self {
+            Self::All(holds) => *holds,
+            Self::Words(indices, holds) => {
+                holds.get(indices[row] as usize).copied().unwrap_or(false)
+            }
+            Self::Numbers(value, rule) => rule.holds_for_number(value(row)),
+            Self::Ids(ids, set, Rule::OneOf(..)) => set.contains(&ids[row]),
+            Self::Ids(ids, _, rule) => rule.holds_for_number(ids[row] as f64),
+        }
+    }
+}
+
+impl Rule {
+    fn read(json: &Json) -> Result<Self, CircuitError> {
+        match json.value {
+            Value::Array(_) => {
+                let (mut words, mut numbers) = (Vec::new(), Vec::new());
+                for item in json.items()? {
+                    match item.value {
+                        Value::String(word) => words.push(word.clone()),
+                        Value::Number(_) => numbers.push(item.real()?),
+                        _ => return Err(item.wrong("a string or a number")),
+                    }
+                }
+                Ok(Self::OneOf(words, numbers))
+            }
+            Value::String(word) => Ok(Self::OneOf(vec![word.clone()], vec![])),
+            Value::Bool(yes) => Ok(Self::OneOf(vec![yes.to_string()], vec![f64::from(*yes)])),
+            Value::Number(_) => Ok(Self::OneOf(vec![], vec![json.real()?])),
+            Value::Object(_) => {
+                let rules = json.entries()?.into_iter();
+                let rules = rules.map(|(operator, operand)| Self::operator(operator, &operand));
+                Ok(Self::All(rules.collect::<Result<_, _>>()?))
+            }
+            Value::Null => Err(json.wrong("a value, a list or a rule")),
+        }
+    }
+
+    fn operator(operator: &str, operand: &Json) -> Result<Self, CircuitError> {
+        let compare = match operator {
+            "$regex" => {
+                let pattern = format!("^(?:{})$", operand.text()?);
+                let regex = Regex::new(&pattern).map_err(|e| {
+                    let reason = e.to_string();
+                    operand.fault(Fault::Regex { reason })
+                })?;
+                return Ok(Self::Matches(regex));
+            }
+            "$lt" => Compare::Less,
+            "$lte" => Compare::LessOrEqual,
+            "$gt" => Compare::Greater,
+            "$gte" => Compare::GreaterOrEqual,
+            other => {
+                return Err(operand.fault(Fault::Type {
+                    found: other.into(),
+                    expected: "$regex, $lt, $lte, $gt or $gte",
+                }));
+            }
+        };
+        Ok(Self::Compares(compare, operand.real()?))
+    }
+
+    fn holds_for_word(&self, word: &str) -> bool {
+        match self {
+            Self::OneOf(words, numbers) => {
+                let number = || word.parse::<f64>();
+                words.iter().any(|w| w == word)
+                    || !numbers.is_empty() && number().is_ok_and(|n| numbers.contains(&n))
+            }
+            Self::Matches(regex) => regex.is_match(word),
+            Self::Compares(..) => word.parse().is_ok_and(|n| self.holds_for_number(n)),
+            Self::All(rules) => rules.iter().all(|rule| rule.holds_for_word(word)),
+        }
+    }
+
+    fn holds_for_number(&self, number: f64) -> bool {
+        match self {
+            Self::OneOf(words, numbers) => {
+                let word = || number.to_string();
+                numbers.contains(&number) || !words.is_empty() && words.contains(&word())
+            }
+            Self::Matches(regex) => regex.is_match(&number.to_string()),
+            Self::Compares(compare, limit) => match compare {
+                Compare::Less => number < *limit,
+                Compare::LessOrEqual => number <= *limit,
+                Compare::Greater => number > *limit,
+                Compare::GreaterOrEqual => number >= *limit,
+            },
+            Self::All(rules) => rules.iter().all(|rule| rule.holds_for_number(number)),
+        }
+    }
+}

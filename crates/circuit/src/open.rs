@@ -1,0 +1,52 @@
+//! Which kind of circuit a file or a folder is.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::{Circuit, CircuitError, nsol, scene, sonata};
+
+impl Circuit {
+    /// Opens a circuit: a SONATA configuration (the circuit's or the simulation's), the folder that
+    /// has one, nsol's XML scene, or a scene of our own (`.scene.toml`, `.scene.json`). Morphologies
+    /// are not read yet.
+    ///
+    /// # Errors
+    /// What is wrong with the file, or with all populations. What is wrong with one of several is in
+    /// [`Circuit::failures`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, CircuitError> {
+        let path = path.as_ref();
+        if path.is_dir() {
+            return sonata::open(&sonata::find(path)?);
+        }
+        if scene::is_named_so(path) {
+            return scene::open(path);
+        }
+        if has_extension(path, "xml") {
+            return nsol::open(path);
+        }
+        sonata::open(path)
+    }
+}
+
+/// Whether a file, or a folder, is to be opened as a circuit. A folder is if it has the configuration
+/// of one; any `.json` file is, since no morphology is: what is wrong with it, opening tells.
+pub fn is_circuit(path: &Path) -> bool {
+    if path.is_dir() {
+        return sonata::find(path).is_ok();
+    }
+    if scene::is_named_so(path) {
+        return true;
+    }
+    if has_extension(path, "xml") {
+        let mut begin = Vec::new();
+        let read = File::open(path).and_then(|file| file.take(4096).read_to_end(&mut begin));
+        return read.is_ok() && nsol::looks_like(&begin);
+    }
+    has_extension(path, "json")
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    let own = path.extension().unwrap_or_default().to_string_lossy();
+    own.eq_ignore_ascii_case(extension)
+}

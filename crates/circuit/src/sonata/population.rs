@@ -1,0 +1,324 @@
+//! From a table of nodes to a population: places, rotations, morphologies.
+
+use std::collections::BTreeMap;
+
+use glam::{DQuat, DVec3};
+use rayon::prelude::*;
+
+use crate::sonata::config::{NodeSource, PopulationSource};
+use crate::sonata::nodes::Table;
+use crate::sonata::orientation;
+use crate::template::{Finder, TemplateId};
+use crate::{Attribute, CircuitError, Fault, Population, Warning};
+
+const PLACES: [&str; 3] = ["x", "y", "z"];
+const QUATERNION: [&str; 4] = [
+    "orientation_w",
+    "orientation_x",
+    "orientation_y",
+    "orientation_z",
+];
+const ANGLES: [&str; 3] = [
+    "rotation_angle_xaxis",
+    "rotation_angle_yaxis",
+    "rotation_angle_zaxis",
+];
+
+/// What else than the population a reader makes.
+pub(crate) struct Notes<'a> {
+    pub(crate) warnings: &'a mut Vec<Warning>,
+    pub(crate) failures: &'a mut Vec<CircuitError>,
+    /// Gives a morphology file its template.
+    pub(crate) template: &'a mut dyn FnMut(std::path::PathBuf) -> TemplateId,
+}
+
+/// Reads a population from its table. `file` is the nodes' file.
+pub(crate) fn read(
+    name: &str,
+    file: &str,
+    table: &Table,
+    source: &NodeSource,
+    notes: &mut Notes,
+) -> Result<Population, CircuitError> {
+    let listed = source.populations.as_ref().and_then(|list| list.get(name));
+    let unlisted = PopulationSource {
+        kind: None,
+        morphologies: source.morphologies.clone(),
+    };
+    let settings = listed.unwrap_or(&unlisted);
+    let mut population = Population {
+        name: name.into(),
+        kind: settings.kind.clone().unwrap_or_default(),
+        ids: table.ids.clone(),
+        positions: vec![DVec3::NAN; table.len()],
+        rotations: vec![DQuat::IDENTITY; table.len()],
+        templates: vec![None; table.len()],
+        ..Population::default()
+    };
+    let mut broken = Broken {
+        file,
+        rows: vec![false; table.len()],
+    };
+    places(table, &mut population, &mut broken, notes)?;
+    rotations(table, &mut population, &mut broken, notes)?;
+    recentring(table, &mut population)?;
+    let names: Vec<String> = table
+        .attributes()
+        .into_iter()
+        .filter(|name| !is_place(name))
+        .collect();
+    let columns: Vec<_> = names.par_iter().map(|name| table.attribute(name)).collect();
+    for (name, column) in names.into_iter().zip(columns) {
+        match column {
+            Ok(Some(column)) => drop(population.attributes.insert(name, column)),
+            Ok(None) => {}
+            // One that cannot be read, like an array per node, does not keep the cells from showing.
+            Err(e) if name != "morphology" => notes.warnings.push(Warning::new(
+                file,
+                table.key(&name),
+                "attribute_left_out",
+                e.fault.to_string(),
+            )),
+            Err(e) => return Err(e),
+        }
+    }
+    morphologies(table, &mut population, settings, &broken, notes);
+    Ok(population)
+}
+
+/// Whether an attribute is read as a place or a rotation.
+fn is_place(name: &str) -> bool {
+    PLACES.contains(&name) || QUATERNION.contains(&name) || ANGLES.contains(&name)
+}
+
+/// Nodes whose place or rotation makes no sense.
+struct Broken<'a> {
+    file: &'a str,
+    rows: Vec<bool>,
+}
+
+impl Broken<'_> {
+    /// Marks nodes, and tells of them as one failure.
+    fn mark(&mut self, key: String, faulty: &[(usize, f64)], zero: bool, notes: &mut Notes) {
+        for &(row, _) in faulty {
+            self.rows[row] = true;
+        }
+        if let Some(&(row, value)) = faulty.first() {
+            let (row, count) = (row as u64, faulty.len() as u64);
+            let fault = if zero {
+                Fault::ZeroQuaternion { row, count }
+            } else {
+                Fault::NotFinite { row, value, count }
+            };
+            notes
+                .failures
+                .push(CircuitError::new(self.file, key, fault));
+        }
+    }
+}
+
+fn places(
+    table: &Table,
+    population: &mut Population,
+    broken: &mut Broken,
+    notes: &mut Notes,
+) -> Result<(), CircuitError> {
+    let columns = PLACES.map(|axis| table.numbers(axis));
+    let [x, y, z] = columns;
+    let [x, y, z] = [x?, y?, z?];
+    if x.is_none() && y.is_none() && z.is_none() {
+        return Ok(());
+    }
+    let n = population.len();
+    // A node with some coordinates has none that is missing; one with none, as in a group of virtual
+    // nodes, has no place.
+    let axes = [x, y, z].map(|axis| axis.unwrap_or_else(|| vec![0.0; n]));
+    for (row, place) in population.positions.iter_mut().enumerate() {
+        *place = DVec3::from_array([0, 1, 2].map(|axis: usize| axes[axis][row]));
+    }
+    for axis in 0..3 {
+        let wrong = |&(row, value): &(usize, f64)| {
+            let all_nan = population.positions[row]
+                .to_array()
+                .iter()
+                .all(|c| c.is_nan());
+            !(value.is_finite() || value.is_nan() && all_nan)
+        };
+        let faulty: Vec<(usize, f64)> = axes[axis]
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(wrong)
+            .collect();
+        broken.mark(table.key(PLACES[axis]), &faulty, false, notes);
+    }
+    for (row, _) in broken.rows.iter().enumerate().filter(|&(_, &b)| b) {
+        population.positions[row] = DVec3::NAN;
+    }
+    Ok(())
+}
+
+fn rotations(
+    table: &Table,
+    population: &mut Population,
+    broken: &mut Broken,
+    notes: &mut Notes,
+) -> Result<(), CircuitError> {
+    let components = QUATERNION.map(|name| table.has(name));
+    if components.contains(&true) {
+        if let Some(missing) = components.iter().position(|there| !there) {
+            let key = format!("{}: {}", table.path(), QUATERNION[missing]);
+            return Err(CircuitError::new(
+                broken.file,
+                key,
+                Fault::PartialQuaternion,
+            ));
+        }
+        let columns = QUATERNION.map(|name| table.numbers(name).map(Option::unwrap_or_default));
+        let [w, x, y, z] = columns;
+        let columns = [w?, x?, y?, z?];
+        let (mut zero, mut not_finite) = (Vec::new(), Vec::new());
+        for (row, rotation) in population.rotations.iter_mut().enumerate() {
+            let q = [0, 1, 2, 3].map(|c: usize| columns[c][row]);
+            // A node of a group without orientations.
+            if q.iter().all(|c| c.is_nan()) {
+                continue;
+            }
+            match orientation::from_components(q) {
+                Some(unit) => *rotation = unit,
+                None if q == [0.0; 4] => zero.push((row, 0.0)),
+                None => {
+                    let value = q.into_iter().find(|c| !c.is_finite());
+                    not_finite.push((row, value.unwrap_or(f64::NAN)));
+                }
+            }
+        }
+        broken.mark(table.key(QUATERNION[0]), &zero, true, notes);
+        broken.mark(table.key(QUATERNION[0]), &not_finite, false, notes);
+        return Ok(());
+    }
+    if !ANGLES.iter().any(|name| table.has(name)) {
+        return Ok(());
+    }
+    let n = population.len();
+    let columns = ANGLES.map(|name| table.numbers(name));
+    let [x, y, z] = columns;
+    let columns = [x?, y?, z?].map(|column| column.unwrap_or_else(|| vec![0.0; n]));
+    let mut faulty = Vec::new();
+    for (row, rotation) in population.rotations.iter_mut().enumerate() {
+        // NaN is what no value reads as, so a missing angle and a NaN one are alike: zero.
+        let angles = [0, 1, 2].map(|axis: usize| match columns[axis][row] {
+            angle if angle.is_nan() => 0.0,
+            angle => angle,
+        });
+        match orientation::from_angles(angles) {
+            Some(unit) => *rotation = unit,
+            None => faulty.push((row, f64::INFINITY)),
+        }
+    }
+    let named = ANGLES.iter().find(|name| table.has(name));
+    let key = table.key(named.unwrap_or(&ANGLES[0]));
+    broken.mark(key, &faulty, false, notes);
+    Ok(())
+}
+
+/// `recenter`: 0 leaves the morphology where its file has it.
+fn recentring(table: &Table, population: &mut Population) -> Result<(), CircuitError> {
+    if let Some(recentre) = table.numbers("recenter")?
+        && recentre.contains(&0.0)
+    {
+        population.recentred = recentre.iter().map(|&r| r != 0.0).collect();
+    }
+    Ok(())
+}
+
+/// Finds the file of each distinct name once.
+fn morphologies(
+    table: &Table,
+    population: &mut Population,
+    settings: &PopulationSource,
+    broken: &Broken,
+    notes: &mut Notes,
+) {
+    let Some(Attribute::Words { library, indices }) = population.attributes.get("morphology")
+    else {
+        return;
+    };
+    let folders = &settings.morphologies;
+    let swc = folders.swc.iter().map(|folder| (&**folder, "swc"));
+    let others = folders.others.iter().map(|(e, folder)| (&**folder, *e));
+    // Some circuits keep other formats in the folder for SWC.
+    let mixed = folders
+        .swc
+        .iter()
+        .flat_map(|folder| [(&**folder, "asc"), (&**folder, "h5")]);
+    let finder = Finder {
+        folders: swc.chain(others).chain(mixed).collect(),
+    };
+    let mut uses: BTreeMap<u32, u64> = BTreeMap::new();
+    for &index in indices {
+        *uses.entry(index).or_default() += 1;
+    }
+    let mut missing: Vec<(&str, u64)> = Vec::new();
+    let mut templates: Vec<Option<TemplateId>> = vec![None; library.len()];
+    for (&index, &count) in &uses {
+        let Some(name) = library.get(index as usize) else {
+            continue;
+        };
+        if ["NULL", "NONE", ""].contains(&name.as_str()) {
+            continue;
+        }
+        match finder.find(name) {
+            Some(path) => templates[index as usize] = Some((notes.template)(path)),
+            None => missing.push((name, count)),
+        }
+    }
+    let mut unplaced = 0;
+    for (row, &index) in indices.iter().enumerate() {
+        let template = templates.get(index as usize).copied().flatten();
+        if template.is_some() && population.position(row).is_none() && !broken.rows[row] {
+            unplaced += 1;
+        } else if !broken.rows[row] {
+            population.templates[row] = template;
+        }
+    }
+    tell(table, broken.file, &missing, unplaced, settings, notes);
+}
+
+fn tell(
+    table: &Table,
+    file: &str,
+    missing: &[(&str, u64)],
+    unplaced: u64,
+    settings: &PopulationSource,
+    notes: &mut Notes,
+) {
+    if let Some((name, _)) = missing.first() {
+        let nodes = missing.iter().map(|(_, count)| count).sum::<u64>();
+        let folders = &settings.morphologies;
+        let others = folders.others.iter().map(|(_, folder)| folder);
+        let searched: Vec<String> = folders
+            .swc
+            .iter()
+            .chain(others)
+            .map(|folder| folder.display().to_string())
+            .collect();
+        let place = match &searched[..] {
+            [] => "the configuration names no folder of morphologies".into(),
+            some => format!("searched {}", some.join(", ")),
+        };
+        let message = format!(
+            "{} morphologies of {nodes} nodes are not there, the first is {name}: {place}",
+            missing.len()
+        );
+        let key = table.key("morphology");
+        let warning = Warning::new(file, key, "morphology_missing", message);
+        notes.warnings.push(warning.times(nodes));
+    }
+    if unplaced > 0 {
+        let message =
+            format!("{unplaced} nodes have a morphology but no place: they are not shown");
+        let warning = Warning::new(file, table.path(), "position_missing", message);
+        notes.warnings.push(warning.times(unplaced));
+    }
+}
