@@ -17,7 +17,8 @@ use crate::timing::Pass;
 pub struct FrameTime {
     /// Milliseconds from the first thing done on the processor until the GPU had finished.
     pub waited_ms: f64,
-    /// Milliseconds of the passes that choose and that draw, where the GPU can tell.
+    /// Milliseconds of the passes that choose and that draw, where the GPU can tell: not of scenes so
+    /// large that they are drawn in several rounds.
     pub gpu_ms: Option<[f64; 2]>,
 }
 
@@ -60,10 +61,11 @@ impl<'g> Meter<'g> {
     ) -> Result<FrameTime, DeviceError> {
         self.painter.timer.reset();
         let clock = Instant::now();
-        self.painter.draw_only(maker, frame, &Look::default())?;
+        let rounds = self.painter.draw_only(maker, frame, &Look::default())?;
         let waited_ms = clock.elapsed().as_secs_f64() * 1e3;
         self.painter.timer.read(self.gpu)?;
-        let gpu_ms = self.painter.timer.milliseconds();
+        // Of several rounds the queries hold the last one's times.
+        let gpu_ms = self.painter.timer.milliseconds().filter(|_| rounds == 1);
         Ok(FrameTime {
             waited_ms,
             gpu_ms: gpu_ms.map(|ms| [ms[Pass::Choose as usize], ms[Pass::Draw as usize]]),

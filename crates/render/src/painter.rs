@@ -180,20 +180,21 @@ impl<'g> Painter<'g> {
         Ok(pixels)
     }
 
-    /// Chooses and draws a frame, waits for it, and leaves it where it is: for stopwatches.
+    /// Chooses and draws a frame, waits for it, and leaves it where it is: for stopwatches. Gives the
+    /// number of rounds.
     pub(crate) fn draw_only(
         &mut self,
         maker: &mut dyn VertexMaker,
         frame: &Frame,
         look: &Look,
-    ) -> Result<(), DeviceError> {
+    ) -> Result<usize, DeviceError> {
         let size = [frame.tile.width, frame.tile.height];
         if self.targets.as_ref().is_none_or(|t| t.size != size) {
             self.targets = Some(Targets::new(self.gpu, size, self.samples));
             self.gpu.check()?;
         }
         let Some(targets) = &self.targets else {
-            return Ok(());
+            return Ok(0);
         };
         let shade = Shade::new(frame, look, 1, self.scale_entries);
         let queue = &self.gpu.queue;
@@ -216,7 +217,8 @@ impl<'g> Painter<'g> {
         }
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
-        self.gpu.wait()
+        self.gpu.wait()?;
+        Ok(rounds)
     }
 
     fn groups(&self, targets: &Targets) -> (wgpu::BindGroup, wgpu::BindGroup) {

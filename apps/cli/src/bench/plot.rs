@@ -66,10 +66,10 @@ fn panel(
         .caption(title, ("sans-serif", 16))
         .margin(8)
         .x_label_area_size(34)
-        .y_label_area_size(52)
+        .y_label_area_size(60)
         .build_cartesian_2d(
             f64::from(lowest) - 0.25..f64::from(highest) + 0.25,
-            (0.5 * least..2.0 * most).log_scale(),
+            (0.5 * least..8.0 * most).log_scale(),
         )
         .map_err(fault)?;
     chart
@@ -78,6 +78,7 @@ fn panel(
         .light_line_style(TRANSPARENT)
         .x_desc("level")
         .y_desc("frame (ms)")
+        .y_label_formatter(&|ms| format!("{ms}"))
         .x_labels(2 * (highest - lowest) as usize + 3)
         .x_label_formatter(&|level| whole(*level))
         .draw()
