@@ -8,6 +8,7 @@ use glam::{DVec3, Vec3};
 use neurotess::render::{ColourMap, LARGEST, Light, Palette, Rgb};
 
 use crate::args::{SomaArg, Types};
+use crate::circuit::CellArgs;
 
 /// `neurotess render`
 #[derive(Args, Debug)]
@@ -16,9 +17,10 @@ use crate::args::{SomaArg, Types};
   neurotess render cell.swc -o cell.png --color-by depth --colormap magma --scale-bar
   neurotess render cell.swc -o close.png --eye 0,20,80 --target 0,20,0 --wireframe --level 3
   neurotess render a.swc b.swc -o both.png --color-by neuron --transparent
-  neurotess render cell.swc -o turn.png --turntable --frames 120")]
+  neurotess render cell.swc -o turn.png --turntable --frames 120
+  neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso")]
 pub(crate) struct RenderArgs {
-    /// Morphology files, folders (searched recursively) or globs; all in one picture
+    /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The picture; with --frames NAME_0000.png and so on
@@ -168,6 +170,8 @@ pub(crate) struct RenderArgs {
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
 }
 
 impl RenderArgs {

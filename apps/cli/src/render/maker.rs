@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use neurotess::refine::{Levels, RefineOptions};
 use neurotess::render::{
-    Adaptive, Ball, Camera, Choice, Frame, Gpu, Instance, Painted, PictureOptions, Prerefined,
-    Refining, Scene, Template, Templates, Tile, VertexMaker, bounds,
+    Adaptive, Ball, Camera, Choice, Frame, Gpu, Instance, Painted, PictureOptions, Placement,
+    Prerefined, Refining, Scene, Template, Templates, Tile, VertexMaker, bounds,
 };
 
+use super::Sitting;
 use super::args::{LodArg, RenderArgs};
 use super::cells::Cell;
-use super::colouring::Colouring;
+use super::places::placed;
 use crate::report::usage;
 
 /// A maker of any kind.
@@ -52,17 +53,18 @@ impl Maker {
     /// Uploads the cells.
     pub(crate) fn new(
         gpu: &Gpu,
-        args: &RenderArgs,
         options: &PictureOptions,
-        cells: &[&Cell],
-        colouring: &Colouring,
-        cameras: &[Camera],
-        balls: &[Ball],
+        sitting: &Sitting<'_>,
     ) -> anyhow::Result<Self> {
+        let Sitting {
+            args,
+            cells,
+            places,
+            colouring,
+            ..
+        } = *sitting;
         let choice = match mode(args)? {
-            LodArg::Prerefined => {
-                return stored(gpu, args, cells, colouring, cameras, balls);
-            }
+            LodArg::Prerefined => return stored(gpu, sitting),
             LodArg::Homogeneous => Choice::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
             LodArg::Adaptive => Choice::PixelError(args.error() as f32),
         };
@@ -77,13 +79,18 @@ impl Maker {
             .collect();
         let mut templates = Templates::new();
         let ids = templates.add(gpu, &list)?;
-        let scene = Scene::new(templates, ids.into_iter().map(Instance::new).collect())?;
+        let instances = places.iter().map(|&(cell, placement)| Instance {
+            placement,
+            ..Instance::new(ids[cell])
+        });
+        let scene = Scene::new(templates, instances.collect())?;
         let refining = Refining {
             choice,
             ..Refining::default()
         };
         let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
-        maker.set_bounds(cells.iter().flat_map(|cell| bounds(&cell.mesh)).collect());
+        let own: Vec<Vec<Ball>> = cells.iter().map(|cell| bounds(&cell.mesh)).collect();
+        maker.set_bounds(placed(&own, places));
         Ok(Self::OnTheFly(Box::new(maker)))
     }
 
@@ -139,14 +146,21 @@ impl Maker {
 /// Level where none is given.
 const DEFAULT_LEVEL: u32 = 4;
 
-fn stored(
-    gpu: &Gpu,
-    args: &RenderArgs,
-    cells: &[&Cell],
-    colouring: &Colouring,
-    cameras: &[Camera],
-    balls: &[Ball],
-) -> anyhow::Result<Maker> {
+fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
+    let Sitting {
+        args,
+        cells,
+        places,
+        colouring,
+        cameras,
+        balls,
+        ..
+    } = *sitting;
+    if places.iter().any(|(_, at)| *at != Placement::default()) {
+        return usage(
+            "--lod prerefined draws tracings where they are: circuits need another --lod",
+        );
+    }
     let painted: Vec<Painted<'_>> = cells
         .iter()
         .zip(&colouring.words)

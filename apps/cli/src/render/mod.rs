@@ -1,13 +1,14 @@
-//! `neurotess render`: pictures of cells, without a window.
+//! `neurotess render`: pictures of cells and circuits, without a window.
 //!
 //! ```text
-//! arguments ─▶ Inputs ─read, mesh─▶ cells ─▶ cameras, colouring, maker ─paint─▶ bands ─▶ PNG, stats
+//! arguments ─read, mesh─▶ cells, places ─▶ cameras, colouring, maker ─paint─▶ bands ─▶ PNG, stats
 //! ```
 
 pub(crate) mod args;
 mod cells;
 mod colouring;
 mod maker;
+mod places;
 mod sight;
 mod stats;
 
@@ -17,11 +18,10 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use neurotess::render::{
     Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, PictureOptions,
-    PngWriter, paint,
+    Placement, PngWriter, paint,
 };
 
-use crate::info::{Entry, MORPHOLOGIES};
-use crate::inputs::Inputs;
+use crate::info::Entry;
 use crate::output::{Output, OutputError, broken, refuse_existing};
 use crate::progress::Progress;
 use crate::report::{Reporter, count, usage};
@@ -29,6 +29,7 @@ use args::{Fit, RenderArgs};
 use cells::Cell;
 use colouring::Colouring;
 use maker::Maker;
+use places::Cast;
 use stats::Stats;
 
 /// Width (pixels) of the lines of a wireframe.
@@ -41,8 +42,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     for file in files.iter().chain(&args.stats) {
         refuse_existing(file, args.force)?;
     }
-    let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
-    let entries = cells::read(&inputs, args, reporter)?;
+    let Cast { entries, places } = places::cast(args, reporter)?;
     let cells: Vec<&Cell> = entries
         .iter()
         .filter_map(|entry| match entry {
@@ -50,10 +50,10 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
             Entry::Failed(_) => None,
         })
         .collect();
-    if cells.is_empty() {
+    if places.is_empty() {
         return reporter.document(&stats::Document::new(&entries, &[], None));
     }
-    let balls: Vec<Ball> = cells.iter().copied().flat_map(cells::balls).collect();
+    let balls = places::balls(&cells, &places);
     let cameras = sight::cameras(args, &balls)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
     if gpu.adapter.software {
@@ -64,6 +64,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let sitting = Sitting {
         args,
         cells: &cells,
+        places: &places,
         colouring: &colouring,
         cameras: &cameras,
         balls: &balls,
@@ -133,6 +134,7 @@ fn overlay(
 struct Sitting<'a> {
     args: &'a RenderArgs,
     cells: &'a [&'a Cell],
+    places: &'a [(usize, Placement)],
     colouring: &'a Colouring,
     cameras: &'a [Camera],
     balls: &'a [Ball],
@@ -143,12 +145,13 @@ struct Sitting<'a> {
 fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result<Stats> {
     let Sitting {
         args,
-        cells,
+        places,
         colouring,
         cameras,
         balls,
         overlay,
         files,
+        ..
     } = *sitting;
     let options = picture_options(args);
     if options.samples_taken() != args.samples {
@@ -158,8 +161,8 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
     if overlay.legend_left_out {
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
-    let mut maker = Maker::new(gpu, args, &options, cells, colouring, cameras, balls)?;
-    let mut stats = Stats::new(gpu, cells.len());
+    let mut maker = Maker::new(gpu, &options, sitting)?;
+    let mut stats = Stats::new(gpu, places.len());
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (camera, file) in cameras.iter().zip(files) {
         let near = camera.near(balls);

@@ -1,0 +1,161 @@
+//! Where cells stand: files in their own coordinates, cells of a circuit where it puts them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use neurotess::circuit::soma_center;
+use neurotess::render::{Ball, Placement, bounds};
+
+use super::args::RenderArgs;
+use super::cells::{self, Cell};
+use crate::circuit;
+use crate::info::Entry;
+use crate::inputs::{Input, Inputs};
+use crate::report::{Failure, Reporter, usage};
+
+/// From so many places on, a cell is framed by a few balls instead of one per point.
+const MANY: usize = 64;
+
+/// What is drawn.
+pub(crate) struct Cast {
+    /// Distinct cells, and inputs that failed.
+    pub(crate) entries: Vec<Entry<Cell>>,
+    /// Cell, as counted among those that did not fail, and where it stands.
+    pub(crate) places: Vec<(usize, Placement)>,
+}
+
+/// Reads and meshes all inputs: tracings, or one circuit.
+///
+/// # Errors
+/// Wrong usage: a circuit beside other inputs, or a choice of cells without a circuit.
+pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cast> {
+    let (circuits, others) = circuit::partition(&args.inputs);
+    match &circuits[..] {
+        [path] if others.is_empty() => of_circuit(path, args, reporter),
+        [] if args.cells.any() => {
+            usage("no input is a circuit: leave out what chooses cells of one")
+        }
+        [] => {
+            let inputs = Inputs::find(&args.inputs, &crate::info::MORPHOLOGIES);
+            let entries = cells::read(&inputs, args, reporter)?;
+            let done = entries.iter().filter(|e| matches!(e, Entry::Done(_)));
+            let places = (0..done.count()).map(|cell| (cell, Placement::default()));
+            Ok(Cast {
+                places: places.collect(),
+                entries,
+            })
+        }
+        _ => usage("a circuit is drawn alone: leave out the other inputs"),
+    }
+}
+
+fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cast> {
+    let opened = circuit::open(path, reporter).and_then(|circuit| {
+        let nodes = args.cells.select(&circuit)?;
+        Ok((circuit, nodes))
+    });
+    let (circuit, nodes) = match opened {
+        Ok(opened) => opened,
+        Err(failure) => {
+            reporter.failure(&failure);
+            return Ok(Cast {
+                entries: Vec::new(),
+                places: Vec::new(),
+            });
+        }
+    };
+    let instances = circuit.instances(&nodes, None);
+    if instances.len() < nodes.len() {
+        reporter.warning(&format!(
+            "{}: {} of {} chosen cells have no morphology or place: left out",
+            circuit.file,
+            nodes.len() - instances.len(),
+            nodes.len()
+        ));
+    }
+    if instances.is_empty() {
+        let nothing = format!("{}: no cell to draw: choose others", path.display());
+        reporter.failure(&Failure(nothing));
+    }
+    // Each morphology once, whatever the number of cells that show it.
+    let mut of_template: BTreeMap<usize, usize> = BTreeMap::new();
+    for instance in &instances {
+        of_template.insert(instance.template.index(), 0);
+    }
+    let input = |&template: &usize| Input {
+        path: circuit.templates[template].path.clone(),
+        relative: circuit.templates[template].path.clone(),
+    };
+    let inputs = Inputs {
+        files: of_template.keys().map(input).collect(),
+        ..Inputs::default()
+    };
+    let entries = cells::read(&inputs, args, reporter)?;
+    // Cells that did not fail keep their order; those that did are marked.
+    let mut centers = Vec::new();
+    for (entry, place) in entries.iter().zip(of_template.values_mut()) {
+        *place = centers.len();
+        match entry {
+            Entry::Done(cell) => centers.push(soma_center(&cell.morphology)),
+            Entry::Failed(_) => *place = usize::MAX,
+        }
+    }
+    let places = instances.iter().filter_map(|instance| {
+        let cell = of_template[&instance.template.index()];
+        let center = centers.get(cell)?;
+        let placement = Placement {
+            rotation: instance.rotation,
+            scale: instance.scale,
+            translation: instance.world_from_cell(*center).translation,
+        };
+        Some((cell, placement))
+    });
+    Ok(Cast {
+        places: places.collect(),
+        entries,
+    })
+}
+
+/// Balls around all that is shown.
+pub(crate) fn balls(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
+    let many = places.len() >= MANY;
+    let own: Vec<Vec<Ball>> = cells
+        .iter()
+        .map(|cell| match many {
+            true => bounds(&cell.mesh),
+            false => cells::balls(cell).collect(),
+        })
+        .collect();
+    placed(&own, places)
+}
+
+/// Balls of cells where the cells stand.
+pub(crate) fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
+    let at = |&(cell, placement): &(usize, Placement)| {
+        let balls = own[cell].iter();
+        balls.map(move |&(center, radius)| {
+            (placement.world_from_cell(center), radius * placement.scale)
+        })
+    };
+    places.iter().flat_map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+
+    use super::*;
+
+    #[test]
+    fn balls_go_where_cells_stand() {
+        let own = [vec![(DVec3::X, 1.0)]];
+        let turned = Placement {
+            rotation: DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2),
+            scale: 2.0,
+            translation: DVec3::new(0.0, 0.0, 5.0),
+        };
+        let balls = placed(&own, &[(0, Placement::default()), (0, turned)]);
+        assert_eq!(balls[0], (DVec3::X, 1.0));
+        assert!(balls[1].0.distance(DVec3::new(0.0, 2.0, 5.0)) < 1e-12 && balls[1].1 == 2.0);
+    }
+}
