@@ -363,3 +363,47 @@ fn wrong_usage_of_render_exits_with_2() {
     }
     assert_eq!(work.names("."), ["cell.swc"]);
 }
+
+#[test]
+fn circuits_are_drawn_cell_by_cell_where_they_stand() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    work.run("synth circuit -o circuit --neurons 6 --morphologies 2 --seed 5")
+        .exits(0);
+    let drawn = |options: &str| {
+        let json = work
+            .run(&format!(
+                "render circuit -o c.png --force --size 96x72 --samples 1 {options} --json"
+            ))
+            .exits(0)
+            .json();
+        (
+            json["neurons"].clone(),
+            Picture::read(&work, "c.png").pixels,
+        )
+    };
+    let (all, picture) = drawn("");
+    assert_eq!(all, 6);
+    let (some, other) = drawn("--nodes 0,3");
+    assert_eq!(some, 2);
+    assert_ne!(picture, other);
+    let run = work
+        .run("render circuit cell.swc -o c.png --force")
+        .exits(2);
+    assert!(run.stderr().contains("alone"), "{}", run.stderr());
+    work.file("cell.swc", SMALL);
+    let run = work
+        .run("render cell.swc -o c.png --force --sample 3")
+        .exits(2);
+    assert!(
+        run.stderr().contains("no input is a circuit"),
+        "{}",
+        run.stderr()
+    );
+    let run = work
+        .run("render circuit -o c.png --force --lod prerefined --level 1")
+        .exits(2);
+    assert!(run.stderr().contains("--lod"), "{}", run.stderr());
+}
