@@ -25,6 +25,7 @@ impl Packer<'_> {
         let words = Words::new(own.map(|own| self.word(own.tracing)));
         let point_of = self.write_points(contents, &words, &mut part);
         self.write_loose(contents, &mut part);
+        part.loose.clone_from(&contents.loose);
         self.write_patches(contents, &point_of, &mut part);
         part.places.words = part.heap.len() as u32;
         part.heap.extend(&words.list);

@@ -58,6 +58,8 @@ pub struct Part {
     pub places: Places,
     /// By place: the mesh's patch, or `u32::MAX` where there is none.
     pub patches: Vec<u32>,
+    /// By number: the mesh's vertex that is loose.
+    pub loose: Vec<u32>,
     /// Ball around each [`PLACES_OF_BALL`] patches, at any level (µm).
     pub balls: Vec<(Vec3, f32)>,
     /// By vertex of the mesh that is in this part: position and normal as shaders read them.

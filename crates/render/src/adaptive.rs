@@ -6,6 +6,7 @@ use crate::error::DeviceError;
 use crate::frame::Frame;
 use crate::framing::Ball;
 use crate::maker::VertexMaker;
+use crate::named::Namer;
 use crate::readback::FrameStats;
 use crate::refiner::{FramePlan, Refiner};
 use crate::refining::{Refining, Sight};
@@ -66,6 +67,18 @@ impl Adaptive {
         self.plan = FramePlan::default();
     }
 
+    /// Takes the scene out, to change it and set it again; until then there is none.
+    pub fn take_scene(&mut self) -> Scene {
+        self.plan = FramePlan::default();
+        self.bounds = None;
+        std::mem::take(&mut self.scene)
+    }
+
+    /// Who tells what the ids of the frame mean that was prepared last.
+    pub fn namer(&self) -> Namer {
+        Namer::new(&self.plan, &self.scene)
+    }
+
     /// What the frame that was prepared last draws. Chooses once more and waits: for statistics, not
     /// for every frame.
     ///
@@ -109,6 +122,10 @@ impl VertexMaker for Adaptive {
 
     fn wgsl(&self, shader: usize) -> String {
         Refiner::vertex_wgsl(shader)
+    }
+
+    fn id_wgsl(&self) -> Option<&'static str> {
+        Some(include_str!("surface_id.wgsl"))
     }
 
     fn layout(&self) -> &wgpu::BindGroupLayout {

@@ -79,13 +79,15 @@ impl Gpu {
             adapter: named.name.clone(),
             reason,
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("neurotess"),
-            required_features: adapter.features() & optional_features(),
-            required_limits: limits(adapter),
-            ..Default::default()
-        }))
-        .map_err(|e| refused(e.to_string()))?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
+                .map_err(|e| refused(e.to_string()))?;
+        Ok(Self::share(adapter, device, queue))
+    }
+
+    /// A device that somebody else opened as [`device_descriptor`] asks for, to be shared with them:
+    /// whatever goes wrong on it from now on is told to [`Gpu::check`].
+    pub fn share(adapter: &Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let fault = Fault::default();
         let (of_work, of_device) = (fault.clone(), fault.clone());
         device.on_uncaptured_error(Arc::new(move |error| of_work.keep(complaint(error))));
@@ -94,12 +96,12 @@ impl Gpu {
                 of_device.keep(DeviceError::Lost(one_line(&message)));
             }
         });
-        Ok(Self {
+        Self {
             device,
             queue,
-            adapter: named,
+            adapter: name(adapter),
             fault,
-        })
+        }
     }
 
     /// What the device complained of since the last call.
@@ -146,6 +148,36 @@ fn limits(adapter: &Adapter) -> Limits {
     adapter.limits()
 }
 
+/// What we ask of a device: all that the adapter can hold.
+pub fn device_descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("neurotess"),
+        required_features: adapter.features() & optional_features(),
+        required_limits: limits(adapter),
+        ..Default::default()
+    }
+}
+
+/// The best of these adapters that can do what we need, or the best whose name or backend contains
+/// `wanted`; without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+///
+/// # Errors
+/// No such adapter.
+pub fn choose_adapter(adapters: &[Adapter], wanted: Option<&str>) -> Result<Adapter, DeviceError> {
+    let variable = std::env::var(ADAPTER_VARIABLE).ok();
+    let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
+    let mut able: Vec<Adapter> = adapters.iter().filter(|a| is_able(a)).cloned().collect();
+    able.sort_by_key(rank);
+    choose(&able, wanted).cloned()
+}
+
+fn is_able(adapter: &Adapter) -> bool {
+    let able = wgpu::DownlevelFlags::COMPUTE_SHADERS
+        | wgpu::DownlevelFlags::VERTEX_STORAGE
+        | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
+    adapter.get_downlevel_capabilities().flags.contains(able)
+}
+
 /// Adapters that can do what we need, the best first.
 fn found(backends: Backends) -> Vec<Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
@@ -154,10 +186,7 @@ fn found(backends: Backends) -> Vec<Adapter> {
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
     let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    let able = wgpu::DownlevelFlags::COMPUTE_SHADERS
-        | wgpu::DownlevelFlags::VERTEX_STORAGE
-        | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
-    adapters.retain(|a| a.get_downlevel_capabilities().flags.contains(able));
+    adapters.retain(is_able);
     adapters.sort_by_key(rank);
     adapters
 }

@@ -45,22 +45,31 @@ const STRENGTH: f32 = 3.0;
 /// Sub-pixels that the occlusion is blurred over, to each side: the turns repeat after four.
 pub(crate) const BLUR: u32 = 4;
 
+/// What the last pass does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Last {
+    /// Makes pixels of sub-pixels.
+    Gather,
+    /// Adds sub-pixels, which are pixels, to those before: one more binding.
+    Accumulate,
+}
+
 /// The passes after the drawing.
 pub(crate) struct Finisher {
     pub(crate) occlude: wgpu::ComputePipeline,
     pub(crate) blur: wgpu::ComputePipeline,
-    pub(crate) gather: wgpu::ComputePipeline,
+    pub(crate) last: wgpu::ComputePipeline,
     pub(crate) layout: wgpu::BindGroupLayout,
 }
 
 impl Finisher {
-    pub(crate) fn new(gpu: &Gpu, samples: u32) -> Self {
+    pub(crate) fn new(gpu: &Gpu, samples: u32, last: Last) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("finish"),
-            source: wgpu::ShaderSource::Wgsl(finish_text(samples).into()),
+            source: wgpu::ShaderSource::Wgsl(finish_text(samples, last).into()),
         });
-        let layout = layout(device, samples > 1);
+        let layout = layout(device, samples > 1, last);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("finish"),
             bind_group_layouts: &[Some(&layout)],
@@ -79,14 +88,17 @@ impl Finisher {
         Self {
             occlude: pipeline("occlude"),
             blur: pipeline("blur"),
-            gather: pipeline("gather"),
+            last: pipeline(match last {
+                Last::Gather => "gather",
+                Last::Accumulate => "accumulate",
+            }),
             layout,
         }
     }
 }
 
 /// The passes' text, for this many samples per sub-pixel.
-pub(crate) fn finish_text(samples: u32) -> String {
+pub(crate) fn finish_text(samples: u32, last: Last) -> String {
     // Of several samples the first stands for the sub-pixel; of one, there is only that.
     let texture = if samples > 1 {
         "texture_multisampled_2d<f32>"
@@ -95,13 +107,17 @@ pub(crate) fn finish_text(samples: u32) -> String {
     };
     let shared = include_str!("finish.wgsl").replace("SAMPLED_TEXTURE", texture);
     let occlusion = include_str!("occlusion.wgsl");
+    let last = match last {
+        Last::Gather => "",
+        Last::Accumulate => include_str!("live.wgsl"),
+    };
     format!(
         "const TAPS: u32 = {TAPS}u;\nconst STRENGTH: f32 = {STRENGTH:?};\n\
-         const BLUR: i32 = {BLUR};\n{shared}{occlusion}"
+         const BLUR: i32 = {BLUR};\n{shared}{occlusion}{last}"
     )
 }
 
-fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, multisampled: bool, last: Last) -> wgpu::BindGroupLayout {
     let binding = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
@@ -120,16 +136,20 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     };
     let plain = wgpu::TextureSampleType::Float { filterable: false };
     let storage = wgpu::BufferBindingType::Storage { read_only: false };
+    let mut entries = vec![
+        binding(0, buffer(wgpu::BufferBindingType::Uniform)),
+        binding(1, texture(plain, false)),
+        binding(2, texture(plain, multisampled)),
+        binding(3, texture(plain, multisampled)),
+        binding(4, buffer(storage)),
+        binding(5, buffer(storage)),
+        binding(6, buffer(storage)),
+    ];
+    if last == Last::Accumulate {
+        entries.push(binding(7, buffer(storage)));
+    }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("finish"),
-        entries: &[
-            binding(0, buffer(wgpu::BufferBindingType::Uniform)),
-            binding(1, texture(plain, false)),
-            binding(2, texture(plain, multisampled)),
-            binding(3, texture(plain, multisampled)),
-            binding(4, buffer(storage)),
-            binding(5, buffer(storage)),
-            binding(6, buffer(storage)),
-        ],
+        entries: &entries,
     })
 }

@@ -24,11 +24,14 @@ mod finish;
 mod frame;
 mod framing;
 mod grids;
+mod ids;
 mod image;
 mod layouts;
 mod legend;
+mod live;
 mod maker;
 mod meter;
+mod named;
 mod overlay;
 mod painter;
 mod passes;
@@ -36,6 +39,7 @@ mod picture;
 #[cfg(test)]
 mod picture_shader_tests;
 mod prerefined;
+mod present;
 mod readback;
 mod refiner;
 mod refining;
@@ -43,6 +47,7 @@ mod scene;
 mod shade;
 #[cfg(test)]
 mod shader_tests;
+mod targets;
 mod templates;
 mod text;
 mod timing;
@@ -56,21 +61,28 @@ pub use colour::{
     fraction, is_dark, linear,
 };
 pub use decide::decide;
-pub use device::{ADAPTER_VARIABLE, AdapterName, Gpu, adapters, optional_features};
+pub use device::{
+    ADAPTER_VARIABLE, AdapterName, Gpu, adapters, choose_adapter, device_descriptor,
+    optional_features,
+};
 pub use error::{CameraError, DeviceError};
 pub use expand::{ExpandedVertex, Wanted};
 pub use frame::{Frame, Tile, shows};
 pub use framing::{Ball, DEFAULT_FOV, Side};
+pub use ids::{Id, Ids};
 pub use image::{Image, PngWriter};
 pub use legend::{Legend, nice_length, scale_bar};
+pub use live::{Live, Shot, Steps};
 pub use maker::{SURFACE_VERTEX_WGSL, VertexMaker};
 pub use meter::{FrameTime, Meter};
+pub use named::{Named, Namer, Spot};
 pub use overlay::{Overlay, OverlayOptions};
-pub use picture::{Cost, LARGEST, Occlusion, PictureError, PictureOptions, SAMPLES, paint};
+pub use picture::{Cost, LARGEST, Occlusion, PictureError, PictureOptions, SAMPLES, Studio, paint};
 pub use prerefined::{Painted, Place, Prerefined, Resident};
+pub use present::{HOVERED, Outlines, SELECTED};
 pub use readback::{Chosen, FrameStats};
 pub use refiner::{Batch, FramePlan, Refiner};
 pub use refining::{Choice, Refining, Sight};
 pub use scene::{Instance, Placement, Scene, SceneError, TemplateId};
-pub use shade::{Light, Look};
+pub use shade::{Clip, FAINT, Light, Look, MARKED, WITHOUT_NEURITES, WITHOUT_SOMA};
 pub use templates::{Template, Templates};

@@ -34,7 +34,7 @@ impl FrameTime {
 /// Times frames of one maker.
 pub struct Meter<'g> {
     gpu: &'g Gpu,
-    painter: Painter<'g>,
+    painter: Painter,
 }
 
 impl<'g> Meter<'g> {
@@ -47,7 +47,8 @@ impl<'g> Meter<'g> {
         maker: &dyn VertexMaker,
         table: &ColourTable,
     ) -> Result<Self, DeviceError> {
-        let painter = Painter::new(gpu, maker, table, 1)?;
+        let mut painter = Painter::new(gpu, maker, 1, false)?;
+        painter.set_table(gpu, table);
         Ok(Self { gpu, painter })
     }
 
@@ -62,7 +63,9 @@ impl<'g> Meter<'g> {
     ) -> Result<FrameTime, DeviceError> {
         self.painter.timer.reset();
         let clock = Instant::now();
-        let rounds = self.painter.draw_only(maker, frame, &Look::default())?;
+        let rounds = self
+            .painter
+            .draw_only(self.gpu, maker, frame, &Look::default())?;
         let waited_ms = clock.elapsed().as_secs_f64() * 1e3;
         self.painter.timer.read(self.gpu)?;
         // Of several rounds the queries hold the last one's times.

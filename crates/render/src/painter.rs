@@ -5,16 +5,16 @@
 //!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
 //! ```
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use crate::colour::{ColourTable, Rgb, linear};
 use crate::device::Gpu;
 use crate::error::DeviceError;
-use crate::finish::{Finish, Finisher};
+use crate::finish::{Finish, Finisher, Last};
 use crate::frame::Frame;
 use crate::maker::VertexMaker;
-use crate::shade::{
-    COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, GUARD, Look, NORMAL_FORMAT, Shade, Shader,
-    TableSizes,
-};
+use crate::shade::{GUARD, Look, Shade, Shader, TableSizes};
+use crate::targets::{Targets, make};
 use crate::timing::{Pass, Timer};
 
 /// How a tile is finished.
@@ -42,67 +42,104 @@ impl Finishing {
     }
 }
 
-/// Textures and buffers for one tile of the greatest size.
-struct Targets {
-    colour: wgpu::TextureView,
-    resolved: Option<wgpu::TextureView>,
-    normal: wgpu::TextureView,
-    distance: wgpu::TextureView,
-    depth: wgpu::TextureView,
-    raw: wgpu::Buffer,
-    blurred: wgpu::Buffer,
-    pixels: wgpu::Buffer,
-    read: wgpu::Buffer,
-    size: [u32; 2],
-    bytes: u64,
+/// What is drawn in one pass over the targets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    pub(crate) round: usize,
+    /// Whether the targets are cleared before.
+    pub(crate) first: bool,
+    /// Whether nothing more comes, so that samples become sub-pixels.
+    pub(crate) last: bool,
+    /// Left, top, width and height of what is drawn to; none: all.
+    pub(crate) within: Option<[u32; 4]>,
 }
 
-/// Paints tiles of one maker.
-pub(crate) struct Painter<'g> {
-    gpu: &'g Gpu,
-    shader: Shader,
+impl Part {
+    fn round(round: usize, rounds: usize) -> Self {
+        Self {
+            round,
+            first: round == 0,
+            last: round + 1 == rounds,
+            within: None,
+        }
+    }
+}
+
+/// Paints tiles of makers of one kind.
+pub(crate) struct Painter {
+    kind: u64,
+    pub(crate) shader: Shader,
     finisher: Finisher,
-    shade: wgpu::Buffer,
+    pub(crate) shade: wgpu::Buffer,
     finish: wgpu::Buffer,
     table: wgpu::Buffer,
-    sizes: TableSizes,
+    states: wgpu::Buffer,
+    pub(crate) sizes: TableSizes,
     samples: u32,
     targets: Option<Targets>,
     pub(crate) timer: Timer,
 }
 
-impl<'g> Painter<'g> {
-    /// `samples`: of a sub-pixel, 1 or 4.
+/// What pipelines depend on: the maker's shaders, the samples of a sub-pixel, and whether the inside
+/// may show.
+pub(crate) fn kind(maker: &dyn VertexMaker, samples: u32, cut: bool) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (samples, cut).hash(&mut hasher);
+    (0..maker.shaders()).for_each(|shader| maker.wgsl(shader).hash(&mut hasher));
+    hasher.finish()
+}
+
+impl Painter {
+    /// `samples`: of a sub-pixel, 1 or 4; `cut`: whether the inside may show.
     pub(crate) fn new(
-        gpu: &'g Gpu,
+        gpu: &Gpu,
         maker: &dyn VertexMaker,
-        table: &ColourTable,
         samples: u32,
+        cut: bool,
     ) -> Result<Self, DeviceError> {
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let (entries, colours) = table.entries();
-        let bytes: &[u8] = bytemuck::cast_slice(&entries);
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        let table_buffer = make(gpu, "colours", bytes.len() as u64, storage);
-        gpu.queue.write_buffer(&table_buffer, 0, bytes);
         let painter = Self {
-            shader: Shader::new(gpu, maker, samples),
-            finisher: Finisher::new(gpu, samples),
+            kind: kind(maker, samples, cut),
+            shader: Shader::new(gpu, maker, samples, cut),
+            finisher: Finisher::new(gpu, samples, Last::Gather),
             shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
             finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
-            table: table_buffer,
-            sizes: TableSizes {
-                scale: table.scale.len() as u32,
-                colours,
-                valued: table.values.instances() as u32,
-            },
+            table: make(gpu, "colours", 16, storage),
+            states: make(gpu, "states", 16, storage),
+            sizes: TableSizes::default(),
             samples,
             targets: None,
             timer: Timer::new(gpu),
-            gpu,
         };
         gpu.check()?;
         Ok(painter)
+    }
+
+    pub(crate) fn kind(&self) -> u64 {
+        self.kind
+    }
+
+    /// Whether it can draw what the maker makes, with so many samples, cut or not.
+    pub(crate) fn fits(&self, kind: u64) -> bool {
+        self.kind == kind
+    }
+
+    /// The colours from now on.
+    pub(crate) fn set_table(&mut self, gpu: &Gpu, table: &ColourTable) {
+        let (entries, colours) = table.entries();
+        self.sizes = TableSizes {
+            scale: table.scale.len() as u32,
+            colours,
+            valued: table.values.instances() as u32,
+        };
+        upload(gpu, &mut self.table, bytemuck::cast_slice(&entries));
+    }
+
+    /// The states of instances from now on, in the scene's order.
+    pub(crate) fn set_states(&mut self, gpu: &Gpu, states: &[u32]) {
+        let states = if states.is_empty() { &[0] } else { states };
+        upload(gpu, &mut self.states, bytemuck::cast_slice(states));
     }
 
     /// Bytes of the textures and buffers that pictures pass through.
@@ -113,6 +150,7 @@ impl<'g> Painter<'g> {
     /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB.
     pub(crate) fn paint(
         &mut self,
+        gpu: &Gpu,
         maker: &mut dyn VertexMaker,
         frame: &Frame,
         look: &Look,
@@ -127,10 +165,7 @@ impl<'g> Painter<'g> {
             let [width, height] = size.map(|n| n - 2 * finishing.margin);
             return Ok(empty.repeat((width * height / pixel) as usize));
         }
-        if self.targets.as_ref().is_none_or(|t| t.size != size) {
-            self.targets = Some(Targets::new(self.gpu, size, self.samples));
-            self.gpu.check()?;
-        }
+        self.make_targets(gpu, size)?;
         let Some(targets) = &self.targets else {
             return Ok(Vec::new());
         };
@@ -149,17 +184,18 @@ impl<'g> Painter<'g> {
             ..Finish::of(frame)
         };
         let shade = Shade::new(frame, look, finishing.scale, &self.sizes);
-        let queue = &self.gpu.queue;
+        let queue = &gpu.queue;
         queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
         queue.write_buffer(&self.finish, 0, bytemuck::bytes_of(&finish));
-        let (shade_group, finish_group) = self.groups(targets);
+        let (shade_group, finish_group) = self.groups(gpu, targets);
 
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let rounds = maker.prepare(self.gpu, frame)?.max(1);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let rounds = maker.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
             let timestamps = self.timer.compute(Pass::Choose);
             maker.choose(round, &mut encoder, timestamps);
-            self.draw(maker, round, rounds, targets, &shade_group, &mut encoder);
+            let part = Part::round(round, rounds);
+            self.draw(maker, part, targets, &shade_group, &mut encoder);
         }
         let over = |n: u32| n.div_ceil(8);
         // Nothing to do is still a pass: its times are read.
@@ -170,7 +206,7 @@ impl<'g> Painter<'g> {
         }
         let pixels = [over(kept[0]), over(kept[1])];
         self.compute(
-            &self.finisher.gather,
+            &self.finisher.last,
             &finish_group,
             pixels,
             Pass::Gather,
@@ -180,8 +216,8 @@ impl<'g> Painter<'g> {
         encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
-        let pixels = read(self.gpu, &targets.read, bytes)?;
-        self.timer.read(self.gpu)?;
+        let pixels = read(gpu, &targets.read, bytes)?;
+        self.timer.read(gpu)?;
         Ok(pixels)
     }
 
@@ -189,56 +225,48 @@ impl<'g> Painter<'g> {
     /// number of rounds.
     pub(crate) fn draw_only(
         &mut self,
+        gpu: &Gpu,
         maker: &mut dyn VertexMaker,
         frame: &Frame,
         look: &Look,
     ) -> Result<usize, DeviceError> {
         let size = [frame.tile.width, frame.tile.height];
-        if self.targets.as_ref().is_none_or(|t| t.size != size) {
-            self.targets = Some(Targets::new(self.gpu, size, self.samples));
-            self.gpu.check()?;
-        }
+        self.make_targets(gpu, size)?;
         let Some(targets) = &self.targets else {
             return Ok(0);
         };
         let shade = Shade::new(frame, look, 1, &self.sizes);
-        let queue = &self.gpu.queue;
+        let queue = &gpu.queue;
         queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
-        let (shade_group, finish_group) = self.groups(targets);
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let rounds = maker.prepare(self.gpu, frame)?.max(1);
+        let (shade_group, finish_group) = self.groups(gpu, targets);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let rounds = maker.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
             maker.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
-            self.draw(maker, round, rounds, targets, &shade_group, &mut encoder);
+            let part = Part::round(round, rounds);
+            self.draw(maker, part, targets, &shade_group, &mut encoder);
         }
         // Passes that do nothing: their times are read with the others'.
         let idle = [
             (&self.finisher.occlude, Pass::Occlude),
             (&self.finisher.blur, Pass::Blur),
-            (&self.finisher.gather, Pass::Gather),
+            (&self.finisher.last, Pass::Gather),
         ];
         for (pipeline, name) in idle {
             self.compute(pipeline, &finish_group, [0, 0], name, &mut encoder);
         }
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
+        gpu.wait()?;
         Ok(rounds)
     }
 
-    fn groups(&self, targets: &Targets) -> (wgpu::BindGroup, wgpu::BindGroup) {
+    fn groups(&self, gpu: &Gpu, targets: &Targets) -> (wgpu::BindGroup, wgpu::BindGroup) {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view = wgpu::BindingResource::TextureView;
         let resolved = targets.resolved.as_ref().unwrap_or(&targets.colour);
-        let device = &self.gpu.device;
-        let shade = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shade"),
-            layout: &self.shader.layout,
-            entries: &[
-                entry(0, self.shade.as_entire_binding()),
-                entry(1, self.table.as_entire_binding()),
-            ],
-        });
+        let device = &gpu.device;
+        let shade = self.shade_group(gpu);
         let finish = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("finish"),
             layout: &self.finisher.layout,
@@ -255,17 +283,42 @@ impl<'g> Painter<'g> {
         (shade, finish)
     }
 
-    fn draw(
+    /// Group 1 of whatever draws with our uniforms.
+    pub(crate) fn shade_group(&self, gpu: &Gpu) -> wgpu::BindGroup {
+        let buffers = [&self.shade, &self.table, &self.states];
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shade"),
+            layout: &self.shader.layout,
+            entries: &entries,
+        })
+    }
+
+    fn make_targets(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<(), DeviceError> {
+        if self.targets.as_ref().is_none_or(|t| t.size != size) {
+            self.targets = None;
+            self.targets = Some(Targets::new(gpu, size, self.samples));
+            gpu.check()?;
+        }
+        Ok(())
+    }
+
+    /// Draws what the maker chose last.
+    pub(crate) fn draw(
         &self,
         maker: &dyn VertexMaker,
-        round: usize,
-        rounds: usize,
+        part: Part,
         targets: &Targets,
         group: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,
     ) {
-        let first = round == 0;
-        let empty = match first {
+        let empty = match part.first {
             true => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
             false => wgpu::LoadOp::Load,
         };
@@ -277,25 +330,31 @@ impl<'g> Painter<'g> {
                 ops: wgpu::Operations { load: empty, store },
             })
         };
+        let kept = match part.last {
+            true => wgpu::StoreOp::Discard,
+            false => wgpu::StoreOp::Store,
+        };
+        let resolved = targets.resolved.as_ref().filter(|_| part.last);
         let colour_store = match targets.resolved {
-            Some(_) if round + 1 == rounds => wgpu::StoreOp::Discard,
-            _ => wgpu::StoreOp::Store,
+            Some(_) => kept,
+            None => wgpu::StoreOp::Store,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("draw"),
             color_attachments: &[
-                attachment(&targets.colour, targets.resolved.as_ref(), colour_store),
+                attachment(&targets.colour, resolved, colour_store),
                 attachment(&targets.normal, None, wgpu::StoreOp::Store),
                 attachment(&targets.distance, None, wgpu::StoreOp::Store),
             ],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: match first {
+                    load: match part.first {
                         true => wgpu::LoadOp::Clear(0.0),
                         false => wgpu::LoadOp::Load,
                     },
-                    store: wgpu::StoreOp::Discard,
+                    // The next round hides what lies behind this one.
+                    store: kept,
                 }),
                 stencil_ops: None,
             }),
@@ -305,9 +364,12 @@ impl<'g> Painter<'g> {
         pass.set_bind_group(1, group, &[]);
         let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
         pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
+        if let Some([x, y, width, height]) = part.within {
+            pass.set_scissor_rect(x, y, width, height);
+        }
         for (shader, pipeline) in self.shader.pipelines.iter().enumerate() {
             pass.set_pipeline(pipeline);
-            maker.draw(round, shader, &mut pass);
+            maker.draw(part.round, shader, &mut pass);
         }
     }
 
@@ -329,65 +391,14 @@ impl<'g> Painter<'g> {
     }
 }
 
-impl Targets {
-    fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Self {
-        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let bound = wgpu::TextureUsages::TEXTURE_BINDING;
-        let mut bytes = 0;
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let mut texture = |format: wgpu::TextureFormat, samples: u32| {
-            bytes += pixels * u64::from(samples * format.block_copy_size(None).unwrap_or(4));
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("target"),
-                size: wgpu::Extent3d {
-                    width: size[0],
-                    height: size[1],
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: attachment | bound,
-                view_formats: &[],
-            });
-            texture.create_view(&Default::default())
-        };
-        let colour = texture(COLOUR_FORMAT, samples);
-        let resolved = (samples > 1).then(|| texture(COLOUR_FORMAT, 1));
-        let normal = texture(NORMAL_FORMAT, samples);
-        let distance = texture(DISTANCE_FORMAT, samples);
-        let depth = texture(DEPTH_FORMAT, samples);
-        let storage = wgpu::BufferUsages::STORAGE;
-        let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        Self {
-            colour,
-            resolved,
-            normal,
-            distance,
-            depth,
-            raw: make(gpu, "occlusion", 4 * pixels, storage),
-            blurred: make(gpu, "occlusion", 4 * pixels, storage),
-            pixels: make(
-                gpu,
-                "pixels",
-                4 * pixels,
-                storage | wgpu::BufferUsages::COPY_SRC,
-            ),
-            read: make(gpu, "read back", 4 * pixels, read),
-            size,
-            bytes: bytes + 16 * pixels,
-        }
+/// Writes to a buffer, which is made anew where it is too small or far too large.
+fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
+    let size = (bytes.len() as u64).max(16);
+    if buffer.size() != size {
+        let usage = buffer.usage();
+        *buffer = make(gpu, "table", size, usage);
     }
-}
-
-fn make(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: size.max(16),
-        usage,
-        mapped_at_creation: false,
-    })
+    gpu.queue.write_buffer(buffer, 0, bytes);
 }
 
 /// Waits for the device and copies the front of a buffer.

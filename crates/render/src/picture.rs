@@ -16,7 +16,7 @@ use crate::finish::BLUR;
 use crate::frame::{Frame, Tile};
 use crate::image::Image;
 use crate::maker::VertexMaker;
-use crate::painter::{Finishing, Painter};
+use crate::painter::{self, Finishing, Painter};
 use crate::shade::{GUARD, Look};
 use crate::timing::PASSES;
 
@@ -47,6 +47,22 @@ pub enum Occlusion {
     Within(f32),
     /// None.
     Off,
+}
+
+impl Occlusion {
+    /// How far it looks in a picture of this height (sub-pixels): µm, and most sub-pixels. The same
+    /// whatever the tiles are: they must fit together.
+    pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
+        let height = f64::from(height);
+        let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
+        let most = (0.09 * height).min(MOST_MARGIN).ceil();
+        let radius = match self {
+            Self::Fit => 0.08 * height * sub_pixel,
+            Self::Within(radius) => f64::from(radius),
+            Self::Off => 0.0,
+        };
+        (radius > 0.0).then_some((radius as f32, most as f32))
+    }
 }
 
 impl Default for PictureOptions {
@@ -126,19 +142,11 @@ impl PictureOptions {
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
         let wanted = self.samples_taken();
         let scale = self.sub_pixels(gpu);
-        let height = f64::from(self.size[1] * scale);
-        let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
+        let height = self.size[1] * scale;
         let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);
-        // The same whatever the tiles are: they must fit together.
-        let most = (0.09 * height).min(MOST_MARGIN).ceil();
-        let radius = match self.occlusion {
-            Occlusion::Fit => 0.08 * height * sub_pixel,
-            Occlusion::Within(radius) => f64::from(radius),
-            Occlusion::Off => 0.0,
-        };
-        let occlusion = (radius > 0.0).then_some((radius as f32, most as f32));
+        let occlusion = self.occlusion.reach(camera, height);
         let margin = occlusion
-            .map_or(0, |_| most as u32 + BLUR + 2)
+            .map_or(0, |(_, most)| most as u32 + BLUR + 2)
             .next_multiple_of(scale);
         let inner = (largest.saturating_sub(2 * margin) / scale).max(32);
         Parting {
@@ -153,7 +161,7 @@ impl PictureOptions {
 
 /// Four, or one: where that is all there is, and on OpenGL, for which naga 30 writes the mask of samples
 /// wrongly.
-fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
+pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
     if samples == 1 || gpu.adapter.backend == "gl" {
         1
     } else {
@@ -161,7 +169,7 @@ fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
     }
 }
 
-/// Makes a picture and hands it over in bands from the top: the first row of each, and its pixels.
+/// Makes one picture: see [`Studio::paint`].
 ///
 /// # Errors
 /// What the device cannot do, and what the taker of bands says.
@@ -172,52 +180,113 @@ pub fn paint<E>(
     near: f64,
     table: &ColourTable,
     options: &PictureOptions,
-    mut take: impl FnMut(u32, Image) -> Result<(), E>,
+    take: impl FnMut(u32, Image) -> Result<(), E>,
 ) -> Result<Cost, PictureError<E>> {
-    let clock = Instant::now();
-    let parting = options.parting(gpu, camera);
-    let Parting {
-        scale,
-        margin,
-        step,
-        ..
-    } = parting;
-    let mut painter = Painter::new(gpu, maker, table, parting.samples)?;
-    let finishing = Finishing {
-        scale,
-        margin,
-        occlusion: parting.occlusion,
-        background: options.background,
-    };
-    let [width, height] = options.size.map(|n| n.max(1));
-    let mut tiles = 0;
-    for top in (0..height).step_by(step[1] as usize) {
-        let rows = step[1].min(height - top);
-        let mut band = Image::new(width, rows);
-        for left in (0..width).step_by(step[0] as usize) {
-            let place = |n: u32| (n * scale) as i32 - margin as i32;
-            let frame = Frame {
-                camera: *camera,
-                near,
-                size: [width * scale, height * scale],
-                tile: Tile {
-                    x: place(left),
-                    y: place(top),
-                    width: step[0] * scale + 2 * margin,
-                    height: step[1] * scale + 2 * margin,
-                },
-            };
-            let pixels = painter.paint(maker, &frame, &options.look, &finishing)?;
-            band.copy_from(left, &pixels, step[0]);
-            tiles += 1;
-        }
-        take(top, band).map_err(PictureError::Sink)?;
+    Studio::new().paint(gpu, maker, camera, near, table, options, take)
+}
+
+/// What pictures share: pipelines, by the kind of maker and the samples, and targets. For series of
+/// pictures, whose pipelines are made once.
+#[derive(Default)]
+pub struct Studio {
+    painters: Vec<Painter>,
+    states: Vec<u32>,
+}
+
+impl Studio {
+    /// Nothing made yet.
+    pub fn new() -> Self {
+        Self::default()
     }
-    let times = painter.timer.milliseconds();
-    Ok(Cost {
-        cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
-        gpu_ms: times.map(|times| PASSES.into_iter().zip(times).collect()),
-        tiles,
-        target_bytes: painter.target_bytes(),
-    })
+
+    /// States of instances in the scene's order, [`MARKED`](crate::MARKED) and so on; 0 beyond the end.
+    pub fn set_states(&mut self, states: &[u32]) {
+        self.states = states.to_vec();
+    }
+
+    fn painter(
+        &mut self,
+        gpu: &Gpu,
+        maker: &dyn VertexMaker,
+        samples: u32,
+        cut: bool,
+    ) -> Result<&mut Painter, DeviceError> {
+        let kind = painter::kind(maker, samples, cut);
+        let place = match self.painters.iter().position(|p| p.fits(kind)) {
+            Some(place) => place,
+            None => {
+                self.painters.push(Painter::new(gpu, maker, samples, cut)?);
+                self.painters.len() - 1
+            }
+        };
+        let painter = &mut self.painters[place];
+        painter.set_states(gpu, &self.states);
+        Ok(painter)
+    }
+
+    /// Makes a picture and hands it over in bands from the top: the first row of each, and its pixels.
+    ///
+    /// # Errors
+    /// What the device cannot do, and what the taker of bands says.
+    #[expect(clippy::too_many_arguments, reason = "a picture has so many sides")]
+    pub fn paint<E>(
+        &mut self,
+        gpu: &Gpu,
+        maker: &mut dyn VertexMaker,
+        camera: &Camera,
+        near: f64,
+        table: &ColourTable,
+        options: &PictureOptions,
+        mut take: impl FnMut(u32, Image) -> Result<(), E>,
+    ) -> Result<Cost, PictureError<E>> {
+        let clock = Instant::now();
+        let parting = options.parting(gpu, camera);
+        let Parting {
+            scale,
+            margin,
+            step,
+            ..
+        } = parting;
+        let cut = options.look.clip.is_some();
+        let painter = self.painter(gpu, maker, parting.samples, cut)?;
+        painter.set_table(gpu, table);
+        painter.timer.reset();
+        let finishing = Finishing {
+            scale,
+            margin,
+            occlusion: parting.occlusion,
+            background: options.background,
+        };
+        let [width, height] = options.size.map(|n| n.max(1));
+        let mut tiles = 0;
+        for top in (0..height).step_by(step[1] as usize) {
+            let rows = step[1].min(height - top);
+            let mut band = Image::new(width, rows);
+            for left in (0..width).step_by(step[0] as usize) {
+                let place = |n: u32| (n * scale) as i32 - margin as i32;
+                let frame = Frame {
+                    camera: *camera,
+                    near,
+                    size: [width * scale, height * scale],
+                    tile: Tile {
+                        x: place(left),
+                        y: place(top),
+                        width: step[0] * scale + 2 * margin,
+                        height: step[1] * scale + 2 * margin,
+                    },
+                };
+                let pixels = painter.paint(gpu, maker, &frame, &options.look, &finishing)?;
+                band.copy_from(left, &pixels, step[0]);
+                tiles += 1;
+            }
+            take(top, band).map_err(PictureError::Sink)?;
+        }
+        let times = painter.timer.milliseconds();
+        Ok(Cost {
+            cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
+            gpu_ms: times.map(|times| PASSES.into_iter().zip(times).collect()),
+            tiles,
+            target_bytes: painter.target_bytes(),
+        })
+    }
 }

@@ -1,8 +1,11 @@
 //! The shaders of pictures are valid in every language, and their structs are ours.
 
 use crate::assert_layout;
-use crate::finish::{Finish, finish_text};
+use crate::finish::{Finish, Last, finish_text};
+use crate::ids::ids_text;
 use crate::prerefined::{Placement, StoredVertex, WGSL};
+use crate::present::Present;
+use crate::refiner::Refiner;
 use crate::shade::{Shade, shader_text};
 use crate::shader_tests::languages;
 
@@ -33,7 +36,13 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                     lit,
                     scale_entries,
                     colours,
-                    valued
+                    valued,
+                    shift,
+                    faint,
+                    clip,
+                    marked,
+                    jitter,
+                    batch
                 ]
             );
             assert_layout!(
@@ -49,7 +58,8 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                 [relative_from_mesh, instance]
             );
         }
-        let module = languages::check("finish", &finish_text(samples));
+        languages::check("live", &finish_text(samples, Last::Accumulate));
+        let module = languages::check("finish", &finish_text(samples, Last::Gather));
         assert_layout!(
             &module,
             "Finish",
@@ -71,4 +81,19 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
             ]
         );
     }
+}
+
+#[test]
+fn window_shaders_are_valid_in_every_language_and_have_our_layouts() {
+    let id = include_str!("surface_id.wgsl");
+    for shader in 0..Refiner::SHADERS {
+        languages::check("ids", &ids_text(&Refiner::vertex_wgsl(shader), id));
+    }
+    let module = languages::check("present", include_str!("present.wgsl"));
+    assert_layout!(
+        &module,
+        "Present",
+        Present,
+        [size, width, spare, selected, hovered]
+    );
 }

@@ -55,6 +55,8 @@ pub struct FramePlan {
     pub batches: Vec<Batch>,
     /// Patches of all instances that are not hidden.
     pub patches: u64,
+    /// What stands where: a batch has a range of it.
+    pub(crate) placed: Vec<Placed>,
 }
 
 /// Pipelines and work buffers of adaptive refinement.
@@ -158,7 +160,11 @@ impl Refiner {
         });
         self.drawing_groups = pages.collect();
         gpu.check()?;
-        Ok(FramePlan { batches, patches })
+        Ok(FramePlan {
+            batches,
+            patches,
+            placed: places,
+        })
     }
 
     /// Decides on a batch's patches and lists those that show; without a batch, an empty pass.

@@ -7,8 +7,10 @@
 use glam::{DMat3, DQuat, DVec3};
 use thiserror::Error;
 
+use crate::device::Gpu;
+use crate::error::DeviceError;
 use crate::framing::Ball;
-use crate::templates::Templates;
+use crate::templates::{Template, Templates};
 
 /// A template among those of a [`Templates`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -98,7 +100,7 @@ pub enum SceneError {
 }
 
 /// Checked instances of templates that are resident on a device.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Scene {
     templates: Templates,
     instances: Vec<Instance>,
@@ -142,6 +144,26 @@ impl Scene {
     /// The instances.
     pub fn instances(&self) -> &[Instance] {
         &self.instances
+    }
+
+    /// Which instances are not drawn from now on, in their order.
+    pub fn set_hidden(&mut self, hidden: impl IntoIterator<Item = bool>) {
+        for (instance, hidden) in self.instances.iter_mut().zip(hidden) {
+            instance.hidden = hidden;
+        }
+    }
+
+    /// Puts another mesh in a template's place; instances of it show the new one.
+    ///
+    /// # Errors
+    /// The device has no memory left, or refuses; the old one stays.
+    pub fn replace(
+        &mut self,
+        gpu: &Gpu,
+        id: TemplateId,
+        template: &Template<'_>,
+    ) -> Result<(), DeviceError> {
+        self.templates.replace(gpu, id, template)
     }
 
     /// Gives back what the scene was made of, to change it.

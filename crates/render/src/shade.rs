@@ -1,9 +1,9 @@
 //! The pipeline that shades a maker's vertices. Twin of the uniform in `shade.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use crate::colour::CATEGORY_BIT;
+use crate::colour::{CATEGORY_BIT, Rgb, linear};
 use crate::device::Gpu;
 use crate::frame::Frame;
 use crate::maker::{SURFACE_VERTEX_WGSL, VertexMaker};
@@ -24,7 +24,31 @@ pub struct Look {
     pub light: Light,
     /// Width (pixels) of the wires that show the triangles; 0: none.
     pub wire: f32,
+    /// What is cut away.
+    pub clip: Option<Clip>,
+    /// Colour of instances that are [`MARKED`], and its share, 0 to 1.
+    pub marked: (Rgb, f32),
+    /// Share of the samples that instances which are [`FAINT`] cover, 0 to 1.
+    pub faint: f32,
 }
+
+/// A plane: what lies behind it is cut away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clip {
+    /// A point of it (µm).
+    pub point: DVec3,
+    /// Unit direction to what is kept.
+    pub normal: DVec3,
+}
+
+/// State of an instance: it has the colour of [`Look::marked`].
+pub const MARKED: u32 = 1;
+/// State of an instance: one looks through it, see [`Look::faint`].
+pub const FAINT: u32 = 2;
+/// State of an instance: only its soma is drawn.
+pub const WITHOUT_NEURITES: u32 = 4;
+/// State of an instance: its soma is not drawn.
+pub const WITHOUT_SOMA: u32 = 8;
 
 /// What surfaces are lit by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,6 +68,9 @@ impl Default for Look {
         Self {
             light: Light::Soft,
             wire: 0.0,
+            clip: None,
+            marked: ([255, 160, 0], 0.0),
+            faint: 0.25,
         }
     }
 }
@@ -72,10 +99,17 @@ pub(crate) struct Shade {
     pub(crate) scale_entries: u32,
     pub(crate) colours: u32,
     pub(crate) valued: u32,
+    pub(crate) shift: [f32; 3],
+    pub(crate) faint: f32,
+    pub(crate) clip: [f32; 4],
+    pub(crate) marked: [f32; 4],
+    pub(crate) jitter: [f32; 2],
+    pub(crate) batch: u32,
+    pub(crate) pad: u32,
 }
 
 /// What shaders must know of a colour table.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TableSizes {
     /// Colours of the scale.
     pub(crate) scale: u32,
@@ -94,6 +128,11 @@ impl Shade {
             Light::From(direction) => (direction, 1.0),
             Light::Flat => (KEY, 0.0),
         };
+        let clip = look.clip.map_or([0.0; 4], |clip| {
+            let away = clip.normal.dot(frame.camera.eye() - clip.point);
+            clip.normal.as_vec3().extend(away as f32).to_array()
+        });
+        let [r, g, b] = linear(look.marked.0);
         Self {
             clip_from_relative: frame.clip_from_relative().to_cols_array(),
             right,
@@ -112,7 +151,21 @@ impl Shade {
             scale_entries: table.scale,
             colours: table.colours,
             valued: table.valued,
+            shift: [0.0; 3],
+            faint: look.faint,
+            clip,
+            marked: [r, g, b, look.marked.1],
+            jitter: [0.0; 2],
+            batch: 0,
+            pad: 0,
         }
+    }
+
+    /// A step towards many samples: the picture moved by so many sub-pixels, its dither by `turn`.
+    pub(crate) fn moved(mut self, jitter: [f32; 2], turn: [f32; 2]) -> Self {
+        self.jitter = jitter;
+        self.tile_origin = [0, 1].map(|k| self.tile_origin[k] + turn[k]);
+        self
     }
 }
 
@@ -131,7 +184,8 @@ pub(crate) struct Shader {
 }
 
 impl Shader {
-    pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, samples: u32) -> Self {
+    /// `cut`: whether the inside may show.
+    pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, samples: u32, cut: bool) -> Self {
         let device = &gpu.device;
         let layout = layout(device);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -161,7 +215,7 @@ impl Shader {
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState {
-                    cull_mode: Some(wgpu::Face::Back),
+                    cull_mode: (!cut).then_some(wgpu::Face::Back),
                     ..wgpu::PrimitiveState::default()
                 },
                 depth_stencil: Some(wgpu::DepthStencilState {
@@ -196,13 +250,10 @@ pub(crate) fn shader_text(maker: &str, samples: u32) -> String {
     let (member, statement) = if samples > 1 {
         (
             "@builtin(sample_mask) mask: u32,",
-            "out.mask = mask_of(in.coverage, in.position);",
+            "out.mask = mask_of(left, in.position);",
         )
     } else {
-        (
-            "",
-            "if mask_of(in.coverage, in.position) == 0u { discard; }",
-        )
+        ("", "if mask_of(left, in.position) == 0u { discard; }")
     };
     let shading = include_str!("shade.wgsl")
         .replace("MASK_MEMBER", member)
@@ -213,7 +264,7 @@ pub(crate) fn shader_text(maker: &str, samples: u32) -> String {
     )
 }
 
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let binding = |binding, ty, visibility| wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
@@ -234,6 +285,7 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
                 wgpu::ShaderStages::VERTEX_FRAGMENT,
             ),
             binding(1, table, wgpu::ShaderStages::VERTEX),
+            binding(2, table, wgpu::ShaderStages::VERTEX),
         ],
     })
 }

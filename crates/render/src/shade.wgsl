@@ -28,11 +28,31 @@ struct Shade {
     // Number of all colours, and of instances whose values follow them; 0: words are fractions.
     colours: u32,
     valued: u32,
+    // From positions as the maker has them to those relative to the eye: 0 unless the maker's eye is
+    // another one.
+    shift: vec3<f32>,
+    // Coverage of what is faint.
+    faint: f32,
+    // What lies behind this plane, relative to the eye, is cut away; all 0: nothing.
+    clip: vec4<f32>,
+    // Linear colour of what is marked, and its share.
+    marked: vec4<f32>,
+    // Sub-pixels by which the whole picture is moved.
+    jitter: vec2<f32>,
+    // Which batch is drawn: for ids.
+    batch: u32,
 }
+
+const MARKED: u32 = 1u;
+const FAINT: u32 = 2u;
+const WITHOUT_NEURITES: u32 = 4u;
+const WITHOUT_SOMA: u32 = 8u;
 
 @group(1) @binding(0) var<uniform> shade: Shade;
 // Linear colours.
 @group(1) @binding(1) var<storage, read> table: array<vec4<f32>>;
+// By instance; those beyond the end have 0.
+@group(1) @binding(2) var<storage, read> states: array<u32>;
 
 struct Varying {
     @invariant @builtin(position) position: vec4<f32>,
@@ -80,7 +100,7 @@ fn colour_of(word: u32, instance: u32) -> vec3<f32> {
 // Rasterisers keep 1/256 of a pixel. Here it is rounded in the whole picture's coordinates, so that
 // a triangle covers the same samples whatever tile it is drawn in. The quarter keeps away from ties.
 fn snapped(clip: vec4<f32>) -> vec4<f32> {
-    let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size;
+    let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size + shade.jitter;
     let local = floor(pixel * 256.0) / 256.0 - shade.viewport_origin + 0.25 / 256.0;
     let ndc = (local / shade.viewport_size * 2.0 - 1.0) * vec2(1.0, -1.0);
     return vec4(ndc * clip.w, clip.z, clip.w);
@@ -89,7 +109,7 @@ fn snapped(clip: vec4<f32>) -> vec4<f32> {
 // Behind the near plane nothing can be divided; this is the same up to rounding.
 fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
     let scale = shade.size / shade.viewport_size;
-    let shift = (shade.size - 2.0 * shade.viewport_origin) / shade.viewport_size - 1.0;
+    let shift = (shade.size + 2.0 * (shade.jitter - shade.viewport_origin)) / shade.viewport_size - 1.0;
     return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
 }
 
@@ -101,12 +121,29 @@ fn ink_of(share: f32) -> f32 {
     return 1.0 - rest * rest * rest;
 }
 
-@vertex
-fn vertex(
-    @builtin(vertex_index) vertex_index: u32,
-    @builtin(instance_index) instance_index: u32,
-) -> Varying {
-    let v = surface_vertex(vertex_index, instance_index);
+fn state_of(instance: u32) -> u32 {
+    let last = arrayLength(&states) - 1u;
+    return select(0u, states[min(instance, last)], instance <= last);
+}
+
+// Coverage by what is left out. Somata are told by their radius of 0; their patches around a neurite
+// have corners on its first ring, whose radius is the neurite's. So what is left out or kept wins over
+// the ring by far, up to its very edge.
+fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {
+    if (state & WITHOUT_NEURITES) != 0u {
+        return select(0.0, 1000.0, radius == 0.0);
+    }
+    if (state & WITHOUT_SOMA) != 0u && radius == 0.0 {
+        return -1000.0;
+    }
+    return coverage;
+}
+
+fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
+    var v = surface_vertex(vertex_index, instance_index);
+    v.position += shade.shift;
+    v.axis += shade.shift;
+    let state = state_of(v.instance);
     var relative = v.position;
     var coverage = 1.0;
     var thin = 0.0;
@@ -129,13 +166,28 @@ fn vertex(
     } else {
         out.position = unsnapped(clip);
     }
+    if (state & FAINT) != 0u {
+        coverage *= shade.faint;
+    }
+    coverage = shown_part(state, v.radius, coverage);
     out.normal = v.normal;
     out.colour = colour_of(v.word, v.instance);
+    if (state & MARKED) != 0u {
+        out.colour = mix(out.colour, shade.marked.rgb, shade.marked.a);
+    }
     out.relative = relative;
     out.grid = v.grid;
     out.coverage = coverage;
     out.thin = thin;
     return out;
+}
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) vertex_index: u32,
+    @builtin(instance_index) instance_index: u32,
+) -> Varying {
+    return shaded_vertex(vertex_index, instance_index);
 }
 
 struct Sample {
@@ -182,16 +234,23 @@ fn bayer(p: vec2<u32>) -> f32 {
 // As many samples as the coverage asks for, dithered over neighbouring sub-pixels.
 fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
     let p = vec2<u32>(position.xy + shade.tile_origin + 4096.0);
-    let count = u32(min(coverage, 1.0) * f32(SAMPLES) + bayer(p));
+    let count = u32(clamp(coverage, 0.0, 1.0) * f32(SAMPLES) + bayer(p));
     let turn = (p.x + 2u * p.y) % SAMPLES;
     let bits = ((1u << count) - 1u) << turn;
     return (bits | (bits >> SAMPLES)) & ((1u << SAMPLES) - 1u);
 }
 
+// How much of a sample is there: nothing of what is cut away.
+fn left_by_clip(relative: vec3<f32>, coverage: f32) -> f32 {
+    return select(coverage, 0.0, dot(shade.clip.xyz, relative) + shade.clip.w < 0.0);
+}
+
 @fragment
-fn fragment(in: Varying) -> Sample {
-    let world = normalize(in.normal);
+fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
+    // Only a cut shows the inside; it looks as if it were filled.
+    let world = select(-shade.clip.xyz, normalize(in.normal), front);
     let axes = mat3x3(shade.right, shade.up, shade.backward);
+    let left = left_by_clip(in.relative, in.coverage);
     let to_eye = -normalize(in.relative) * axes;
     // A line shows no sides: it gets the light of a face towards the viewer, so its colour is the
     // legend's. Means over all sides were a third darker, and thin things looked grey.

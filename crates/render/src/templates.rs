@@ -45,6 +45,8 @@ pub(crate) struct TemplatePart {
     pub(crate) patches: u32,
     /// By place: the mesh's patch.
     pub(crate) in_mesh: Vec<u32>,
+    /// By number: the mesh's vertex that is loose.
+    pub(crate) loose: Vec<u32>,
     /// Ball around each cluster of patches, relative to the template's origin (µm).
     pub(crate) balls: Vec<(Vec3, f32)>,
     /// Ball around all of them.
@@ -107,6 +109,7 @@ impl Templates {
                     ball: ball_around(part.balls.iter().copied()),
                     balls: part.balls,
                     in_mesh: part.patches,
+                    loose: part.loose,
                 });
                 heap.extend(part.heap);
             }
@@ -116,6 +119,54 @@ impl Templates {
         gpu.check()?;
         let ids = first..self.templates.len();
         Ok(ids.map(|id| TemplateId(id as u32)).collect())
+    }
+
+    /// Puts another mesh in a template's place. It gets pages of its own; those that only the old one
+    /// had are used again.
+    ///
+    /// # Errors
+    /// The device has no memory left, or refuses; the old one stays.
+    pub fn replace(
+        &mut self,
+        gpu: &Gpu,
+        id: TemplateId,
+        template: &Template<'_>,
+    ) -> Result<(), DeviceError> {
+        let Some(old) = self.templates.get(id.0 as usize) else {
+            return Ok(());
+        };
+        let mut fresh = Self::new();
+        fresh.add(gpu, &[*template])?;
+        let pages = |t: &StoredTemplate| -> Vec<usize> { t.parts.iter().map(|p| p.page).collect() };
+        let own = pages(old);
+        let others = self.templates.iter().enumerate();
+        let others: Vec<usize> = others
+            .filter(|&(i, _)| i != id.0 as usize)
+            .flat_map(|(_, t)| pages(t))
+            .collect();
+        let mut free: Vec<usize> = own.into_iter().filter(|p| !others.contains(p)).collect();
+        free.sort_unstable();
+        free.dedup();
+        let mut moved = Vec::new();
+        for page in fresh.pages.drain(..) {
+            match free.pop() {
+                Some(place) => {
+                    self.pages[place] = page;
+                    moved.push(place);
+                }
+                None => {
+                    moved.push(self.pages.len());
+                    self.pages.push(page);
+                }
+            }
+        }
+        if let Some(mut stored) = fresh.templates.pop() {
+            for part in &mut stored.parts {
+                part.page = moved[part.page];
+            }
+            self.templates[id.0 as usize] = stored;
+        }
+        Ok(())
     }
 
     fn count(&mut self, part: &Part) {

@@ -77,6 +77,7 @@ fn a_wireframe_on_black() {
         look: Look {
             light: Light::From(glam::Vec3::new(1.0, 0.5, 1.0)),
             wire: 1.0,
+            ..Look::default()
         },
         occlusion: Occlusion::Off,
         ..small()

@@ -197,7 +197,11 @@ fn light_occlusion_and_wires_change_the_picture() {
     let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("fine");
     let image = picture(&gpu, &mesh, &camera, &plain);
     let look = |light: Light, wire: f32| PictureOptions {
-        look: Look { light, wire },
+        look: Look {
+            light,
+            wire,
+            ..Look::default()
+        },
         ..plain
     };
     for other in [

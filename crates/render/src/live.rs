@@ -1,0 +1,578 @@
+//! Pictures for a window: they stay on the device, and get better slice by slice.
+//!
+//! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
+//! camera moves a **draft** is drawn at once: one sample, no occlusion. At rest the picture is made in
+//! **steps** of one sub-pixel each, moved so that they add up to the samples of a saved picture
+//! (`picture.rs`), and each step in **bands** of rows, so that a slice of work ends soon whatever the
+//! scene: a window can show what there is, and stop.
+//!
+//! ```text
+//! maker ─▶ draw, band by band ─▶ occlude once ─▶ accumulate ─▶ present: texture, outlines
+//!      └─▶ ids: which patch is at which pixel
+//! ```
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use crate::camera::Camera;
+use crate::colour::{ColourTable, Rgb, linear};
+use crate::device::Gpu;
+use crate::error::DeviceError;
+use crate::finish::{Finish, Finisher, Last};
+use crate::frame::{Frame, Tile};
+use crate::ids::{Identifier, Ids};
+use crate::maker::VertexMaker;
+use crate::painter::{Painter, Part, kind};
+use crate::picture::{Occlusion, samples_in_sub_pixel};
+use crate::present::{Outlines, Presenter};
+use crate::shade::{Look, Shade};
+use crate::targets::{Targets, make};
+
+/// What is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shot {
+    /// From where.
+    pub camera: Camera,
+    /// Depth (µm) of the near plane.
+    pub near: f64,
+    /// Width and height (pixels), from 1 on.
+    pub size: [u32; 2],
+    /// Light, wires, cut.
+    pub look: Look,
+    /// How far corners darken one another.
+    pub occlusion: Occlusion,
+    /// Colour behind everything.
+    pub background: Rgb,
+    /// Another camera and near plane, for which levels are chosen and things are left out.
+    pub frozen: Option<(Camera, f64)>,
+}
+
+/// How a picture gets better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// Number of steps: 1, 4 or 16.
+    pub steps: u32,
+    /// Bands of rows that a step is drawn in.
+    pub bands: u32,
+}
+
+/// A picture on the device.
+pub struct Live {
+    painters: Vec<Painter>,
+    finishers: Vec<(u32, Finisher)>,
+    identifier: Option<Identifier>,
+    presenter: Presenter,
+    finish: wgpu::Buffer,
+    draft: Option<Canvas>,
+    fine: Option<Canvas>,
+    shows_draft: bool,
+    outlines: Outlines,
+    table: ColourTable,
+    states: Vec<u32>,
+    under_way: Option<UnderWay>,
+    clock: Arc<Clock>,
+}
+
+/// Textures and buffers of one size.
+struct Canvas {
+    size: [u32; 2],
+    samples: u32,
+    targets: Targets,
+    /// Of several steps; of one there is none.
+    sums: wgpu::Buffer,
+    texture: wgpu::Texture,
+}
+
+/// How far a picture has come.
+#[derive(Clone, Copy, Debug)]
+struct UnderWay {
+    shot: Shot,
+    steps: Steps,
+    draft: bool,
+    step: u32,
+    band: u32,
+}
+
+/// Tells when submitted work is done.
+#[derive(Debug, Default)]
+struct Clock {
+    submitted: AtomicU64,
+    done: AtomicU64,
+    /// Microseconds that the last work took.
+    took: AtomicU64,
+}
+
+impl Live {
+    /// Makes what does not depend on the scene.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            painters: Vec::new(),
+            finishers: Vec::new(),
+            identifier: None,
+            presenter: Presenter::new(gpu),
+            finish: make(
+                gpu,
+                "finish",
+                size_of::<Finish>() as u64,
+                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            ),
+            draft: None,
+            fine: None,
+            shows_draft: false,
+            outlines: Outlines::default(),
+            table: ColourTable::default(),
+            states: Vec::new(),
+            under_way: None,
+            clock: Arc::default(),
+        }
+    }
+
+    /// Colours from the next picture on.
+    pub fn set_colours(&mut self, table: ColourTable) {
+        self.table = table;
+    }
+
+    /// States of instances from the next picture on, in the scene's order: [`MARKED`](crate::MARKED) and
+    /// so on; 0 beyond the end.
+    pub fn set_states(&mut self, states: Vec<u32>) {
+        self.states = states;
+    }
+
+    /// Outlines from the next [`Live::show`] on: bytes of [`SELECTED`](crate::SELECTED) and
+    /// [`HOVERED`](crate::HOVERED) by pixel of a picture of this size.
+    pub fn set_outlines(&mut self, gpu: &Gpu, outlines: Outlines, mask: Option<([u32; 2], &[u8])>) {
+        self.outlines = outlines;
+        self.presenter.set_mask(gpu, mask);
+    }
+
+    /// Draws a draft at once.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn draft(
+        &mut self,
+        gpu: &Gpu,
+        maker: &mut dyn VertexMaker,
+        shot: &Shot,
+    ) -> Result<(), DeviceError> {
+        self.under_way = None;
+        let painter = self.painter(gpu, maker, 1, shot)?;
+        self.make_canvas(gpu, true, shot.size, 1)?;
+        let way = UnderWay {
+            shot: Shot {
+                occlusion: Occlusion::Off,
+                ..*shot
+            },
+            steps: Steps { steps: 1, bands: 1 },
+            draft: true,
+            step: 0,
+            band: 0,
+        };
+        self.shows_draft = true;
+        self.draw(gpu, maker, painter, &way)
+    }
+
+    /// Begins a picture that [`Live::slice`] makes.
+    pub fn begin(&mut self, shot: Shot, steps: Steps) {
+        // Levels for another camera know no bands of this one.
+        let bands = if shot.frozen.is_some() {
+            1
+        } else {
+            steps.bands
+        };
+        let bands = bands.clamp(1, shot.size[1].max(1));
+        self.under_way = Some(UnderWay {
+            shot,
+            steps: Steps {
+                bands,
+                steps: steps.steps.max(1),
+            },
+            draft: false,
+            step: 0,
+            band: 0,
+        });
+    }
+
+    /// Leaves the picture as it is.
+    pub fn stop(&mut self) {
+        self.under_way = None;
+    }
+
+    /// Share of the picture under way that is made; none: there is none.
+    pub fn progress(&self) -> Option<f32> {
+        let way = self.under_way?;
+        let made = way.step * way.steps.bands + way.band;
+        Some(made as f32 / (way.steps.steps * way.steps.bands) as f32)
+    }
+
+    /// The next slice of the picture under way; whether it shows something new. The slice before must be
+    /// done: see [`Live::is_busy`].
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn slice(&mut self, gpu: &Gpu, maker: &mut dyn VertexMaker) -> Result<bool, DeviceError> {
+        let Some(way) = self.under_way else {
+            return Ok(false);
+        };
+        let samples = samples_in_sub_pixel(gpu, 4);
+        let painter = self.painter(gpu, maker, samples, &way.shot)?;
+        self.make_canvas(gpu, false, way.shot.size, samples)?;
+        self.draw(gpu, maker, painter, &way)?;
+        let mut next = way;
+        next.band += 1;
+        let whole = next.band == way.steps.bands;
+        if whole {
+            (next.band, next.step) = (0, next.step + 1);
+            self.shows_draft = false;
+        }
+        self.under_way = (next.step < way.steps.steps).then_some(next);
+        Ok(whole)
+    }
+
+    /// Whether the device is still at work on what was submitted last. Must be asked for it to go on.
+    pub fn is_busy(&self, gpu: &Gpu) -> bool {
+        // What went wrong is told by the next call that draws.
+        let _ = gpu.device.poll(wgpu::PollType::Poll);
+        let clock = &self.clock;
+        clock.done.load(Ordering::Acquire) < clock.submitted.load(Ordering::Acquire)
+    }
+
+    /// Milliseconds from submitting the last work until it was done.
+    pub fn last_ms(&self) -> f64 {
+        self.clock.took.load(Ordering::Acquire) as f64 / 1e3
+    }
+
+    /// Puts the picture there is into its texture once more: for other outlines.
+    pub fn show(&self, gpu: &Gpu) {
+        if let Some(canvas) = self.shown() {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let (pixels, texture) = (&canvas.targets.pixels, &canvas.texture);
+            self.presenter
+                .present(gpu, pixels, texture, &self.outlines, &mut encoder);
+            gpu.queue.submit([encoder.finish()]);
+        }
+    }
+
+    /// The texture to show. It changes with the size, and from drafts to pictures.
+    pub fn texture(&self) -> Option<&wgpu::Texture> {
+        self.shown().map(|canvas| &canvas.texture)
+    }
+
+    /// Whether it is a draft that shows.
+    pub fn shows_draft(&self) -> bool {
+        self.shows_draft
+    }
+
+    /// Draws ids; [`Live::ids`] has them a little later.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn identify(
+        &mut self,
+        gpu: &Gpu,
+        maker: &mut dyn VertexMaker,
+        shot: &Shot,
+    ) -> Result<(), DeviceError> {
+        let painter = self.painter(gpu, maker, 1, shot)?;
+        let painter = &self.painters[painter];
+        if self.identifier.as_ref().is_none_or(|i| !i.fits(painter)) {
+            self.identifier = Identifier::new(gpu, painter, maker);
+        }
+        let Some(identifier) = &mut self.identifier else {
+            return Ok(());
+        };
+        let shade = shade(painter, shot);
+        identifier.draw(gpu, painter, maker, &chosen(shot, None), shade, shot.size)?;
+        self.clock.start(gpu);
+        Ok(())
+    }
+
+    /// The size and the ids by row of the picture that was identified last, once; nothing before they
+    /// have arrived.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn ids(&mut self) -> Result<Option<Ids>, DeviceError> {
+        self.identifier.as_mut().map_or(Ok(None), Identifier::take)
+    }
+
+    /// Bytes of textures and buffers.
+    pub fn bytes(&self) -> u64 {
+        let canvases = self.draft.iter().chain(&self.fine);
+        canvases.map(|c| c.targets.bytes + c.sums.size()).sum()
+    }
+
+    fn shown(&self) -> Option<&Canvas> {
+        if self.shows_draft {
+            self.draft.as_ref()
+        } else {
+            self.fine.as_ref()
+        }
+    }
+
+    fn painter(
+        &mut self,
+        gpu: &Gpu,
+        maker: &dyn VertexMaker,
+        samples: u32,
+        shot: &Shot,
+    ) -> Result<usize, DeviceError> {
+        let cut = shot.look.clip.is_some();
+        let wanted = kind(maker, samples, cut);
+        let place = match self.painters.iter().position(|p| p.fits(wanted)) {
+            Some(place) => place,
+            None => {
+                self.painters.push(Painter::new(gpu, maker, samples, cut)?);
+                self.painters.len() - 1
+            }
+        };
+        let painter = &mut self.painters[place];
+        painter.set_table(gpu, &self.table);
+        painter.set_states(gpu, &self.states);
+        if !self.finishers.iter().any(|(n, _)| *n == samples) {
+            let finisher = Finisher::new(gpu, samples, Last::Accumulate);
+            self.finishers.push((samples, finisher));
+        }
+        Ok(place)
+    }
+
+    fn make_canvas(
+        &mut self,
+        gpu: &Gpu,
+        draft: bool,
+        size: [u32; 2],
+        samples: u32,
+    ) -> Result<(), DeviceError> {
+        let place = if draft {
+            &mut self.draft
+        } else {
+            &mut self.fine
+        };
+        let fits = |c: &Canvas| c.size == size && c.samples == samples;
+        if !place.as_ref().is_some_and(fits) {
+            *place = None;
+            *place = Some(Canvas::new(gpu, size, samples, !draft));
+            gpu.check()?;
+        }
+        Ok(())
+    }
+
+    /// One band of one step; what comes after the drawing with the last band.
+    fn draw(
+        &self,
+        gpu: &Gpu,
+        maker: &mut dyn VertexMaker,
+        painter: usize,
+        way: &UnderWay,
+    ) -> Result<(), DeviceError> {
+        let UnderWay { shot, steps, .. } = way;
+        let painter = &self.painters[painter];
+        let canvas = match way.draft {
+            true => self.draft.as_ref(),
+            false => self.fine.as_ref(),
+        };
+        let Some(canvas) = canvas else {
+            return Ok(());
+        };
+        let [width, height] = shot.size;
+        let edge =
+            |band: u32| (u64::from(band) * u64::from(height) / u64::from(steps.bands)) as u32;
+        let (top, bottom) = (edge(way.band), edge(way.band + 1));
+        let (jitter, turn) = offset(way.step, steps.steps);
+        let shade = shade(painter, shot).moved(jitter, turn);
+        gpu.queue
+            .write_buffer(&painter.shade, 0, bytemuck::bytes_of(&shade));
+        let group = painter.shade_group(gpu);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let band = (steps.bands > 1).then_some((top, bottom));
+        let rounds = maker.prepare(gpu, &chosen(shot, band))?.max(1);
+        for round in 0..rounds {
+            maker.choose(round, &mut encoder, None);
+            let part = Part {
+                round,
+                first: way.band == 0 && round == 0,
+                last: way.band + 1 == steps.bands && round + 1 == rounds,
+                within: Some([0, top, width, bottom - top]),
+            };
+            painter.draw(maker, part, &canvas.targets, &group, &mut encoder);
+        }
+        if way.band + 1 == steps.bands {
+            self.finish(gpu, canvas, way, &mut encoder);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        self.clock.start(gpu);
+        gpu.check()
+    }
+
+    fn finish(
+        &self,
+        gpu: &Gpu,
+        canvas: &Canvas,
+        way: &UnderWay,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let UnderWay {
+            shot, steps, step, ..
+        } = way;
+        let Some((_, finisher)) = self.finishers.iter().find(|(n, _)| *n == canvas.samples) else {
+            return;
+        };
+        let frame = whole(shot.camera, shot.near, shot.size);
+        let words = finish_words(shot, &frame, *step, steps.steps);
+        gpu.queue
+            .write_buffer(&self.finish, 0, bytemuck::bytes_of(&words));
+        let group = canvas.group(gpu, finisher, &self.finish);
+        let over = shot.size.map(|n| n.div_ceil(8));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("finish"),
+            timestamp_writes: None,
+        });
+        pass.set_bind_group(0, &group, &[]);
+        // A quarter of a pixel beside, corners are as dark: one look serves all steps.
+        if words.radius > 0.0 && *step == 0 {
+            for pipeline in [&finisher.occlude, &finisher.blur] {
+                pass.set_pipeline(pipeline);
+                pass.dispatch_workgroups(over[0], over[1], 1);
+            }
+        }
+        pass.set_pipeline(&finisher.last);
+        pass.dispatch_workgroups(over[0], over[1], 1);
+        drop(pass);
+        let (pixels, texture) = (&canvas.targets.pixels, &canvas.texture);
+        self.presenter
+            .present(gpu, pixels, texture, &self.outlines, encoder);
+    }
+}
+
+impl Clock {
+    fn start(self: &Arc<Self>, gpu: &Gpu) {
+        let number = self.submitted.fetch_add(1, Ordering::AcqRel) + 1;
+        let (clock, begun) = (Arc::clone(self), Instant::now());
+        gpu.queue.on_submitted_work_done(move || {
+            let took = begun.elapsed().as_micros() as u64;
+            clock.took.store(took, Ordering::Release);
+            clock.done.fetch_max(number, Ordering::AcqRel);
+        });
+    }
+}
+
+impl Canvas {
+    fn new(gpu: &Gpu, size: [u32; 2], samples: u32, adds_up: bool) -> Self {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let sums = if adds_up { 16 * pixels } else { 0 };
+        Self {
+            size,
+            samples,
+            targets: Targets::new(gpu, size, samples),
+            sums: make(gpu, "sums", sums, wgpu::BufferUsages::STORAGE),
+            texture: Presenter::texture(gpu, size),
+        }
+    }
+
+    fn group(&self, gpu: &Gpu, finisher: &Finisher, finish: &wgpu::Buffer) -> wgpu::BindGroup {
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view = wgpu::BindingResource::TextureView;
+        let targets = &self.targets;
+        let resolved = targets.resolved.as_ref().unwrap_or(&targets.colour);
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("finish"),
+            layout: &finisher.layout,
+            entries: &[
+                entry(0, finish.as_entire_binding()),
+                entry(1, view(resolved)),
+                entry(2, view(&targets.normal)),
+                entry(3, view(&targets.distance)),
+                entry(4, targets.raw.as_entire_binding()),
+                entry(5, targets.blurred.as_entire_binding()),
+                entry(6, targets.pixels.as_entire_binding()),
+                entry(7, self.sums.as_entire_binding()),
+            ],
+        })
+    }
+}
+
+/// Pixels by which a step is moved, and by how many its dither is turned: the places of sub-pixels.
+fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
+    let side = f64::from(steps).sqrt() as u32;
+    if side <= 1 {
+        return ([0.0; 2], [0.0; 2]);
+    }
+    let place = [step % side, step / side].map(|k| k as f32);
+    (place.map(|k| (k + 0.5) / side as f32 - 0.5), place)
+}
+
+fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
+    Frame {
+        camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
+    }
+}
+
+/// Rows above and below a band whose things may reach into it: steps are moved by half a pixel.
+const SPARE_ROWS: u32 = 2;
+
+/// What the maker is told: a band of rows, or all; levels for the frozen camera if there is one.
+fn chosen(shot: &Shot, band: Option<(u32, u32)>) -> Frame {
+    let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
+    let mut frame = whole(camera, near, shot.size);
+    let (top, bottom) = band.unwrap_or((0, shot.size[1]));
+    frame.tile.x -= SPARE_ROWS as i32;
+    frame.tile.width += 2 * SPARE_ROWS;
+    frame.tile.y = top as i32 - SPARE_ROWS as i32;
+    frame.tile.height = bottom - top + 2 * SPARE_ROWS;
+    frame
+}
+
+fn shade(painter: &Painter, shot: &Shot) -> Shade {
+    let frame = whole(shot.camera, shot.near, shot.size);
+    let mut shade = Shade::new(&frame, &shot.look, 1, &painter.sizes);
+    if let Some((frozen, _)) = shot.frozen {
+        shade.shift = (frozen.eye() - shot.camera.eye()).as_vec3().to_array();
+    }
+    shade
+}
+
+fn finish_words(shot: &Shot, frame: &Frame, step: u32, steps: u32) -> Finish {
+    let (radius, most) = shot
+        .occlusion
+        .reach(&shot.camera, shot.size[1])
+        .unwrap_or_default();
+    let [r, g, b] = linear(shot.background);
+    let [red, green, blue] = shot.background;
+    Finish {
+        radius,
+        most,
+        scale: 1,
+        kept: shot.size,
+        spare: step,
+        clear: u32::from(steps == 1),
+        empty: u32::from_le_bytes([red, green, blue, 255]),
+        background: [r, g, b, 1.0],
+        ..Finish::of(frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_spread_over_the_pixel() {
+        for steps in [1, 4, 16] {
+            let all: Vec<_> = (0..steps).map(|step| offset(step, steps).0).collect();
+            for axis in 0..2 {
+                let sum: f32 = all.iter().map(|place| place[axis]).sum();
+                assert!(sum.abs() < 1e-6 && all.iter().all(|p| p[axis].abs() < 0.5));
+            }
+        }
+        assert_eq!(offset(3, 4), ([0.25, 0.25], [1.0, 1.0]));
+    }
+}

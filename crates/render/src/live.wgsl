@@ -1,0 +1,34 @@
+// The last pass of a picture that gets better: adds this step's samples to those before, and makes the
+// bytes of their mean. Comes after finish.wgsl and occlusion.wgsl. Called by live.rs.
+
+// Linear, premultiplied.
+@group(0) @binding(7) var<storage, read_write> sums: array<vec4<f32>>;
+
+@compute @workgroup_size(8, 8)
+fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= finish.kept) {
+        return;
+    }
+    let p = vec2<i32>(id.xy);
+    let at = id.y * finish.kept.x + id.x;
+    var sum = textureLoad(colours, p, 0);
+    if finish.radius > 0.0 && sum.a > 0.0 {
+        sum = vec4(sum.rgb * occlusion_at(p), sum.a);
+    }
+    // `spare` counts the steps before.
+    if finish.spare > 0u {
+        sum += sums[at];
+    }
+    // One step needs no memory.
+    if finish.clear == 0u {
+        sums[at] = sum;
+    }
+    if sum.a == 0.0 {
+        pixels[at] = finish.empty;
+        return;
+    }
+    sum /= f32(finish.spare + 1u);
+    let colour = encoded(sum.rgb + finish.background.rgb * (1.0 - sum.a));
+    let bytes = vec4<u32>(floor(vec4(colour, 1.0) * 255.0 + 0.5));
+    pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+}
