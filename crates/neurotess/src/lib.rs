@@ -63,8 +63,11 @@
 //! | [`generate`] | from a morphology to a coarse mesh |
 //! | [`refine`] | from a coarse mesh to a surface |
 //! | [`render`] | from coarse meshes to pictures |
+//! | [`colouring`] | what the colours of pictures tell |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
 #![forbid(unsafe_code)]
+
+pub mod colouring;
 
 pub use neurotess_circuit as circuit;
 pub use neurotess_formats as formats;

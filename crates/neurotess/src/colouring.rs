@@ -1,0 +1,326 @@
+//! What colours tell: a word for every tracing point, the table of colours and the legend.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::mesh::{CoarseMesh, Role, TracingPoint};
+use crate::morphology::{Morphology, NeuriteKind, Section, SectionId, shape};
+use crate::render::{ColourTable, Legend, Palette, Rgb, category, fraction};
+
+/// What colours tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourBy {
+    /// SWC type.
+    #[default]
+    Type,
+    /// Every neurite its own.
+    Neurite,
+    /// Neighbouring sections differ.
+    Section,
+    /// Number of forks from the neurite's start.
+    Order,
+    /// Radius (µm).
+    Radius,
+    /// Way along the neurite from its start (µm).
+    Depth,
+    /// Every cell its own.
+    Neuron,
+}
+
+/// What is coloured.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell<'c> {
+    /// Name for the legend.
+    pub name: &'c str,
+    /// The tracing.
+    pub morphology: &'c Morphology,
+    /// Its coarse mesh.
+    pub mesh: &'c CoarseMesh,
+}
+
+/// Colours of all cells.
+#[derive(Clone, Debug)]
+pub struct Colouring {
+    /// By cell and tracing point.
+    pub words: Vec<Vec<u32>>,
+    /// What words mean.
+    pub table: ColourTable,
+    /// What colours mean.
+    pub legend: Legend,
+}
+
+/// The colours to choose from.
+#[derive(Clone, Debug)]
+pub struct Paint {
+    /// Of types and of what is merely told apart.
+    pub palette: Palette,
+    /// Behind everything: black is not drawn on black.
+    pub background: Option<Rgb>,
+    /// Of numbers.
+    pub scale: Vec<Rgb>,
+}
+
+/// Colour of what has no value: a grey that no scale has.
+pub const NOTHING: Rgb = [160; 3];
+
+impl Paint {
+    /// Words on the scale, from one number to another; the first category is for what has none.
+    pub fn scaled(
+        &self,
+        words: Vec<Vec<u32>>,
+        title: &str,
+        unit: &str,
+        range: [f32; 2],
+    ) -> Colouring {
+        Colouring {
+            words,
+            legend: Legend::bar(title, unit, self.scale.clone(), range, false),
+            table: ColourTable {
+                scale: self.scale.clone(),
+                categories: vec![NOTHING],
+                ..ColourTable::default()
+            },
+        }
+    }
+
+    fn of_type(&self, kind: i32) -> Rgb {
+        match NeuriteKind(kind) {
+            NeuriteKind::SOMA => self.palette.of_soma(self.background),
+            _ => self.palette.of_type(kind),
+        }
+    }
+}
+
+/// Chooses the colours.
+pub fn colouring(cells: &[Cell<'_>], by: ColourBy, paint: &Paint) -> Colouring {
+    match by {
+        ColourBy::Type => by_type(cells, paint),
+        ColourBy::Neuron => by_neuron(cells, paint),
+        ColourBy::Neurite => told_apart(cells, paint, "neurite", neurites),
+        ColourBy::Section => told_apart(cells, paint, "section", sections),
+        ColourBy::Order => measured(cells, paint, "branch order", "", |cell| {
+            let orders = shape::branch_orders(cell.morphology);
+            of_sections(cell, |section| orders.get(section).map(|&o| o as f32))
+        }),
+        ColourBy::Radius => measured(cells, paint, "radius", "µm", |cell| {
+            let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
+            cell.mesh.tracing.iter().map(radius).collect()
+        }),
+        ColourBy::Depth => measured(cells, paint, "path distance", "µm", depths),
+    }
+}
+
+fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Colouring {
+    // The soma's points keep a type of their own whatever the file says.
+    let kind = |point: &TracingPoint| match point.role {
+        Role::Soma => NeuriteKind::SOMA.0,
+        _ => point.kind,
+    };
+    let mut kinds: BTreeMap<i32, u32> = BTreeMap::new();
+    for point in cells.iter().flat_map(|cell| &cell.mesh.tracing) {
+        kinds.insert(kind(point), 0);
+    }
+    for (index, number) in kinds.values_mut().zip(0..) {
+        *index = number;
+    }
+    let words = |cell: &Cell<'_>| {
+        let points = cell.mesh.tracing.iter();
+        points.map(|point| category(kinds[&kind(point)])).collect()
+    };
+    let categories: Vec<Rgb> = kinds.keys().map(|&kind| paint.of_type(kind)).collect();
+    let names = kinds
+        .keys()
+        .map(|&kind| NeuriteKind(kind).name().replace('_', " "));
+    Colouring {
+        words: cells.iter().map(words).collect(),
+        legend: Legend::swatches("", categories.iter().copied().zip(names)),
+        table: ColourTable {
+            scale: Vec::new(),
+            categories,
+            ..ColourTable::default()
+        },
+    }
+}
+
+fn by_neuron(cells: &[Cell<'_>], paint: &Paint) -> Colouring {
+    let words = |(cell, index)| {
+        let cell: &Cell<'_> = cell;
+        vec![category(index); cell.mesh.tracing.len()]
+    };
+    let names: Vec<String> = cells.iter().map(|cell| cell.name.to_owned()).collect();
+    listed(
+        cells.iter().zip(0..).map(words).collect(),
+        &names,
+        "neuron",
+        paint,
+    )
+}
+
+/// Things numbered from 0 on over all cells; somata have a colour of their own.
+fn told_apart(
+    cells: &[Cell<'_>],
+    paint: &Paint,
+    thing: &str,
+    number: impl Fn(&Morphology) -> Vec<u32>,
+) -> Colouring {
+    let mut next = 0;
+    let mut words = Vec::new();
+    for cell in cells {
+        let numbers = number(cell.morphology);
+        let of_point = |point: &TracingPoint| {
+            let section = usize::try_from(point.section - 1).ok();
+            let number = section.and_then(|section| numbers.get(section));
+            // 0 is the soma.
+            number.map_or(category(0), |number| category(1 + next + number))
+        };
+        words.push(cell.mesh.tracing.iter().map(of_point).collect());
+        next += numbers.iter().max().map_or(0, |most| most + 1);
+    }
+    let soma = paint.of_type(1);
+    let names: Vec<String> = (1..=next).map(|n| format!("{thing} {n}")).collect();
+    let mut colouring = listed(words, &names, thing, paint);
+    colouring.table.categories.insert(0, soma);
+    colouring
+}
+
+/// Category i has the i-th distinct colour and name.
+fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) -> Colouring {
+    let categories: Vec<Rgb> = (0..names.len())
+        .map(|i| paint.palette.distinct(i))
+        .collect();
+    let mut entries: Vec<(Rgb, String)> = categories
+        .iter()
+        .copied()
+        .zip(names.iter().cloned())
+        .collect();
+    let title = if entries.len() > paint.palette.distinct_count() {
+        entries.clear();
+        format!("{} {thing}s, colours repeat", names.len())
+    } else {
+        String::new()
+    };
+    Colouring {
+        words,
+        legend: Legend::swatches(&title, entries),
+        table: ColourTable {
+            scale: Vec::new(),
+            categories,
+            ..ColourTable::default()
+        },
+    }
+}
+
+/// Number of the neurite that each section belongs to.
+fn neurites(morphology: &Morphology) -> Vec<u32> {
+    let mut numbers: Vec<u32> = Vec::with_capacity(morphology.sections.len());
+    let mut next = 0;
+    for section in &morphology.sections {
+        let number = section.parent().map(|parent| numbers[parent.index()]);
+        numbers.push(number.unwrap_or_else(|| {
+            next += 1;
+            next - 1
+        }));
+    }
+    numbers
+}
+
+fn sections(morphology: &Morphology) -> Vec<u32> {
+    (0..morphology.sections.len() as u32).collect()
+}
+
+/// Numbers on a scale; points without one have the soma's colour.
+fn measured(
+    cells: &[Cell<'_>],
+    paint: &Paint,
+    title: &str,
+    unit: &str,
+    values: impl Fn(&Cell<'_>) -> Vec<Option<f32>>,
+) -> Colouring {
+    let values: Vec<Vec<Option<f32>>> = cells.iter().map(&values).collect();
+    let mut sorted: Vec<f32> = values.iter().flatten().flatten().copied().collect();
+    sorted.sort_unstable_by(f32::total_cmp);
+    let at = |share: f64| {
+        let place = share * sorted.len().saturating_sub(1) as f64;
+        sorted.get(place as usize).copied().unwrap_or(0.0)
+    };
+    // A few stems are far thicker than all else: they would leave one colour for the rest.
+    let whole = title != "radius";
+    let (low, high) = if whole {
+        (0.0, at(1.0))
+    } else {
+        (at(0.0), at(0.98))
+    };
+    let high = if high > low { high } else { low + 1.0 };
+    let word = |value: &Option<f32>| match value {
+        Some(value) => fraction((value - low) / (high - low)),
+        None => category(0),
+    };
+    let words = values
+        .iter()
+        .map(|values| values.iter().map(word).collect());
+    Colouring {
+        words: words.collect(),
+        legend: Legend::bar(
+            title,
+            unit,
+            paint.scale.clone(),
+            [low, high],
+            at(1.0) > high,
+        ),
+        table: ColourTable {
+            scale: paint.scale.clone(),
+            categories: vec![paint.of_type(1)],
+            ..ColourTable::default()
+        },
+    }
+}
+
+fn of_sections(cell: &Cell<'_>, value: impl Fn(usize) -> Option<f32>) -> Vec<Option<f32>> {
+    let of_point = |point: &TracingPoint| {
+        let section = usize::try_from(point.section - 1).ok();
+        section.and_then(&value)
+    };
+    cell.mesh.tracing.iter().map(of_point).collect()
+}
+
+/// Way (µm) along the neurite from its first point to each tracing point.
+pub fn depths(cell: &Cell<'_>) -> Vec<Option<f32>> {
+    let morphology = cell.morphology;
+    let ends = shape::path_lengths(morphology);
+    let mut of_sample: HashMap<i64, f32> = HashMap::new();
+    for (index, section) in morphology.sections.iter().enumerate() {
+        let start = section.parent().map_or(0.0, |parent| ends[parent.index()]);
+        along(morphology, index, section, start, &mut of_sample);
+    }
+    let of_point = |point: &TracingPoint| match point.role {
+        Role::Soma => None,
+        _ => Some(
+            of_sample
+                .get(&i64::from(point.sample))
+                .copied()
+                .unwrap_or(0.0),
+        ),
+    };
+    cell.mesh.tracing.iter().map(of_point).collect()
+}
+
+fn along(
+    morphology: &Morphology,
+    index: usize,
+    section: &Section,
+    start: f64,
+    of_sample: &mut HashMap<i64, f32>,
+) {
+    let id = SectionId(index as u32);
+    let mut before = shape::branch_point(morphology, id);
+    let mut way = start;
+    for (point, sample) in morphology.points[section.range()]
+        .iter()
+        .zip(&morphology.sample_ids[section.range()])
+    {
+        if let Some(before) = before {
+            way += f64::from(point.position.distance(before.position));
+        }
+        before = Some(point);
+        of_sample.insert(*sample, way as f32);
+    }
+}
