@@ -42,7 +42,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-render",
         ],
     ),
-    ("neurotess-cli", &["neurotess"]),
+    ("neurotess-viewer", &["neurotess"]),
+    ("neurotess-cli", &["neurotess", "neurotess-viewer"]),
     ("xtask", &["neurotess"]),
 ];
 

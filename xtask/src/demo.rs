@@ -39,11 +39,22 @@ pub(crate) fn run() -> anyhow::Result<()> {
     println!(
         "out/stl is for printing and simulators, out/coarse holds the quads before refinement."
     );
-    println!(
-        "Your own cell: {} mesh cell.swc -o cell.ply",
-        shown(&program()?)
-    );
-    Ok(())
+    let program = shown(&program()?);
+    println!("Your own cell: {program} mesh cell.swc -o cell.ply");
+    if !has_display() {
+        println!("On a desktop: {program} view samples");
+        return Ok(());
+    }
+    println!("\nThe window opens on the samples; close it to end the demo.");
+    steps::run(&mut neurotess("view samples")?)
+}
+
+/// Whether a window can be opened.
+fn has_display() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    cfg!(any(target_os = "windows", target_os = "macos"))
+        || set("DISPLAY")
+        || set("WAYLAND_DISPLAY")
 }
 
 /// Builds the program.

@@ -33,8 +33,26 @@ const ALLOWED: &[&str] = &[
 
 /// Packages that may be there in several versions, and why.
 const DUPLICATES: &[(&str, &str)] = &[
+    (
+        "bitflags",
+        "winit's bindings of macOS and Redox are of the old one",
+    ),
+    (
+        "block2",
+        "winit's bindings of macOS are a release behind wgpu's",
+    ),
+    (
+        "calloop",
+        "winit's Wayland loop is a release behind the clipboard's",
+    ),
+    ("calloop-wayland-source", "the same"),
     ("equator", "faer and its kernels are a release apart"),
     ("equator-macro", "the same"),
+    ("foldhash", "the old hashbrown's"),
+    (
+        "getrandom",
+        "ahash, which egui hashes by, is a release behind tempfile",
+    ),
     (
         "hashbrown",
         "wgpu's allocator for DirectX is a release behind wgpu",
@@ -43,7 +61,32 @@ const DUPLICATES: &[(&str, &str)] = &[
         "jni-sys",
         "wgpu's bindings for Android have the old one in front of the new",
     ),
+    ("linux-raw-sys", "with the old rustix"),
     ("miniz_oxide", "png is a release behind flate2"),
+    (
+        "objc2",
+        "winit's bindings of macOS are a release behind wgpu's",
+    ),
+    ("objc2-app-kit", "the same"),
+    ("objc2-foundation", "the same"),
+    ("objc2-metal", "the same"),
+    ("objc2-quartz-core", "the same"),
+    ("objc2-ui-kit", "the same"),
+    (
+        "quick-xml",
+        "Wayland's protocols are read by the old one, at build time only",
+    ),
+    ("r-efi", "with the old getrandom"),
+    ("redox_syscall", "winit's and others' on Redox"),
+    ("rustc-hash", "naga is a release behind accesskit"),
+    (
+        "rustix",
+        "winit's Wayland loop is a release behind the clipboard's",
+    ),
+    (
+        "smithay-client-toolkit",
+        "winit is a release behind the clipboard",
+    ),
     (
         "syn",
         "runs at build time only; faer's macros are older than serde's",
@@ -53,6 +96,10 @@ const DUPLICATES: &[(&str, &str)] = &[
         "gemm asks for the cache's size on macOS through sysctl, which has the old one",
     ),
     ("thiserror-impl", "the same"),
+    (
+        "windows-sys",
+        "winit and others are releases behind one another",
+    ),
 ];
 
 /// An error that names each package whose licence or second version is not allowed.

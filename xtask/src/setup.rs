@@ -1,5 +1,6 @@
 //! `cargo xtask setup`: what tests want beside Rust. A software Vulkan driver where no other is, for
-//! pictures and their tests, and the Python environment.
+//! pictures and their tests; a virtual display and what types on it, for the window's test; and the
+//! Python environment.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -16,10 +17,51 @@ const DRIVERS: &[&str] = &[
 /// Debian's packages: Mesa's drivers, lavapipe among them, and the loader.
 const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 
+/// A virtual display, what moves the mouse on it, what takes pictures of it, and the libraries that a
+/// window loads on X11.
+const DISPLAY_PACKAGES: [&str; 7] = [
+    "xvfb",
+    "xdotool",
+    "imagemagick",
+    "libxkbcommon-x11-0",
+    "libxcursor1",
+    "libxi6",
+    "libxrandr2",
+];
+
 /// Sets up all that tests want; says how it is.
 pub(crate) fn run() -> anyhow::Result<String> {
-    let adapter = adapter();
-    Ok(format!("{}; {adapter}", python::set_up(&python::TESTS)?))
+    let (adapter, display) = (adapter(), display());
+    let python = python::set_up(&python::TESTS)?;
+    Ok(format!("{python}; {adapter}; {display}"))
+}
+
+/// Installs a virtual display where there is none, on Debian and its kin; says how it is. Never fails.
+fn display() -> String {
+    if !cfg!(target_os = "linux") {
+        return "the window's test runs on Linux only".into();
+    }
+    let is_there = || ["Xvfb", "xdotool"].into_iter().all(is_installed);
+    if is_there() {
+        return "a virtual display is there".into();
+    }
+    let by_hand = format!(
+        "install {} to test the window; its test skips",
+        DISPLAY_PACKAGES.join(" ")
+    );
+    if !starts("apt-get", "--version") {
+        return format!("no virtual display: {by_hand}");
+    }
+    let mut install = vec!["install", "-y", "-qq", "--no-install-recommends"];
+    install.extend(DISPLAY_PACKAGES);
+    match apt(&["update", "-qq"]).and_then(|()| apt(&install)) {
+        Ok(()) if is_there() => "installed a virtual display".into(),
+        Ok(()) => format!("no virtual display even so: {by_hand}"),
+        Err(e) => {
+            println!("   {e:#}");
+            format!("no virtual display: {by_hand}")
+        }
+    }
 }
 
 /// Installs lavapipe where no Vulkan driver is, on Debian and its kin; says how it is. Never fails:
@@ -91,4 +133,14 @@ fn starts(program: &str, argument: &str) -> bool {
         .stderr(Stdio::null())
         .status();
     status.is_ok_and(|status| status.success())
+}
+
+/// Whether a program is there, whatever it says of having no display.
+fn is_installed(program: &str) -> bool {
+    let mut command = Command::new(program);
+    command
+        .arg("-help")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.status().is_ok()
 }

@@ -12,6 +12,7 @@ use neurotess::synth::Kind;
 pub(crate) use crate::bench::BenchArgs;
 use crate::circuit::CellArgs;
 pub(crate) use crate::render::args::RenderArgs;
+use crate::view::ViewArgs;
 
 /// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
 #[derive(Debug, Parser)]
@@ -81,6 +82,8 @@ pub(crate) enum Command {
     Mesh(Box<MeshArgs>),
     /// Draw cells, without a window
     Render(Box<RenderArgs>),
+    /// Open the window: look, pick, tune somata, save
+    View(ViewArgs),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
     Check(CheckArgs),
     /// Write morphologies in another format

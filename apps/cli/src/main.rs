@@ -17,6 +17,7 @@ mod report;
 mod synth;
 mod targets;
 mod version;
+mod view;
 mod workers;
 
 use std::process::ExitCode;
@@ -50,6 +51,7 @@ fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
         Some(Command::Check(args)) => check::run(args, reporter),
         Some(Command::Convert(args)) => convert::run(args, reporter),
         Some(Command::Render(args)) => render::run(args, reporter),
+        Some(Command::View(args)) => view::run(args, reporter),
         Some(Command::Bench(args)) => bench::run(args, reporter),
         Some(Command::Synth(args)) => synth::run(args, reporter),
         Some(Command::Completions { shell }) => {

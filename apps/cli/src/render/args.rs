@@ -21,7 +21,8 @@ use crate::circuit::CellArgs;
   neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
   neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30")]
 pub(crate) struct RenderArgs {
-    /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit
+    /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit, or
+    /// one session of neurotess view, in its own view and look
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The picture; with --frames NAME_0000.png and so on

@@ -18,18 +18,18 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use neurotess::colouring::Colouring;
 use neurotess::render::{
     Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, PictureOptions,
-    Placement, PngWriter, paint,
+    Placement, PngWriter, Studio,
 };
 
 use crate::info::Entry;
 use crate::output::{Output, OutputError, broken, refuse_existing};
 use crate::progress::Progress;
-use crate::report::{Reporter, count, usage};
+use crate::report::{Failure, Reporter, count, usage};
 use args::{ColorBy, Fit, RenderArgs};
 use cells::Cell;
-use colouring::Colouring;
 use maker::Maker;
 use places::Cast;
 use stats::Stats;
@@ -43,6 +43,11 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     maker::mode(args)?;
     for file in files.iter().chain(&args.stats) {
         refuse_existing(file, args.force)?;
+    }
+    if let [session] = &args.inputs[..]
+        && neurotess_viewer::session::is_session(session)
+    {
+        return draw_session(session, &files, args, reporter);
     }
     check_value(args)?;
     let Cast {
@@ -89,6 +94,37 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         reporter.result(&format!("{}: {}", file.display(), stats.line()));
     }
     reporter.document(&stats::Document::new(&entries, &files, Some(&stats)))
+}
+
+/// A session of the window: its own view and look, at the size and smoothness that are asked for.
+fn draw_session(
+    session: &Path,
+    files: &[PathBuf],
+    args: &RenderArgs,
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    let [out] = files else {
+        return usage("a session is one picture: leave out --turntable");
+    };
+    let picture = neurotess_viewer::save::PictureFile {
+        out: out.clone(),
+        size: args.size.0,
+        samples: args.samples,
+        transparent: args.transparent,
+        replace: args.force,
+    };
+    let drawn = neurotess_viewer::draw_session(session, &picture, args.adapter.as_deref());
+    let drawn = drawn.map_err(anyhow::Error::msg)?;
+    for (file, why) in &drawn.failures {
+        reporter.failure(&Failure(format!("{file}: {why}")));
+    }
+    reporter.result(&format!(
+        "{}: {} of {}",
+        out.display(),
+        count(drawn.neurons, "neuron"),
+        session.display()
+    ));
+    reporter.document(&stats::Document::new(&[], files, None))
 }
 
 /// Values come from a report, and a report gives nothing but values.
@@ -181,6 +217,7 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
     let mut maker = Maker::new(gpu, &options, sitting)?;
+    let mut studio = Studio::new();
     let mut stats = Stats::new(gpu, places.len());
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (camera, file) in cameras.iter().zip(files) {
@@ -191,7 +228,8 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
                 take(&band)
             };
             let table = &colouring.table;
-            paint(gpu, maker.as_maker(), camera, near, table, &options, lay)
+            studio
+                .paint(gpu, maker.as_maker(), camera, near, table, &options, lay)
                 .map_err(|e| anyhow::anyhow!("{e}"))
         })?;
         stats.add(&cost, maker.made(gpu, camera, near, &options)?);
@@ -210,6 +248,7 @@ fn picture_options(args: &RenderArgs) -> PictureOptions {
         look: Look {
             light: args.light.0,
             wire: if args.wireframe { WIRE } else { 0.0 },
+            ..Look::default()
         },
         occlusion: match args.ao {
             None | Some(Fit::Auto) => Occlusion::Fit,

@@ -12,4 +12,5 @@ mod mesh;
 mod render;
 mod synth;
 mod values;
+mod view;
 mod work;

@@ -1,0 +1,49 @@
+//! `neurotess view`: the window.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::info::MORPHOLOGIES;
+use crate::inputs::Inputs;
+use crate::report::Reporter;
+
+/// `neurotess view`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  neurotess view
+  neurotess view cell.swc
+  neurotess view cells/ other.asc
+  neurotess view circuit/circuit_config.json
+  neurotess view yesterday.neurotess")]
+pub(crate) struct ViewArgs {
+    /// Morphology files, folders (searched recursively), globs, circuits, or a session that the window
+    /// saved; nothing: a window to open files in
+    #[arg(value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    let mut inputs = Vec::new();
+    for input in &args.inputs {
+        // Folders and circuits are searched by the window's threads; only globs are found here.
+        if input.exists() {
+            inputs.push(input.clone());
+            continue;
+        }
+        let found = Inputs::find(std::slice::from_ref(input), &MORPHOLOGIES);
+        for failure in &found.failures {
+            reporter.failure(failure);
+        }
+        inputs.extend(found.files.into_iter().map(|file| file.path));
+    }
+    neurotess_viewer::run(neurotess_viewer::Options {
+        inputs,
+        adapter: args.adapter.clone(),
+    })?;
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! A session's picture without a window.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use neurotess::render::Gpu;
+
+use crate::document::Neuron;
+use crate::save::{self, PictureFile, Scenery};
+use crate::scene::{self, Shown};
+use crate::session::Session;
+use crate::settings::Settings;
+use crate::sources;
+use crate::state::State;
+use crate::worker::Job;
+
+/// A picture that was drawn, and what failed of the session.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Drawn {
+    /// Number of neurons that the picture shows.
+    pub neurons: usize,
+    /// Files of the session that could not be read: file and reason.
+    pub failures: Vec<(String, String)>,
+}
+
+/// Draws a session as the window would save it.
+///
+/// # Errors
+/// What is wrong with the session, the adapter or the file to write, and what to do.
+pub fn draw_session(
+    file: &Path,
+    picture: &PictureFile,
+    adapter: Option<&str>,
+) -> Result<Drawn, String> {
+    let session = Session::read(file).map_err(|why| format!("{}: {why}", file.display()))?;
+    let mut state = State::new(Settings::default());
+    let mut drawn = Drawn::default();
+    let mut ids = Vec::new();
+    for entry in &session.file {
+        let soma = entry.soma.unwrap_or_default();
+        ids.push(match sources::load(&entry.path, soma) {
+            Ok(source) => Some(state.sources.add(source)),
+            Err(why) => {
+                let file = entry.path.display().to_string();
+                drawn.failures.push((file, why));
+                None
+            }
+        });
+    }
+    state.document.look = session.look.clone();
+    state.document.grid = session.grid;
+    for entry in &session.neuron {
+        if let Some(id) = ids.get(entry.file).copied().flatten() {
+            state.document.neurons.push(Neuron::of_session(id, entry));
+        }
+    }
+    drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
+    let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
+    let scenery = scenery(Arc::new(gpu), &state);
+    save::pictures(&scenery, &[session.view], picture, &Job::new("drawing", 1))?;
+    Ok(drawn)
+}
+
+fn scenery(gpu: Arc<Gpu>, state: &State) -> Scenery {
+    let sources = scene::sources(state);
+    let shown = Shown {
+        instances: scene::standing(state, &sources),
+        colouring: Arc::new(scene::colours(&sources, &state.document.look)),
+        sources,
+    };
+    Scenery {
+        gpu,
+        shown,
+        look: state.document.look.clone(),
+        states: scene::states(&state.document),
+        balls: state.balls(|_| true),
+    }
+}

@@ -1,0 +1,37 @@
+//! The window: open, look, pick, tune, save.
+//!
+//! [`run`] opens it. The [`State`](state::State) holds all that shows; panels are functions of it that ask
+//! for [`Command`]s; an edit changes the [`Document`](document::Document), of which the history keeps those
+//! before. Work goes to threads and comes back as messages. No geometry is made here: cells are meshed
+//! and drawn by the library.
+//!
+//! ```text
+//! mouse, keys, menus, palette, tests ─▶ Command ─▶ State ─▶ panels
+//!                     threads: read, mesh, save ◀─▶ │ ─▶ Stage: drafts, pictures, ids
+//! ```
+#![forbid(unsafe_code)]
+
+pub mod app;
+pub mod command;
+pub mod document;
+pub mod files;
+mod headless;
+pub mod history;
+mod panels;
+pub mod picks;
+pub mod save;
+mod scene;
+pub mod session;
+pub mod settings;
+pub mod sources;
+pub mod stage;
+pub mod state;
+pub mod view;
+mod window;
+pub mod worker;
+mod write;
+
+pub use app::Viewer;
+pub use command::Command;
+pub use headless::{Drawn, draw_session};
+pub use window::{Options, ViewError, run, wgpu_setup};

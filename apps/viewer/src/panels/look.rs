@@ -1,0 +1,180 @@
+//! Colours, light, what is shown of cells.
+
+use eframe::egui::{self, ComboBox, Slider, Ui};
+use neurotess::colouring::Colouring;
+use neurotess::render::{ColourMap, Palette};
+
+use super::heading;
+use crate::command::Command;
+use crate::document::{ColourBy, Cut, Lighting, Look, Parts};
+use crate::state::State;
+
+pub(super) fn show(state: &mut State, _colouring: &Colouring, ui: &mut Ui) {
+    let mut look = state.document.look.clone();
+    let released = ui.input(|i| i.pointer.any_released());
+    colours(&mut look, ui);
+    heading(ui, "Shown");
+    ui.horizontal_wrapped(|ui| {
+        ui.selectable_value(&mut look.parts, Parts::All, "All");
+        ui.selectable_value(&mut look.parts, Parts::Soma, "Somata only");
+        ui.selectable_value(&mut look.parts, Parts::Neurites, "Neurites only");
+    });
+    ui.checkbox(&mut look.legend, "Legend");
+    ui.checkbox(&mut look.scale_bar, "Scale bar");
+    ui.checkbox(&mut look.axes, "Axes");
+    ui.checkbox(&mut look.wires, "Triangles")
+        .on_hover_text("Thin lines along the triangles' edges");
+    heading(ui, "Selection");
+    ui.checkbox(&mut look.mark_selected, "Colour of its own");
+    ui.checkbox(&mut look.faint_others, "See through the others");
+    if look.faint_others {
+        ui.add(
+            Slider::new(&mut look.faint, 0.02..=0.9)
+                .text("left of them")
+                .fixed_decimals(2),
+        );
+    }
+    light(&mut look, ui);
+    cut(&mut look, ui);
+    heading(ui, "Window");
+    let mut dark = state.settings.dark;
+    ui.horizontal(|ui| {
+        ui.selectable_value(&mut dark, true, "Dark");
+        ui.selectable_value(&mut dark, false, "Light");
+    });
+    if dark != state.settings.dark {
+        state.asked.push(Command::SetDark(dark));
+    }
+    if look != state.document.look {
+        state.asked.push(Command::SetLook(Box::new(look)));
+    } else if released {
+        state.history.end_joining();
+    }
+}
+
+fn colours(look: &mut Look, ui: &mut Ui) {
+    heading(ui, "Colours");
+    egui::Grid::new("colours").num_columns(2).show(ui, |ui| {
+        ui.label("by");
+        let name = ColourBy::ALL
+            .iter()
+            .find(|(by, _)| *by == look.colour_by)
+            .map_or("", |(_, n)| n);
+        ComboBox::from_id_salt("colour by")
+            .selected_text(name)
+            .show_ui(ui, |ui| {
+                for (by, name) in ColourBy::ALL {
+                    ui.selectable_value(&mut look.colour_by, by, name);
+                }
+            });
+        ui.end_row();
+        if look.colour_by.is_number() {
+            ui.label("map");
+            ComboBox::from_id_salt("map")
+                .selected_text(look.colour_map.name())
+                .show_ui(ui, |ui| {
+                    for map in ColourMap::ALL {
+                        ui.selectable_value(&mut look.colour_map, map, map.name());
+                    }
+                });
+        } else {
+            ui.label("palette");
+            ComboBox::from_id_salt("palette")
+                .selected_text(look.palette.name())
+                .show_ui(ui, |ui| {
+                    for palette in Palette::ALL {
+                        ui.selectable_value(&mut look.palette, palette, palette.name());
+                    }
+                });
+        }
+        ui.end_row();
+        ui.label("background");
+        ui.horizontal(|ui| {
+            ui.color_edit_button_srgb(&mut look.background);
+            for (name, colour) in [
+                ("white", [255; 3]),
+                ("grey", [58, 60, 64]),
+                ("black", [0; 3]),
+            ] {
+                ui.selectable_value(&mut look.background, colour, name);
+            }
+        });
+        ui.end_row();
+    });
+}
+
+fn light(look: &mut Look, ui: &mut Ui) {
+    heading(ui, "Light");
+    ui.horizontal(|ui| {
+        if ui
+            .selectable_label(look.light == Lighting::Soft, "Soft")
+            .clicked()
+        {
+            look.light = Lighting::Soft;
+        }
+        let from = matches!(look.light, Lighting::From { .. });
+        if ui.selectable_label(from, "From…").clicked() && !from {
+            look.light = Lighting::From {
+                right: -35.0,
+                up: 40.0,
+            };
+        }
+        if ui
+            .selectable_label(look.light == Lighting::Flat, "None")
+            .on_hover_text("The bare colours")
+            .clicked()
+        {
+            look.light = Lighting::Flat;
+        }
+    });
+    if let Lighting::From { right, up } = &mut look.light {
+        ui.add(
+            Slider::new(right, -180.0..=180.0)
+                .text("right")
+                .suffix("°")
+                .fixed_decimals(0),
+        );
+        ui.add(
+            Slider::new(up, -90.0..=90.0)
+                .text("up")
+                .suffix("°")
+                .fixed_decimals(0),
+        );
+    }
+    ui.checkbox(&mut look.occlusion, "Dark corners")
+        .on_hover_text("Ambient occlusion: where surfaces are near one another");
+}
+
+fn cut(look: &mut Look, ui: &mut Ui) {
+    heading(ui, "Cut");
+    ui.horizontal(|ui| {
+        if ui.selectable_label(look.cut.is_none(), "None").clicked() {
+            look.cut = None;
+        }
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let here = look.cut.is_some_and(|cut| cut.axis == axis);
+            if ui
+                .selectable_label(here, name)
+                .on_hover_text("A plane across this axis")
+                .clicked()
+            {
+                let cut = look.cut.unwrap_or(Cut {
+                    axis,
+                    place: 0.5,
+                    flipped: false,
+                });
+                look.cut = Some(Cut { axis, ..cut });
+            }
+        }
+        if let Some(cut) = &mut look.cut {
+            ui.checkbox(&mut cut.flipped, "other side");
+        }
+    });
+    if let Some(cut) = &mut look.cut {
+        ui.add(
+            Slider::new(&mut cut.place, 0.0..=1.0)
+                .text("place")
+                .fixed_decimals(2),
+        );
+    }
+}

@@ -1,0 +1,280 @@
+//! Sessions: a file that people can read and change.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::document::{Detail, Look, PlaceFile, SomaEdit};
+use crate::state::State;
+use crate::view::View;
+use crate::write::write_whole;
+
+/// Extension of sessions.
+pub const EXTENSION: &str = "neurotess";
+/// What stands in the file.
+const VERSION: u32 = 1;
+
+/// All that a session keeps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Session {
+    /// Of the format.
+    pub version: u32,
+    /// Side by side.
+    #[serde(default)]
+    pub grid: bool,
+    /// y runs down.
+    #[serde(default)]
+    pub y_down: bool,
+    /// From where.
+    #[serde(default)]
+    pub view: View,
+    /// Colours and light.
+    #[serde(default)]
+    pub look: Look,
+    /// How finely.
+    #[serde(default)]
+    pub detail: Detail,
+    /// Views of a film.
+    #[serde(default)]
+    pub key_view: Vec<View>,
+    /// Tracings.
+    #[serde(default)]
+    pub file: Vec<FileEntry>,
+    /// What is shown of them.
+    #[serde(default)]
+    pub neuron: Vec<NeuronEntry>,
+}
+
+/// A tracing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileEntry {
+    /// Relative to the session's folder where it can be.
+    pub path: PathBuf,
+    /// How its soma is made; nothing: as usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub soma: Option<SomaEdit>,
+}
+
+/// A neuron.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NeuronEntry {
+    /// Name in the list.
+    pub name: String,
+    /// Place of its tracing in the list of files, from 0.
+    pub file: usize,
+    /// Not drawn.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub hidden: bool,
+    /// Selected.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub selected: bool,
+    /// Where it stands; nothing: where it was traced.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) place: Option<PlaceFile>,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// Whether a file is named as sessions are.
+pub fn is_session(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION))
+}
+
+impl Session {
+    /// What is there now. `folder`: where the session will lie.
+    pub fn of(state: &State, folder: &Path) -> Self {
+        let document = &state.document;
+        let mut used: Vec<_> = document.neurons.iter().map(|n| n.source).collect();
+        used.sort_unstable();
+        used.dedup();
+        let file = used.iter().filter_map(|&id| {
+            let source = state.sources.get(id)?;
+            let soma = document.soma(id);
+            Some(FileEntry {
+                path: relative(&source.file, folder),
+                soma: (soma != SomaEdit::default()).then_some(soma),
+            })
+        });
+        let neuron = document.neurons.iter().map(|neuron| NeuronEntry {
+            name: neuron.name.clone(),
+            file: used.binary_search(&neuron.source).unwrap_or(0),
+            hidden: neuron.hidden,
+            selected: neuron.selected,
+            place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
+        });
+        Self {
+            version: VERSION,
+            grid: document.grid,
+            y_down: state.settings.y_down,
+            view: state.view,
+            look: document.look.clone(),
+            detail: document.detail,
+            key_view: state.key_views.clone(),
+            file: file.collect(),
+            neuron: neuron.collect(),
+        }
+    }
+
+    /// Reads a session; paths come back absolute or relative to where the program runs.
+    ///
+    /// # Errors
+    /// What is wrong, with its line, and what to do.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let text = fs::read_to_string(path).map_err(|e| format!("cannot be read: {e}"))?;
+        let mut session: Self = toml::from_str(&text).map_err(|e| {
+            let line = e
+                .span()
+                .map_or(0, |s| text[..s.start].lines().count().max(1));
+            format!(
+                "line {line}: {}: correct it, or open the files themselves",
+                e.message()
+            )
+        })?;
+        if session.version > VERSION {
+            return Err(format!(
+                "it is of version {}, this program knows {VERSION}: get a newer one",
+                session.version
+            ));
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for entry in &mut session.file {
+            if entry.path.is_relative() && !entry.path.to_string_lossy().starts_with("sample:") {
+                entry.path = folder.join(&entry.path);
+            }
+        }
+        if let Some(neuron) = session.neuron.iter().find(|n| n.file >= session.file.len()) {
+            return Err(format!(
+                "neuron '{}' is of file {}, but there are {}: correct it",
+                neuron.name,
+                neuron.file,
+                session.file.len()
+            ));
+        }
+        Ok(session)
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What went wrong and what to do.
+    pub fn write(&self, path: &Path) -> Result<(), String> {
+        let text = toml::to_string_pretty(self).map_err(|e| e.to_string())?;
+        write_whole(path, true, |to| {
+            use std::io::Write;
+            writeln!(
+                to,
+                "# A session of neurotess: `neurotess view FILE` opens it. Lengths are µm."
+            )?;
+            to.write_all(text.as_bytes())
+        })
+    }
+}
+
+/// A path as a session keeps it: relative to its folder if it lies below, so that both can be moved.
+fn relative(path: &Path, folder: &Path) -> PathBuf {
+    if path.to_string_lossy().starts_with("sample:") {
+        return path.to_path_buf();
+    }
+    let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let folder = fs::canonicalize(if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    });
+    let folder = folder.unwrap_or_default();
+    whole
+        .strip_prefix(&folder)
+        .map(Path::to_path_buf)
+        .unwrap_or(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::Command;
+    use crate::document::{ColourBy, Cut, Lighting, Neuron};
+    use crate::settings::Settings;
+    use crate::sources;
+
+    fn state() -> State {
+        let mut state = State::new(Settings::default());
+        let star = sources::sample(neurotess::synth::Kind::Star);
+        let source = sources::load(&star, SomaEdit::default()).expect("grown");
+        let id = state.sources.add(source);
+        for name in ["one", "two \"quoted\" µ"] {
+            let mut neuron = Neuron::new(id, name.into());
+            neuron.placement.translation.x = name.len() as f64;
+            state.document.neurons.push(neuron);
+        }
+        state.run(Command::Select(vec![1], false));
+        state.run(Command::SetHidden(0, true));
+        let soma = SomaEdit {
+            poisson: 0.12,
+            octahedron: true,
+            level: 3,
+            ..SomaEdit::default()
+        };
+        state.run(Command::SetSoma(vec![id], soma));
+        let mut look = state.document.look.clone();
+        look.colour_by = ColourBy::Depth;
+        look.light = Lighting::From {
+            right: 30.0,
+            up: -10.5,
+        };
+        look.cut = Some(Cut {
+            axis: 2,
+            place: 0.25,
+            flipped: true,
+        });
+        state.run(Command::SetLook(Box::new(look)));
+        state.run(Command::AddKeyView);
+        state
+    }
+
+    #[test]
+    fn a_session_comes_back_as_it_was() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.neurotess");
+        let session = Session::of(&state(), folder.path());
+        session.write(&file).expect("written");
+        assert_eq!(Session::read(&file).expect("read"), session);
+        assert!(is_session(&file));
+    }
+
+    #[test]
+    fn broken_sessions_have_a_line_and_a_reason() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.neurotess");
+        for (text, said) in [
+            ("version = 1\ngrid = 7\n", "line 2"),
+            ("version = 1\nunknown = 7\n", "unknown"),
+            ("version = 99\n", "newer"),
+            ("not a session", "line 1"),
+            ("version = 1\n[[neuron]]\nname = 'a'\nfile = 3\n", "file 3"),
+        ] {
+            fs::write(&file, text).expect("written");
+            let error = Session::read(&file).expect_err("broken");
+            assert!(error.contains(said), "{error}");
+        }
+        assert!(Session::read(&folder.path().join("none.neurotess")).is_err());
+    }
+
+    #[test]
+    fn files_beside_the_session_are_named_relatively() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let cell = folder.path().join("cell.swc");
+        fs::write(&cell, "").expect("written");
+        assert_eq!(relative(&cell, folder.path()), PathBuf::from("cell.swc"));
+        assert_eq!(
+            relative(Path::new("sample:star"), folder.path()),
+            PathBuf::from("sample:star")
+        );
+    }
+}

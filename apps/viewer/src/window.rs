@@ -1,0 +1,148 @@
+//! The frame of the desktop around the viewer.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui::{self, ViewportBuilder};
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use neurotess::render::{choose_adapter, device_descriptor};
+use thiserror::Error;
+
+use crate::app::Viewer;
+use crate::command::Command;
+use crate::settings::Settings;
+
+/// What to begin with.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Files, folders, circuits or a session to open.
+    pub inputs: Vec<PathBuf>,
+    /// Adapter to draw with: a part of its name.
+    pub adapter: Option<String>,
+}
+
+/// Why there is no window, or no more: `what: what to do`.
+#[derive(Debug, Error)]
+pub enum ViewError {
+    /// No desktop.
+    #[error(
+        "no display ({0}): start it on a desktop (ssh -X, VNC, Xvfb), or draw without a window by \
+         neurotess render"
+    )]
+    NoDisplay(String),
+    /// No adapter, or its driver refuses.
+    #[error("{0}")]
+    NoAdapter(String),
+    /// The device was lost.
+    #[error("{0}")]
+    Lost(String),
+}
+
+/// Opens the window and stays until it is closed.
+///
+/// # Errors
+/// Why it cannot be opened, or why it had to close.
+pub fn run(options: Options) -> Result<(), ViewError> {
+    if !has_display() {
+        let why = "neither DISPLAY nor WAYLAND_DISPLAY is set";
+        return Err(ViewError::NoDisplay(why.into()));
+    }
+    let fatal: Arc<Mutex<Option<String>>> = Arc::default();
+    let refused: Arc<Mutex<Option<String>>> = Arc::default();
+    let native = eframe::NativeOptions {
+        viewport: ViewportBuilder::default()
+            .with_title("neurotess")
+            .with_app_id("neurotess")
+            .with_inner_size([1280.0, 820.0])
+            .with_min_inner_size([480.0, 320.0])
+            .with_drag_and_drop(true),
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: wgpu_setup(options.adapter.clone(), Arc::clone(&refused)),
+            ..WgpuConfiguration::default()
+        },
+        ..eframe::NativeOptions::default()
+    };
+    let out = Arc::clone(&fatal);
+    let ended = eframe::run_native(
+        "neurotess",
+        native,
+        Box::new(move |context| Ok(Box::new(Window::new(context, options, out)?))),
+    );
+    let taken =
+        |slot: &Mutex<Option<String>>| slot.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(why) = taken(&fatal) {
+        return Err(ViewError::Lost(why));
+    }
+    ended.map_err(|e| match (taken(&refused), e) {
+        (Some(why), _) => ViewError::NoAdapter(why),
+        (None, eframe::Error::Winit(e)) => ViewError::NoDisplay(e.to_string()),
+        (None, eframe::Error::WinitEventLoop(e)) => ViewError::NoDisplay(e.to_string()),
+        (None, e) => ViewError::NoAdapter(format!(
+            "the window cannot be drawn ({e}): choose another adapter with --adapter"
+        )),
+    })
+}
+
+fn has_display() -> bool {
+    let desktop = cfg!(any(target_os = "windows", target_os = "macos"));
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    desktop || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
+
+/// The device that the renderer needs, shared with the window. Why none will do is left in `refused`.
+pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -> WgpuSetup {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    setup.instance_descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
+    setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+        let fits = |a: &&wgpu::Adapter| surface.is_none_or(|s| a.is_surface_supported(s));
+        let fitting: Vec<wgpu::Adapter> = adapters.iter().filter(fits).cloned().collect();
+        choose_adapter(&fitting, wanted.as_deref()).map_err(|e| {
+            let why = e.to_string();
+            *refused.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.clone());
+            why
+        })
+    }));
+    setup.device_descriptor = Arc::new(device_descriptor);
+    WgpuSetup::CreateNew(setup)
+}
+
+struct Window {
+    viewer: Viewer,
+    fatal: Arc<Mutex<Option<String>>>,
+}
+
+impl Window {
+    fn new(
+        context: &eframe::CreationContext<'_>,
+        options: Options,
+        fatal: Arc<Mutex<Option<String>>>,
+    ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
+        let render = context
+            .wgpu_render_state
+            .clone()
+            .ok_or("the window has no device")?;
+        let (settings, said) = Settings::load();
+        let mut viewer = Viewer::new(&context.egui_ctx, render, settings)?;
+        if let Some(said) = said {
+            viewer.state.problem("settings", said);
+        }
+        if !options.inputs.is_empty() {
+            viewer.state.run(Command::Open(options.inputs));
+        }
+        Ok(Self { viewer, fatal })
+    }
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.viewer.ui(ui);
+        if let Some(why) = self.viewer.fatal.take() {
+            *self.fatal.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+        }
+    }
+
+    fn on_exit(&mut self) {
+        self.viewer.remember();
+    }
+}

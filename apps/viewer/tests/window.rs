@@ -1,0 +1,583 @@
+//! The window, driven by commands, keys and mouse, with pictures of its main states.
+//!
+//! Pictures lie in `tests/snapshots`; `UPDATE_SNAPSHOTS=1 cargo test -p neurotess-viewer --test window`
+//! renews them. They are compared on software Vulkan: a pixel may be off by 0.8 of dify's measure, and
+//! 0.5 % of the pixels more than that, for times that are written out and for rasterisers.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Vec2};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
+use egui_kittest::{Harness, SnapshotOptions};
+use egui_wgpu::RendererOptions;
+use neurotess::render::{Side, adapters};
+use neurotess::synth::Kind;
+use neurotess_viewer::command::{Ask, Tab};
+use neurotess_viewer::document::{Criterion, Cut, Detail, Look, Method, SomaEdit, SourceId};
+use neurotess_viewer::save::{Fineness, MeshOptions, PictureFile};
+use neurotess_viewer::settings::Settings;
+use neurotess_viewer::sources::Stale;
+use neurotess_viewer::state::{Part, State};
+use neurotess_viewer::view::View;
+use neurotess_viewer::{Command, Viewer, wgpu_setup};
+
+const SIZE: Vec2 = Vec2::new(1180.0, 740.0);
+
+type Window = Harness<'static, Option<Viewer>>;
+
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
+/// The window on a software adapter if there is one, or nothing with a word about it.
+fn window() -> Option<Window> {
+    let found = adapters();
+    let Some(adapter) = found.iter().find(|a| a.software).or(found.first()) else {
+        println!("SKIPPED: no graphics adapter here");
+        return None;
+    };
+    let setup = wgpu_setup(Some(adapter.name.clone()), Arc::default());
+    let render = create_render_state(setup, RendererOptions::PREDICTABLE);
+    let ours = render.clone();
+    let settings = Settings {
+        folder: PathBuf::from("/"),
+        ..Settings::default()
+    };
+    let harness = Harness::builder()
+        .with_size(SIZE)
+        .renderer(WgpuTestRenderer::from_render_state(render))
+        .build_ui_state(
+            move |ui, viewer: &mut Option<Viewer>| {
+                let viewer = viewer.get_or_insert_with(|| {
+                    let made = Viewer::new(ui.ctx(), ours.clone(), settings.clone());
+                    made.expect("a viewer").without_motion()
+                });
+                viewer.ui(ui);
+            },
+            None,
+        );
+    Some(harness)
+}
+
+fn viewer(window: &mut Window) -> &mut Viewer {
+    window.state_mut().as_mut().expect("begun")
+}
+
+fn state(window: &mut Window) -> &mut State {
+    &mut viewer(window).state
+}
+
+/// Frames until nothing is under way.
+fn settle(window: &mut Window) {
+    let begun = Instant::now();
+    let mut quiet = 0;
+    while quiet < 3 {
+        assert!(begun.elapsed() < Duration::from_secs(120), "never settles");
+        window.step();
+        quiet = if viewer(window).is_settled() {
+            quiet + 1
+        } else {
+            0
+        };
+        std::thread::sleep(Duration::from_millis(3));
+    }
+}
+
+fn run(window: &mut Window, command: Command) {
+    state(window).run(command);
+    settle(window);
+}
+
+fn with_samples(kinds: &[Kind]) -> Option<Window> {
+    let mut window = window()?;
+    window.step();
+    for &kind in kinds {
+        run(&mut window, Command::OpenSample(kind));
+    }
+    Some(window)
+}
+
+/// A picture of the window beside the one that is kept.
+fn snapshot(window: &mut Window, name: &str) {
+    let options = SnapshotOptions::new()
+        .threshold(0.8)
+        .max_failed_pixels((SIZE.x * SIZE.y * 0.005) as usize);
+    window.snapshot_options(name, &options);
+}
+
+/// Middle of the picture.
+fn middle(window: &mut Window) -> Pos2 {
+    let size = window.ctx.content_rect().size();
+    assert!(size.x > 300.0);
+    // Where the soma of a single sample is: it is the target's.
+    let view = state(window).view;
+    let (left, right) = (236.0, 292.0);
+    let rect = egui::Rect::from_min_max(
+        Pos2::new(left, 24.0),
+        Pos2::new(size.x - right, size.y - 24.0),
+    );
+    let height = rect.height() as u32;
+    let pixel = view
+        .camera()
+        .pixel_of(glam::DVec3::ZERO, [rect.width() as u32, height]);
+    let [x, y] = pixel.expect("in front");
+    rect.min + Vec2::new(x as f32, y as f32)
+}
+
+fn click(window: &mut Window, at: Pos2, modifiers: Modifiers) {
+    window.event(Event::PointerMoved(at));
+    window.step();
+    for pressed in [true, false] {
+        window.event(Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers,
+        });
+        window.step();
+    }
+    // No double click with the next one.
+    window.run_steps(30);
+    settle(window);
+}
+
+#[test]
+fn an_empty_window_says_how_to_begin() {
+    let Some(mut window) = window() else { return };
+    window.run_steps(3);
+    snapshot(&mut window, "empty");
+    window.get_by_label("star").click();
+    window.step();
+    settle(&mut window);
+    assert_eq!(state(&mut window).document.neurons.len(), 1);
+    assert_eq!(state(&mut window).document.neurons[0].name, "star");
+}
+
+#[test]
+fn a_cell_is_drawn_picked_and_inspected() {
+    let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
+        return;
+    };
+    snapshot(&mut window, "cell");
+    let at = middle(&mut window);
+    window.event(Event::PointerMoved(at));
+    window.run_steps(4);
+    let hovered = state(&mut window)
+        .hovered
+        .expect("something under the cursor");
+    assert_eq!((hovered.neuron, hovered.part), (0, Part::Soma));
+    click(&mut window, at, Modifiers::NONE);
+    assert_eq!(
+        state(&mut window).document.selected().collect::<Vec<_>>(),
+        [0]
+    );
+    window.get_by_label("Soma, as traced");
+    snapshot(&mut window, "picked");
+    // Beside the cell is nothing.
+    click(&mut window, Pos2::new(250.0, 700.0), Modifiers::NONE);
+    assert_eq!(state(&mut window).document.selected().count(), 0);
+}
+
+#[test]
+fn tabs_show_their_panels() {
+    let Some(mut window) = with_samples(&[Kind::Star]) else {
+        return;
+    };
+    for (tab, name) in [
+        (Tab::Soma, "soma"),
+        (Tab::Look, "look"),
+        (Tab::Detail, "detail"),
+        (Tab::Save, "save"),
+    ] {
+        run(&mut window, Command::Show(tab));
+        snapshot(&mut window, name);
+    }
+    run(&mut window, Command::ToggleKeys);
+    snapshot(&mut window, "keys");
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    run(&mut window, Command::SetDark(false));
+    run(&mut window, Command::TogglePalette);
+    snapshot(&mut window, "palette_light");
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    run(&mut window, Command::AskFiles(Ask::Open));
+    window.get_by_label("Open this whole folder");
+}
+
+#[test]
+fn several_neurons_are_laid_out_selected_and_hidden() {
+    let kinds = [Kind::Star, Kind::Granule, Kind::Motor];
+    let Some(mut window) = with_samples(&kinds) else {
+        return;
+    };
+    run(&mut window, Command::SetGrid(true));
+    run(&mut window, Command::Home);
+    run(&mut window, Command::Select(vec![1], false));
+    let mut look = state(&mut window).document.look.clone();
+    look.faint_others = true;
+    run(&mut window, Command::SetLook(Box::new(look)));
+    snapshot(&mut window, "grid");
+    window.key_press(Key::H);
+    window.step();
+    settle(&mut window);
+    assert!(state(&mut window).document.neurons[1].hidden);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.step();
+    settle(&mut window);
+    assert!(!state(&mut window).document.neurons[1].hidden);
+}
+
+#[test]
+fn every_edit_can_be_undone_and_done_again() {
+    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
+        return;
+    };
+    run(&mut window, Command::Select(vec![0], false));
+    let look = Look {
+        cut: Some(Cut {
+            axis: 2,
+            place: 0.5,
+            flipped: false,
+        }),
+        wires: true,
+        ..Look::default()
+    };
+    let detail = Detail {
+        criterion: Criterion::Homogeneous,
+        level: 2,
+        ..Detail::default()
+    };
+    let soma = SomaEdit {
+        poisson: 0.1,
+        scale: 1.3,
+        ..SomaEdit::default()
+    };
+    let edits = [
+        Command::Select(vec![1], false),
+        Command::SelectAll,
+        Command::SelectNone,
+        Command::SelectOthers,
+        Command::Isolate,
+        Command::SetHidden(1, true),
+        Command::Hide,
+        Command::SetSoma(vec![SourceId(0)], soma),
+        Command::SetLook(Box::new(look)),
+        Command::SetDetail(detail),
+        Command::SetGrid(true),
+        Command::Remove,
+    ];
+    for edit in edits {
+        assert!(edit.edit().is_some(), "{edit:?}");
+        let before = state(&mut window).document.clone();
+        run(&mut window, edit.clone());
+        let after = state(&mut window).document.clone();
+        assert_ne!(before, after, "{edit:?} does something");
+        run(&mut window, Command::Undo);
+        assert_eq!(state(&mut window).document, before, "{edit:?} undone");
+        run(&mut window, Command::Redo);
+        assert_eq!(state(&mut window).document, after, "{edit:?} done again");
+        run(&mut window, Command::Undo);
+    }
+    run(&mut window, Command::Remove);
+    run(&mut window, Command::ShowAll);
+    assert_eq!(state(&mut window).document.neurons.len(), 1);
+    assert!(viewer(&mut window).fatal.is_none() && state(&mut window).problems.is_empty());
+}
+
+#[test]
+fn the_surface_follows_the_soma_editor() {
+    let Some(mut window) = with_samples(&[Kind::Motor]) else {
+        return;
+    };
+    let volume = |window: &mut Window| {
+        let source = state(window).source_of(0).expect("a source").clone();
+        source.generated.somata[0].volume
+    };
+    let usual = volume(&mut window);
+    for (edit, grows) in [
+        (
+            SomaEdit {
+                scale: 1.5,
+                ..SomaEdit::default()
+            },
+            true,
+        ),
+        (
+            SomaEdit {
+                scale: 0.7,
+                ..SomaEdit::default()
+            },
+            false,
+        ),
+        (
+            SomaEdit {
+                method: Method::Profile,
+                scale: 1.4,
+                ..SomaEdit::default()
+            },
+            true,
+        ),
+    ] {
+        run(&mut window, Command::SetSoma(vec![SourceId(0)], edit));
+        assert_eq!(volume(&mut window) > usual, grows, "{edit:?}");
+    }
+    run(&mut window, Command::Undo);
+    run(
+        &mut window,
+        Command::SetSoma(vec![SourceId(0)], SomaEdit::default()),
+    );
+    assert_eq!(volume(&mut window), usual);
+}
+
+#[test]
+fn nothing_is_drawn_when_nothing_changes() {
+    let Some(mut window) = with_samples(&[Kind::Star]) else {
+        return;
+    };
+    window.run_steps(40);
+    let output = window
+        .output()
+        .viewport_output
+        .values()
+        .next()
+        .expect("a window");
+    assert!(
+        output.repaint_delay > Duration::from_secs(1),
+        "{:?}",
+        output.repaint_delay
+    );
+    run(&mut window, Command::Look(Side::Top));
+    window.run_steps(40);
+    let output = window
+        .output()
+        .viewport_output
+        .values()
+        .next()
+        .expect("a window");
+    assert!(
+        output.repaint_delay > Duration::from_secs(1),
+        "{:?}",
+        output.repaint_delay
+    );
+}
+
+#[test]
+fn a_session_comes_back_as_it_was() {
+    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("mine.neurotess");
+    let soma = SomaEdit {
+        poisson: 0.05,
+        ..SomaEdit::default()
+    };
+    run(&mut window, Command::SetSoma(vec![SourceId(1)], soma));
+    run(&mut window, Command::Select(vec![1], false));
+    run(&mut window, Command::SetHidden(0, true));
+    run(&mut window, Command::Look(Side::Iso));
+    run(&mut window, Command::AddKeyView);
+    run(&mut window, Command::SaveSession(file.clone()));
+    let (document, view) = (state(&mut window).document.clone(), state(&mut window).view);
+    let Some(mut other) = self::window() else {
+        return;
+    };
+    other.step();
+    run(&mut other, Command::Open(vec![file.clone()]));
+    assert_eq!(state(&mut other).document, document);
+    assert_eq!(
+        (state(&mut other).view, state(&mut other).key_views.len()),
+        (view, 1)
+    );
+    // A broken one loses nothing.
+    fs::write(&file, "version = 1\nview = 3\n").expect("written");
+    run(&mut other, Command::Open(vec![file]));
+    assert_eq!(state(&mut other).document, document);
+    assert!(state(&mut other).problems[0].why.contains("line 2"));
+}
+
+const CELL: &str = "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n";
+
+#[test]
+fn failures_are_listed_while_the_rest_shows() {
+    let Some(mut window) = window() else { return };
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("good.swc"), CELL).expect("written");
+    fs::write(folder.path().join("bad.swc"), "no tracing\n").expect("written");
+    let missing = folder.path().join("missing.swc");
+    run(
+        &mut window,
+        Command::Open(vec![folder.path().to_path_buf(), missing]),
+    );
+    assert_eq!(state(&mut window).document.neurons.len(), 1);
+    assert_eq!(
+        state(&mut window).problems.len(),
+        2,
+        "{:?}",
+        state(&mut window).problems
+    );
+    run(&mut window, Command::ToggleProblems);
+    window.get_by_label("What went wrong");
+}
+
+#[test]
+fn a_changed_file_is_offered_and_read_again() {
+    let Some(mut window) = window() else { return };
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.swc");
+    fs::write(&file, CELL).expect("written");
+    run(&mut window, Command::Open(vec![file.clone()]));
+    fs::write(&file, CELL.replace("30", "60")).expect("written");
+    let later = std::time::SystemTime::now() + Duration::from_secs(9);
+    let handle = fs::File::options().write(true).open(&file).expect("there");
+    handle.set_modified(later).expect("touched");
+    wait(&mut window, |state| {
+        state
+            .source_of(0)
+            .is_some_and(|s| s.stale == Some(Stale::Changed))
+    });
+    state(&mut window).run(Command::Reload);
+    wait(&mut window, |state| {
+        state.source_of(0).is_some_and(|s| s.measures.length > 50.0)
+    });
+    settle(&mut window);
+    fs::remove_file(&file).expect("removed");
+    wait(&mut window, |state| {
+        state
+            .source_of(0)
+            .is_some_and(|s| s.stale == Some(Stale::Gone))
+    });
+    assert_eq!(
+        state(&mut window).document.neurons.len(),
+        1,
+        "what was read still shows"
+    );
+}
+
+fn wait(window: &mut Window, until: impl Fn(&State) -> bool) {
+    let begun = Instant::now();
+    while !until(state(window)) {
+        assert!(begun.elapsed() < Duration::from_secs(30), "never");
+        window.step();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn meshes_and_pictures_are_saved() {
+    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let meshes = MeshOptions {
+        out: at("all"),
+        format: neurotess::mesh::Format::Glb,
+        fineness: Fineness::Level(1),
+        quads: false,
+        linear: false,
+        flat: false,
+        placed: false,
+        all: true,
+        replace: false,
+    };
+    run(&mut window, Command::SaveMeshes(meshes.clone()));
+    assert!(at("all/star.glb").exists() && at("all/granule.glb").exists());
+    let picture = PictureFile {
+        out: at("p.png"),
+        size: [160, 120],
+        samples: 4,
+        transparent: true,
+        replace: false,
+    };
+    run(&mut window, Command::SavePicture(picture.clone()));
+    assert!(is_png(&at("p.png")) && state(&mut window).problems.is_empty());
+    run(&mut window, Command::SavePicture(picture));
+    assert!(
+        state(&mut window).problems[0].why.contains("exists"),
+        "nothing is replaced unasked"
+    );
+}
+
+fn is_png(path: &Path) -> bool {
+    fs::read(path).is_ok_and(|bytes| bytes.starts_with(b"\x89PNG") && bytes.len() > 200)
+}
+
+#[test]
+fn a_window_of_no_size_loses_nothing() {
+    let Some(mut window) = with_samples(&[Kind::Star]) else {
+        return;
+    };
+    for size in [
+        Vec2::new(1.0, 1.0),
+        Vec2::new(300.0, 20.0),
+        Vec2::new(640.0, 480.0),
+    ] {
+        window.set_size(size);
+        window.run_steps(6);
+    }
+    window.set_size(SIZE);
+    settle(&mut window);
+    assert_eq!(state(&mut window).document.neurons.len(), 1);
+    assert!(viewer(&mut window).fatal.is_none());
+}
+
+#[test]
+fn mouse_and_keys_move_the_camera() {
+    let Some(mut window) = with_samples(&[Kind::Star]) else {
+        return;
+    };
+    let view = |window: &mut Window| -> View { state(window).view };
+    let at = Pos2::new(500.0, 350.0);
+    let first = view(&mut window);
+    for (button, pressed, to) in [
+        (PointerButton::Primary, true, at),
+        (PointerButton::Primary, false, at + Vec2::new(60.0, 20.0)),
+        (PointerButton::Middle, true, at),
+        (PointerButton::Middle, false, at + Vec2::new(-40.0, 20.0)),
+    ] {
+        window.event(Event::PointerMoved(to));
+        window.step();
+        window.event(Event::PointerButton {
+            pos: to,
+            button,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        window.step();
+    }
+    let dragged = view(&mut window);
+    assert_ne!(dragged.eye, first.eye);
+    assert_ne!(dragged.target, first.target, "the middle button moves");
+    window.event(Event::PointerMoved(at));
+    window.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: Vec2::new(0.0, 60.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+        modifiers: Modifiers::NONE,
+    });
+    window.run_steps(20);
+    let distance = |view: View| view.camera().eye().distance(view.camera().target());
+    assert!(
+        distance(view(&mut window)) < 0.95 * distance(dragged),
+        "the wheel comes nearer"
+    );
+    let before = view(&mut window);
+    window.key_down(Key::W);
+    window.run_steps(6);
+    window.key_up(Key::W);
+    window.step();
+    assert_ne!(view(&mut window).eye, before.eye, "W flies");
+    for (key, axis) in [(Key::Num1, 2), (Key::Num2, 0), (Key::Num3, 1)] {
+        window.key_press(key);
+        window.step();
+        settle(&mut window);
+        let backward = view(&mut window).camera().axes()[2];
+        assert!(backward[axis] > 0.99, "{key:?}: {backward}");
+    }
+}
