@@ -176,6 +176,9 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
                 .map_err(|e| anyhow::anyhow!("{e}"))
         })?;
         stats.add(&cost, maker.made(gpu, camera, near, &options)?);
+        if let Some(lowered) = stats.lowered() {
+            reporter.warning(&lowered);
+        }
         progress.done();
     }
     drop(progress);

@@ -27,6 +27,18 @@ pub(crate) struct Stats {
     level_histogram: BTreeMap<u32, u64>,
     tiles: usize,
     pictures: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exploration: Option<Explored>,
+}
+
+/// What `--lod exploration` drew of what it would have, in triangles.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Explored {
+    budget: u64,
+    wanted: u64,
+    /// Left out, or drawn more coarsely than within half a pixel.
+    left_out: u64,
+    neurons_in_picture: u64,
 }
 
 /// Milliseconds.
@@ -61,11 +73,31 @@ impl Stats {
         self.level_histogram = made.levels;
         self.bytes_per_point = made.bytes_per_point;
         self.gpu_bytes = made.bytes;
+        self.exploration = made.exploration.map(|stats| Explored {
+            budget: stats.budget,
+            wanted: stats.wanted,
+            left_out: stats.wanted - stats.triangles.min(stats.wanted),
+            neurons_in_picture: stats.instances,
+        });
         self.gpu_bytes.insert("targets", cost.target_bytes);
         self.frame_ms = FrameTime {
             cpu: cost.cpu_ms,
             gpu: cost.gpu_ms.as_ref().map(|ms| ms.iter().copied().collect()),
         };
+    }
+
+    /// What was left out or lowered.
+    pub(crate) fn lowered(&self) -> Option<String> {
+        let Explored {
+            budget,
+            wanted,
+            left_out,
+            ..
+        } = self.exploration.filter(|explored| explored.left_out > 0)?;
+        Some(format!(
+            "the budget of {budget} triangles: {left_out} of {wanted} are left out, those that show \
+             least; --budget allows more"
+        ))
     }
 
     /// For people.
