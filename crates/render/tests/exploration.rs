@@ -320,15 +320,15 @@ fn instances_hide_and_come_back() {
         instances
     };
     assert_eq!(seen(&mut maker), [0, 1, 2, 3, 4]);
-    maker.set_hidden(&gpu, 0, true);
-    maker.set_hidden(&gpu, 3, true);
+    maker.set_hidden(0, true);
+    maker.set_hidden(3, true);
     assert_eq!(seen(&mut maker), [1, 2, 4]);
-    maker.set_hidden(&gpu, 3, false);
-    maker.set_state(&gpu, 1, 7);
+    maker.set_hidden(3, false);
+    maker.set_state(1, 7);
     assert_eq!(seen(&mut maker), [1, 2, 3, 4]);
     assert_eq!(maker.instances()[1].state, 7);
     for i in 0..5 {
-        maker.set_hidden(&gpu, i, true);
+        maker.set_hidden(i, true);
     }
     assert!(seen(&mut maker).is_empty());
     // Another template while it is in use.
@@ -340,6 +340,37 @@ fn instances_hide_and_come_back() {
         .set_instances(&gpu, vec![Instance::new(ids[0])])
         .expect("placed");
     assert_eq!(seen(&mut maker), [0]);
+}
+
+#[test]
+fn templates_are_recoloured_in_place() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let (words, table) = by_type(&mesh);
+    let plain = vec![words[0]; words.len()];
+    let camera = Camera::new(DVec3::Z * 120.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+    // From one word to many, which needs room, and back; beside another template.
+    let mut sketches = [Sketch::new(&mesh, &plain), Sketch::new(&mesh, &words)];
+    let mut maker = explored(&gpu, &sketches, vec![Instance::new(TemplateId(0))]);
+    let before = picture(&gpu, &mut maker, &camera, &table);
+    sketches[0].set_words(&words);
+    maker
+        .recolour(&gpu, TemplateId(0), &sketches[0])
+        .expect("recoloured");
+    let coloured = picture(&gpu, &mut maker, &camera, &table);
+    assert_ne!(before, coloured);
+    maker
+        .set_instances(&gpu, vec![Instance::new(TemplateId(1))])
+        .expect("placed");
+    assert_eq!(coloured, picture(&gpu, &mut maker, &camera, &table));
+    maker
+        .set_instances(&gpu, vec![Instance::new(TemplateId(0))])
+        .expect("placed");
+    sketches[0].set_words(&plain);
+    maker
+        .recolour(&gpu, TemplateId(0), &sketches[0])
+        .expect("recoloured");
+    assert_eq!(before, picture(&gpu, &mut maker, &camera, &table));
 }
 
 #[test]

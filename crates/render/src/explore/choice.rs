@@ -90,15 +90,19 @@ impl View {
             let radius = f64::from(run.radius) * scale / pixel;
             let area = std::f64::consts::PI * radius * radius;
             steps.add(256.0 * area.max(1.0), 1);
+            let own = run.counts[0];
+            let ball = if radius > 3.0 { DOME_QUADS } else { DISC_QUADS };
             if radius > 1.0 {
-                steps.add(16.0 * area, DISC_QUADS - 1);
+                steps.add(16.0 * area / f64::from(ball), ball - 1);
             }
-            if radius > 3.0 {
-                steps.add(area, DOME_QUADS - DISC_QUADS);
-            }
-            if radius > 6.0 && run.counts[0] > DOME_QUADS {
-                let quads = run.counts[0] - DOME_QUADS;
-                steps.add(8.0 * area / f64::from(quads), quads);
+            if radius > 6.0 && own > ball {
+                steps.add(8.0 * area / f64::from(own), own - ball);
+                let off = 2.0 * std::f64::consts::PI * radius / f64::from(own) / f64::from(ERROR);
+                let halvings = (0.5 * off.max(1.0).log2()).ceil().clamp(0.0, 3.0) as u32;
+                if halvings > 0 {
+                    let quads = (own << (2 * halvings)) - own;
+                    steps.add(area / f64::from(quads), quads);
+                }
             }
             return steps.0;
         }

@@ -241,21 +241,29 @@ fn soma_offers(run: Run, radius: f32) -> Offers {
     all.bins.x = bin_of(256.0 * max(area, 1.0));
     all.quads.x = 1u;
     all.forms.x = packed_form(WHAT_DOT, 0u, 0u, 1u, 63u);
-    if (radius > 1.0) {
-        all.bins.y = min(bin_of(16.0 * area), all.bins.x);
-        all.quads.y = DISC_QUADS - 1u;
-        all.forms.y = packed_form(WHAT_DISC, 0u, 0u, 1u, 63u);
+    if (radius <= 1.0) {
+        return all;
     }
-    if (radius > 3.0) {
-        all.bins.z = min(bin_of(area), all.bins.y);
-        all.quads.z = DOME_QUADS - DISC_QUADS;
-        all.forms.z = packed_form(WHAT_DOME, 0u, 0u, 1u, 63u);
+    let dome = radius > 3.0;
+    let ball = select(DISC_QUADS, DOME_QUADS, dome);
+    all.bins.y = min(bin_of(16.0 * area / f32(ball)), all.bins.x);
+    all.quads.y = ball - 1u;
+    all.forms.y = packed_form(select(WHAT_DISC, WHAT_DOME, dome), 0u, 0u, 1u, 63u);
+    let own = run.counts.x;
+    if (radius <= 6.0 || own <= ball) {
+        return all;
     }
-    if (radius > 6.0 && run.counts.x > DOME_QUADS) {
-        let quads = run.counts.x - DOME_QUADS;
-        all.bins.w = min(bin_of(8.0 * area / f32(quads)), all.bins.z);
+    all.bins.z = min(bin_of(8.0 * area / f32(own)), all.bins.y);
+    all.quads.z = own - ball;
+    all.forms.z = packed_form(WHAT_SOMA, 0u, 0u, 1u, 63u);
+    // Half a pixel where it bends four times as much as a ball of its size.
+    let off = 4.0 * (3.1416 / 2.0) * radius / f32(own) / eye.error;
+    let halvings = u32(clamp(ceil(0.5 * log2(max(off, 1.0))), 0.0, 3.0));
+    if (halvings > 0u) {
+        let quads = (own << (2u * halvings)) - own;
+        all.bins.w = min(bin_of(area / f32(quads)), all.bins.z);
         all.quads.w = quads;
-        all.forms.w = packed_form(WHAT_SOMA, 0u, 0u, 1u, 63u);
+        all.forms.w = packed_form(WHAT_SOMA, 0u, halvings, 1u, 63u);
     }
     return all;
 }

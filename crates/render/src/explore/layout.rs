@@ -192,7 +192,6 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("ERROR_STEPS", ERROR_STEPS),
         ("ERROR_OFFSET", ERROR_OFFSET),
         ("CELL", CELL as f32),
-        ("MOST_SWAY", MOST_SWAY),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?};");
     }

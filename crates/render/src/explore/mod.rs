@@ -14,9 +14,10 @@
 //! least, then balls, then their own mesh.
 //!
 //! **Practice.** [`Sketch::new`] on any thread, [`Exploration::add`] once a template,
-//! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`] and
-//! [`Exploration::set_state`] at any time: pipelines are made once. A frame uploads 192 bytes; where
-//! camera, size and scene are those of the frame before, it chooses nothing anew.
+//! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
+//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolour`] at any time:
+//! pipelines are made once. A frame uploads 144 bytes and what changed; where camera, size and scene
+//! are those of the frame before, it chooses nothing anew.
 //!
 //! Why not the patches of [`Adaptive`](crate::Adaptive)? They are closed and fit one another whatever
 //! their levels, and need eight triangles a segment for it. Seen from where a whole neuron fits the
@@ -27,6 +28,7 @@ mod layout;
 mod nested;
 mod passes;
 mod paths;
+mod residents;
 #[cfg(test)]
 mod shader_tests;
 mod sketch;
@@ -34,20 +36,23 @@ mod somata;
 mod stats;
 mod store;
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::{Frame, Tile, shows};
 use crate::maker::VertexMaker;
-use crate::scene::{Instance, SceneError, TemplateId, check_placement};
-use layout::{CELL, CHUNK, Eye, HIDDEN, Shape, Standing};
+use crate::scene::Instance;
+use layout::{CELL, CHUNK, Eye, Standing};
 use passes::{Groups, Passes, Resident, Size, Work, pieces_wgsl};
+use residents::Known;
 use store::Store;
 
 pub use choice::{Asked, asked};
+pub use residents::ExplorationError;
 pub use sketch::Sketch;
 pub use stats::{ExplorationStats, ShownPiece};
 
@@ -60,16 +65,6 @@ const ERROR: f32 = 0.5;
 /// Most of a picture's height that a tile's margin may reach over its border.
 const MOST_MARGIN: f64 = 0.1;
 
-/// What the host remembers of a template.
-#[derive(Clone, Copy, Debug)]
-struct Known {
-    origin: DVec3,
-    center: Vec3,
-    reach: f32,
-    runs: u32,
-    points: usize,
-}
-
 /// A maker that draws any scene within a budget of triangles.
 #[derive(Debug)]
 pub struct Exploration {
@@ -81,6 +76,8 @@ pub struct Exploration {
     words: Store,
     known: Vec<Known>,
     instances: Vec<Instance>,
+    /// Those that the device has not heard of yet.
+    edited: Range<usize>,
     work: Work,
     groups: Option<Groups>,
     /// Triangles.
@@ -108,6 +105,7 @@ impl Exploration {
             words: Store::new(gpu, "words", 0),
             known: Vec::new(),
             instances: Vec::new(),
+            edited: 0..0,
             work: Work::new(gpu, Size::default())?,
             groups: None,
             budget,
@@ -120,7 +118,7 @@ impl Exploration {
     /// Most triangles of a frame, at most [`MOST_BUDGET`], from the next frame on.
     pub fn set_budget(&mut self, triangles: u32) {
         self.budget = triangles.min(MOST_BUDGET);
-        *self.stale.get_mut() = true;
+        self.changed(false);
     }
 
     /// Most triangles of a frame.
@@ -131,122 +129,7 @@ impl Exploration {
     /// Sub-pixels of a pixel, along a side, from the next frame on.
     pub fn set_sub_pixels(&mut self, sub_pixels: u32) {
         self.sub_pixels = f64::from(sub_pixels.max(1));
-        *self.stale.get_mut() = true;
-    }
-
-    /// Uploads templates, with numbers that follow those already there.
-    ///
-    /// # Errors
-    /// They do not fit what the device can bind in one piece, or it refuses.
-    pub fn add(&mut self, gpu: &Gpu, sketches: &[Sketch]) -> Result<Vec<TemplateId>, DeviceError> {
-        let first = self.known.len();
-        let (mut runs, mut shapes) = (Vec::new(), Vec::new());
-        let (mut heap, mut words): (Vec<u32>, Vec<u32>) = (Vec::new(), Vec::new());
-        let first_run = self.runs.used() as usize / size_of::<layout::Run>();
-        let first_heap = self.heap.used() as usize / 4;
-        let first_word = self.words.used() as usize / 4;
-        for sketch in sketches {
-            shapes.push(Shape {
-                center: sketch.center.to_array(),
-                reach: sketch.reach,
-                first_run: (first_run + runs.len()) as u32,
-                runs: sketch.runs.len() as u32,
-                ..Shape::default()
-            });
-            let at = (first_heap + heap.len(), first_word + words.len());
-            runs.extend(sketch.runs.iter().map(|run| sketch::moved(run, at)));
-            heap.extend(&sketch.heap);
-            words.extend(&sketch.words);
-        }
-        let grown = [
-            self.runs.append(gpu, &runs)?,
-            self.shapes.append(gpu, &shapes)?,
-            self.heap.append(gpu, &heap)?,
-            self.words.append(gpu, &words)?,
-        ];
-        self.known.extend(sketches.iter().map(|sketch| Known {
-            origin: sketch.origin,
-            center: sketch.center,
-            reach: sketch.reach,
-            runs: sketch.runs.len() as u32,
-            points: sketch.point_count(),
-        }));
-        if grown.contains(&true) {
-            self.groups = None;
-        }
-        *self.stale.get_mut() = true;
-        gpu.check()?;
-        Ok((first..self.known.len())
-            .map(|id| TemplateId(id as u32))
-            .collect())
-    }
-
-    /// Other instances. Shaders know an instance by its place in this list.
-    ///
-    /// # Errors
-    /// An instance without a template, or nowhere.
-    pub fn set_instances(
-        &mut self,
-        gpu: &Gpu,
-        instances: Vec<Instance>,
-    ) -> Result<(), ExplorationError> {
-        for (i, instance) in instances.iter().enumerate() {
-            check_placement(i, instance, self.known.len())?;
-        }
-        let standing: Vec<Standing> = instances.iter().map(|i| self.stand(i)).collect();
-        if self.standing.replace(gpu, &standing)? {
-            self.groups = None;
-        }
-        self.instances = instances;
-        *self.stale.get_mut() = true;
-        gpu.check()?;
-        Ok(())
-    }
-
-    /// The instances.
-    pub fn instances(&self) -> &[Instance] {
-        &self.instances
-    }
-
-    /// Shows an instance or hides it, from the next frame on.
-    ///
-    /// # Panics
-    /// If there is no such instance.
-    pub fn set_hidden(&mut self, gpu: &Gpu, instance: usize, hidden: bool) {
-        self.instances[instance].hidden = hidden;
-        self.rewrite(gpu, instance);
-    }
-
-    /// Another state of an instance, from the next frame on.
-    ///
-    /// # Panics
-    /// If there is no such instance.
-    pub fn set_state(&mut self, gpu: &Gpu, instance: usize, state: u32) {
-        self.instances[instance].state = state;
-        self.rewrite(gpu, instance);
-    }
-
-    fn rewrite(&mut self, gpu: &Gpu, instance: usize) {
-        let standing = self.stand(&self.instances[instance]);
-        self.standing.write(gpu, instance, &[standing]);
-        *self.stale.get_mut() = true;
-    }
-
-    /// Where an instance stands, as shaders are told.
-    fn stand(&self, instance: &Instance) -> Standing {
-        let at = instance.placement;
-        let origin = at.world_from_cell(self.known[instance.template.0 as usize].origin);
-        let (cell, offset) = in_cells(origin);
-        Standing {
-            rotation: at.rotation.as_quat().to_array(),
-            offset,
-            scale: at.scale as f32,
-            cell,
-            shape: instance.template.0,
-            flags: if instance.hidden { HIDDEN } else { 0 },
-            state: instance.state,
-            ..Standing::default()
-        }
+        self.changed(false);
     }
 
     /// Bytes on the device by the name of the buffer.
@@ -310,17 +193,6 @@ impl Exploration {
     }
 }
 
-/// Why a scene cannot be explored.
-#[derive(Debug, thiserror::Error)]
-pub enum ExplorationError {
-    /// An instance is wrong.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The device refuses.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
-}
-
 /// The cell that a point of the world is in, and where in it (µm).
 fn in_cells(p: DVec3) -> ([i32; 3], [f32; 3]) {
     let cell = (p / CELL).floor();
@@ -353,6 +225,12 @@ impl VertexMaker for Exploration {
 
     /// One choice for the whole picture, whatever the tile.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        if !self.edited.is_empty() {
+            let edited = std::mem::take(&mut self.edited);
+            let instances = &self.instances[edited.clone()];
+            let standing: Vec<Standing> = instances.iter().map(|i| self.stand(i)).collect();
+            self.standing.write(gpu, edited.start, &standing);
+        }
         let size = self.size();
         if !self.work.holds(&size) {
             self.work = Work::new(gpu, size)?;
@@ -395,7 +273,9 @@ impl VertexMaker for Exploration {
     ) {
         let groups = self.groups.as_ref();
         let groups = groups.filter(|_| self.stale.swap(false, Ordering::Relaxed));
-        self.passes.record(encoder, &self.work, groups, timestamps);
+        let instances = self.instances.len();
+        self.passes
+            .record(encoder, &self.work, groups, instances, timestamps);
     }
 
     fn draw(&self, _round: usize, _shader: usize, pass: &mut wgpu::RenderPass<'_>) {

@@ -1,6 +1,7 @@
 //! The compute passes of exploration and the buffers that they share: see `choose.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
+use neurotess_refine::gpu;
 use wgpu::BufferUsages;
 
 use super::layout::{BINS, BLOCK, CHUNK, Eye, Piece, Sums, WIDE, compose};
@@ -82,7 +83,7 @@ pub(crate) struct Passes {
 }
 
 /// What a frame may have to do with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Size {
     pub(crate) instances: usize,
     pub(crate) runs: u64,
@@ -215,6 +216,7 @@ impl Passes {
         encoder: &mut wgpu::CommandEncoder,
         work: &Work,
         groups: Option<&Groups>,
+        instances: usize,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
         if groups.is_some() {
@@ -225,7 +227,7 @@ impl Passes {
             timestamp_writes: timestamps,
         });
         let Some(groups) = groups else { return };
-        let of_instances = (work.size.instances.div_ceil(WIDE) as u32).max(1);
+        let of_instances = (instances.div_ceil(WIDE) as u32).max(1);
         for ((step, pipeline), group) in STEPS.iter().zip(&self.pipelines).zip(&groups.passes) {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, group, &[]);
@@ -292,6 +294,7 @@ impl Work {
         Ok(work)
     }
 
+    /// Whether a scene of this size fits: smaller ones need no other buffers.
     pub(crate) fn holds(&self, size: &Size) -> bool {
         let Size {
             instances,
@@ -299,11 +302,10 @@ impl Work {
             chunks,
             budget,
         } = self.size;
-        // Fewer runs than there were need no other buffers.
-        instances == size.instances
-            && budget == size.budget
+        instances >= size.instances
             && runs >= size.runs
             && chunks >= size.chunks
+            && budget >= size.budget
     }
 
     pub(crate) fn bytes(&self) -> Vec<(&'static str, u64)> {
@@ -340,7 +342,9 @@ pub(crate) fn choose_wgsl() -> String {
 
 /// What makes vertices.
 pub(crate) fn pieces_wgsl() -> String {
-    compose(&[include_str!("pieces.wgsl")])
+    // Somata near by are evaluated as everywhere.
+    let own = compose(&[include_str!("pieces.wgsl")]);
+    [&gpu::prelude(), gpu::EVALUATE_WGSL, &own].concat()
 }
 
 fn binding(binding: u32) -> wgpu::BindGroupLayoutEntry {

@@ -1,6 +1,7 @@
 // Vertices of what exploration has chosen: four for each quad.
 //
-// `surface_vertex` is the seam to the shading (maker.rs); SurfaceVertex and explore.wgsl come before.
+// `surface_vertex` is the seam to the shading (maker.rs); SurfaceVertex, refine's evaluate.wgsl and
+// explore.wgsl come before.
 // A tube is drawn as the half of it that faces the eye: one strip as wide as the tube, or 5, 10 or 20
 // around it. A ball is drawn as the cap that faces the eye.
 
@@ -268,16 +269,50 @@ fn ball_vertex(center: vec3<f32>, radius: f32, what: u32, index: u32, corner: u3
     return SurfaceVertex(center + offset * radius, normal, center, radius, 0u, 0u, grid);
 }
 
-fn soma_vertex(piece: Piece, index: u32, corner: u32) -> SurfaceVertex {
-    let run = runs[piece.run];
-    let stands = standing[piece.instance];
-    let pair = heap[run.first + 2u * run.counts.y + 2u * index + corner / 2u];
-    let vertex = (pair >> (16u * (corner & 1u))) & 0xffffu;
+// A corner of a soma's quad, as evaluate.wgsl takes it, in the template.
+fn soma_corner(run: Run, vertex: u32) -> Corner {
     let low = heap[run.first + 2u * vertex];
     let high = heap[run.first + 2u * vertex + 1u];
     let bytes = vec2<i32>(i32(high << 8u) >> 24u, i32(high) >> 24u);
-    let normal = turn(stands.rotation, from_octahedral(vec2<f32>(bytes) / 127.0));
-    let position = relative(stands, stored_position(run, low, high));
-    let word = word_at(run, vertex);
-    return SurfaceVertex(position, normal, position, 0.0, word, piece.instance, corner_grid(corner));
+    let normal = from_octahedral(vec2<f32>(bytes) / 127.0);
+    let position = stored_position(run, low, high);
+    return Corner(position, normal, position, normal, normal, normal, 0.0, ROLE_SOMA);
+}
+
+// A soma's own quads, or 4, 16 or 64 in place of each.
+fn soma_vertex(piece: Piece, index: u32, corner: u32) -> SurfaceVertex {
+    let run = runs[piece.run];
+    let stands = standing[piece.instance];
+    let halvings = (piece.form >> 6u) & 3u;
+    let own = run.first + 2u * run.counts.y + 2u * (index >> (2u * halvings));
+    let vertices = vec4<u32>(heap[own], heap[own] >> 16u, heap[own + 1u], heap[own + 1u] >> 16u)
+        & vec4<u32>(0xffffu);
+    let grid = corner_grid(corner);
+    var position: vec3<f32>;
+    var normal: vec3<f32>;
+    if (halvings == 0u) {
+        let v = soma_corner(run, vertices[corner]);
+        position = v.position;
+        normal = v.normal;
+    } else {
+        let side = 1u << halvings;
+        let x = (f32(index % side) + grid.x) / f32(side);
+        let y = (f32((index / side) % side) + grid.y) / f32(side);
+        // Every edge the same way, whichever of its two quads asks.
+        let sides = vec4<u32>(EDGE_SOMA) | SIDE_REVERSED * vec4<u32>(vertices.xywx > vertices.yzzw);
+        let shape = PatchShape(
+            PATCH_SOMA,
+            soma_corner(run, vertices.x),
+            soma_corner(run, vertices.y),
+            soma_corner(run, vertices.z),
+            soma_corner(run, vertices.w),
+            sides,
+        );
+        let inside = coons(shape, x, y);
+        position = inside.position;
+        normal = inside.normal;
+    }
+    let there = relative(stands, position);
+    let facing = turn(stands.rotation, normal);
+    return SurfaceVertex(there, facing, there, 0.0, word_at(run, 0u), piece.instance, grid);
 }

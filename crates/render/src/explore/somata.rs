@@ -127,7 +127,7 @@ fn add_soma(sketch: &mut Sketch, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
             ..Run::default()
         },
         // The rings of neurites have the soma's colour on its side.
-        vertices.iter().map(|_| at(&vertices[0]).tracing).collect(),
+        vec![at(&vertices[0]).tracing],
     );
 }
 

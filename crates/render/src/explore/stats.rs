@@ -71,22 +71,22 @@ impl Exploration {
             .zip(ends)
             .map(|(piece, end)| ShownPiece {
                 instance: piece.instance,
-                run: piece.run - self.first_run(piece.instance),
+                run: piece.run - self.first_run(piece.instance as usize),
                 form: piece.form,
                 quads: end - piece.first,
             })
             .collect())
     }
 
-    fn first_run(&self, instance: u32) -> u32 {
-        let template = self.instances[instance as usize].template.0 as usize;
-        self.known[..template].iter().map(|known| known.runs).sum()
+    fn first_run(&self, instance: usize) -> u32 {
+        self.known[self.instances[instance].template.0 as usize].first_run
     }
 
     fn sums(&self, gpu: &Gpu) -> Result<Sums, DeviceError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let (groups, instances) = (self.groups.as_ref(), self.instances.len());
         self.passes
-            .record(&mut encoder, &self.work, self.groups.as_ref(), None);
+            .record(&mut encoder, &self.work, groups, instances, None);
         gpu.queue.submit([encoder.finish()]);
         let sums = read_back(gpu, &self.work.sums, 1)?;
         Ok(sums.first().copied().unwrap_or_default())
