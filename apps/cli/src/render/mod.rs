@@ -30,7 +30,7 @@ use cells::Cell;
 use colouring::Colouring;
 use maker::Maker;
 use places::Cast;
-use stats::Stats;
+use stats::{Stage, Stages, Stats};
 
 /// Width (pixels) of the lines of a wireframe.
 const WIRE: f32 = 1.0;
@@ -42,7 +42,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     for file in files.iter().chain(&args.stats) {
         refuse_existing(file, args.force)?;
     }
+    let mut stages = Stages::begin();
     let Cast { entries, places } = places::cast(args, reporter)?;
+    stages.end(Stage::Read);
     let cells: Vec<&Cell> = entries
         .iter()
         .filter_map(|entry| match entry {
@@ -55,7 +57,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     }
     let balls = places::balls(&cells, &places);
     let cameras = sight::cameras(args, &balls)?;
+    stages.end(Stage::Frame);
     let gpu = Gpu::open(args.adapter.as_deref())?;
+    stages.end(Stage::Adapter);
     if gpu.adapter.software {
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
@@ -71,7 +75,10 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         overlay: &overlay,
         files: &files,
     };
-    let stats = draw(&gpu, &sitting, reporter)?;
+    stages.end(Stage::Frame);
+    let mut stats = draw(&gpu, &sitting, &mut stages, reporter)?;
+    stages.end(Stage::Draw);
+    stats.took(stages);
     if let Some(path) = &args.stats {
         let mut output = Output::create(path, args.force)?;
         serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
@@ -142,7 +149,12 @@ struct Sitting<'a> {
     files: &'a [PathBuf],
 }
 
-fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result<Stats> {
+fn draw(
+    gpu: &Gpu,
+    sitting: &Sitting<'_>,
+    stages: &mut Stages,
+    reporter: &Reporter,
+) -> anyhow::Result<Stats> {
     let Sitting {
         args,
         places,
@@ -162,6 +174,7 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
     let mut maker = Maker::new(gpu, &options, sitting)?;
+    stages.end(Stage::Upload);
     let mut stats = Stats::new(gpu, places.len());
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (camera, file) in cameras.iter().zip(files) {
