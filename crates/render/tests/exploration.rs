@@ -303,6 +303,27 @@ fn a_slow_camera_sees_nothing_pop() {
 }
 
 #[test]
+fn what_passes_beside_the_eye_takes_no_budget() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = cell(7, 60);
+    let (_, table) = by_type(&mesh);
+    let instances = places(&mut Random(6), 300, 1, 250.0);
+    let (_, mut maker) = both(&gpu, &mesh, &instances);
+    let camera = Camera::new(DVec3::Z * 20.0, DVec3::ZERO, DVec3::Y, 0.9).expect("a camera");
+    maker.set_budget(MOST_BUDGET);
+    let all: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+        .iter()
+        .sum();
+    maker.set_budget(40_000);
+    let found: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+        .iter()
+        .sum();
+    let stats = maker.stats(&gpu).expect("counted");
+    println!("{:.3} of the ink, {stats:?}", found / all);
+    assert!(stats.wanted > 10 * stats.budget && found > 0.8 * all);
+}
+
+#[test]
 fn instances_hide_and_come_back() {
     let Some(gpu) = gpu() else { return };
     let sketch = Sketch::new(&cell(1, 20), &[]);

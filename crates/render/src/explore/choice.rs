@@ -16,6 +16,7 @@ use crate::scene::Placement;
 const DISC_QUADS: u32 = 4;
 const DOME_QUADS: u32 = 18;
 const HALF_PIXEL: f64 = 0.5;
+const LOOKED_AT: u32 = 8;
 
 /// A step in which a run is drawn better.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,13 @@ pub fn asked(
         if !view.sees(whole) || !view.sees(ball) {
             return Vec::new();
         }
-        view.asked(run, ball, placement.scale, chance(instance))
+        let at = |p: Vec3| placed(p, 0.0, sketch, placement).0;
+        let seen = view.seen(run, ball, placement.scale, &|form| {
+            points(sketch, run, form, &at)
+        });
+        seen.map_or(Vec::new(), |seen| {
+            view.asked(run, seen, placement.scale, chance(instance))
+        })
     })
     .collect()
 }
@@ -75,16 +82,49 @@ impl View {
         })
     }
 
-    fn asked(
+    /// Depths of the nearest that shows and in the mean, and the share that shows.
+    fn seen(
         &self,
         run: &Run,
         (center, reach): (DVec3, f64),
         scale: f64,
-        chance: f64,
-    ) -> Vec<Asked> {
-        let depth = self.camera.depth(center);
-        let nearest = self.slope * (depth - reach).max(self.frame.near);
-        let pixel = (self.slope * depth).max(nearest);
+        points: &dyn Fn(usize) -> Vec<DVec3>,
+    ) -> Option<[f64; 3]> {
+        let (depth, near) = (self.camera.depth(center), self.frame.near);
+        if run.flags & RUN_SOMA != 0 {
+            return Some([near, depth, 1.0]);
+        }
+        let planes = self.frame.frustum();
+        let planes = planes.map(|p| (p.truncate().as_dvec3(), f64::from(p.w)));
+        let off = |p: DVec3| planes.map(|(normal, w)| normal.dot(p - self.camera.eye()) + w);
+        if depth > 4.0 * reach && off(center).iter().all(|&off| off >= reach) {
+            return Some([depth - reach, depth, 1.0]);
+        }
+        let finest = (0..LEVELS).find(|&k| (1..=LOOKED_AT).contains(&form(run, k).0));
+        let level = finest.unwrap_or(0);
+        let margin = (form(run, level).1 + f64::from(run.radius)) * scale;
+        let (mut nearest, mut middle, mut share, mut all) = (f64::MAX, 0.0, 0.0, 0.0);
+        for pair in points(level).windows(2) {
+            let span = pair[0].distance(pair[1]);
+            all += span;
+            let [a, b] = [pair[0], pair[1]].map(|p| self.camera.depth(p));
+            let reach = margin + self.slope * a.max(b).max(near);
+            let Some([from, to]) = between(off(pair[0]), off(pair[1]), reach) else {
+                continue;
+            };
+            let there = [from, to].map(|t| a + (b - a) * t);
+            let part = (to - from) * span + 1e-6;
+            nearest = nearest.min(there[0].min(there[1]) - margin);
+            middle += part * 0.5 * (there[0] + there[1]);
+            share += part;
+        }
+        (share > 0.0).then(|| [nearest, middle / share, share / all.max(1e-6)])
+    }
+
+    fn asked(&self, run: &Run, seen: [f64; 3], scale: f64, chance: f64) -> Vec<Asked> {
+        let [nearest, middle, share] = seen;
+        let nearest = self.slope * nearest.max(self.frame.near);
+        let pixel = (self.slope * middle).max(nearest);
         let mut steps = Steps::default();
         if run.flags & RUN_SOMA != 0 {
             let radius = f64::from(run.radius) * scale / pixel;
@@ -112,7 +152,7 @@ impl View {
             true => 1.0 - (1.0 - (mean / HALF_PIXEL).sqrt()).powi(3),
             false => 2.0 * mean,
         };
-        let length = f64::from(run.length.min(2.0 * run.reach)) / far_pixel;
+        let length = f64::from(run.length.min(2.0 * run.reach)) * share.min(1.0) / far_pixel;
         let area = length.max(0.25) * width;
         let error = f64::from(ERROR) * near_pixel;
         let (coarse, fine) = (within(run, 4.0 * error), within(run, error));
@@ -162,6 +202,41 @@ impl Steps {
             quads,
         });
     }
+}
+
+/// The part of a way that is on the right side of all planes, or within a reach: from 0 to 1.
+fn between(a: [f64; 5], b: [f64; 5], reach: f64) -> Option<[f64; 2]> {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for (a, b) in a.iter().zip(b).map(|(a, b)| (a + reach, b + reach)) {
+        match (a < 0.0, b < 0.0) {
+            (true, true) => return None,
+            (true, false) => from = from.max(a / (a - b)),
+            (false, true) => to = to.min(a / (a - b)),
+            (false, false) => {}
+        }
+    }
+    (from <= to).then_some([from, to])
+}
+
+/// Points of a form, placed in the world.
+fn points(sketch: &Sketch, run: &Run, level: usize, at: &dyn Fn(Vec3) -> DVec3) -> Vec<DVec3> {
+    let all = form(run, 0).0 as usize + 1;
+    let words = &sketch.heap[run.first as usize..];
+    let bytes = words[2 * all..].iter().flat_map(|word| word.to_le_bytes());
+    let bytes: Vec<u8> = bytes.take(2 * all).collect();
+    let before = (1..level).map(|k| form(run, k).0).filter(|&n| n > 0);
+    let first = before.map(|n| n as usize + 1).sum::<usize>();
+    let point = |i: usize| {
+        let kept = if level == 0 {
+            i
+        } else {
+            usize::from(bytes[first + i])
+        };
+        let [low, high] = [words[2 * kept], words[2 * kept + 1]];
+        let steps = [low & 0xffff, low >> 16, high & 0xffff].map(|n| n as f32);
+        at(Vec3::from_array(run.low) + run.step * Vec3::from_array(steps))
+    };
+    (0..=form(run, level).0 as usize).map(point).collect()
 }
 
 /// Segments and error (µm) of a form.

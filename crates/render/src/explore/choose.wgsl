@@ -43,10 +43,14 @@ struct Arguments {
     draws: array<u32, 10>,
 }
 
+struct Book {
+    sums: Sums,
+    // By instance: chunks, then the place of its first.
+    starts: array<u32>,
+}
+
 @group(0) @binding(2) var<storage, read> shapes: array<Shape>;
-// By instance: chunks, then the place of its first.
-@group(0) @binding(4) var<storage, read_write> chunks: array<u32>;
-@group(0) @binding(5) var<storage, read_write> sums: Sums;
+@group(0) @binding(4) var<storage, read_write> book: Book;
 @group(0) @binding(6) var<storage, read_write> arguments: Arguments;
 // By chunk: the greatest class of its runs.
 @group(0) @binding(7) var<storage, read_write> best: array<u32>;
@@ -70,7 +74,7 @@ fn stand(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         && in_sight(relative(place, shape.center), shape.reach * place.scale)) {
         count = (shape.runs + CHUNK - 1u) / CHUNK;
     }
-    chunks[instance] = count;
+    book.starts[instance] = count;
 }
 
 var<workgroup> parts: array<u32, WIDE>;
@@ -103,22 +107,22 @@ fn sum_chunks(@builtin(local_invocation_index) lane: u32) {
     let end = min(first + share, eye.instances);
     var sum = 0u;
     for (var i = first; i < end; i += 1u) {
-        sum += chunks[i];
+        sum += book.starts[i];
     }
     var at = sum_before(lane, sum);
     let total = parts[WIDE - 1u];
     var seen = 0u;
     for (var i = first; i < end; i += 1u) {
-        let count = chunks[i];
-        chunks[i] = at;
+        let count = book.starts[i];
+        book.starts[i] = at;
         at += count;
         seen += u32(count > 0u);
     }
     workgroupBarrier();
     let before = sum_before(lane, seen);
     if (lane == 0u) {
-        sums.chunks = total;
-        sums.instances = parts[WIDE - 1u];
+        book.sums.chunks = total;
+        book.sums.instances = parts[WIDE - 1u];
         arguments.chunks = dispatch_of(total);
     }
 }
@@ -129,7 +133,7 @@ fn owner_of(chunk: u32) -> u32 {
     var high = eye.instances;
     while (high - low > 1u) {
         let middle = (low + high) / 2u;
-        if (chunks[middle] <= chunk) {
+        if (book.starts[middle] <= chunk) {
             low = middle;
         } else {
             high = middle;
@@ -149,7 +153,7 @@ fn asked(chunk: u32, lane: u32) -> Asked {
     let instance = owner_of(chunk);
     let place = standing[instance];
     let shape = shapes[place.shape];
-    let index = (chunk - chunks[instance]) * CHUNK + lane;
+    let index = (chunk - book.starts[instance]) * CHUNK + lane;
     if (index >= shape.runs) {
         return Asked(instance, 0u, no_offers());
     }
@@ -162,7 +166,7 @@ var<workgroup> greatest: atomic<u32>;
 @compute @workgroup_size(CHUNK)
 fn measure(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let chunk = group.y * ROW + group.x;
-    let there = chunk < sums.chunks;
+    let there = chunk < book.sums.chunks;
     if (there) {
         let offers = asked(chunk, lane).offers;
         for (var k = 0u; k < 4u; k += 1u) {
@@ -201,9 +205,9 @@ fn limit(@builtin(local_invocation_index) lane: u32) {
     }
     workgroupBarrier();
     let threshold = max(atomicLoad(&least), 1u);
-    let share = (sums.chunks + WIDE - 1u) / WIDE;
-    let first = min(lane * share, sums.chunks);
-    let end = min(first + share, sums.chunks);
+    let share = (book.sums.chunks + WIDE - 1u) / WIDE;
+    let first = min(lane * share, book.sums.chunks);
+    let end = min(first + share, book.sums.chunks);
     var count = 0u;
     for (var i = first; i < end; i += 1u) {
         count += u32(best[i] >= threshold);
@@ -219,9 +223,9 @@ fn limit(@builtin(local_invocation_index) lane: u32) {
         }
     }
     if (lane == 0u) {
-        sums.live = total;
-        sums.threshold = threshold;
-        sums.wanted = wanted;
+        book.sums.live = total;
+        book.sums.threshold = threshold;
+        book.sums.wanted = wanted;
         arguments.live = dispatch_of(total);
     }
 }
@@ -234,7 +238,7 @@ struct Drawn {
 
 fn drawn(offers: Offers) -> Drawn {
     var it = Drawn(0u, 0u);
-    let threshold = sums.threshold;
+    let threshold = book.sums.threshold;
     for (var k = 0u; k < 4u; k += 1u) {
         if (offers.quads[k] > 0u && offers.bins[k] >= threshold) {
             it = Drawn(it.quads + offers.quads[k], offers.forms[k]);
@@ -258,7 +262,7 @@ var<workgroup> piece_count: atomic<u32>;
 @compute @workgroup_size(CHUNK)
 fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let at = group.y * ROW + group.x;
-    let there = at < sums.live;
+    let there = at < book.sums.live;
     if (there) {
         let it = drawn(asked(live[at].chunk, lane).offers);
         if (it.quads > 0u) {
@@ -275,9 +279,9 @@ fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
 
 @compute @workgroup_size(WIDE)
 fn sum_live(@builtin(local_invocation_index) lane: u32) {
-    let share = (sums.live + WIDE - 1u) / WIDE;
-    let first = min(lane * share, sums.live);
-    let end = min(first + share, sums.live);
+    let share = (book.sums.live + WIDE - 1u) / WIDE;
+    let first = min(lane * share, book.sums.live);
+    let end = min(first + share, book.sums.live);
     var quad_sum = 0u;
     var piece_sum = 0u;
     for (var i = first; i < end; i += 1u) {
@@ -301,8 +305,8 @@ fn sum_live(@builtin(local_invocation_index) lane: u32) {
         // Two compilations of one expression could round differently: whatever they count, no more
         // is drawn than there is room for.
         let most = min(min(all_quads, eye.budget), arrayLength(&quads) - 1u);
-        sums.quads = most;
-        sums.pieces = min(all_pieces, arrayLength(&pieces));
+        book.sums.quads = most;
+        book.sums.pieces = min(all_pieces, arrayLength(&pieces));
         quads[0] = most;
         let indices = 6u * BLOCK;
         arguments.draws = array<u32, 10>(
@@ -318,7 +322,7 @@ var<workgroup> pieces_before: array<u32, CHUNK>;
 @compute @workgroup_size(CHUNK)
 fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let at = group.y * ROW + group.x;
-    let there = at < sums.live;
+    let there = at < book.sums.live;
     var ask = Asked(0u, 0u, no_offers());
     var it = Drawn(0u, 0u);
     if (there) {
@@ -367,7 +371,7 @@ fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
             }
         }
         let place = first_quad + k;
-        if (place < sums.quads) {
+        if (place < book.sums.quads) {
             quads[place + 1u] = first_piece + pieces_before[low] - 1u;
         }
     }

@@ -54,6 +54,9 @@ struct Piece {
 @group(0) @binding(0) var<uniform> eye: Eye;
 @group(0) @binding(1) var<storage, read> runs: array<Run>;
 @group(0) @binding(3) var<storage, read> standing: array<Standing>;
+// Points of runs, two words each: x, y | z, radius; then their lists of kept points, a byte each.
+// Of somata: vertices, x, y | z, normal; then quads.
+@group(0) @binding(5) var<storage, read> heap: array<u32>;
 
 fn turn(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     let t = 2.0 * cross(q.xyz, v);
@@ -74,6 +77,16 @@ fn in_sight(p: vec3<f32>, reach: f32) -> bool {
     for (var k = 0u; k < 5u; k += 1u) {
         // Also where it is not a number.
         if (!(dot(eye.planes[k].xyz, p) + eye.planes[k].w >= -most)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Whether all of a ball is between the planes.
+fn enclosed(p: vec3<f32>, reach: f32) -> bool {
+    for (var k = 0u; k < 5u; k += 1u) {
+        if (!(dot(eye.planes[k].xyz, p) + eye.planes[k].w >= reach)) {
             return false;
         }
     }
@@ -106,6 +119,93 @@ fn form_within(run: Run, error: f32) -> u32 {
         }
     }
     return 0u;
+}
+
+struct Stored {
+    position: vec3<f32>,
+    radius: f32,
+    point: u32,
+}
+
+fn stored_position(run: Run, low: u32, high: u32) -> vec3<f32> {
+    let steps = vec3<f32>(f32(low & 0xffffu), f32(low >> 16u), f32(high & 0xffffu));
+    return run.low + run.step * steps;
+}
+
+// A point of a form.
+fn stored(run: Run, level: u32, index: u32) -> Stored {
+    var point = index;
+    if (level > 0u) {
+        var at = index;
+        for (var k = 1u; k < level; k += 1u) {
+            let there = segments(run, k);
+            at += select(0u, there + 1u, there > 0u);
+        }
+        let lists = run.first + 2u * (segments(run, 0u) + 1u);
+        point = (heap[lists + at / 4u] >> (8u * (at & 3u))) & 0xffu;
+    }
+    let low = heap[run.first + 2u * point];
+    let high = heap[run.first + 2u * point + 1u];
+    let radius = run.radius * (f32(high >> 16u) / 65535.0);
+    return Stored(stored_position(run, low, high), radius, point);
+}
+
+// What of a run shows: depths (µm) of the nearest that does, and in the mean; and its share.
+struct Seen {
+    nearest: f32,
+    middle: f32,
+    share: f32,
+}
+
+// Segments at most of the form that is looked at.
+const LOOKED_AT: u32 = 8u;
+
+// A run that is near, or partly outside the picture: segment by segment, each cut at the planes. From its
+// ball alone every run that passes beside the eye would be taken for the nearest thing there is.
+fn seen_part(run: Run, place: Standing) -> Seen {
+    var level = 0u;
+    for (var k = 1u; k < LEVELS; k += 1u) {
+        if (segments(run, level) > LOOKED_AT && segments(run, k) > 0u) {
+            level = k;
+        }
+    }
+    let margin = (form_error(run, level) + run.radius) * place.scale;
+    var seen = Seen(1e30, 0.0, 0.0);
+    var all = 0.0;
+    var a = relative(place, stored(run, level, 0u).position);
+    for (var i = 1u; i <= segments(run, level); i += 1u) {
+        let b = relative(place, stored(run, level, i).position);
+        let depths = vec2<f32>(dot(eye.forward, a), dot(eye.forward, b));
+        let reach = margin + eye.slope * max(max(depths.x, depths.y), eye.near);
+        var from_a = 0.0;
+        var to_b = 1.0;
+        for (var k = 0u; k < 5u; k += 1u) {
+            let plane = eye.planes[k];
+            let off_a = dot(plane.xyz, a) + plane.w + reach;
+            let off_b = dot(plane.xyz, b) + plane.w + reach;
+            let cut = off_a / (off_a - off_b);
+            if (off_a < 0.0 && off_b < 0.0) {
+                to_b = -1.0;
+            } else if (off_a < 0.0) {
+                from_a = max(from_a, cut);
+            } else if (off_b < 0.0) {
+                to_b = min(to_b, cut);
+            }
+        }
+        let span = length(b - a);
+        if (from_a <= to_b) {
+            let there = mix(depths.xx, depths.yy, vec2<f32>(from_a, to_b));
+            let part = (to_b - from_a) * span + 1e-6;
+            seen.nearest = min(seen.nearest, min(there.x, there.y) - margin);
+            seen.middle += part * 0.5 * (there.x + there.y);
+            seen.share += part;
+        }
+        all += span;
+        a = b;
+    }
+    seen.middle /= max(seen.share, 1e-30);
+    seen.share /= max(all, 1e-6);
+    return seen;
 }
 
 // How a piece is drawn, in one word: form, halvings of its segments, strips around it, what it is, and
@@ -182,11 +282,19 @@ fn offers(instance: u32, place: Standing, run_index: u32) -> Offers {
         return no_offers();
     }
     let depth = dot(eye.forward, center);
-    let nearest = eye.slope * max(depth - reach, eye.near);
-    let pixel = max(eye.slope * depth, nearest);
     if ((run.flags & RUN_SOMA) != 0u) {
-        return soma_offers(run, run.radius * place.scale / pixel);
+        let near = max(depth - reach, eye.near);
+        return soma_offers(run, run.radius * place.scale / (eye.slope * max(depth, near)));
     }
+    var seen = Seen(depth - reach, depth, 1.0);
+    if (!(depth > 4.0 * reach) || !enclosed(center, reach)) {
+        seen = seen_part(run, place);
+        if (!(seen.share > 0.0)) {
+            return no_offers();
+        }
+    }
+    let nearest = eye.slope * max(seen.nearest, eye.near);
+    let pixel = max(eye.slope * seen.middle, nearest);
     // Errors and lengths in the template, sizes in pixels.
     let near_pixel = nearest / place.scale;
     let far_pixel = pixel / place.scale;
@@ -195,7 +303,8 @@ fn offers(instance: u32, place: Standing, run_index: u32) -> Offers {
     if (mean < HALF_PIXEL) {
         width = ink_share(mean / HALF_PIXEL);
     }
-    let area = max(min(run.length, 2.0 * run.reach) / far_pixel, 0.25) * width;
+    let length = min(run.length, 2.0 * run.reach) * min(seen.share, 1.0);
+    let area = max(length / far_pixel, 0.25) * width;
 
     let coarse = form_within(run, 4.0 * eye.error * near_pixel);
     let fine = form_within(run, eye.error * near_pixel);

@@ -50,7 +50,7 @@ const STEPS: [Step; 7] = [
     },
     Step {
         entry: "sum_chunks",
-        bindings: &[0, 4, 5, 6],
+        bindings: &[0, 4, 6],
     },
     Step {
         entry: "measure",
@@ -58,7 +58,7 @@ const STEPS: [Step; 7] = [
     },
     Step {
         entry: "limit",
-        bindings: &[0, 5, 6, 7, 8, 9],
+        bindings: &[0, 4, 6, 7, 8, 9],
     },
     Step {
         entry: "count",
@@ -66,7 +66,7 @@ const STEPS: [Step; 7] = [
     },
     Step {
         entry: "sum_live",
-        bindings: &[0, 5, 6, 9, 10, 11],
+        bindings: &[0, 4, 6, 9, 10, 11],
     },
     Step {
         entry: "write",
@@ -97,8 +97,8 @@ pub(crate) struct Size {
 pub(crate) struct Work {
     size: Size,
     pub(crate) eye: wgpu::Buffer,
-    starts: wgpu::Buffer,
-    pub(crate) sums: wgpu::Buffer,
+    /// Sums, then where the chunks of each instance begin.
+    pub(crate) book: wgpu::Buffer,
     arguments: wgpu::Buffer,
     best: wgpu::Buffer,
     histogram: wgpu::Buffer,
@@ -168,8 +168,8 @@ impl Passes {
             1 => &resident.runs.buffer,
             2 => &resident.shapes.buffer,
             3 => &resident.standing.buffer,
-            4 => &work.starts,
-            5 => &work.sums,
+            4 => &work.book,
+            5 => &resident.heap.buffer,
             6 => &work.arguments,
             7 => &work.best,
             8 => &work.histogram,
@@ -270,12 +270,12 @@ impl Work {
         };
         // Every live chunk draws a quad at least, and so does every piece.
         let most_live = size.chunks.min(quads);
+        let book = size_of::<Sums>() as u64 + 4 * (size.instances as u64).max(1);
         let most_pieces = size.runs.min(quads);
         let work = Self {
             size,
             eye: make("eye", size_of::<Eye>() as u64, BufferUsages::UNIFORM)?,
-            starts: make("starts of instances", 4 * size.instances as u64, stored)?,
-            sums: make("sums", size_of::<Sums>() as u64, stored)?,
+            book: make("starts of instances", book, stored)?,
             arguments: make(
                 "arguments",
                 size_of::<Arguments>() as u64,
@@ -310,14 +310,11 @@ impl Work {
 
     pub(crate) fn bytes(&self) -> Vec<(&'static str, u64)> {
         vec![
-            ("starts", self.starts.size()),
+            ("starts", self.book.size()),
             ("chunks", self.best.size() + self.live.size()),
             ("pieces", self.pieces.size()),
             ("quads", self.quads.size()),
-            (
-                "histogram",
-                self.histogram.size() + self.sums.size() + self.arguments.size(),
-            ),
+            ("histogram", self.histogram.size() + self.arguments.size()),
             ("frame", self.eye.size()),
             ("indices", self.indices.size()),
         ]
@@ -351,7 +348,7 @@ fn binding(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let compute = wgpu::ShaderStages::COMPUTE;
     match binding {
         0 => uniform(compute),
-        1..4 => storage(binding, compute, true),
+        1 | 2 | 3 | 5 => storage(binding, compute, true),
         _ => storage(binding, compute, false),
     }
 }

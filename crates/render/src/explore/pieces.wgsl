@@ -7,9 +7,6 @@
 
 @group(0) @binding(2) var<storage, read> pieces: array<Piece>;
 @group(0) @binding(4) var<storage, read> quads: array<u32>;
-// Points of runs, two words each: x, y | z, radius; then their lists of kept points, a byte each.
-// Of somata: vertices, x, y | z, normal; then quads.
-@group(0) @binding(5) var<storage, read> heap: array<u32>;
 @group(0) @binding(6) var<storage, read> words: array<u32>;
 
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
@@ -51,35 +48,6 @@ fn word_at(run: Run, point: u32) -> u32 {
         return run.words;
     }
     return words[run.words + point];
-}
-
-struct Stored {
-    position: vec3<f32>,
-    radius: f32,
-    point: u32,
-}
-
-fn stored_position(run: Run, low: u32, high: u32) -> vec3<f32> {
-    let steps = vec3<f32>(f32(low & 0xffffu), f32(low >> 16u), f32(high & 0xffffu));
-    return run.low + run.step * steps;
-}
-
-// A point of a form.
-fn stored(run: Run, level: u32, index: u32) -> Stored {
-    var point = index;
-    if (level > 0u) {
-        var at = index;
-        for (var k = 1u; k < level; k += 1u) {
-            let there = segments(run, k);
-            at += select(0u, there + 1u, there > 0u);
-        }
-        let lists = run.first + 2u * (segments(run, 0u) + 1u);
-        point = (heap[lists + at / 4u] >> (8u * (at & 3u))) & 0xffu;
-    }
-    let low = heap[run.first + 2u * point];
-    let high = heap[run.first + 2u * point + 1u];
-    let radius = run.radius * (f32(high >> 16u) / 65535.0);
-    return Stored(stored_position(run, low, high), radius, point);
 }
 
 fn unit_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {

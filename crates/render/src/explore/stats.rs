@@ -88,7 +88,7 @@ impl Exploration {
         self.passes
             .record(&mut encoder, &self.work, groups, instances, None);
         gpu.queue.submit([encoder.finish()]);
-        let sums = read_back(gpu, &self.work.sums, 1)?;
+        let sums = read_back(gpu, &self.work.book, 1)?;
         Ok(sums.first().copied().unwrap_or_default())
     }
 }
