@@ -3,7 +3,7 @@
 //! | what | bytes | holds |
 //! | --- | --- | --- |
 //! | point | 16 | centre in its ball (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), word (10), kind and run (3) |
-//! | ball, for 32 points | 16 | centre, radius |
+//! | ball, for 32 points | 20 | centre, radius, the most that an edge bends |
 //! | loose vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
 //! | anchor | 32 | centre, reach, radius, tangent, role, word |
 //! | patch of a soma | 6 | four loose vertices |
@@ -22,6 +22,8 @@ use neurotess_mesh::Role;
 
 /// Points whose centres are relative to the same ball.
 pub const POINTS_OF_BALL: usize = 32;
+/// Words of a ball.
+pub(crate) const BALL_WORDS: usize = 5;
 /// Bit of a vertex that is loose.
 pub(crate) const LOOSE: u32 = 1 << 31;
 pub(crate) const POINT_KIND_SHIFT: u32 = 30;

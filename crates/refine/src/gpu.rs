@@ -12,8 +12,8 @@ use neurotess_mesh::{PatchKind, Role};
 
 use crate::ball::{SOMA_REACH, TUBE_REACH};
 use crate::decode::{
-    LOOSE, POINT_END, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_LOOSE, POINT_NARROWS, POINTS_OF_BALL,
-    POSITION_STEPS, RADIUS_BASE,
+    BALL_WORDS, LOOSE, POINT_END, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_LOOSE, POINT_NARROWS,
+    POINTS_OF_BALL, POSITION_STEPS, RADIUS_BASE,
 };
 use crate::evaluate::MOST_SWAY;
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
@@ -73,6 +73,7 @@ pub fn prelude() -> String {
     whole("PATCH_CAP", PatchKind::Cap as u32);
     whole("PATCH_SOMA", PatchKind::Soma as u32);
     whole("LOOSE", LOOSE);
+    whole("NO_VERTEX", u32::MAX);
     whole("POINT_KIND_SHIFT", POINT_KIND_SHIFT);
     whole("POINT_END", POINT_END);
     whole("POINT_LOOSE", POINT_LOOSE);
@@ -80,6 +81,7 @@ pub fn prelude() -> String {
     whole("POINT_GOES_ON", POINT_GOES_ON);
     whole("POINTS_OF_BALL", POINTS_OF_BALL as u32);
     whole("PLACES_OF_BALL", 4 * POINTS_OF_BALL as u32);
+    whole("BALL_WORDS", BALL_WORDS as u32);
     whole("RADIUS_BASE", RADIUS_BASE);
     whole("ROLE_ORDINARY", Role::Ordinary as u32);
     whole("ROLE_END", Role::End as u32);
@@ -107,6 +109,7 @@ pub fn prelude() -> String {
     real("POSITION_STEPS", POSITION_STEPS);
     real("TUBE_REACH", TUBE_REACH);
     real("SOMA_REACH", SOMA_REACH);
+    real("SQRT_2", std::f32::consts::SQRT_2);
     real("HALF_PI", std::f32::consts::FRAC_PI_2);
     text
 }

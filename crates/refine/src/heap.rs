@@ -99,6 +99,8 @@ impl Packer<'_> {
         for &(center, radius) in &part.balls {
             let words = center.extend(radius).to_array().map(f32::to_bits);
             part.heap.extend(words);
+            // How much edges bend is known when all is rounded: pack.rs.
+            part.heap.push(0);
         }
         point_of
     }

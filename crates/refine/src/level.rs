@@ -52,7 +52,12 @@ pub(crate) fn edge_level(
 
 /// A curve of second derivative M, cut in n, is at most M / (8 n²) from its chords.
 fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
-    let bend = match kind {
+    round_up((bend(path, kind, a, b) / (8.0 * error)).sqrt())
+}
+
+/// Bound of the second derivative of an edge (µm).
+pub(crate) fn bend(path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
+    match kind {
         EdgeKind::Ring => turning(a, b),
         EdgeKind::Along => center_bend(a, b, path) + turning(a, b),
         EdgeKind::Soma => {
@@ -60,8 +65,7 @@ fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u
             let second = |p: Vec3, q: Vec3, r: Vec3| (p - q * 2.0 + r).length() * 6.0;
             second(p0, p1, p2).max(second(p1, p2, p3))
         }
-    };
-    round_up((bend / (8.0 * error)).sqrt())
+    }
 }
 
 /// The paper's importance, from the mean of the two ends.

@@ -35,8 +35,13 @@ fn edge_level(
         case LEVELS_PER_POINT: {
             level = max(value_a, value_b);
         }
-        case LEVELS_MAX_ERROR: {
-            level = by_error(max(levels.amount, 1e-6) * SHARE, levels.path, kind, a, b);
+        case LEVELS_MAX_ERROR, LEVELS_PIXEL_ERROR: {
+            // One call for both: shaders hold a copy of it for each.
+            var error = max(levels.amount, 1e-6);
+            if (levels.kind == LEVELS_PIXEL_ERROR) {
+                error = levels.amount * um_per_pixel(view, a, b);
+            }
+            level = by_error(error * SHARE, levels.path, kind, a, b);
         }
         case LEVELS_DISTANCE: {
             level = by_distance(view, levels.level, levels.amount, a, b);
@@ -45,13 +50,67 @@ fn edge_level(
             let size = levels.amount * um_per_pixel(view, a, b);
             level = round_up(length(b.position - a.position) / size);
         }
-        case LEVELS_PIXEL_ERROR: {
-            let error = levels.amount * um_per_pixel(view, a, b) * SHARE;
-            level = by_error(error, levels.path, kind, a, b);
+        default: {}
+    }
+    return clamp(level, 1u, HIGHEST_LEVEL);
+}
+
+// The level of the edges of a ring of a point's own: a circle, whose quarters are all alike. `value`: the
+// user's level. What edge_level gives, up to rounding.
+fn ring_level(levels: Criterion, view: View, center: vec3<f32>, radius: f32, value: u32) -> u32 {
+    let nearest = max(dot(view.forward, center - view.eye) - radius, view.near);
+    let pixel = view.slope * nearest + view.flat;
+    var level = levels.level;
+    switch (levels.kind) {
+        case LEVELS_PER_POINT: {
+            level = value;
+        }
+        case LEVELS_MAX_ERROR, LEVELS_PIXEL_ERROR: {
+            var error = max(levels.amount, 1e-6);
+            if (levels.kind == LEVELS_PIXEL_ERROR) {
+                error = levels.amount * pixel;
+            }
+            // A quarter turn: `turning` of 2 tan(45 degrees).
+            level = round_up(sqrt(4.0 * radius / (8.0 * error * SHARE)));
+        }
+        case LEVELS_DISTANCE: {
+            let near = clamp(1.0 - length(center - view.eye) / levels.amount, 0.0, 1.0);
+            level = u32(f32(levels.level) * near + 0.5);
+        }
+        case LEVELS_PIXEL_SIZE: {
+            level = round_up(radius * SQRT_2 / (levels.amount * pixel));
         }
         default: {}
     }
     return clamp(level, 1u, HIGHEST_LEVEL);
+}
+
+// The level of all edges within a ball that bend by at most `bend`, or 0 where each must be asked.
+fn ball_level(levels: Criterion, view: View, center: vec3<f32>, radius: f32, bend: f32) -> u32 {
+    switch (levels.kind) {
+        case LEVELS_PER_POINT, LEVELS_PIXEL_SIZE: {
+            return 0u;
+        }
+        case LEVELS_MAX_ERROR: {
+            return one_if(bend <= 8.0 * max(levels.amount, 1e-6) * SHARE);
+        }
+        case LEVELS_DISTANCE: {
+            let nearest = max(length(center - view.eye) - radius, 0.0);
+            let most = clamp(1.0 - nearest / levels.amount, 0.0, 1.0);
+            return one_if(f32(levels.level) * most < 1.499);
+        }
+        case LEVELS_PIXEL_ERROR: {
+            let nearest = max(dot(view.forward, center - view.eye) - radius, view.near);
+            return one_if(bend <= 8.0 * levels.amount * (view.slope * nearest + view.flat) * SHARE);
+        }
+        default: {
+            return clamp(levels.level, 1u, HIGHEST_LEVEL);
+        }
+    }
+}
+
+fn one_if(certain: bool) -> u32 {
+    return select(0u, 1u, certain);
 }
 
 // A curve of second derivative M, cut in n, is at most M / (8 n^2) from its chords.

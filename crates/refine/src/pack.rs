@@ -10,8 +10,9 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::ball::{ball_around, patch_ball};
-use crate::decode::{OwnRing, POINTS_OF_BALL};
+use crate::decode::{BALL_WORDS, OwnRing, POINTS_OF_BALL};
 use crate::loose::accurate;
+use crate::plan::patch_bends;
 use crate::runs::{Run, find_runs, own_ring};
 
 /// Places of patches that a ball is for.
@@ -99,7 +100,25 @@ impl Part {
 pub fn pack(mesh: &CoarseMesh, words: &[u32], values: &[u8], most_places: usize) -> Vec<Part> {
     let packer = Packer::new(mesh, words, values);
     let piles = packer.piles(most_places.max(4 * PLACES_OF_BALL));
-    piles.iter().map(|pile| packer.part(pile)).collect()
+    let mut parts: Vec<Part> = piles.iter().map(|pile| packer.part(pile)).collect();
+    write_bends(mesh, &mut parts);
+    parts
+}
+
+/// Tells every ball how much the edges of its patches bend, as shaders read them.
+fn write_bends(mesh: &CoarseMesh, parts: &mut [Part]) {
+    let bends = patch_bends(&dequantized(mesh, parts));
+    for part in parts {
+        let first = part.places.balls as usize;
+        for (ball, patches) in part.patches.chunks(PLACES_OF_BALL).enumerate() {
+            let there = patches
+                .iter()
+                .filter_map(|&patch| bends.get(patch as usize));
+            // Devices round the last bits otherwise.
+            let bend = there.copied().fold(0.0, f32::max) * 1.001 + 1e-12;
+            part.heap[first + BALL_WORDS * ball + BALL_WORDS - 1] = bend.to_bits();
+        }
+    }
 }
 
 /// The mesh as shaders read it: the same patches, with positions, radii and directions rounded.

@@ -7,8 +7,8 @@
 use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
 
 use crate::evaluate::{Corner, EdgeKind, SIDES};
-use crate::level::{HIGHEST_LEVEL, edge_level};
-use crate::{Caps, Levels, RefineOptions};
+use crate::level::{HIGHEST_LEVEL, bend, edge_level};
+use crate::{Caps, Levels, Path, RefineOptions};
 
 /// An edge of the coarse mesh.
 #[derive(Clone, Copy, Debug)]
@@ -171,6 +171,22 @@ fn cell(quad: [u32; 4], falling: bool, quads: bool, out: &mut Faces) {
             out.triangles.push([p, q, r]);
         }
     }
+}
+
+/// By patch: the greatest bound of the second derivative of its sides (µm), whatever the path.
+pub(crate) fn patch_bends(mesh: &CoarseMesh) -> Vec<f32> {
+    let (edges, patch_edges) = find_edges(mesh);
+    let bends: Vec<f32> = edges
+        .iter()
+        .map(|edge| {
+            let [a, b] = [edge.from, edge.to].map(|v| Corner::new(mesh, v));
+            // A straight path bends less.
+            let bend = bend(Path::Hermite, edge.kind, &a, &b);
+            if bend.is_nan() { f32::INFINITY } else { bend }
+        })
+        .collect();
+    let greatest = |sides: &[u32; 4]| sides.iter().map(|&e| bends[e as usize]).fold(0.0, f32::max);
+    patch_edges.iter().map(greatest).collect()
 }
 
 /// Columns, rows and triangles of a patch whose four sides have these levels.

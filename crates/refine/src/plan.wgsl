@@ -24,6 +24,8 @@ struct SurfacePoint {
     radius: f32,
     // The vertex whose attributes it has.
     nearest: u32,
+    // The coarse vertex that it is, or NO_VERTEX.
+    coarse: u32,
 }
 
 fn patch_side(base: Base, p: Patch, index: u32) -> Side {
@@ -158,22 +160,22 @@ fn edge_vertex(base: Base, options: Criterion, s: Side, k: u32, level: u32) -> S
         } else if (b.role == ROLE_SOMA) {
             nearest = s.end;
         }
-        return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest);
+        return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest, NO_VERTEX);
     }
     let radius = a.radius * (1.0 - t) + b.radius * t;
     if (s.kind == EDGE_RING) {
-        return SurfacePoint(jet.position, normal, a.center, radius, nearest);
+        return SurfacePoint(jet.position, normal, a.center, radius, nearest, NO_VERTEX);
     }
     let axis = center_line(a, b, options.path, t).position;
-    return SurfacePoint(jet.position, normal, axis, radius, nearest);
+    return SurfacePoint(jet.position, normal, axis, radius, nearest, NO_VERTEX);
 }
 
 fn coarse_vertex(base: Base, vertex: u32) -> SurfacePoint {
     let k = corner(base, vertex);
     if (k.role == ROLE_SOMA) {
-        return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex);
+        return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex, vertex);
     }
-    return SurfacePoint(k.position, k.normal, k.center, k.radius, vertex);
+    return SurfacePoint(k.position, k.normal, k.center, k.radius, vertex, vertex);
 }
 
 fn inner_vertex(
@@ -198,7 +200,7 @@ fn inner_vertex(
     }
     if (p.kind == PATCH_SOMA) {
         nearest = first_of_soma(shape, p, nearest);
-        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest);
+        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest, NO_VERTEX);
     }
     let radius = (shape.a.radius * (1.0 - x) + shape.b.radius * x) * (1.0 - y)
         + (shape.d.radius * (1.0 - x) + shape.c.radius * x) * y;
@@ -206,7 +208,7 @@ fn inner_vertex(
     if (p.kind == PATCH_LATERAL) {
         axis = center_line(shape.a, shape.d, options.path, y).position;
     }
-    return SurfacePoint(inside.position, inside.normal, axis, radius, nearest);
+    return SurfacePoint(inside.position, inside.normal, axis, radius, nearest, NO_VERTEX);
 }
 
 fn first_of_soma(shape: PatchShape, p: Patch, otherwise: u32) -> u32 {

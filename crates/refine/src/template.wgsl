@@ -8,7 +8,7 @@ struct Base {
     // Four words each; PATCHES_OF_POINT lateral patches from each to the next.
     points: u32,
     point_count: u32,
-    // A ball for every POINTS_OF_BALL points, four words each.
+    // A ball for every POINTS_OF_BALL points, BALL_WORDS each.
     balls: u32,
     // Three words each.
     loose: u32,
@@ -119,7 +119,7 @@ fn octahedral(x: u32, y: u32, most: f32) -> vec3<f32> {
 }
 
 fn point_center(base: Base, point: u32, words: vec4<u32>) -> vec3<f32> {
-    let at = base.balls + 4u * (point / POINTS_OF_BALL);
+    let at = base.balls + BALL_WORDS * (point / POINTS_OF_BALL);
     let radius = bitcast<f32>(heap[at + 3u]);
     let step = radius * (2.0 / POSITION_STEPS);
     let x = words.x & 0xfffffu;

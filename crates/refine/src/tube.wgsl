@@ -9,6 +9,8 @@ struct TubeVertex {
     radius: f32,
     // Words of the point whose attributes it has.
     words: vec4<u32>,
+    // The coarse vertex that it is, or NO_VERTEX.
+    coarse: u32,
 }
 
 fn tube_vertex(
@@ -69,6 +71,7 @@ fn tube_vertex(
         made.axis,
         start.radius * (1.0 - y) + end.radius * y,
         first_words,
+        NO_VERTEX,
     );
     if (!on_ring && y >= 0.5) {
         v.words = last_words;
@@ -80,9 +83,11 @@ fn tube_vertex(
         if (place == 0u) {
             v.position = a.position;
             v.normal = a.normal;
+            v.coarse = 4u * first + left;
         } else if (place == level) {
             v.position = b.position;
             v.normal = b.normal;
+            v.coarse = 4u * first + right;
         }
     } else if (on_side) {
         v.normal = edge_normal(a, d, made.by_y, y);
@@ -90,10 +95,12 @@ fn tube_vertex(
             v.position = a.position;
             v.normal = a.normal;
             v.axis = start.center;
+            v.coarse = 4u * first + left;
         } else if (place == level) {
             v.position = d.position;
             v.normal = d.normal;
             v.axis = end.center;
+            v.coarse = 4u * last + left;
         }
     }
     return v;

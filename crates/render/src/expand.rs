@@ -8,6 +8,7 @@ use wgpu::{BufferUsages, ShaderStages};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::maker::SURFACE_VERTEX_WGSL;
+use crate::passes::COARSE_VERTEX_WGSL;
 use crate::readback::read;
 use crate::refiner::{Batch, Refiner, draws, storage};
 use crate::refining::compose;
@@ -37,12 +38,14 @@ pub struct ExpandedVertex {
     pub grid: [f32; 2],
 }
 
-/// A place in the grid of a listed patch.
+/// A place in the grid of a patch that is drawn.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Wanted {
-    /// Place in the batch's list: [`Chosen::place`](crate::Chosen::place).
-    pub place: u32,
+    /// See [`Chosen::slot`](crate::Chosen::slot).
+    pub slot: u32,
+    /// See [`Chosen::slot`](crate::Chosen::slot).
+    pub word: u32,
     /// Column.
     pub i: u32,
     /// Row.
@@ -57,7 +60,13 @@ pub(crate) fn expand_wgsl() -> String {
     );
     let vertices = include_str!("vertices.wgsl");
     let expand = include_str!("expand.wgsl");
-    compose(&[&row, SURFACE_VERTEX_WGSL, vertices, expand])
+    compose(&[
+        &row,
+        SURFACE_VERTEX_WGSL,
+        COARSE_VERTEX_WGSL,
+        vertices,
+        expand,
+    ])
 }
 
 impl Refiner {

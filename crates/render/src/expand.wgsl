@@ -3,8 +3,9 @@
 // Called by expand.rs; joined after vertices.wgsl.
 
 struct Wanted {
-    // Place in the list, column and row.
-    place: u32,
+    // A patch, column and row.
+    slot: u32,
+    word: u32,
     i: u32,
     j: u32,
 }
@@ -17,6 +18,6 @@ fn expand(@builtin(global_invocation_id) id: vec3<u32>) {
     let index = id.x + id.y * 64u * EXPAND_ROW;
     if (index < arrayLength(&wanted)) {
         let w = wanted[index];
-        made[index] = listed_vertex(list[w.place], w.i, w.j);
+        made[index] = listed_vertex(vec2<u32>(w.slot, w.word), w.i, w.j);
     }
 }

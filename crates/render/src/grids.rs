@@ -10,8 +10,8 @@
 //! Small grids fill a GPU's waves badly: an instance of a small bucket draws **many patches
 //! together**, about 256 vertices.
 //!
-//! The first bucket is for tubes whose four patches all have level 1, most of what is far away: 10
-//! vertices instead of 16.
+//! Patches at level 1, most of what is far away, are in no bucket: they are drawn as the **flat** quads
+//! that they are, with shared corners (coarse_vertex.wgsl) and an index buffer that the device writes.
 //!
 //! Why not one draw per grid: 4,096 draws, most of them empty. Why not triangles without an index
 //! buffer: a vertex is evaluated once per grid place instead of up to six times.
@@ -26,8 +26,10 @@ pub(crate) const TUBE_BUCKETS: usize = GRID_SIZE.len() * GRID_SIZE.len();
 /// Grids of tubes, then those of other lateral patches, then those of round ones.
 pub(crate) const BUCKETS: usize = 3 * TUBE_BUCKETS;
 
-/// Columns of the first bucket: it draws the four patches around a tube as one.
-pub(crate) const WHOLE: u32 = 4;
+/// Indices of a flat patch: two triangles.
+pub(crate) const FLAT_INDICES: u32 = 6;
+/// Bits of an index of a flat patch that say which of its corners it is, where wires are drawn.
+pub(crate) const FLAT_CORNER_SHIFT: u32 = 28;
 
 /// Vertices that an instance of a draw has at least, if one patch has fewer.
 const VERTICES_TOGETHER: u32 = 256;
@@ -63,7 +65,6 @@ pub(crate) fn buckets() -> (Vec<Bucket>, Vec<u32>) {
         for ny in GRID_SIZE {
             for nx in GRID_SIZE {
                 let first_index = indices.len() as u32;
-                let nx = if all.is_empty() { WHOLE } else { nx };
                 let together = (VERTICES_TOGETHER / ((nx + 1) * (ny + 1))).max(1);
                 let bucket = (all.len() as u32) << INDEX_BUCKET_SHIFT;
                 for patch in 0..together {
@@ -106,11 +107,7 @@ mod tests {
         let (all, indices) = buckets();
         assert_eq!(all.len(), BUCKETS);
         for (b, bucket) in all.iter().enumerate() {
-            let nx = if b == 0 {
-                WHOLE
-            } else {
-                GRID_SIZE[b % GRID_SIZE.len()]
-            };
+            let nx = GRID_SIZE[b % GRID_SIZE.len()];
             let ny = GRID_SIZE[b / GRID_SIZE.len() % GRID_SIZE.len()];
             assert_eq!(bucket.indices, 6 * nx * ny * bucket.together);
             let first = bucket.first_index as usize;

@@ -26,11 +26,13 @@ mod frame;
 mod framing;
 mod grids;
 mod image;
+mod layouts;
 mod legend;
 mod maker;
 mod meter;
 mod overlay;
 mod painter;
+mod passes;
 mod picture;
 #[cfg(test)]
 mod picture_shader_tests;

@@ -18,7 +18,8 @@ pub struct FrameTime {
     /// Milliseconds from the first thing done on the processor until the GPU had finished.
     pub waited_ms: f64,
     /// Milliseconds of the passes that choose and that draw, where the GPU can tell: not of scenes so
-    /// large that they are drawn in several rounds.
+    /// large that they are drawn in several rounds, and not in software, whose clock stops before its
+    /// threads do.
     pub gpu_ms: Option<[f64; 2]>,
 }
 
@@ -65,7 +66,8 @@ impl<'g> Meter<'g> {
         let waited_ms = clock.elapsed().as_secs_f64() * 1e3;
         self.painter.timer.read(self.gpu)?;
         // Of several rounds the queries hold the last one's times.
-        let gpu_ms = self.painter.timer.milliseconds().filter(|_| rounds == 1);
+        let tells = rounds == 1 && !self.gpu.adapter.software;
+        let gpu_ms = self.painter.timer.milliseconds().filter(|_| tells);
         Ok(FrameTime {
             waited_ms,
             gpu_ms: gpu_ms.map(|ms| [ms[Pass::Choose as usize], ms[Pass::Draw as usize]]),

@@ -1,6 +1,6 @@
 // What the shaders of a frame share: the frame's choices, placed parts and the words of decisions.
 //
-// Called by decide.wgsl, list.wgsl and vertices.wgsl. Structs as in refining.rs; constants come from its prelude.
+// Called by all shaders of refiner.rs. Structs as in refining.rs; constants come from its prelude.
 
 // One for the whole frame. Lengths in micrometres; planes are relative to the eye.
 struct Frame {
@@ -8,8 +8,8 @@ struct Frame {
     slope: f32,
     flat: f32,
     smallest: f32,
-    // A struct in a uniform buffer begins at a multiple of 16 bytes.
-    spare: f32,
+    // Whether each patch has corners of its own, which wires need; also pads to 16 bytes.
+    wires: u32,
     levels: Criterion,
 }
 
@@ -29,6 +29,8 @@ struct Placed {
     patches: u32,
     instance: u32,
     state: u32,
+    // Place of its first loose vertex among the coarse vertices.
+    first_loose: u32,
 }
 
 // What is drawn together.
@@ -36,7 +38,9 @@ struct Batch {
     first: u32,
     placed: u32,
     slots: u32,
+    clusters: u32,
     sections: u32,
+    loose: u32,
 }
 
 fn view_of(frame: Frame, place: Placed) -> View {
@@ -67,9 +71,17 @@ fn decided_kind(word: u32) -> u32 {
     return (word >> DECISION_KIND_SHIFT) & 3u;
 }
 
-// Whether it is the decision on all four patches around a tube, each at level 1.
-fn is_whole(word: u32) -> bool {
-    return (word & DECISION_WHOLE) != 0u;
+// Whether a patch is drawn as the coarse quad that it is.
+fn is_flat(word: u32) -> bool {
+    return word != 0u && (word & ((1u << DECISION_KIND_SHIFT) - 1u)) == FLAT_LEVELS;
+}
+
+// Place of a corner among the coarse vertices: of a ring by its slot, else behind all slots.
+fn coarse_place(place: Placed, vertex: u32) -> u32 {
+    if ((vertex & LOOSE) != 0u) {
+        return place.first_loose + (vertex & ~LOOSE);
+    }
+    return place.first_slot + vertex;
 }
 
 // Place of a level in the set of grid sizes: the smallest that holds it.
@@ -87,8 +99,7 @@ fn bucket_of(word: u32, caps: u32) -> u32 {
     let grid = patch_grid(kind, caps, decided_levels(word));
     let size = size_class(grid.ny) * GRID_SIZES + size_class(grid.nx);
     if (kind == DECIDED_TUBE) {
-        // The first bucket is for whole tubes; a single patch at level 1 goes to the next.
-        return select(max(size, 1u), 0u, is_whole(word));
+        return size;
     }
     return size + select(2u, 1u, kind == PATCH_LATERAL) * GRID_SIZES * GRID_SIZES;
 }

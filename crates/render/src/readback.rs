@@ -6,24 +6,21 @@ use neurotess_refine::{Caps, HIGHEST_LEVEL, patch_triangles};
 
 use crate::device::Gpu;
 use crate::error::DeviceError;
-use crate::grids::{BUCKETS, Bucket};
 use crate::refiner::{Batch, Refiner};
-use crate::refining::{CLUSTER, DECIDED_TUBE, DECISION_WHOLE, Placed, decided};
+use crate::refining::{BatchWords, CLUSTER, DECIDED_TUBE, Placed, QUEUE_SHOWN, decided};
 use crate::scene::Scene;
 
 /// A patch that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chosen {
-    /// Its place in the batch's list.
-    pub place: u32,
+    /// Its place in the batch, and what was decided: for [`Wanted`](crate::Wanted).
+    pub slot: u32,
+    /// See [`Chosen::slot`].
+    pub word: u32,
     /// Place of the instance in the scene.
     pub instance: u32,
     /// Index of the patch in the template's mesh.
     pub patch: u32,
-    /// First column of its grid: other than 0 where patches around a tube are drawn as one.
-    pub column: u32,
-    /// Whether it is drawn with the other three around the tube.
-    pub whole: bool,
     /// Levels of its four sides.
     pub levels: [u32; 4],
     /// What it covers.
@@ -37,7 +34,8 @@ pub struct FrameStats {
     pub patches: u64,
     /// Patches that were drawn.
     pub patches_drawn: u64,
-    /// Vertices that were evaluated, each once per patch.
+    /// Vertices that were evaluated, each once per patch; one for each patch at level 1, which share
+    /// theirs.
     pub vertices: u64,
     /// Triangles with an area.
     pub triangles: u64,
@@ -60,10 +58,9 @@ impl FrameStats {
         for patch in chosen {
             let (nx, ny, triangles) = patch_triangles(patch.kind, caps, patch.levels);
             self.patches_drawn += 1;
-            self.vertices += match (patch.whole, patch.column) {
-                (true, 0) => 10,
-                (true, _) => 0,
-                (false, _) => u64::from((nx + 1) * (ny + 1)),
+            self.vertices += match patch.levels {
+                [1, 1, 1, 1] => 1,
+                _ => u64::from((nx + 1) * (ny + 1)),
             };
             self.triangles += triangles as u64;
             for level in patch.levels {
@@ -74,8 +71,8 @@ impl FrameStats {
 }
 
 impl Refiner {
-    /// Patches that [`Refiner::choose`] last listed, in the order in which they are drawn. Waits for
-    /// the device.
+    /// Patches that [`Refiner::choose`] last decided to draw, in the order of their slots. Waits for the
+    /// device.
     ///
     /// # Errors
     /// What the device complained of.
@@ -85,40 +82,51 @@ impl Refiner {
         scene: &Scene,
         batch: &Batch,
     ) -> Result<Vec<Chosen>, DeviceError> {
-        let slots = batch.words.slots as usize;
-        let buckets: Vec<Bucket> = read(gpu, self.bucket_buffer(), BUCKETS)?;
-        let count: u32 = buckets.iter().map(|bucket| bucket.count).sum();
-        let list: Vec<[u32; 2]> = read(gpu, &self.work.list, count as usize)?;
-        let owners: Vec<u32> = read(gpu, &self.work.owners, slots / CLUSTER)?;
-        let last = batch.words.first + batch.words.placed;
-        let placed: Vec<Placed> = read(gpu, &self.work.placed, last as usize)?;
-        let mut chosen = Vec::with_capacity(list.len());
-        for (place, [slot, word]) in (0..).zip(list) {
-            let owner: &Placed = &placed[owners[slot as usize / CLUSTER] as usize];
+        let BatchWords {
+            slots,
+            clusters,
+            first,
+            placed,
+            ..
+        } = batch.words;
+        let buffers = &self.work.buffers;
+        let first_shown = QUEUE_SHOWN * clusters;
+        let groups: Vec<[u32; 3]> = read(gpu, &buffers.cluster_dispatches, 3)?;
+        let queues: Vec<u32> = read(gpu, &buffers.queues, 3 * clusters as usize)?;
+        let shown = first_shown..first_shown + groups[QUEUE_SHOWN as usize][0];
+        let mut shown = queues[shown.start as usize..shown.end as usize].to_vec();
+        // Workgroups queue them in any order.
+        shown.sort_unstable();
+        let decisions: Vec<u32> = read(gpu, &buffers.decisions, slots as usize)?;
+        let owners: Vec<u32> = read(gpu, &buffers.owners, clusters as usize)?;
+        let placed: Vec<Placed> = read(gpu, &buffers.placed, (first + placed) as usize)?;
+        let mut chosen = Vec::new();
+        for cluster in shown {
+            let owner: &Placed = &placed[owners[cluster as usize] as usize];
             let instance = scene.instances()[owner.instance as usize];
             let parts = scene.templates().template(instance.template);
             let part = parts
                 .into_iter()
                 .flat_map(|t| &t.parts)
                 .find(|part| part.page == batch.page && part.base == owner.base);
-            let (kind, levels) = decided(word);
-            let whole = word & DECISION_WHOLE != 0;
-            for column in 0..if whole { 4 } else { 1 } {
-                let at = (slot - owner.first_slot + column) as usize;
-                chosen.push(Chosen {
-                    place,
+            let cluster = cluster * CLUSTER as u32..(cluster + 1) * CLUSTER as u32;
+            let slots = cluster.map(|slot| (slot, decisions[slot as usize]));
+            chosen.extend(slots.filter(|&(_, word)| word != 0).map(|(slot, word)| {
+                let at = (slot - owner.first_slot) as usize;
+                let (kind, levels) = decided(word);
+                Chosen {
+                    slot,
+                    word,
                     instance: owner.instance,
                     patch: part.map_or(0, |part| part.in_mesh[at]),
-                    column,
-                    whole,
                     levels,
                     kind: match kind {
                         0 | DECIDED_TUBE => PatchKind::Lateral,
                         1 => PatchKind::Cap,
                         _ => PatchKind::Soma,
                     },
-                });
-            }
+                }
+            }));
         }
         Ok(chosen)
     }

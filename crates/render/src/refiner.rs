@@ -1,9 +1,9 @@
-//! Who chooses levels: three compute passes between the placed parts of a scene and draws that need
-//! nothing from the host.
+//! Who chooses levels: compute passes between the placed parts of a scene and draws that need nothing from
+//! the host.
 //!
 //! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016, cull
-//! and decide in the tessellation control stage. wgpu has no such stage, so a compute pass does it for
-//! every patch (decide.wgsl, list.wgsl), and patches of like grids are drawn together (grids.rs).
+//! and decide in the tessellation control stage. wgpu has no such stage, so compute passes do it for
+//! every patch (passes.rs), and patches of like grids are drawn together (grids.rs).
 //!
 //! **Practice.** The host culls whole parts of instances, orders them by page, and cuts them into
 //! **batches** of at most [`MOST_SLOTS`] patches, which share one set of work buffers: memory does not
@@ -18,10 +18,12 @@ use crate::decide::shows;
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
+use crate::layouts::WorkLayouts;
+use crate::passes::{COARSE_VERTEX_WGSL, Passes};
 use crate::refining::{BatchWords, CLUSTER, FrameWords, Placed, Refining, SECTION, Sight, compose};
 use crate::scene::Scene;
 use crate::templates::{self, MOST_PATCHES};
-use crate::work::{Work, WorkLayouts};
+use crate::work::{Sizes, Work};
 
 /// Most patches that are decided on and drawn together.
 pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
@@ -59,9 +61,7 @@ pub struct FramePlan {
 #[derive(Debug)]
 pub struct Refiner {
     work_layouts: WorkLayouts,
-    decide: wgpu::ComputePipeline,
-    scan: wgpu::ComputePipeline,
-    scatter: wgpu::ComputePipeline,
+    passes: Passes,
     indices: wgpu::Buffer,
     buckets: wgpu::Buffer,
     pub(crate) work: Work,
@@ -78,42 +78,15 @@ impl Refiner {
         let device = &gpu.device;
         let template_layout = templates::layout(device);
         let work_layouts = WorkLayouts::new(device);
-        let pipeline = |text: String, entry: &str, groups: [&wgpu::BindGroupLayout; 2]| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(entry),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            });
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(entry),
-                bind_group_layouts: &groups.map(Some),
-                immediate_size: 0,
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-        };
-        let WorkLayouts {
-            decisions, lists, ..
-        } = &work_layouts;
+        let passes = Passes::new(device, &template_layout, &work_layouts);
         let (all, indices) = buckets();
-        let decide = pipeline(decide_wgsl(), "decide", [&template_layout, decisions]);
-        let scan = pipeline(list_wgsl(), "scan", [decisions, lists]);
-        let scatter = pipeline(list_wgsl(), "scatter", [decisions, lists]);
         let indices = upload(gpu, "grid indices", BufferUsages::INDEX, &indices);
-        let usages = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let buckets = upload(gpu, "buckets", usages, &all);
-        let work = Work::new(gpu, &work_layouts, &buckets, CLUSTER, 1, 1)?;
+        let buckets = upload(gpu, "buckets", BufferUsages::STORAGE, &all);
+        let work = Work::new(gpu, &work_layouts, &buckets, Sizes::default())?;
         gpu.check()?;
         Ok(Self {
             work_layouts,
-            decide,
-            scan,
-            scatter,
+            passes,
             indices,
             buckets,
             work,
@@ -121,7 +94,7 @@ impl Refiner {
         })
     }
 
-    /// Shaders that draw: one for tubes at level 1, one for other tubes, one for all else.
+    /// Shaders that draw: one for patches at level 1, one for other tubes, one for all else.
     pub const SHADERS: usize = 3;
 
     /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn
@@ -130,7 +103,11 @@ impl Refiner {
     /// All shaders find an edge's vertices by the same expressions, and their positions must be
     /// `@invariant`.
     pub fn vertex_wgsl(shader: usize) -> String {
-        compose(&[&draws(shader), include_str!("vertices.wgsl")])
+        compose(&[
+            &draws(shader),
+            COARSE_VERTEX_WGSL,
+            include_str!("vertices.wgsl"),
+        ])
     }
 
     /// Layout of group 0 of a pipeline that draws.
@@ -154,18 +131,24 @@ impl Refiner {
         // By page, else in the scene's order.
         placed.sort_by_key(|&(page, _)| page);
         let batches = cut(&mut placed);
-        let slots = batches.iter().map(|b| b.words.slots as usize).max();
-        let slots = slots.unwrap_or(0).max(CLUSTER);
+        let most_of = |of: fn(&BatchWords) -> u32| {
+            let all = batches.iter().map(|batch| of(&batch.words) as usize);
+            all.max().unwrap_or(0)
+        };
+        let sizes = Sizes {
+            slots: most_of(|words| words.slots).max(CLUSTER),
+            loose: most_of(|words| words.loose),
+            placed: placed.len(),
+            batches: batches.len(),
+        };
         let most = gpu.largest_binding();
         let bytes = size_of_val(&*placed) as u64;
         if bytes > most {
             let what = "the list of visible instances";
             return Err(DeviceError::TooLarge { what, bytes, most });
         }
-        if !self.work.holds(slots, placed.len(), batches.len()) {
-            let layouts = &self.work_layouts;
-            let (placed, batches) = (placed.len(), batches.len());
-            self.work = Work::new(gpu, layouts, &self.buckets, slots, placed, batches)?;
+        if !self.work.holds(&sizes) {
+            self.work = Work::new(gpu, &self.work_layouts, &self.buckets, sizes)?;
         }
         let places: Vec<Placed> = placed.into_iter().map(|(_, place)| place).collect();
         self.work.write(gpu, &frame, &places, &batches);
@@ -188,41 +171,31 @@ impl Refiner {
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
         if batch.is_some() {
-            encoder.clear_buffer(&self.work.counts, 0, None);
+            self.work.begin(encoder);
         }
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("levels"),
             timestamp_writes: timestamps,
         });
-        let Some(batch) = batch else { return };
-        let BatchWords {
-            slots, sections, ..
-        } = batch.words;
-        let offset = [self.work.batch_offset(batch.index)];
-        pass.set_pipeline(&self.decide);
-        pass.set_bind_group(0, &scene.templates().pages[batch.page].group, &[]);
-        pass.set_bind_group(1, &self.work.decisions_group, &offset);
-        pass.dispatch_workgroups(slots / CLUSTER as u32, 1, 1);
-        pass.set_pipeline(&self.scan);
-        pass.set_bind_group(0, &self.work.decisions_group, &offset);
-        pass.set_bind_group(1, &self.work.lists_group, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-        pass.set_pipeline(&self.scatter);
-        pass.dispatch_workgroups(sections, 1, 1);
+        if let Some(batch) = batch {
+            let page = &scene.templates().pages[batch.page];
+            self.passes.dispatch(&mut pass, page, &self.work, batch);
+        }
     }
 
     /// Draws a batch that was chosen just before, with the pipeline of the shader that is set. Sets
     /// group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, shader: usize) {
         pass.set_bind_group(0, self.drawing_group(batch), &[]);
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        let buckets = match shader {
-            0 => 0..1,
-            1 => 1..TUBE_BUCKETS,
-            _ => TUBE_BUCKETS..BUCKETS,
+        let (indices, draws) = match shader {
+            0 => (&self.work.buffers.flat_indices, 0..1),
+            1 => (&self.indices, 1..1 + TUBE_BUCKETS),
+            _ => (&self.indices, 1 + TUBE_BUCKETS..1 + BUCKETS),
         };
-        let offset = (buckets.start * size_of::<DrawIndexed>()) as u64;
-        pass.multi_draw_indexed_indirect(&self.work.draws, offset, buckets.len() as u32);
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        let offset = (draws.start * size_of::<DrawIndexed>()) as u64;
+        let count = draws.len() as u32;
+        pass.multi_draw_indexed_indirect(&self.work.buffers.draws, offset, count);
     }
 
     /// Group 0 of whoever makes the vertices of a batch.
@@ -239,30 +212,15 @@ impl Refiner {
         bytes.extend(self.work.bytes());
         bytes
     }
-
-    /// The buffer of buckets, to be read back.
-    pub(crate) fn bucket_buffer(&self) -> &wgpu::Buffer {
-        &self.buckets
-    }
 }
 
 /// Which of its ways vertices.wgsl goes in a shader.
 pub(crate) fn draws(shader: usize) -> String {
-    let [bare, tubes] = [0, 1];
+    let [flat, tubes] = [0, 1];
     format!(
-        "const DRAWS: u32 = {shader}u;\nconst DRAWS_BARE: u32 = {bare}u;\n\
+        "const DRAWS: u32 = {shader}u;\nconst DRAWS_FLAT: u32 = {flat}u;\n\
          const DRAWS_TUBES: u32 = {tubes}u;\n"
     )
-}
-
-/// The module of the pass that decides.
-pub(crate) fn decide_wgsl() -> String {
-    compose(&[include_str!("decide.wgsl")])
-}
-
-/// The module of the passes that list.
-pub(crate) fn list_wgsl() -> String {
-    compose(&[include_str!("list.wgsl")])
 }
 
 /// Parts of instances that may show, with their pages, and the number of patches of all.
@@ -317,9 +275,23 @@ fn cut(placed: &mut [(usize, Placed)]) -> Vec<Batch> {
         place.first_slot = batch.words.slots;
         batch.words.placed += 1;
         batch.words.slots += slots as u32;
+        batch.words.clusters = batch.words.slots / CLUSTER as u32;
         batch.words.sections = batch.words.slots.div_ceil(SECTION as u32);
     }
+    for batch in &mut batches {
+        place_loose(batch, placed);
+    }
     batches
+}
+
+/// Gives the loose vertices of a batch's parts their places behind all slots.
+fn place_loose(batch: &mut Batch, placed: &mut [(usize, Placed)]) {
+    let words = &mut batch.words;
+    let first = words.first as usize;
+    for (_, place) in &mut placed[first..first + words.placed as usize] {
+        place.first_loose = words.slots + words.loose;
+        words.loose += place.base.loose_count();
+    }
 }
 
 fn upload<T: Pod>(gpu: &Gpu, label: &str, usage: BufferUsages, data: &[T]) -> wgpu::Buffer {

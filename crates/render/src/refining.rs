@@ -9,8 +9,8 @@ use neurotess_refine::{Caps, Levels, Path, Places, RefineOptions, View};
 
 use crate::camera::Camera;
 use crate::grids::{
-    BUCKETS, GRID_SIZE, INDEX_BUCKET_SHIFT, INDEX_PATCH_MASK, INDEX_PATCH_SHIFT, INDEX_PLACE_MASK,
-    INDEX_ROW_SHIFT,
+    BUCKETS, FLAT_CORNER_SHIFT, FLAT_INDICES, GRID_SIZE, INDEX_BUCKET_SHIFT, INDEX_PATCH_MASK,
+    INDEX_PATCH_SHIFT, INDEX_PLACE_MASK, INDEX_ROW_SHIFT,
 };
 use crate::scene::Placement;
 
@@ -19,8 +19,18 @@ pub(crate) const CLUSTER: usize = 64;
 /// Patches that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
 const DECISION_KIND_SHIFT: u32 = 28;
-/// Bit of a decision on all four patches around a tube, each at level 1.
-pub(crate) const DECISION_WHOLE: u32 = 1 << 30;
+/// Levels of a decision on a patch at level 1.
+const FLAT_LEVELS: u32 = 1 | (1 << 7) | (1 << 14) | (1 << 21);
+/// Queued clusters have their level above these bits.
+const QUEUED_LEVEL_SHIFT: u32 = 24;
+/// Queues by their place among the arguments of dispatches.
+pub(crate) const QUEUE_PLAIN: u32 = 0;
+pub(crate) const QUEUE_ASKED: u32 = 1;
+pub(crate) const QUEUE_SHOWN: u32 = 2;
+pub(crate) const QUEUE_SECTIONS: u32 = 0;
+pub(crate) const QUEUE_RINGS: u32 = 1;
+/// Words of a loose vertex: see refine's template.wgsl.
+const LOOSE_WORDS: u32 = 3;
 /// Kind of a lateral patch between two points with rings of their own, in a decision.
 pub(crate) const DECIDED_TUBE: u32 = 3;
 
@@ -132,6 +142,9 @@ pub struct Refining {
     pub caps: Caps,
     /// What is smaller than this many pixels is left out; 0 leaves out nothing.
     pub smallest: f32,
+    /// Whether vertices know their place in their patch's grid, as [`Look::wire`](crate::Look) needs.
+    /// Patches at level 1 then do not share corners, which costs time.
+    pub wires: bool,
 }
 
 impl Refining {
@@ -153,7 +166,7 @@ pub(crate) struct FrameWords {
     pub(crate) slope: f32,
     pub(crate) flat: f32,
     pub(crate) smallest: f32,
-    pub(crate) spare: f32,
+    pub(crate) wires: u32,
     pub(crate) levels: Criterion,
     pad: [u32; 3],
 }
@@ -166,7 +179,7 @@ impl FrameWords {
             slope: sight.slope as f32,
             flat: 0.0,
             smallest: refining.smallest.max(0.0),
-            spare: 0.0,
+            wires: u32::from(refining.wires),
             levels: Criterion::new(&levels, &refining.options()),
             pad: [0; 3],
         }
@@ -192,7 +205,7 @@ pub(crate) struct Placed {
     pub(crate) patches: u32,
     pub(crate) instance: u32,
     pub(crate) state: u32,
-    pub(crate) pad: [u32; 1],
+    pub(crate) first_loose: u32,
 }
 
 /// Where a part lies in the heap of its page: [`Places`], moved. Twin of the struct of the same name in
@@ -229,6 +242,13 @@ impl Base {
             caps: first + places.caps,
             words: first + places.words,
         }
+    }
+}
+
+impl Base {
+    /// Number of loose vertices.
+    pub(crate) fn loose_count(&self) -> u32 {
+        (self.anchors - self.loose) / LOOSE_WORDS
     }
 }
 
@@ -269,7 +289,10 @@ pub(crate) struct BatchWords {
     pub(crate) first: u32,
     pub(crate) placed: u32,
     pub(crate) slots: u32,
+    pub(crate) clusters: u32,
     pub(crate) sections: u32,
+    /// Number of loose vertices.
+    pub(crate) loose: u32,
 }
 
 /// Levels of the four sides and the kind of a patch in one word. Twin of `decision` in placed.wgsl.
@@ -290,12 +313,22 @@ pub(crate) fn compose(own: &[&str]) -> String {
     let mut constants = String::new();
     for (name, value) in [
         ("CLUSTER", CLUSTER as u32),
+        ("POINTS_OF_CLUSTER", CLUSTER as u32 / 4),
+        ("CLUSTERS_OF_GROUP", 4),
+        ("FLAT_INDICES", FLAT_INDICES),
+        ("FLAT_CORNER_SHIFT", FLAT_CORNER_SHIFT),
+        ("FLAT_LEVELS", FLAT_LEVELS),
+        ("QUEUED_LEVEL_SHIFT", QUEUED_LEVEL_SHIFT),
+        ("QUEUE_PLAIN", QUEUE_PLAIN),
+        ("QUEUE_ASKED", QUEUE_ASKED),
+        ("QUEUE_SHOWN", QUEUE_SHOWN),
+        ("QUEUE_SECTIONS", QUEUE_SECTIONS),
+        ("QUEUE_RINGS", QUEUE_RINGS),
         ("SECTION", SECTION as u32),
         ("BUCKETS", BUCKETS as u32),
         ("GRID_SIZES", GRID_SIZE.len() as u32),
         ("DECISION_KIND_SHIFT", DECISION_KIND_SHIFT),
         ("DECIDED_TUBE", DECIDED_TUBE),
-        ("DECISION_WHOLE", DECISION_WHOLE),
         ("INDEX_PLACE_MASK", INDEX_PLACE_MASK),
         ("INDEX_ROW_SHIFT", INDEX_ROW_SHIFT),
         ("INDEX_PATCH_SHIFT", INDEX_PATCH_SHIFT),

@@ -6,18 +6,25 @@ pub(crate) mod languages;
 use crate::assert_layout;
 use crate::expand::{ExpandedVertex, Wanted, expand_wgsl};
 use crate::grids::Bucket;
-use crate::refiner::{DrawIndexed, decide_wgsl, list_wgsl};
+use crate::passes::modules;
+use crate::refiner::DrawIndexed;
 use crate::refining::{Base, BatchWords, FrameWords, Placed};
+use crate::work::CoarseVertex;
 
 #[test]
 fn shaders_are_valid_in_every_language_and_have_our_layouts() {
-    let decide = languages::check("decide", &decide_wgsl());
-    let list = languages::check("list", &list_wgsl());
+    let [_, decide, _, coarse, list] = modules().map(|(name, text)| languages::check(name, &text));
+    assert_layout!(
+        &coarse,
+        "CoarseVertex",
+        CoarseVertex,
+        [x, y, z, radius, normal, radial, word, instance]
+    );
     assert_layout!(
         &decide,
         "Frame",
         FrameWords,
-        [planes, slope, flat, smallest, spare, levels]
+        [planes, slope, flat, smallest, wires, levels]
     );
     assert_layout!(
         &decide,
@@ -42,15 +49,26 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         "Placed",
         Placed,
         [
-            row_x, row_y, row_z, eye, scale, forward, near, base, first_slot, patches, instance,
-            state
+            row_x,
+            row_y,
+            row_z,
+            eye,
+            scale,
+            forward,
+            near,
+            base,
+            first_slot,
+            patches,
+            instance,
+            state,
+            first_loose
         ]
     );
     assert_layout!(
         &decide,
         "Batch",
         BatchWords,
-        [first, placed, slots, sections]
+        [first, placed, slots, clusters, sections, loose]
     );
     let expand = languages::check("expand", &expand_wgsl());
     for module in [&list, &expand] {
@@ -73,7 +91,7 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
             first_instance
         ]
     );
-    assert_layout!(&expand, "Wanted", Wanted, [place, i, j]);
+    assert_layout!(&expand, "Wanted", Wanted, [slot, word, i, j]);
     assert_layout!(
         &expand,
         "SurfaceVertex",

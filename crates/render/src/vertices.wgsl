@@ -17,8 +17,13 @@ struct Bucket {
 @group(0) @binding(6) var<storage, read> owners: array<u32>;
 @group(0) @binding(7) var<storage, read> list: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read> buckets: array<Bucket>;
+@group(0) @binding(9) var<storage, read> coarse: array<CoarseVertex>;
 
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
+    if (DRAWS == DRAWS_FLAT) {
+        let corner = vertex_index >> FLAT_CORNER_SHIFT;
+        return flat_vertex(vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u), grid_of_corner(corner));
+    }
     let bucket = buckets[vertex_index >> INDEX_BUCKET_SHIFT];
     let k = (vertex_index >> INDEX_PATCH_SHIFT) & INDEX_PATCH_MASK;
     let place = instance_index * bucket.together + k;
@@ -30,41 +35,47 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let listed = list[bucket.start + place];
     let i = vertex_index & INDEX_PLACE_MASK;
     let j = (vertex_index >> INDEX_ROW_SHIFT) & INDEX_PLACE_MASK;
-    if (DRAWS == DRAWS_BARE) {
-        return listed_bare_vertex(listed, i, j);
-    }
     if (DRAWS == DRAWS_TUBES) {
         return listed_tube_vertex(listed, i, j);
     }
     return listed_other_vertex(listed, i, j);
 }
 
-// Column i and row j of a listed patch. Those beyond its grid are the last ones.
+// Column i and row j of a patch with its decision. Those beyond its grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
+    if (is_flat(listed.y)) {
+        return listed_flat_vertex(listed, i, j);
+    }
     if (decided_kind(listed.y) == DECIDED_TUBE) {
-        if (is_whole(listed.y)) {
-            return listed_bare_vertex(listed, i, j);
-        }
         return listed_tube_vertex(listed, i, j);
     }
     return listed_other_vertex(listed, i, j);
 }
 
-// A whole tube at level 1 has no vertices but those of its two rings.
-fn listed_bare_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
+// A patch at level 1 has no vertices but its corners.
+fn listed_flat_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let part = placed[owners[listed.x / CLUSTER]];
-    let index = listed.x - part.first_slot;
-    let point = index / 4u + min(j, 1u);
-    let words = point_words(part.base, point);
-    let v = ring_corner(own_ring(part.base, point, words), i & 3u);
+    let p = patch_at(part.base, listed.x - part.first_slot);
+    let corner = select(min(i, 1u), 3u - min(i, 1u), j > 0u);
+    return flat_vertex(coarse_place(part, p.corners[corner]), grid_of_corner(corner));
+}
+
+fn grid_of_corner(corner: u32) -> vec2<f32> {
+    return vec2<f32>(f32(corner == 1u || corner == 2u), -f32(corner >= 2u));
+}
+
+// A coarse vertex, as it was made for the frame.
+fn flat_vertex(place: u32, grid: vec2<f32>) -> SurfaceVertex {
+    let v = coarse[place];
+    let position = vec3<f32>(v.x, v.y, v.z);
     return SurfaceVertex(
-        relative(part, v.position),
-        turned(part, v.normal) / part.scale,
-        relative(part, v.center),
-        v.radius * part.scale,
-        tube_word(part.base, words),
-        part.instance,
-        vec2<f32>(f32(i), -f32(j)),
+        position,
+        unpack_direction(v.normal),
+        position - unpack_direction(v.radial) * v.radius,
+        v.radius,
+        v.word,
+        v.instance,
+        grid,
     );
 }
 
@@ -76,6 +87,10 @@ fn listed_tube_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let row = min(j, grid.ny);
     let index = listed.x - part.first_slot;
     let v = tube_vertex(part.base, index, frame.levels, levels, grid, column, row);
+    let wires = wire_grid(PATCH_LATERAL, grid, column, row);
+    if (v.coarse != NO_VERTEX) {
+        return flat_vertex(coarse_place(part, v.coarse), wires);
+    }
     return SurfaceVertex(
         relative(part, v.position),
         turned(part, v.normal) / part.scale,
@@ -83,7 +98,7 @@ fn listed_tube_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
         v.radius * part.scale,
         tube_word(part.base, v.words),
         part.instance,
-        wire_grid(PATCH_LATERAL, grid, column, row),
+        wires,
     );
 }
 
@@ -96,6 +111,10 @@ fn listed_other_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let column = min(i, grid.nx);
     let row = min(j, grid.ny);
     let v = grid_vertex(base, p, frame.levels, levels, grid, column, row);
+    let wires = wire_grid(p.kind, grid, column, row);
+    if (v.coarse != NO_VERTEX) {
+        return flat_vertex(coarse_place(part, v.coarse), wires);
+    }
     return SurfaceVertex(
         relative(part, v.position),
         turned(part, v.normal) / part.scale,
@@ -103,7 +122,7 @@ fn listed_other_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
         v.radius * part.scale,
         word_of(base, v.nearest),
         part.instance,
-        wire_grid(p.kind, grid, column, row),
+        wires,
     );
 }
 

@@ -1,152 +1,161 @@
 //! Buffers of a frame's work: where parts stand, what was decided, and what is drawn.
 
-use bytemuck::Pod;
-use wgpu::{BufferUsages, ShaderStages};
+use bytemuck::{Pod, Zeroable};
+use wgpu::BufferUsages;
 
 use crate::device::Gpu;
 use crate::error::DeviceError;
-use crate::grids::BUCKETS;
-use crate::refiner::{Batch, DrawIndexed, storage};
+use crate::grids::{BUCKETS, FLAT_INDICES};
+use crate::layouts::WorkLayouts;
+use crate::refiner::{Batch, DrawIndexed};
 use crate::refining::{BatchWords, CLUSTER, FrameWords, Placed, SECTION};
 use crate::templates::Page;
 
-/// Layouts of the groups that work buffers are in.
-#[derive(Debug)]
-pub(crate) struct WorkLayouts {
-    /// Group 1 of the pass that decides, group 0 of those that list: bindings from 4.
-    pub(crate) decisions: wgpu::BindGroupLayout,
-    /// Group 1 of the passes that list.
-    pub(crate) lists: wgpu::BindGroupLayout,
-    /// Group 0 of whoever makes vertices: binding 0 of a page, those of a frame from 4.
-    pub(crate) drawing: wgpu::BindGroupLayout,
+/// A coarse vertex as it is drawn. Twin of the struct of the same name in coarse_vertex.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct CoarseVertex {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) z: f32,
+    pub(crate) radius: f32,
+    pub(crate) normal: u32,
+    pub(crate) radial: u32,
+    pub(crate) word: u32,
+    pub(crate) instance: u32,
 }
 
-impl WorkLayouts {
-    pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries,
-            })
-        };
-        let compute = ShaderStages::COMPUTE;
-        let both = ShaderStages::COMPUTE | ShaderStages::VERTEX;
-        Self {
-            decisions: layout(
-                "decisions",
-                &[
-                    uniform(4, compute, false),
-                    uniform(5, compute, true),
-                    storage(6, compute, true),
-                    storage(7, compute, false),
-                    storage(8, compute, false),
-                    storage(9, compute, false),
-                ],
-            ),
-            lists: layout(
-                "lists",
-                &[0, 1, 2].map(|binding| storage(binding, compute, false)),
-            ),
-            drawing: layout(
-                "drawing",
-                &[
-                    storage(0, both, true),
-                    uniform(4, both, false),
-                    storage(5, both, true),
-                    storage(6, both, true),
-                    storage(7, both, true),
-                    storage(8, both, true),
-                ],
-            ),
-        }
+/// Workgroups of a pass that takes a queue: none yet.
+const NO_GROUPS: [u32; 3] = [0, 1, 1];
+/// Most queues that are filled by one pass.
+const QUEUES: usize = 3;
+
+/// How much of everything a frame needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Sizes {
+    /// Of the largest batch.
+    pub(crate) slots: usize,
+    /// Loose vertices of the batch with the most.
+    pub(crate) loose: usize,
+    pub(crate) placed: usize,
+    pub(crate) batches: usize,
+}
+
+impl Sizes {
+    fn within(&self, other: &Self) -> bool {
+        self.slots <= other.slots
+            && self.loose <= other.loose
+            && self.placed <= other.placed
+            && self.batches <= other.batches
     }
 }
 
-fn uniform(
-    binding: u32,
-    visibility: ShaderStages,
-    has_dynamic_offset: bool,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset,
-            min_binding_size: None,
-        },
-        count: None,
-    }
-}
-
-/// The buffers, for batches of up to so many slots.
+/// The buffers, for batches of up to so many slots, and their groups.
 #[derive(Debug)]
 pub(crate) struct Work {
-    slots: usize,
-    placed_count: usize,
-    batch_count: usize,
+    sizes: Sizes,
     batch_stride: usize,
+    pub(crate) buffers: Buffers,
+    pub(crate) groups: WorkGroups,
+}
+
+/// What the passes of a frame write for one another.
+#[derive(Debug)]
+pub(crate) struct Buffers {
     frame: wgpu::Buffer,
     batches: wgpu::Buffer,
     pub(crate) placed: wgpu::Buffer,
     pub(crate) owners: wgpu::Buffer,
-    decisions: wgpu::Buffer,
-    pub(crate) counts: wgpu::Buffer,
-    pub(crate) list: wgpu::Buffer,
+    pub(crate) queues: wgpu::Buffer,
+    marks: wgpu::Buffer,
+    /// Workgroups of what takes queues, by the pass that fills them: clusters, single patches, and what
+    /// was noted.
+    pub(crate) cluster_dispatches: wgpu::Buffer,
+    pub(crate) single_dispatch: wgpu::Buffer,
+    pub(crate) noted_dispatches: wgpu::Buffer,
+    no_groups: wgpu::Buffer,
+    pub(crate) decisions: wgpu::Buffer,
+    ring_levels: wgpu::Buffer,
+    coarse: wgpu::Buffer,
+    list: wgpu::Buffer,
+    /// Triangles of flat patches.
+    pub(crate) flat_indices: wgpu::Buffer,
     pub(crate) draws: wgpu::Buffer,
-    pub(crate) decisions_group: wgpu::BindGroup,
-    pub(crate) lists_group: wgpu::BindGroup,
 }
 
-impl Work {
-    /// Buffers for at least so many of each.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        layouts: &WorkLayouts,
-        buckets: &wgpu::Buffer,
-        slots: usize,
-        placed_count: usize,
-        batch_count: usize,
-    ) -> Result<Self, DeviceError> {
-        // A little more than asked for, so that a moving camera does not make buffers every frame.
-        let slots = (slots + slots / 4).next_multiple_of(SECTION);
-        let placed_count = (placed_count + placed_count / 4).max(1);
-        let batch_count = (batch_count + batch_count / 4).max(1);
-        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment as usize;
-        let batch_stride = size_of::<BatchWords>().next_multiple_of(alignment.max(1));
-        let make = |label, bytes: usize, usage| {
+/// Bind groups of the passes that choose.
+#[derive(Debug)]
+pub(crate) struct WorkGroups {
+    pub(crate) clusters: wgpu::BindGroup,
+    pub(crate) classify: wgpu::BindGroup,
+    pub(crate) decide: wgpu::BindGroup,
+    pub(crate) decide_singles: wgpu::BindGroup,
+    pub(crate) note: wgpu::BindGroup,
+    pub(crate) coarse: wgpu::BindGroup,
+    pub(crate) lists: wgpu::BindGroup,
+    pub(crate) draws: wgpu::BindGroup,
+}
+
+impl Buffers {
+    fn new(gpu: &Gpu, sizes: &Sizes, batch_stride: usize) -> Self {
+        let make = |label, words: usize, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
-                size: bytes as u64,
+                size: (words * 4).max(16) as u64,
                 usage,
                 mapped_at_creation: false,
             })
         };
-        let written = BufferUsages::COPY_DST;
+        let words = |bytes: usize, count: usize| bytes / 4 * count;
+        let (clusters, sections) = (sizes.slots / CLUSTER, sizes.slots / SECTION);
+        let (written, uniform) = (BufferUsages::COPY_DST, BufferUsages::UNIFORM);
         let (stored, read) = (BufferUsages::STORAGE, BufferUsages::COPY_SRC);
-        let frame = make(
-            "frame",
-            size_of::<FrameWords>(),
-            BufferUsages::UNIFORM | written,
-        );
-        let batches = make(
-            "batches",
-            batch_stride * batch_count,
-            BufferUsages::UNIFORM | written,
-        );
-        let placed = make(
-            "placed",
-            placed_count * size_of::<Placed>(),
-            stored | written | read,
-        );
-        let owners = make("owners", slots / CLUSTER * 4, stored | read);
-        let decisions = make("decisions", slots * 4, stored | read);
-        let counts = make("counts", BUCKETS * (slots / SECTION) * 4, stored | written);
-        let list = make("list", slots * 8, stored | read);
-        let bytes = BUCKETS * size_of::<DrawIndexed>();
-        let draws = make("draws", bytes, stored | BufferUsages::INDIRECT);
-        let group = |label, layout, first, buffers: &[wgpu::BindingResource<'_>]| {
-            let entries: Vec<wgpu::BindGroupEntry<'_>> = (first..)
+        let indirect = BufferUsages::INDIRECT;
+        let dispatches =
+            |label, usage| make(label, NO_GROUPS.len() * QUEUES, usage | written | read);
+        let no_groups = dispatches("no workgroups", BufferUsages::empty());
+        let none = NO_GROUPS.repeat(QUEUES);
+        gpu.queue
+            .write_buffer(&no_groups, 0, bytemuck::cast_slice(&none));
+        // See clusters.wgsl.
+        let queues = (4 + CLUSTER / 4) * clusters + sections;
+        let marks = 3 + 3 * clusters + (1 + BUCKETS) * sections;
+        let placed = words(size_of::<Placed>(), sizes.placed);
+        let coarse = words(size_of::<CoarseVertex>(), sizes.slots + sizes.loose);
+        let draws = words(size_of::<DrawIndexed>(), 1 + BUCKETS);
+        Self {
+            frame: make("frame", size_of::<FrameWords>() / 4, uniform | written),
+            batches: make(
+                "batches",
+                words(batch_stride, sizes.batches),
+                uniform | written,
+            ),
+            placed: make("placed", placed, stored | written | read),
+            owners: make("owners", clusters, stored | read),
+            queues: make("queues", queues, stored | read),
+            marks: make("marks", marks, stored | written),
+            cluster_dispatches: dispatches("dispatches", stored | indirect),
+            single_dispatch: dispatches("dispatches", stored | indirect),
+            noted_dispatches: dispatches("dispatches", stored | indirect),
+            no_groups,
+            decisions: make("decisions", sizes.slots, stored | read),
+            ring_levels: make("ring levels", sizes.slots / 4, stored | written),
+            coarse: make("coarse", coarse, stored),
+            list: make("list", 2 * sizes.slots, stored),
+            flat_indices: make(
+                "flat patches",
+                FLAT_INDICES as usize * sizes.slots,
+                stored | BufferUsages::INDEX,
+            ),
+            draws: make("draws", draws, stored | indirect),
+        }
+    }
+}
+
+impl WorkGroups {
+    fn new(gpu: &Gpu, layouts: &WorkLayouts, buffers: &Buffers, buckets: &wgpu::Buffer) -> Self {
+        let group = |label, layout, buffers: &[wgpu::BindingResource<'_>]| {
+            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
                 .zip(buffers)
                 .map(|(binding, resource)| wgpu::BindGroupEntry {
                     binding,
@@ -160,46 +169,86 @@ impl Work {
             })
         };
         let one_batch = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &batches,
+            buffer: &buffers.batches,
             offset: 0,
             size: wgpu::BufferSize::new(size_of::<BatchWords>() as u64),
         });
         let whole = wgpu::Buffer::as_entire_binding;
-        let decisions_group = group(
-            "decisions",
-            &layouts.decisions,
-            4,
-            &[
-                whole(&frame),
-                one_batch,
-                whole(&placed),
-                whole(&owners),
-                whole(&decisions),
-                whole(&counts),
-            ],
-        );
-        let lists_group = group(
-            "lists",
-            &layouts.lists,
-            0,
-            &[whole(&list), whole(buckets), whole(&draws)],
-        );
+        let b = buffers;
+        Self {
+            clusters: group(
+                "clusters",
+                &layouts.clusters,
+                &[
+                    whole(&b.frame),
+                    one_batch,
+                    whole(&b.placed),
+                    whole(&b.owners),
+                    whole(&b.queues),
+                    whole(&b.marks),
+                ],
+            ),
+            classify: group(
+                "classify",
+                &layouts.two,
+                &[whole(&b.cluster_dispatches), whole(&b.single_dispatch)],
+            ),
+            decide: group(
+                "decide",
+                &layouts.three,
+                &[
+                    whole(&b.decisions),
+                    whole(&b.ring_levels),
+                    whole(&b.single_dispatch),
+                ],
+            ),
+            decide_singles: group(
+                "decide singles",
+                &layouts.two,
+                &[whole(&b.decisions), whole(&b.ring_levels)],
+            ),
+            note: group(
+                "note",
+                &layouts.two,
+                &[whole(&b.decisions), whole(&b.noted_dispatches)],
+            ),
+            coarse: group("coarse", &layouts.one, &[whole(&b.coarse)]),
+            lists: group(
+                "lists",
+                &layouts.three,
+                &[whole(&b.decisions), whole(&b.list), whole(&b.flat_indices)],
+            ),
+            draws: group("draws", &layouts.two, &[whole(buckets), whole(&b.draws)]),
+        }
+    }
+}
+
+impl Work {
+    /// Buffers for at least so much.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        layouts: &WorkLayouts,
+        buckets: &wgpu::Buffer,
+        least: Sizes,
+    ) -> Result<Self, DeviceError> {
+        // A little more than asked for, so that a moving camera does not make buffers every frame.
+        let more = |n: usize| n + n / 4;
+        let sizes = Sizes {
+            slots: more(least.slots).next_multiple_of(SECTION),
+            loose: more(least.loose),
+            placed: more(least.placed).max(1),
+            batches: more(least.batches).max(1),
+        };
+        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment as usize;
+        let batch_stride = size_of::<BatchWords>().next_multiple_of(alignment.max(1));
+        let buffers = Buffers::new(gpu, &sizes, batch_stride);
+        let groups = WorkGroups::new(gpu, layouts, &buffers, buckets);
         gpu.check()?;
         Ok(Self {
-            slots,
-            placed_count,
-            batch_count,
+            sizes,
             batch_stride,
-            frame,
-            batches,
-            placed,
-            owners,
-            decisions,
-            counts,
-            list,
-            draws,
-            decisions_group,
-            lists_group,
+            buffers,
+            groups,
         })
     }
 
@@ -213,11 +262,12 @@ impl Work {
     ) -> wgpu::BindGroup {
         let entries = [
             (0, &page.heap),
-            (4, &self.frame),
-            (5, &self.placed),
-            (6, &self.owners),
-            (7, &self.list),
+            (4, &self.buffers.frame),
+            (5, &self.buffers.placed),
+            (6, &self.buffers.owners),
+            (7, &self.buffers.list),
             (8, buckets),
+            (9, &self.buffers.coarse),
         ]
         .map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding,
@@ -230,8 +280,8 @@ impl Work {
         })
     }
 
-    pub(crate) fn holds(&self, slots: usize, placed: usize, batches: usize) -> bool {
-        slots <= self.slots && placed <= self.placed_count && batches <= self.batch_count
+    pub(crate) fn holds(&self, sizes: &Sizes) -> bool {
+        sizes.within(&self.sizes)
     }
 
     pub(crate) fn write(
@@ -245,9 +295,23 @@ impl Work {
         for (place, batch) in words.chunks_mut(self.batch_stride).zip(batches) {
             place[..size_of::<BatchWords>()].copy_from_slice(bytemuck::bytes_of(&batch.words));
         }
-        write(gpu, &self.frame, &[*frame]);
-        write(gpu, &self.batches, &words);
-        write(gpu, &self.placed, placed);
+        write(gpu, &self.buffers.frame, &[*frame]);
+        write(gpu, &self.buffers.batches, &words);
+        write(gpu, &self.buffers.placed, placed);
+    }
+
+    /// Empties queues and marks, for a batch.
+    pub(crate) fn begin(&self, encoder: &mut wgpu::CommandEncoder) {
+        let b = &self.buffers;
+        encoder.clear_buffer(&b.marks, 0, None);
+        encoder.clear_buffer(&b.ring_levels, 0, None);
+        for dispatches in [
+            &b.cluster_dispatches,
+            &b.single_dispatch,
+            &b.noted_dispatches,
+        ] {
+            encoder.copy_buffer_to_buffer(&b.no_groups, 0, dispatches, 0, dispatches.size());
+        }
     }
 
     pub(crate) fn batch_offset(&self, index: u32) -> u32 {
@@ -255,14 +319,19 @@ impl Work {
     }
 
     pub(crate) fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let b = &self.buffers;
+        let dispatches = 4 * b.no_groups.size();
         vec![
-            ("placed", self.placed.size()),
-            ("owners", self.owners.size()),
-            ("decisions", self.decisions.size()),
-            ("counts", self.counts.size()),
-            ("list", self.list.size()),
-            ("draws", self.draws.size()),
-            ("frame", self.frame.size() + self.batches.size()),
+            ("placed", b.placed.size()),
+            ("owners", b.owners.size()),
+            ("queues", b.queues.size() + dispatches),
+            ("marks", b.marks.size()),
+            ("decisions", b.decisions.size() + b.ring_levels.size()),
+            ("coarse_vertices", b.coarse.size()),
+            ("list", b.list.size()),
+            ("flat_patches", b.flat_indices.size()),
+            ("draws", b.draws.size()),
+            ("frame", b.frame.size() + b.batches.size()),
         ]
     }
 }

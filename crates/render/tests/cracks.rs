@@ -59,6 +59,7 @@ fn refining(trial: usize, random: &mut Random) -> Refining {
             Caps::Round
         },
         smallest: 0.0,
+        wires: trial % 2 == 1,
     }
 }
 

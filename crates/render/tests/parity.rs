@@ -132,8 +132,8 @@ fn places(chosen: &Chosen, caps: Caps) -> Vec<Wanted> {
     let mut wanted = Vec::new();
     for j in (0..=ny).filter(|j| j % step(ny) == 0 || *j + 1 >= ny) {
         for i in (0..=nx).filter(|i| i % step(nx) == 0 || *i + 1 >= nx) {
-            let (place, i) = (chosen.place, chosen.column + i);
-            wanted.push(Wanted { place, i, j });
+            let Chosen { slot, word, .. } = *chosen;
+            wanted.push(Wanted { slot, word, i, j });
         }
     }
     wanted
@@ -169,7 +169,7 @@ fn vertices_are_the_reference_s() {
                 choice,
                 path,
                 caps,
-                smallest: 0.0,
+                ..Refining::default()
             };
             let view = sight.local_view(&Placement::default(), mesh.origin);
             let levels = choice.levels(view, &values);
@@ -189,8 +189,7 @@ fn vertices_are_the_reference_s() {
                 }
                 kinds[chosen.kind as usize] += 1;
                 for (wanted, vertex) in places(chosen, caps).iter().zip(made) {
-                    let reference =
-                        refinement.grid_vertex(patch, wanted.i - chosen.column, wanted.j);
+                    let reference = refinement.grid_vertex(patch, wanted.i, wanted.j);
                     let position = Vec3::from(vertex.position) + eye;
                     let error = position.distance(reference.position) / reach as f32;
                     let normal = Vec3::from(vertex.normal).distance(reference.normal);

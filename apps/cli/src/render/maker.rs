@@ -106,6 +106,7 @@ impl Maker {
         let scene = Scene::new(templates, instances.collect())?;
         let refining = Refining {
             choice,
+            wires: args.wireframe,
             ..Refining::default()
         };
         let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
