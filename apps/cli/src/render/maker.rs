@@ -6,14 +6,14 @@ use neurotess::refine::{Levels, RefineOptions};
 use neurotess::render::{
     Adaptive, Ball, Camera, Choice, DEFAULT_BUDGET, Exploration, ExplorationStats, Frame, Gpu,
     Instance, Painted, PictureOptions, Placement, Prerefined, Refining, Scene, Sketch, Template,
-    Templates, Tile, VertexMaker, bounds,
+    Templates, Tile, VertexMaker,
 };
 use rayon::prelude::*;
 
 use super::Sitting;
 use super::args::{LodArg, RenderArgs};
 use super::cells::Cell;
-use super::places::placed;
+use super::places::covering;
 use crate::report::usage;
 
 /// A maker of any kind.
@@ -110,8 +110,7 @@ impl Maker {
             ..Refining::default()
         };
         let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
-        let own: Vec<Vec<Ball>> = cells.iter().map(|cell| bounds(&cell.mesh)).collect();
-        maker.set_bounds(placed(&own, places));
+        maker.set_bounds(covering(cells, places));
         Ok(Self::OnTheFly(Box::new(maker)))
     }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use neurotess::circuit::soma_center;
 use neurotess::render::{Ball, Placement, bounds};
+use rayon::prelude::*;
 
 use super::args::RenderArgs;
 use super::cells::{self, Cell};
@@ -17,7 +18,7 @@ use crate::report::{Failure, Reporter, usage};
 /// From so many places on, a cell is framed by a few balls instead of one per point.
 const MANY: usize = 64;
 
-/// Most balls that a scene is framed by: a few milliseconds of work.
+/// Most balls that a scene is framed by, and its tiles are tested with: milliseconds of work.
 const MOST_BALLS: usize = 400_000;
 /// Fewest of a cell.
 const FEWEST: usize = 16;
@@ -122,18 +123,25 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
     })
 }
 
-/// Balls around all that is shown.
+/// Balls around all that is shown, to fit a camera to.
 pub(crate) fn balls(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
-    let many = places.len() >= MANY;
+    if places.len() >= MANY {
+        return covering(cells, places);
+    }
     let own: Vec<Vec<Ball>> = cells
         .iter()
-        .map(|cell| match many {
-            true => bounds(&cell.mesh),
-            false => cells::balls(cell).collect(),
-        })
+        .map(|cell| cells::balls(cell).collect())
         .collect();
+    placed(&own, places)
+}
+
+/// Balls that hold all surfaces, at any level.
+pub(crate) fn covering(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
     let of_cell = (MOST_BALLS / places.len().max(1)).max(FEWEST);
-    let own: Vec<Vec<Ball>> = own.iter().map(|balls| merged(balls, of_cell)).collect();
+    let own: Vec<Vec<Ball>> = cells
+        .par_iter()
+        .map(|cell| merged(&bounds(&cell.mesh), of_cell))
+        .collect();
     placed(&own, places)
 }
 
@@ -160,7 +168,7 @@ fn merged(balls: &[Ball], most: usize) -> Vec<Ball> {
 }
 
 /// Balls of cells where the cells stand.
-pub(crate) fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
+fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
     let at = |&(cell, placement): &(usize, Placement)| {
         let balls = own[cell].iter();
         balls.map(move |&(center, radius)| {

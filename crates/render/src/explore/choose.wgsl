@@ -316,6 +316,8 @@ fn sum_live(@builtin(local_invocation_index) lane: u32) {
     }
 }
 
+var<workgroup> counts: array<u32, CHUNK>;
+// Up to and with each lane.
 var<workgroup> quads_before: array<u32, CHUNK>;
 var<workgroup> pieces_before: array<u32, CHUNK>;
 
@@ -329,31 +331,27 @@ fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         ask = asked(live[at].chunk, lane);
         it = drawn(ask.offers);
     }
-    // Inclusive sums of quads and, above them, of pieces: at most 64 pieces of 1,100 quads, or a soma.
-    quads_before[lane] = it.quads;
-    pieces_before[lane] = u32(it.quads > 0u);
+    // Inclusive sums, by each lane for itself: two barriers instead of twelve, which cost more in software.
+    counts[lane] = it.quads;
     workgroupBarrier();
-    for (var stride = 1u; stride < CHUNK; stride *= 2u) {
-        var more = 0u;
-        var more_pieces = 0u;
-        if (lane >= stride) {
-            more = quads_before[lane - stride];
-            more_pieces = pieces_before[lane - stride];
-        }
-        workgroupBarrier();
-        quads_before[lane] += more;
-        pieces_before[lane] += more_pieces;
-        workgroupBarrier();
+    var sum = 0u;
+    var piece_sum = 0u;
+    for (var k = 0u; k <= lane; k += 1u) {
+        sum += counts[k];
+        piece_sum += u32(counts[k] > 0u);
     }
+    quads_before[lane] = sum;
+    pieces_before[lane] = piece_sum;
+    workgroupBarrier();
     if (!there) {
         return;
     }
     let first_quad = live[at].quads;
     let first_piece = live[at].pieces;
     if (it.quads > 0u) {
-        let piece = first_piece + pieces_before[lane] - 1u;
+        let piece = first_piece + piece_sum - 1u;
         if (piece < arrayLength(&pieces)) {
-            let first = first_quad + quads_before[lane] - it.quads;
+            let first = first_quad + sum - it.quads;
             pieces[piece] = Piece(ask.instance, ask.run, it.form, first);
         }
     }
