@@ -24,13 +24,53 @@ pub fn fraction(value: f32) -> u32 {
 }
 
 /// What words mean.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColourTable {
     /// Colours of fractions, evenly spaced.
     pub scale: Vec<Rgb>,
     /// Colours of categories; the last also of all that follow.
     pub categories: Vec<Rgb>,
+    /// If there are any, words that are no category are places among an instance's values.
+    pub values: InstanceValues,
 }
+
+/// Values that differ from instance to instance of one template: those of a simulation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InstanceValues {
+    /// By instance: its first four values.
+    first: Vec<u32>,
+    fours: Vec<[f32; 4]>,
+}
+
+impl InstanceValues {
+    /// Adds the values of the next instance: fractions of the scale, 0 to 1. What is not a number has the
+    /// colour of the first category.
+    pub fn push(&mut self, values: &[f32]) {
+        self.first.push(self.fours.len() as u32);
+        // Shaders need not know what is not a number.
+        let value = |value: &f32| {
+            if value.is_nan() {
+                NO_VALUE
+            } else {
+                value.clamp(0.0, 1.0)
+            }
+        };
+        self.fours.extend(values.chunks(4).map(|chunk| {
+            let mut four = [NO_VALUE; 4];
+            four.iter_mut()
+                .zip(chunk)
+                .for_each(|(to, from)| *to = value(from));
+            four
+        }));
+    }
+
+    /// Number of instances.
+    pub fn instances(&self) -> usize {
+        self.first.len()
+    }
+}
+
+const NO_VALUE: f32 = -1.0;
 
 impl ColourTable {
     /// Linear colours, those of the scale first; never empty.
@@ -41,6 +81,27 @@ impl ColourTable {
             entries.push([0.5, 0.5, 0.5, 1.0]);
         }
         entries
+    }
+
+    /// All that shaders look colours up in, with the number of colours: these, then where each instance's
+    /// values begin, then the values, four to an entry.
+    pub(crate) fn entries(&self) -> (Vec<[f32; 4]>, u32) {
+        let mut entries = self.linear();
+        let colours = entries.len() as u32;
+        let InstanceValues { first, fours } = &self.values;
+        // Whole numbers up to 2²⁴ are exact: 67 million values.
+        let behind = first.len().div_ceil(4) as u32 + colours;
+        entries.extend(first.chunks(4).map(|chunk| {
+            let mut entry = [0.0; 4];
+            let places = chunk.iter().map(|&place| (behind + place) as f32);
+            entry
+                .iter_mut()
+                .zip(places)
+                .for_each(|(to, from)| *to = from);
+            entry
+        }));
+        entries.extend(fours);
+        (entries, colours)
     }
 }
 

@@ -53,8 +53,8 @@ pub use adaptive::Adaptive;
 pub use bounds::{any_shows, bounds};
 pub use camera::Camera;
 pub use colour::{
-    CATEGORY_BIT, ColourMap, ColourTable, Palette, Rgb, SCALE_ENTRIES, category, fraction, is_dark,
-    linear,
+    CATEGORY_BIT, ColourMap, ColourTable, InstanceValues, Palette, Rgb, SCALE_ENTRIES, category,
+    fraction, is_dark, linear,
 };
 pub use decide::decide;
 pub use device::{ADAPTER_VARIABLE, AdapterName, Gpu, adapters, optional_features};

@@ -13,6 +13,7 @@ use crate::frame::Frame;
 use crate::maker::VertexMaker;
 use crate::shade::{
     COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, GUARD, Look, NORMAL_FORMAT, Shade, Shader,
+    TableSizes,
 };
 use crate::timing::{Pass, Timer};
 
@@ -64,7 +65,7 @@ pub(crate) struct Painter<'g> {
     shade: wgpu::Buffer,
     finish: wgpu::Buffer,
     table: wgpu::Buffer,
-    scale_entries: u32,
+    sizes: TableSizes,
     samples: u32,
     targets: Option<Targets>,
     pub(crate) timer: Timer,
@@ -79,7 +80,7 @@ impl<'g> Painter<'g> {
         samples: u32,
     ) -> Result<Self, DeviceError> {
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let entries = table.linear();
+        let (entries, colours) = table.entries();
         let bytes: &[u8] = bytemuck::cast_slice(&entries);
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let table_buffer = make(gpu, "colours", bytes.len() as u64, storage);
@@ -90,7 +91,11 @@ impl<'g> Painter<'g> {
             shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
             finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
             table: table_buffer,
-            scale_entries: table.scale.len() as u32,
+            sizes: TableSizes {
+                scale: table.scale.len() as u32,
+                colours,
+                valued: table.values.instances() as u32,
+            },
             samples,
             targets: None,
             timer: Timer::new(gpu),
@@ -143,7 +148,7 @@ impl<'g> Painter<'g> {
             background: [r, g, b, 1.0],
             ..Finish::of(frame)
         };
-        let shade = Shade::new(frame, look, finishing.scale, self.scale_entries);
+        let shade = Shade::new(frame, look, finishing.scale, &self.sizes);
         let queue = &self.gpu.queue;
         queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
         queue.write_buffer(&self.finish, 0, bytemuck::bytes_of(&finish));
@@ -196,7 +201,7 @@ impl<'g> Painter<'g> {
         let Some(targets) = &self.targets else {
             return Ok(0);
         };
-        let shade = Shade::new(frame, look, 1, self.scale_entries);
+        let shade = Shade::new(frame, look, 1, &self.sizes);
         let queue = &self.gpu.queue;
         queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
         let (shade_group, finish_group) = self.groups(targets);

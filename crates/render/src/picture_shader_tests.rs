@@ -31,7 +31,9 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                     viewport_origin,
                     viewport_size,
                     lit,
-                    scale_entries
+                    scale_entries,
+                    colours,
+                    valued
                 ]
             );
             assert_layout!(

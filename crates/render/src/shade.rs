@@ -70,12 +70,24 @@ pub(crate) struct Shade {
     pub(crate) viewport_size: [f32; 2],
     pub(crate) lit: f32,
     pub(crate) scale_entries: u32,
-    pub(crate) pad: [u32; 2],
+    pub(crate) colours: u32,
+    pub(crate) valued: u32,
+}
+
+/// What shaders must know of a colour table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TableSizes {
+    /// Colours of the scale.
+    pub(crate) scale: u32,
+    /// All colours.
+    pub(crate) colours: u32,
+    /// Instances with values.
+    pub(crate) valued: u32,
 }
 
 impl Shade {
-    /// `scale`: sub-pixels per pixel along a side; `scale_entries`: of the colour table.
-    pub(crate) fn new(frame: &Frame, look: &Look, scale: u32, scale_entries: u32) -> Self {
+    /// `scale`: sub-pixels per pixel along a side.
+    pub(crate) fn new(frame: &Frame, look: &Look, scale: u32, table: &TableSizes) -> Self {
         let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
         let (key, lit) = match look.light {
             Light::Soft => (KEY, 1.0),
@@ -97,8 +109,9 @@ impl Shade {
             viewport_origin: [frame.tile.x, frame.tile.y].map(|n| n as f32 - GUARD),
             viewport_size: [frame.tile.width, frame.tile.height].map(|n| n as f32 + 2.0 * GUARD),
             lit,
-            scale_entries,
-            pad: [0; 2],
+            scale_entries: table.scale,
+            colours: table.colours,
+            valued: table.valued,
         }
     }
 }

@@ -25,6 +25,9 @@ struct Shade {
     lit: f32,
     // Number of scale entries at the start of the table; categories follow.
     scale_entries: u32,
+    // Number of all colours, and of instances whose values follow them; 0: words are fractions.
+    colours: u32,
+    valued: u32,
 }
 
 @group(1) @binding(0) var<uniform> shade: Shade;
@@ -42,13 +45,33 @@ struct Varying {
     @location(5) thin: f32,
 }
 
-// A category counts from the end of the scale; anything else is a fraction of the scale.
-fn colour_of(word: u32) -> vec3<f32> {
-    if (word & CATEGORY_BIT) != 0u {
-        let last = arrayLength(&table) - 1u;
-        return table[min(shade.scale_entries + (word & ~CATEGORY_BIT), last)].rgb;
+fn category_colour(category: u32) -> vec3<f32> {
+    return table[min(shade.scale_entries + category, shade.colours - 1u)].rgb;
+}
+
+// The value that a word means for an instance: see InstanceValues.
+fn value_of_instance(word: u32, instance: u32) -> f32 {
+    if instance >= shade.valued {
+        return -1.0;
     }
-    let place = f32(word) / f32(CATEGORY_BIT) * f32(max(shade.scale_entries, 1u) - 1u);
+    let first = u32(table[shade.colours + instance / 4u][instance % 4u]);
+    return table[min(first + word / 4u, arrayLength(&table) - 1u)][word % 4u];
+}
+
+// A category counts from the end of the scale; anything else is a fraction of the scale, or a place
+// among the instance's values.
+fn colour_of(word: u32, instance: u32) -> vec3<f32> {
+    if (word & CATEGORY_BIT) != 0u {
+        return category_colour(word & ~CATEGORY_BIT);
+    }
+    var share = f32(word) / f32(CATEGORY_BIT);
+    if shade.valued > 0u {
+        share = value_of_instance(word, instance);
+        if share < 0.0 {
+            return category_colour(0u);
+        }
+    }
+    let place = share * f32(max(shade.scale_entries, 1u) - 1u);
     let low = u32(place);
     let high = min(low + 1u, max(shade.scale_entries, 1u) - 1u);
     return mix(table[low].rgb, table[high].rgb, fract(place));
@@ -107,7 +130,7 @@ fn vertex(
         out.position = unsnapped(clip);
     }
     out.normal = v.normal;
-    out.colour = colour_of(v.word);
+    out.colour = colour_of(v.word, v.instance);
     out.relative = relative;
     out.grid = v.grid;
     out.coverage = coverage;

@@ -61,6 +61,7 @@ pub(crate) fn colours() -> ColourTable {
     ColourTable {
         scale: Vec::new(),
         categories: (0..TYPES).map(of_type).collect(),
+        ..ColourTable::default()
     }
 }
 

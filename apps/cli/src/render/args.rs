@@ -19,7 +19,8 @@ use crate::circuit::CellArgs;
   neurotess render a.swc b.swc -o both.png --color-by neuron --transparent
   neurotess render cell.swc -o turn.png --turntable --frames 120
   neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
-  neurotess render circuit/ -o all.png --lod exploration --budget 1000000")]
+  neurotess render circuit/ -o all.png --lod exploration --budget 1000000
+  neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30")]
 pub(crate) struct RenderArgs {
     /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit
     #[arg(required = true, value_name = "INPUT")]
@@ -53,10 +54,25 @@ pub(crate) struct RenderArgs {
     /// Leave the background out
     #[arg(long, conflicts_with = "background", help_heading = "Picture")]
     pub(crate) transparent: bool,
-    /// What colours tell
-    #[arg(long, value_enum, default_value_t = ColorBy::Type, value_name = "WHAT",
-          help_heading = "Colours")]
-    pub(crate) color_by: ColorBy,
+    /// What colours tell [default: type; value, if there is a --report]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Colours")]
+    pub(crate) color_by: Option<ColorBy>,
+    /// Values of a simulation: a SONATA report, or a file of spikes
+    #[arg(long, value_name = "FILE", help_heading = "Colours")]
+    pub(crate) report: Option<PathBuf>,
+    /// Time (ms) in the report [default: its first]
+    #[arg(
+        long,
+        value_name = "MS",
+        requires = "report",
+        allow_hyphen_values = true,
+        help_heading = "Colours"
+    )]
+    pub(crate) time: Option<f64>,
+    /// Values at both ends of the colour map [default: the least and the greatest]
+    #[arg(long, value_name = "LOW,HIGH", requires = "report", value_parser = range,
+          allow_hyphen_values = true, help_heading = "Colours")]
+    pub(crate) range: Option<[f32; 2]>,
     /// Colours of types and of things told apart: neurom, neuromorpho, okabe-ito
     #[arg(
         long,
@@ -192,6 +208,14 @@ impl RenderArgs {
     }
 }
 
+fn range(text: &str) -> Result<[f32; 2], String> {
+    let ends: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match ends.as_deref() {
+        Some(&[low, high]) if low.is_finite() && high.is_finite() && low < high => Ok([low, high]),
+        _ => Err("two numbers are needed, the lower first, as in -80,30".into()),
+    }
+}
+
 /// `--color-by`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ColorBy {
@@ -209,6 +233,8 @@ pub(crate) enum ColorBy {
     Depth,
     /// Every input its own
     Neuron,
+    /// Values of a --report
+    Value,
 }
 
 /// `--lod`

@@ -9,6 +9,11 @@ use neurotess::render::{ColourTable, Legend, Palette, Rgb, category, fraction};
 
 use super::args::{ColorBy, RenderArgs};
 use super::cells::Cell;
+use super::values::{self, Shown};
+use crate::report::Reporter;
+
+/// Colour of what has no value: a grey that no scale has.
+const NOTHING: Rgb = [160; 3];
 
 /// Colours of all cells.
 pub(crate) struct Colouring {
@@ -19,7 +24,7 @@ pub(crate) struct Colouring {
 }
 
 /// The colours to choose from.
-struct Paint {
+pub(crate) struct Paint {
     palette: Palette,
     background: Option<Rgb>,
     /// Of numbers.
@@ -27,6 +32,34 @@ struct Paint {
 }
 
 impl Paint {
+    fn new(args: &RenderArgs) -> Self {
+        let background = (!args.transparent).then_some(args.background.0);
+        Self {
+            palette: args.palette,
+            background,
+            scale: args.colormap.scale(background),
+        }
+    }
+
+    /// Words on the scale, from one number to another; the first category is for what has none.
+    pub(crate) fn scaled(
+        &self,
+        words: Vec<Vec<u32>>,
+        title: &str,
+        unit: &str,
+        range: [f32; 2],
+    ) -> Colouring {
+        Colouring {
+            words,
+            legend: Legend::bar(title, unit, self.scale.clone(), range, false),
+            table: ColourTable {
+                scale: self.scale.clone(),
+                categories: vec![NOTHING],
+                ..ColourTable::default()
+            },
+        }
+    }
+
     fn of_type(&self, kind: i32) -> Rgb {
         match NeuriteKind(kind) {
             NeuriteKind::SOMA => self.palette.of_soma(self.background),
@@ -35,16 +68,24 @@ impl Paint {
     }
 }
 
-/// Chooses the colours.
-pub(crate) fn colouring(cells: &[&Cell], args: &RenderArgs) -> Colouring {
-    let background = (!args.transparent).then_some(args.background.0);
-    let paint = Paint {
-        palette: args.palette,
-        background,
-        scale: args.colormap.scale(background),
-    };
-    match args.color_by {
-        ColorBy::Type => by_type(cells, &paint),
+/// Chooses the colours. `shown`: what a circuit shows; `places`: the cell at each.
+///
+/// # Errors
+/// What is wrong with a report.
+pub(crate) fn colouring(
+    cells: &[&Cell],
+    shown: Option<&Shown>,
+    places: &[usize],
+    args: &RenderArgs,
+    reporter: &Reporter,
+) -> anyhow::Result<Colouring> {
+    let paint = Paint::new(args);
+    if let (Some(report), Some(shown)) = (&args.report, shown) {
+        return values::colouring((cells, shown), places, report, (args, &paint), reporter);
+    }
+    Ok(match args.color_by.unwrap_or(ColorBy::Type) {
+        // Arguments have been checked: a value comes with a report.
+        ColorBy::Type | ColorBy::Value => by_type(cells, &paint),
         ColorBy::Neuron => by_neuron(cells, &paint),
         ColorBy::Neurite => told_apart(cells, &paint, "neurite", neurites),
         ColorBy::Section => told_apart(cells, &paint, "section", sections),
@@ -57,7 +98,7 @@ pub(crate) fn colouring(cells: &[&Cell], args: &RenderArgs) -> Colouring {
             cell.mesh.tracing.iter().map(radius).collect()
         }),
         ColorBy::Depth => measured(cells, &paint, "path distance", "µm", depths),
-    }
+    })
 }
 
 fn by_type(cells: &[&Cell], paint: &Paint) -> Colouring {
@@ -87,6 +128,7 @@ fn by_type(cells: &[&Cell], paint: &Paint) -> Colouring {
         table: ColourTable {
             scale: Vec::new(),
             categories,
+            ..ColourTable::default()
         },
     }
 }
@@ -160,6 +202,7 @@ fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) ->
         table: ColourTable {
             scale: Vec::new(),
             categories,
+            ..ColourTable::default()
         },
     }
 }
@@ -224,6 +267,7 @@ fn measured(
         table: ColourTable {
             scale: paint.scale.clone(),
             categories: vec![paint.of_type(1)],
+            ..ColourTable::default()
         },
     }
 }
@@ -237,7 +281,7 @@ fn of_sections(cell: &Cell, value: impl Fn(usize) -> Option<f32>) -> Vec<Option<
 }
 
 /// Way (µm) along the neurite from its first point to each tracing point.
-fn depths(cell: &Cell) -> Vec<Option<f32>> {
+pub(crate) fn depths(cell: &Cell) -> Vec<Option<f32>> {
     let morphology = &cell.morphology;
     let ends = shape::path_lengths(morphology);
     let mut of_sample: HashMap<i64, f32> = HashMap::new();

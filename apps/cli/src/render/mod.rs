@@ -11,6 +11,7 @@ mod maker;
 mod places;
 mod sight;
 mod stats;
+mod values;
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,7 @@ use crate::info::Entry;
 use crate::output::{Output, OutputError, broken, refuse_existing};
 use crate::progress::Progress;
 use crate::report::{Reporter, count, usage};
-use args::{Fit, RenderArgs};
+use args::{ColorBy, Fit, RenderArgs};
 use cells::Cell;
 use colouring::Colouring;
 use maker::Maker;
@@ -42,8 +43,13 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     for file in files.iter().chain(&args.stats) {
         refuse_existing(file, args.force)?;
     }
+    check_value(args)?;
     let mut stages = Stages::begin();
-    let Cast { entries, places } = places::cast(args, reporter)?;
+    let Cast {
+        entries,
+        places,
+        shown,
+    } = places::cast(args, reporter)?;
     stages.end(Stage::Read);
     let cells: Vec<&Cell> = entries
         .iter()
@@ -63,7 +69,8 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     if gpu.adapter.software {
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
-    let colouring = colouring::colouring(&cells, args);
+    let stand: Vec<usize> = places.iter().map(|&(cell, _)| cell).collect();
+    let colouring = colouring::colouring(&cells, shown.as_ref(), &stand, args, reporter)?;
     let (overlay, cameras) = overlay(args, &colouring, cameras, &balls);
     let sitting = Sitting {
         args,
@@ -88,6 +95,17 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         reporter.result(&format!("{}: {}", file.display(), stats.line()));
     }
     reporter.document(&stats::Document::new(&entries, &files, Some(&stats)))
+}
+
+/// Values come from a report, and a report gives nothing but values.
+fn check_value(args: &RenderArgs) -> anyhow::Result<()> {
+    match (args.color_by, &args.report) {
+        (Some(ColorBy::Value), None) => usage("--color-by value needs a --report"),
+        (Some(other), Some(_)) if other != ColorBy::Value => {
+            usage("a --report gives values: leave out --color-by")
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Names of the pictures.

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::args::RenderArgs;
 use super::cells::{self, Cell};
+use super::values::Shown;
 use crate::circuit;
 use crate::info::Entry;
 use crate::inputs::{Input, Inputs};
@@ -29,6 +30,8 @@ pub(crate) struct Cast {
     pub(crate) entries: Vec<Entry<Cell>>,
     /// Cell, as counted among those that did not fail, and where it stands.
     pub(crate) places: Vec<(usize, Placement)>,
+    /// The circuit that the places are of.
+    pub(crate) shown: Option<Shown>,
 }
 
 /// Reads and meshes all inputs: tracings, or one circuit.
@@ -42,6 +45,9 @@ pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cas
         [] if args.cells.any() => {
             usage("no input is a circuit: leave out what chooses cells of one")
         }
+        [] if args.report.is_some() => {
+            usage("--report needs a circuit, whose cells have its values")
+        }
         [] => {
             let inputs = Inputs::find(&args.inputs, &crate::info::MORPHOLOGIES);
             let entries = cells::read(&inputs, args, reporter)?;
@@ -50,6 +56,7 @@ pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cas
             Ok(Cast {
                 places: places.collect(),
                 entries,
+                shown: None,
             })
         }
         _ => usage("a circuit is drawn alone: leave out the other inputs"),
@@ -68,6 +75,7 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
             return Ok(Cast {
                 entries: Vec::new(),
                 places: Vec::new(),
+                shown: None,
             });
         }
     };
@@ -107,6 +115,7 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
             Entry::Failed(_) => *place = usize::MAX,
         }
     }
+    let mut stand = Vec::new();
     let places = instances.iter().filter_map(|instance| {
         let cell = of_template[&instance.template.index()];
         let center = centers.get(cell)?;
@@ -115,11 +124,16 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
             scale: instance.scale,
             translation: instance.world_from_cell(*center).translation,
         };
+        stand.push(*instance);
         Some((cell, placement))
     });
     Ok(Cast {
         places: places.collect(),
         entries,
+        shown: Some(Shown {
+            circuit,
+            instances: stand,
+        }),
     })
 }
 

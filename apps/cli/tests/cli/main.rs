@@ -11,4 +11,5 @@ mod kill;
 mod mesh;
 mod render;
 mod synth;
+mod values;
 mod work;

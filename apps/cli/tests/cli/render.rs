@@ -23,14 +23,19 @@ pub(crate) fn can_draw() -> bool {
 }
 
 /// A picture: width, height, samples of a pixel, bytes.
-struct Picture {
+pub(crate) struct Picture {
     size: (u32, u32),
     channels: usize,
     pixels: Vec<u8>,
 }
 
 impl Picture {
-    fn read(work: &Work, name: &str) -> Self {
+    /// Samples of one pixel after the other.
+    pub(crate) fn pixels(&self) -> std::slice::ChunksExact<'_, u8> {
+        self.pixels.chunks_exact(self.channels)
+    }
+
+    pub(crate) fn read(work: &Work, name: &str) -> Self {
         let file = fs::File::open(work.path(name)).expect("a picture");
         let decoder = png::Decoder::new(std::io::BufReader::new(file));
         let mut reader = decoder.read_info().expect("a PNG");

@@ -65,6 +65,7 @@ pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColourTable) {
     let table = ColourTable {
         scale: Vec::new(),
         categories: (0..8).map(|kind| Palette::NeuroM.of_type(kind)).collect(),
+        ..ColourTable::default()
     };
     (words.collect(), table)
 }
@@ -92,6 +93,7 @@ pub(crate) fn picture_of(
     let table = ColourTable {
         scale: scale.to_vec(),
         categories: Vec::new(),
+        ..ColourTable::default()
     };
     draw(gpu, mesh, words, &table, camera, options)
 }

@@ -1,0 +1,91 @@
+//! `neurotess render --report`: values of a simulation on the membrane.
+
+use crate::render::{Picture, can_draw};
+use crate::work::Work;
+
+const CIRCUIT: &str = "synth circuit -o c --neurons 12 --morphologies 3 --seed 4";
+
+/// The brightest pixel of a picture: bare colours on black, so that it is a colour of the scale.
+fn brightest(work: &Work, options: &str) -> u32 {
+    let look = "--background black --light flat --ao 0 --no-legend --colormap magma";
+    work.run(&format!(
+        "render c -o p.png --force --size 200x300 {look} {options}"
+    ))
+    .exits(0);
+    let picture = Picture::read(work, "p.png");
+    let sum = |pixel: &[u8]| pixel[..3].iter().map(|&c| u32::from(c)).sum();
+    picture.pixels().map(sum).max().unwrap_or(0)
+}
+
+#[test]
+fn an_action_potential_is_seen_when_it_comes() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    work.run(CIRCUIT).exits(0);
+    // The only cell to fire in the first 20 ms does so at 14.2 ms: its soma is the brightest thing.
+    let report = "--report c/reports/voltage.h5 --range=-70,30";
+    let rest = brightest(&work, &format!("{report} --time 14"));
+    let fires = brightest(&work, &format!("{report} --time 14.5"));
+    let over = brightest(&work, &format!("{report} --time 40"));
+    assert!(rest < 250 && over < 250, "{rest}, {over}");
+    assert!(fires > 400, "{fires}");
+    let spikes = "--report c/reports/spikes.h5";
+    let before = brightest(&work, &format!("{spikes} --time 14"));
+    let flash = brightest(&work, &format!("{spikes} --time 14.3"));
+    let faded = brightest(&work, &format!("{spikes} --time 24.3"));
+    assert!(before < 250, "{before}");
+    assert!(
+        flash > 600 && faded > before + 30 && faded < flash / 2,
+        "{flash}, {faded}"
+    );
+}
+
+#[test]
+fn reports_that_do_not_fit_are_told() {
+    let work = Work::new();
+    work.run(CIRCUIT).exits(0);
+    work.run("synth circuit -o other --neurons 20 --morphologies 2 --seed 5")
+        .exits(0);
+    work.run("synth pyramidal -o cell.swc").exits(0);
+    for (line, code, said) in [
+        (
+            "render cell.swc -o p.png --report c/reports/voltage.h5",
+            2,
+            "needs a circuit",
+        ),
+        ("render c -o p.png --color-by value", 2, "needs a --report"),
+        (
+            "render c -o p.png --color-by radius --report c/reports/voltage.h5",
+            2,
+            "leave out --color-by",
+        ),
+        ("render c -o p.png --time 3", 2, "--report"),
+        (
+            "render c -o p.png --report c/reports/voltage.h5 --range 3,2",
+            2,
+            "the lower first",
+        ),
+    ] {
+        let run = work.run(line).exits(code);
+        assert!(run.stderr().contains(said), "{line}: {}", run.stderr());
+    }
+    if !can_draw() {
+        return;
+    }
+    for (line, said) in [
+        (
+            "--report c/reports/voltage.h5 --time 400",
+            "from 0 to below 100",
+        ),
+        ("--report c/reports/spikes.h5", "--time"),
+        ("--report other/reports/voltage.h5", "8 nodes of population"),
+        ("--report c/nodes.h5", "nodes.h5"),
+        ("--report nothing.h5", "nothing.h5"),
+    ] {
+        let run = work.run(&format!("render c -o p.png {line}")).exits(1);
+        assert!(run.stderr().contains(said), "{line}: {}", run.stderr());
+        assert!(!work.path("p.png").exists(), "{line}");
+    }
+}
