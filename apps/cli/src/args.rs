@@ -203,6 +203,7 @@ pub(crate) enum What {
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
   neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
+  neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
 and radius (µm).")]

@@ -48,4 +48,4 @@ pub use read::{Place, ReadError, read, read_bytes};
 pub use surface::{Faces, Surface, SurfaceMesh, SurfaceVertex};
 pub use topology::{Topology, topology};
 pub use weld::merge_identical;
-pub use write::{WriteError, write};
+pub use write::{GlbNode, WriteError, write, write_glb};

@@ -3,6 +3,8 @@ mod common;
 
 use common::{cell, extent, gpu, smooth_cell};
 use glam::{DQuat, DVec3};
+use neurotess_formats::{ReadOptions, swc};
+use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface};
 use neurotess_refine::{Levels, RefineOptions, Refinement};
 use neurotess_render::{
@@ -128,6 +130,41 @@ fn statistics_are_those_of_the_stored_surface_and_memory_of_the_coarse_one() {
     }
     assert_eq!(bytes[0], bytes[1]);
     assert_eq!(bytes[0], bytes[2]);
+}
+
+#[test]
+fn a_soma_alone_is_a_disk_and_a_point_alone_a_short_tube() {
+    let Some(gpu) = gpu() else { return };
+    for (text, radius) in [
+        ("1 1 7 7 7 3 -1\n", 3.0),
+        ("1 3 0 0 0 1 -1\n", 1.0),
+        ("1 2 1e5 1e5 1e5 0.1 -1\n", 0.1),
+    ] {
+        let read = swc::read_bytes(text.as_bytes(), "point", &ReadOptions::default());
+        let morphology = read.expect("a point").morphology;
+        let mesh = generate(&morphology, &GenerateOptions::default()).mesh;
+        let size = 200;
+        let camera = before(&mesh, 4.0);
+        let meshes = std::slice::from_ref(&mesh);
+        let instance = Instance::new(TemplateId(0));
+        let choice = Choice::PixelError(0.25);
+        let mut maker = adaptive(&gpu, meshes, &[instance], choice);
+        let image = picture(&gpu, &mut maker, &camera, [size, size]);
+        let drawn = image
+            .pixels
+            .chunks(4)
+            .filter(|p| p[..3] != [255; 3])
+            .count();
+        // A sphere of radius r at distance d looks as large as a disk of r / (1 - (r / d)^2)^0.5.
+        let away = camera.eye().distance(extent(&mesh).0);
+        let pixel = camera.pixel_slope(f64::from(size)) * away;
+        let disk =
+            std::f64::consts::PI * (radius / pixel).powi(2) / (1.0 - (radius / away).powi(2));
+        // A point that is no soma goes on for a little way.
+        let most = if text.starts_with("1 1") { 1.06 } else { 2.0 };
+        let share = drawn as f64 / disk;
+        assert!((0.94..most).contains(&share), "{text}: {drawn} of {disk}");
+    }
 }
 
 #[test]

@@ -85,6 +85,13 @@ pub(crate) struct Prepared {
     pub(crate) soma_center: DVec3,
 }
 
+impl Prepared {
+    /// The coarse mesh.
+    pub(super) fn mesh(&self) -> &CoarseMesh {
+        &self.generated.mesh
+    }
+}
+
 /// Makes the mesh of one cell and writes it.
 pub(crate) fn mesh(
     job: &Job,
@@ -220,7 +227,7 @@ fn write(
     })
 }
 
-fn levels(fineness: Fineness) -> Option<Levels<'static>> {
+pub(super) fn levels(fineness: Fineness) -> Option<Levels<'static>> {
     match fineness {
         Fineness::Coarse => None,
         Fineness::Level(level) => Some(Levels::Homogeneous(level)),

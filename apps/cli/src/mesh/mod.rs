@@ -10,6 +10,7 @@ mod log;
 mod observed;
 mod options;
 mod placed;
+mod scene;
 
 use std::collections::BTreeMap;
 use std::fs;

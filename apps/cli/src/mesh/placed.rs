@@ -1,4 +1,5 @@
-//! `neurotess mesh CIRCUIT`: each cell in the circuit's coordinates, in a file of its own.
+//! `neurotess mesh CIRCUIT`: each cell in the circuit's coordinates, in a file of its own, or all in one GLB
+//! (scene.rs).
 //!
 //! ```text
 //! circuit ─select─▶ instances ─by morphology─▶ workers: prepare once ─▶ finish for each instance
@@ -13,7 +14,7 @@ use neurotess::circuit::{Circuit, Instance};
 use super::cell::{self, Node};
 use super::log::Log;
 use super::options::Recipe;
-use super::{Entry, is_newer, summarize};
+use super::{Entry, is_newer, scene, summarize};
 use crate::args::MeshArgs;
 use crate::circuit;
 use crate::info::bug;
@@ -34,15 +35,13 @@ struct Placing {
 pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::Result<()> {
     let clock = Instant::now();
     let folder = &args.out.out;
-    if folder.is_file() {
+    let in_one_file = scene::is_wanted(args);
+    if folder.is_file() && !in_one_file {
         return usage(format!(
-            "{} is a file, but the cells of a circuit need a folder: give another OUT",
+            "{} is a file, but the cells of a circuit need a folder, or one .glb: give another OUT",
             folder.display()
         ));
     }
-    let measure = reporter.json() || args.log.is_some();
-    // Many inputs, whatever their names: OUT is a folder.
-    let recipe = Recipe::new(args, &Inputs::default(), measure)?;
     let opened = circuit::open(path, reporter).and_then(|circuit| {
         let nodes = args.cells.select(&circuit)?;
         Ok((circuit, nodes))
@@ -63,6 +62,12 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
             circuit.file
         ));
     }
+    if in_one_file {
+        return scene::run(args, &circuit, &instances, reporter);
+    }
+    let measure = reporter.json() || args.log.is_some();
+    // Many inputs, whatever their names: OUT is a folder.
+    let recipe = Recipe::new(args, &Inputs::default(), measure)?;
     let mut placings = plan(&circuit, &instances, folder, recipe.format.extension());
     if let Some(shard) = args.shard {
         placings = shard.of(placings);

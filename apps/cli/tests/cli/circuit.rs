@@ -236,6 +236,55 @@ fn cells_are_meshed_where_they_stand() {
 }
 
 #[test]
+fn a_circuit_is_one_file_whose_nodes_share_morphologies() {
+    let (work, folder) = made();
+    let json = work
+        .run("mesh c -o c.glb --nodes 3,10-19 --level 1 --soma sphere --json")
+        .exits(0)
+        .json();
+    let scene = &json[0];
+    let morphologies = scene["morphologies"].as_u64().expect("a number");
+    assert_eq!(
+        (scene["cells"].as_u64(), scene["failed"].as_u64()),
+        (Some(11), Some(0))
+    );
+    assert!(morphologies <= 4, "{morphologies}");
+    work.run("mesh c -o apart --nodes 3,10-19 --level 1 --soma sphere")
+        .exits(0);
+    let mesh = neurotess::mesh::read(&work.path("c.glb")).expect("a mesh");
+    let report = neurotess::mesh::check(&mesh);
+    assert!(report.closed, "{report:?}");
+    let mut vertices = 0;
+    let mut sum = DVec3::ZERO;
+    for id in [3].into_iter().chain(10..20) {
+        let one = work.path(&format!("apart/cortex_{id}.ply"));
+        let one = neurotess::mesh::read(&one).expect("a mesh");
+        vertices += one.vertices.len();
+        sum += one
+            .vertices
+            .iter()
+            .map(|v| one.origin + v.position.as_dvec3())
+            .sum::<DVec3>();
+    }
+    assert_eq!(mesh.vertices.len(), vertices);
+    let all = mesh
+        .vertices
+        .iter()
+        .map(|v| mesh.origin + v.position.as_dvec3());
+    assert!((all.sum::<DVec3>() - sum).length() / (vertices as f64) < 1e-3);
+    assert!(folder.exists());
+    for (line, said) in [
+        ("mesh c -o c.glb --nodes 3", "exists"),
+        ("mesh c -o d.glb --resume", "--resume"),
+        ("mesh c -o d.glb --format ply", "GLB"),
+    ] {
+        let run = work.run(line);
+        assert_ne!(run.code(), 0, "{line}");
+        assert!(run.stderr().contains(said), "{line}: {}", run.stderr());
+    }
+}
+
+#[test]
 fn cells_are_chosen() {
     let (work, _) = made();
     let ids = |chosen: &str, out: &str| {

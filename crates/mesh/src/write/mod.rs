@@ -13,6 +13,8 @@ mod ply;
 mod stl;
 mod vtu;
 
+pub use glb::GlbNode;
+
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 
@@ -89,6 +91,27 @@ pub fn write<W: Write + Seek>(
         Format::Off => off::write(surface, &mut file),
         Format::Vtu => vtu::write(surface, &mut file),
     }?;
+    file.out.flush()?;
+    Ok(())
+}
+
+/// Writes several surfaces as one GLB, each shown by nodes: a surface that stands in many places is in the
+/// file once. Translations are `f64` in the file, but most readers keep them in `f32`.
+///
+/// # Errors
+/// As [`write`]; all surfaces together hold at most 4 GiB.
+pub fn write_glb<W: Write + Seek>(
+    surfaces: &[&dyn Surface],
+    nodes: &[GlbNode],
+    out: &mut W,
+) -> Result<(), WriteError> {
+    let most = surfaces.iter().map(|surface| surface.vertex_count()).max();
+    if let Some(most) = most.filter(|&most| most > u32::MAX as usize) {
+        return Err(WriteError::TooManyVertices(most));
+    }
+    let base = out.stream_position()?;
+    let mut file = File { out, base, at: 0 };
+    glb::write_all(surfaces, nodes, &mut file)?;
     file.out.flush()?;
     Ok(())
 }
