@@ -54,9 +54,13 @@ pub(crate) struct RenderArgs {
     /// Leave the background out
     #[arg(long, conflicts_with = "background", help_heading = "Picture")]
     pub(crate) transparent: bool,
-    /// What colours tell [default: type; value, if there is a --report]
+    /// What colours tell [default: type; what a scene says; value, if there is a --report]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Colours")]
     pub(crate) color_by: Option<ColorBy>,
+    /// Cells of a circuit by an attribute, like layer, mtype, population or group
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["color_by", "report"],
+          help_heading = "Colours")]
+    pub(crate) color_by_attribute: Option<String>,
     /// Values of a simulation: a SONATA report, or a file of spikes
     #[arg(long, value_name = "FILE", help_heading = "Colours")]
     pub(crate) report: Option<PathBuf>,
@@ -231,7 +235,7 @@ pub(crate) enum ColorBy {
     Radius,
     /// Way along the neurite from its start (µm)
     Depth,
-    /// Every input its own
+    /// Every input its own, and every cell of a circuit
     Neuron,
     /// Values of a --report
     Value,

@@ -8,12 +8,13 @@ use neurotess::morphology::{Morphology, NeuriteKind, Section, SectionId, shape};
 use neurotess::render::{ColourTable, Legend, Palette, Rgb, category, fraction};
 
 use super::args::{ColorBy, RenderArgs};
+use super::by_node;
 use super::cells::Cell;
 use super::values::{self, Shown};
 use crate::report::Reporter;
 
 /// Colour of what has no value: a grey that no scale has.
-const NOTHING: Rgb = [160; 3];
+pub(crate) const NOTHING: Rgb = [160; 3];
 
 /// Colours of all cells.
 pub(crate) struct Colouring {
@@ -25,7 +26,7 @@ pub(crate) struct Colouring {
 
 /// The colours to choose from.
 pub(crate) struct Paint {
-    palette: Palette,
+    pub(super) palette: Palette,
     background: Option<Rgb>,
     /// Of numbers.
     scale: Vec<Rgb>,
@@ -82,6 +83,18 @@ pub(crate) fn colouring(
     let paint = Paint::new(args);
     if let (Some(report), Some(shown)) = (&args.report, shown) {
         return values::colouring((cells, shown), places, report, (args, &paint), reporter);
+    }
+    if let Some(shown) = shown {
+        match (&args.color_by_attribute, args.color_by) {
+            (Some(attribute), _) => return by_node::by_attribute(cells, shown, attribute, &paint),
+            (None, Some(ColorBy::Neuron)) => return Ok(by_node::each(cells, shown, &paint)),
+            (None, None) => {
+                if let Some(colouring) = by_node::given(cells, shown) {
+                    return Ok(colouring);
+                }
+            }
+            (None, Some(_)) => {}
+        }
     }
     Ok(match args.color_by.unwrap_or(ColorBy::Type) {
         // Arguments have been checked: a value comes with a report.

@@ -5,6 +5,7 @@
 //! ```
 
 pub(crate) mod args;
+mod by_node;
 mod cells;
 mod colouring;
 mod maker;

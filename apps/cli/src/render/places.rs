@@ -45,6 +45,9 @@ pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cas
         [] if args.cells.any() => {
             usage("no input is a circuit: leave out what chooses cells of one")
         }
+        [] if args.color_by_attribute.is_some() => {
+            usage("--color-by-attribute needs a circuit, whose cells have attributes")
+        }
         [] if args.report.is_some() => {
             usage("--report needs a circuit, whose cells have its values")
         }

@@ -49,7 +49,7 @@ impl Picture {
     }
 
     /// The different colours, reduced to 3 bits a channel.
-    fn hues(&self) -> BTreeSet<Vec<u8>> {
+    pub(crate) fn hues(&self) -> BTreeSet<Vec<u8>> {
         let pixels = self.pixels.chunks(self.channels);
         pixels
             .map(|p| p[..3].iter().map(|c| c >> 5).collect())
@@ -57,7 +57,7 @@ impl Picture {
     }
 
     /// Pixels of which red (0) or blue (2) is far above the other.
-    fn count(&self, channel: usize) -> usize {
+    pub(crate) fn count(&self, channel: usize) -> usize {
         let pixels = self.pixels.chunks(self.channels);
         let other = 2 - channel;
         pixels

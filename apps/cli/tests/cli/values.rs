@@ -43,6 +43,43 @@ fn an_action_potential_is_seen_when_it_comes() {
 }
 
 #[test]
+fn cells_have_colours_as_a_whole() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    work.run(CIRCUIT).exits(0);
+    let hues = |options: &str| {
+        let look = "--light flat --ao 0 --no-legend --size 200x300";
+        work.run(&format!("render c -o p.png --force {look} {options}"))
+            .exits(0);
+        Picture::read(&work, "p.png").hues().len()
+    };
+    // Mixtures with the background count, too.
+    let (one, all) = (
+        hues("--nodes 3 --color-by neuron"),
+        hues("--color-by neuron"),
+    );
+    assert!(all > 2 * one, "{one}, {all}");
+    let layers = hues("--color-by-attribute layer");
+    assert!(layers > one && layers < all, "{one}, {layers}, {all}");
+    work.run("synth pyramidal -o cell.swc").exits(0);
+    work.file(
+        "two.scene.toml",
+        "[groups.warm]\ncolor = \"#d02000\"\n[[cells]]\nfile = \"cell.swc\"\ngroup = \"warm\"\n\
+         [[cells]]\nfile = \"cell.swc\"\ncolor = \"#0020d0\"\nposition = [300, 0, 0]\n",
+    );
+    work.run("render two.scene.toml -o s.png --size 120x90")
+        .exits(0);
+    let picture = Picture::read(&work, "s.png");
+    assert!(picture.count(0) > 50 && picture.count(2) > 50);
+    let unknown = work
+        .run("render c -o q.png --color-by-attribute colour")
+        .exits(1);
+    assert!(unknown.stderr().contains("layer, "), "{}", unknown.stderr());
+}
+
+#[test]
 fn reports_that_do_not_fit_are_told() {
     let work = Work::new();
     work.run(CIRCUIT).exits(0);
