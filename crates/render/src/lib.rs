@@ -20,6 +20,7 @@ mod decide;
 mod device;
 mod error;
 mod expand;
+mod explore;
 mod finish;
 mod frame;
 mod framing;
@@ -67,6 +68,10 @@ pub use device::{
 };
 pub use error::{CameraError, DeviceError};
 pub use expand::{ExpandedVertex, Wanted};
+pub use explore::{
+    Asked, DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET,
+    ShownPiece, Sketch, asked,
+};
 pub use frame::{Frame, Tile, shows};
 pub use framing::{Ball, DEFAULT_FOV, Side};
 pub use ids::{Id, Ids};

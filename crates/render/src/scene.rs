@@ -99,6 +99,31 @@ pub enum SceneError {
     },
 }
 
+/// Whether an instance can be shown, one of so many templates.
+pub(crate) fn check_placement(
+    index: usize,
+    instance: &Instance,
+    templates: usize,
+) -> Result<(), SceneError> {
+    let Placement {
+        rotation,
+        scale,
+        translation,
+    } = instance.placement;
+    if instance.template.0 as usize >= templates {
+        return Err(SceneError::Template {
+            instance: index,
+            template: instance.template.0,
+            templates,
+        });
+    }
+    let somewhere = rotation.is_finite() && translation.is_finite() && scale.is_finite();
+    if !somewhere || scale <= 0.0 || !rotation.is_normalized() {
+        return Err(SceneError::Placement(index));
+    }
+    Ok(())
+}
+
 /// Checked instances of templates that are resident on a device.
 #[derive(Debug, Default)]
 pub struct Scene {
@@ -113,22 +138,7 @@ impl Scene {
     /// An instance without a template, or nowhere.
     pub fn new(templates: Templates, instances: Vec<Instance>) -> Result<Self, SceneError> {
         for (i, instance) in instances.iter().enumerate() {
-            let Placement {
-                rotation,
-                scale,
-                translation,
-            } = instance.placement;
-            if templates.template(instance.template).is_none() {
-                return Err(SceneError::Template {
-                    instance: i,
-                    template: instance.template.0,
-                    templates: templates.count_of_templates(),
-                });
-            }
-            let somewhere = rotation.is_finite() && translation.is_finite() && scale.is_finite();
-            if !somewhere || scale <= 0.0 || !rotation.is_normalized() {
-                return Err(SceneError::Placement(i));
-            }
+            check_placement(i, instance, templates.count_of_templates())?;
         }
         Ok(Self {
             templates,

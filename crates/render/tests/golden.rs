@@ -19,7 +19,7 @@ use neurotess_render::{
     Camera, ColourMap, Image, Legend, Light, Look, Occlusion, Overlay, OverlayOptions,
     PictureOptions, PngWriter, Side, fraction,
 };
-use pictured::{balls, gpu, mesh, picture, picture_of};
+use pictured::{balls, explored, gpu, mesh, picture, picture_of};
 
 /// Greatest mean difference of blurred channels, of 255.
 const MEAN: f64 = 1.0;
@@ -67,6 +67,23 @@ fn a_soma_from_near() {
         "near",
         &picture(&gpu, &sample("pyramidal.swc"), &close(), &small()),
     );
+}
+
+#[test]
+fn neurons_within_a_budget() {
+    let Some(gpu) = gpu() else { return };
+    let (eye, target) = (DVec3::new(90.0, 60.0, 260.0), DVec3::new(30.0, 10.0, 0.0));
+    let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("a camera");
+    // A third of what half a pixel everywhere takes.
+    let image = explored(
+        &gpu,
+        &sample("pyramidal.swc"),
+        12,
+        16_000,
+        &camera,
+        &small(),
+    );
+    compare("explored", &image);
 }
 
 #[test]

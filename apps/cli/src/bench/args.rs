@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use neurotess::render::{DEFAULT_BUDGET, MOST_BUDGET};
 
 use crate::render::args::Size;
 
@@ -18,6 +19,42 @@ pub(crate) struct BenchArgs {
 pub(crate) enum Bench {
     /// Three ways to draw refined neurons: stored, homogeneous on the fly, adaptive on the fly
     Refinement(RefinementArgs),
+    /// Exploration within a budget beside adaptive refinement, in ever larger scenes
+    Exploration(ExplorationArgs),
+}
+
+/// `neurotess bench exploration`
+#[derive(Args, Debug)]
+pub(crate) struct ExplorationArgs {
+    /// Neurons of each scene
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "1,10,100,1000,10000",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) neurons: Vec<u32>,
+    /// Distinct neurons: scenes of more show them several times
+    #[arg(long, value_name = "N", default_value_t = 30,
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) distinct: u32,
+    /// Points of a neuron, about
+    #[arg(long, value_name = "N", default_value_t = 1000,
+          value_parser = clap::value_parser!(u32).range(50..=500_000))]
+    pub(crate) points: u32,
+    /// Most triangles of a frame
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+    pub(crate) budget: u32,
+    /// Largest scene that is refined adaptively too, for comparison
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    pub(crate) compare: u32,
+    /// Width and height (pixels)
+    #[arg(long, value_name = "WxH", default_value = "1280x960")]
+    pub(crate) size: Size,
+    /// Frames that are timed of each, while the camera turns; the median counts
+    #[arg(long, value_name = "N", default_value_t = 7,
+          value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: u32,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
 }
 
 /// `neurotess bench refinement`

@@ -1,10 +1,11 @@
 //! The ways of drawing that are compared, and how a frame of each is timed.
 
+use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, Surface};
 use neurotess::refine::{Levels, RefineOptions, Refinement};
 use neurotess::render::{
     Adaptive, Choice, ColourTable, FrameTime, Gpu, Instance, Meter, Painted, Place, Placement,
-    Prerefined, Refining, Scene as Placed, Template, Templates, VertexMaker,
+    Prerefined, Refining, Scene as Placed, Template, TemplateId, Templates, VertexMaker,
 };
 use serde::Serialize;
 
@@ -137,23 +138,7 @@ impl Drawing<'_> {
 
     /// What draws a scene on the fly.
     pub(crate) fn on_the_fly(&self, scene: &Scene) -> anyhow::Result<Adaptive> {
-        let used = self.neurons.len().min(scene.places.len());
-        let list: Vec<Template<'_>> = self.neurons[..used].iter().map(Neuron::template).collect();
-        let mut templates = Templates::new();
-        let ids = templates.add(self.gpu, &list)?;
-        let instances = scene.places.iter().map(|&(neuron, translation)| {
-            // Placements start from the template's coordinates, as translations do.
-            let placement = Placement {
-                translation,
-                ..Placement::default()
-            };
-            Instance {
-                placement,
-                ..Instance::new(ids[neuron])
-            }
-        });
-        let placed = Placed::new(templates, instances.collect())?;
-        Ok(Adaptive::new(self.gpu, placed, Refining::default(), 1)?)
+        adaptive(self.gpu, self.neurons, scene, Refining::default())
     }
 
     /// Times a way of refining on the fly. `count`: whether triangles are counted, which reads lists
@@ -199,6 +184,37 @@ impl Drawing<'_> {
             .map(|_| Ok(meter.time(maker, &scene.frame)?))
             .collect()
     }
+}
+
+/// What refines a scene as it is drawn.
+pub(crate) fn adaptive(
+    gpu: &Gpu,
+    neurons: &[Neuron],
+    scene: &Scene,
+    refining: Refining,
+) -> anyhow::Result<Adaptive> {
+    let used = neurons.len().min(scene.places.len());
+    let list: Vec<Template<'_>> = neurons[..used].iter().map(Neuron::template).collect();
+    let mut templates = Templates::new();
+    let ids = templates.add(gpu, &list)?;
+    let placed = Placed::new(templates, instances(scene, &ids))?;
+    Ok(Adaptive::new(gpu, placed, refining, 1)?)
+}
+
+/// Where a scene's neurons stand.
+pub(crate) fn instances(scene: &Scene, ids: &[TemplateId]) -> Vec<Instance> {
+    let instance = |&(neuron, translation): &(usize, DVec3)| {
+        // Placements start from the template's coordinates, as translations do.
+        let placement = Placement {
+            translation,
+            ..Placement::default()
+        };
+        Instance {
+            placement,
+            ..Instance::new(ids[neuron])
+        }
+    };
+    scene.places.iter().map(instance).collect()
 }
 
 impl Neuron {
@@ -248,7 +264,8 @@ fn row(
     }
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
+/// The middle one.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }

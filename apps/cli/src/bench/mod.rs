@@ -2,9 +2,10 @@
 //!
 //! `refinement` repeats the experiment of García-Cantero et al. (Frontiers in Neuroinformatics 2017,
 //! figure 15): scenes of several sizes drawn with rising levels in three ways, and beyond it by the
-//! error in pixels and with thousands of neurons.
+//! error in pixels and with thousands of neurons. `exploration` draws such scenes within a budget.
 
 mod args;
+mod exploration;
 mod methods;
 mod plot;
 mod scenes;
@@ -46,7 +47,13 @@ struct Document<'a> {
 
 /// Runs the command.
 pub(crate) fn run(args: &BenchArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    let Bench::Refinement(args) = &args.name;
+    match &args.name {
+        Bench::Refinement(args) => refinement(args, reporter),
+        Bench::Exploration(args) => exploration::run(args, reporter),
+    }
+}
+
+fn refinement(args: &RefinementArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if let Some(folder) = &args.out {
         for name in [JSON, SVG] {
             refuse_existing(&folder.join(name), args.force)?;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use glam::{DVec3, Vec3};
-use neurotess::render::{ColourMap, LARGEST, Light, Palette, Rgb};
+use neurotess::render::{ColourMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
 
 use crate::args::{SomaArg, Types};
 use crate::circuit::CellArgs;
@@ -19,6 +19,7 @@ use crate::circuit::CellArgs;
   neurotess render a.swc b.swc -o both.png --color-by neuron --transparent
   neurotess render cell.swc -o turn.png --turntable --frames 120
   neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
+  neurotess render circuit/ -o all.png --lod exploration --budget 1000000
   neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30")]
 pub(crate) struct RenderArgs {
     /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit, or
@@ -112,6 +113,10 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "P", value_parser = crate::args::positive,
           help_heading = "Refinement")]
     pub(crate) pixels: Option<f64>,
+    /// Most triangles of --lod exploration, for those that show most [default: 100000]
+    #[arg(long, value_name = "N", help_heading = "Refinement",
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+    pub(crate) budget: Option<u32>,
     /// Look from this side; the camera fits the scene
     #[arg(long, value_enum, default_value_t = ViewArg::Front, value_name = "SIDE",
           help_heading = "Camera")]
@@ -246,6 +251,10 @@ pub(crate) enum LodArg {
     Homogeneous,
     /// Refined beforehand, whole in the adapter's memory
     Prerefined,
+    /// As the viewer draws while the camera moves: any scene within --budget triangles
+    Exploration,
+    /// As the viewer draws at rest: adaptive, within half a pixel
+    Static,
 }
 
 /// `--view`

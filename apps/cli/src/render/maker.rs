@@ -4,14 +4,16 @@ use std::collections::BTreeMap;
 
 use neurotess::refine::{Levels, RefineOptions};
 use neurotess::render::{
-    Adaptive, Ball, Camera, Choice, Frame, Gpu, Instance, Painted, PictureOptions, Placement,
-    Prerefined, Refining, Scene, Template, Templates, Tile, VertexMaker, bounds,
+    Adaptive, Ball, Camera, Choice, DEFAULT_BUDGET, Exploration, ExplorationStats, Frame, Gpu,
+    Instance, Painted, PictureOptions, Placement, Prerefined, Refining, Scene, Sketch, Template,
+    Templates, Tile, VertexMaker,
 };
+use rayon::prelude::*;
 
 use super::Sitting;
 use super::args::{LodArg, RenderArgs};
 use super::cells::Cell;
-use super::places::placed;
+use super::places::covering;
 use crate::report::usage;
 
 /// A maker of any kind.
@@ -20,6 +22,8 @@ pub(crate) enum Maker {
     Stored(Box<Prerefined>),
     /// As it is drawn.
     OnTheFly(Box<Adaptive>),
+    /// Within a budget.
+    Exploring(Box<Exploration>),
 }
 
 /// What a maker draws and holds.
@@ -32,6 +36,7 @@ pub(crate) struct Made {
     pub(crate) levels: BTreeMap<u32, u64>,
     pub(crate) bytes: BTreeMap<&'static str, u64>,
     pub(crate) bytes_per_point: f64,
+    pub(crate) exploration: Option<ExplorationStats>,
 }
 
 /// The mode that options ask for.
@@ -39,10 +44,23 @@ pub(crate) struct Made {
 /// # Errors
 /// Wrong usage: a level where levels follow from the error.
 pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodArg> {
+    let exploring = args.lod == Some(LodArg::Exploration);
+    if args.budget.is_some() && !exploring {
+        return usage("--budget is for --lod exploration");
+    }
+    if exploring && args.pixels.is_some() {
+        return usage("--lod exploration is within half a pixel: leave out --pixels");
+    }
     match (args.lod, args.level) {
         (Some(LodArg::Adaptive), Some(_)) => usage(
             "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
         ),
+        (Some(LodArg::Exploration | LodArg::Static), Some(_)) => {
+            usage("this --lod has no levels: leave out --level, or use --lod homogeneous")
+        }
+        (Some(LodArg::Static), None) if args.pixels.is_some() => {
+            usage("--lod static is within half a pixel: leave out --pixels, or use --lod adaptive")
+        }
         (Some(mode), _) => Ok(mode),
         (None, Some(_)) => Ok(LodArg::Homogeneous),
         (None, None) => Ok(LodArg::Adaptive),
@@ -67,6 +85,8 @@ impl Maker {
             LodArg::Prerefined => return stored(gpu, sitting),
             LodArg::Homogeneous => Choice::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
             LodArg::Adaptive => Choice::PixelError(args.error() as f32),
+            LodArg::Static => Choice::PixelError(0.5),
+            LodArg::Exploration => return exploring(gpu, options, sitting),
         };
         let list: Vec<Template<'_>> = cells
             .iter()
@@ -90,8 +110,7 @@ impl Maker {
             ..Refining::default()
         };
         let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
-        let own: Vec<Vec<Ball>> = cells.iter().map(|cell| bounds(&cell.mesh)).collect();
-        maker.set_bounds(placed(&own, places));
+        maker.set_bounds(covering(cells, places));
         Ok(Self::OnTheFly(Box::new(maker)))
     }
 
@@ -100,6 +119,7 @@ impl Maker {
         match self {
             Self::Stored(maker) => maker.as_mut(),
             Self::OnTheFly(maker) => maker.as_mut(),
+            Self::Exploring(maker) => maker.as_mut(),
         }
     }
 
@@ -114,19 +134,7 @@ impl Maker {
         match self {
             Self::Stored(maker) => Ok(resident(maker)),
             Self::OnTheFly(maker) => {
-                let size = options.size.map(|n| n * options.sub_pixels(gpu));
-                let frame = Frame {
-                    camera: *camera,
-                    near,
-                    size,
-                    tile: Tile {
-                        x: 0,
-                        y: 0,
-                        width: size[0],
-                        height: size[1],
-                    },
-                };
-                maker.prepare(gpu, &frame)?;
+                maker.prepare(gpu, &whole(gpu, camera, near, options))?;
                 let stats = maker.stats(gpu)?;
                 let levels = (0..).zip(&stats.level_histogram);
                 let levels = levels.filter(|&(_, &sides)| sides > 0);
@@ -138,10 +146,64 @@ impl Maker {
                     levels: levels.map(|(level, &sides)| (level, sides)).collect(),
                     bytes: maker.bytes().into_iter().collect(),
                     bytes_per_point: maker.bytes_per_point(),
+                    exploration: None,
+                })
+            }
+            Self::Exploring(maker) => {
+                maker.prepare(gpu, &whole(gpu, camera, near, options))?;
+                let stats = maker.stats(gpu)?;
+                Ok(Made {
+                    patches_drawn: stats.pieces,
+                    vertices: 2 * stats.triangles,
+                    triangles: stats.triangles,
+                    bytes: maker.bytes().into_iter().collect(),
+                    bytes_per_point: maker.bytes_per_point(),
+                    exploration: Some(stats),
+                    ..Made::default()
                 })
             }
         }
     }
+}
+
+/// The whole picture as one frame.
+fn whole(gpu: &Gpu, camera: &Camera, near: f64, options: &PictureOptions) -> Frame {
+    let size = options.size.map(|n| n * options.sub_pixels(gpu));
+    Frame {
+        camera: *camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
+    }
+}
+
+fn exploring(gpu: &Gpu, options: &PictureOptions, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
+    let Sitting {
+        args,
+        cells,
+        places,
+        colouring,
+        ..
+    } = *sitting;
+    let sketches: Vec<Sketch> = cells
+        .par_iter()
+        .zip(&colouring.words)
+        .map(|(cell, words)| Sketch::new(&cell.mesh, words))
+        .collect();
+    let mut maker = Exploration::new(gpu, options.sub_pixels(gpu))?;
+    maker.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
+    let ids = maker.add(gpu, &sketches)?;
+    let instances = places.iter().map(|&(cell, placement)| Instance {
+        placement,
+        ..Instance::new(ids[cell])
+    });
+    maker.set_instances(gpu, instances.collect())?;
+    Ok(Maker::Exploring(Box::new(maker)))
 }
 
 /// Level where none is given.
@@ -215,5 +277,6 @@ fn resident(maker: &Prerefined) -> Made {
             .collect(),
         bytes: bytes.into_iter().collect(),
         bytes_per_point: sum as f64 / resident.points.max(1) as f64,
+        exploration: None,
     }
 }

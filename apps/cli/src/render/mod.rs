@@ -32,7 +32,7 @@ use args::{ColorBy, Fit, RenderArgs};
 use cells::Cell;
 use maker::Maker;
 use places::Cast;
-use stats::Stats;
+use stats::{Stage, Stages, Stats};
 
 /// Width (pixels) of the lines of a wireframe.
 const WIRE: f32 = 1.0;
@@ -50,11 +50,13 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         return draw_session(session, &files, args, reporter);
     }
     check_value(args)?;
+    let mut stages = Stages::begin();
     let Cast {
         entries,
         places,
         shown,
     } = places::cast(args, reporter)?;
+    stages.end(Stage::Read);
     let cells: Vec<&Cell> = entries
         .iter()
         .filter_map(|entry| match entry {
@@ -67,7 +69,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     }
     let balls = places::balls(&cells, &places);
     let cameras = sight::cameras(args, &balls)?;
+    stages.end(Stage::Frame);
     let gpu = Gpu::open(args.adapter.as_deref())?;
+    stages.end(Stage::Adapter);
     if gpu.adapter.software {
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
@@ -84,7 +88,10 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         overlay: &overlay,
         files: &files,
     };
-    let stats = draw(&gpu, &sitting, reporter)?;
+    stages.end(Stage::Frame);
+    let mut stats = draw(&gpu, &sitting, &mut stages, reporter)?;
+    stages.end(Stage::Draw);
+    stats.took(stages);
     if let Some(path) = &args.stats {
         let mut output = Output::create(path, args.force)?;
         serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
@@ -197,7 +204,12 @@ struct Sitting<'a> {
     files: &'a [PathBuf],
 }
 
-fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result<Stats> {
+fn draw(
+    gpu: &Gpu,
+    sitting: &Sitting<'_>,
+    stages: &mut Stages,
+    reporter: &Reporter,
+) -> anyhow::Result<Stats> {
     let Sitting {
         args,
         places,
@@ -218,6 +230,7 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
     }
     let mut maker = Maker::new(gpu, &options, sitting)?;
     let mut studio = Studio::new();
+    stages.end(Stage::Upload);
     let mut stats = Stats::new(gpu, places.len());
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (camera, file) in cameras.iter().zip(files) {
@@ -233,6 +246,9 @@ fn draw(gpu: &Gpu, sitting: &Sitting<'_>, reporter: &Reporter) -> anyhow::Result
                 .map_err(|e| anyhow::anyhow!("{e}"))
         })?;
         stats.add(&cost, maker.made(gpu, camera, near, &options)?);
+        if let Some(lowered) = stats.lowered() {
+            reporter.warning(&lowered);
+        }
         progress.done();
     }
     drop(progress);

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use glam::DVec3;
 use neurotess::circuit::soma_center;
 use neurotess::render::{Ball, Placement, bounds};
+use rayon::prelude::*;
 
 use super::args::RenderArgs;
 use super::cells::{self, Cell};
@@ -16,6 +18,11 @@ use crate::report::{Failure, Reporter, usage};
 
 /// From so many places on, a cell is framed by a few balls instead of one per point.
 const MANY: usize = 64;
+
+/// Most balls that a scene is framed by, and its tiles are tested with: milliseconds of work.
+const MOST_BALLS: usize = 400_000;
+/// Fewest of a cell.
+const FEWEST: usize = 16;
 
 /// What is drawn.
 pub(crate) struct Cast {
@@ -133,21 +140,52 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
     })
 }
 
-/// Balls around all that is shown.
+/// Balls around all that is shown, to fit a camera to.
 pub(crate) fn balls(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
-    let many = places.len() >= MANY;
+    if places.len() >= MANY {
+        return covering(cells, places);
+    }
     let own: Vec<Vec<Ball>> = cells
         .iter()
-        .map(|cell| match many {
-            true => bounds(&cell.mesh),
-            false => cells::balls(cell).collect(),
-        })
+        .map(|cell| cells::balls(cell).collect())
         .collect();
     placed(&own, places)
 }
 
+/// Balls that hold all surfaces, at any level.
+pub(crate) fn covering(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
+    let of_cell = (MOST_BALLS / places.len().max(1)).max(FEWEST);
+    let own: Vec<Vec<Ball>> = cells
+        .par_iter()
+        .map(|cell| merged(&bounds(&cell.mesh), of_cell))
+        .collect();
+    placed(&own, places)
+}
+
+/// At most so many balls that hold all of these: neighbours in the list are neighbours in the cell.
+fn merged(balls: &[Ball], most: usize) -> Vec<Ball> {
+    if balls.len() <= most {
+        return balls.to_vec();
+    }
+    let around = |balls: &[Ball]| {
+        let low = balls
+            .iter()
+            .map(|&(c, r)| c - r)
+            .fold(DVec3::MAX, DVec3::min);
+        let high = balls
+            .iter()
+            .map(|&(c, r)| c + r)
+            .fold(DVec3::MIN, DVec3::max);
+        let center = (low + high) / 2.0;
+        let reach = balls.iter().map(|&(c, r)| c.distance(center) + r);
+        (center, reach.fold(0.0, f64::max))
+    };
+    let together = balls.len().div_ceil(most);
+    balls.chunks(together).map(around).collect()
+}
+
 /// Balls of cells where the cells stand.
-pub(crate) fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
+fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
     let at = |&(cell, placement): &(usize, Placement)| {
         let balls = own[cell].iter();
         balls.map(move |&(center, radius)| {
@@ -159,9 +197,20 @@ pub(crate) fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ba
 
 #[cfg(test)]
 mod tests {
-    use glam::{DQuat, DVec3};
+    use glam::DQuat;
 
     use super::*;
+
+    #[test]
+    fn merged_balls_hold_those_that_they_are_of() {
+        let at = |i: usize| DVec3::new(i as f64, (0.3 * i as f64).sin() * 20.0, 0.0);
+        let balls: Vec<Ball> = (0..1000).map(|i| (at(i), 0.1 + 0.01 * i as f64)).collect();
+        let few = merged(&balls, 30);
+        assert!(few.len() <= 30);
+        let held = |&(c, r): &Ball| few.iter().any(|&(m, s)| c.distance(m) + r <= s + 1e-9);
+        assert!(balls.iter().all(held));
+        assert_eq!(merged(&balls, 1000), balls);
+    }
 
     #[test]
     fn balls_go_where_cells_stand() {

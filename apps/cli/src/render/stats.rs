@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
@@ -27,6 +28,70 @@ pub(crate) struct Stats {
     level_histogram: BTreeMap<u32, u64>,
     tiles: usize,
     pictures: usize,
+    seconds: Stages,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exploration: Option<Explored>,
+}
+
+/// Seconds since the command began, stage by stage.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Stages {
+    /// Reading and meshing.
+    read: f64,
+    /// Cameras, colours, legend.
+    frame: f64,
+    /// Opening the adapter.
+    adapter: f64,
+    /// Making what is drawn from, and uploading it.
+    upload: f64,
+    /// All pictures, and counting what they took.
+    draw: f64,
+    #[serde(skip)]
+    began: Option<Instant>,
+}
+
+/// A stage that has ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stage {
+    Read,
+    Frame,
+    Adapter,
+    Upload,
+    Draw,
+}
+
+impl Stages {
+    /// Starts the clock.
+    pub(crate) fn begin() -> Self {
+        Self {
+            began: Some(Instant::now()),
+            ..Self::default()
+        }
+    }
+
+    /// Adds the time since the last stage ended.
+    pub(crate) fn end(&mut self, stage: Stage) {
+        let now = Instant::now();
+        let seconds = self.began.map_or(0.0, |at| (now - at).as_secs_f64());
+        self.began = Some(now);
+        *match stage {
+            Stage::Read => &mut self.read,
+            Stage::Frame => &mut self.frame,
+            Stage::Adapter => &mut self.adapter,
+            Stage::Upload => &mut self.upload,
+            Stage::Draw => &mut self.draw,
+        } += seconds;
+    }
+}
+
+/// What `--lod exploration` drew of what it would have, in triangles.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Explored {
+    budget: u64,
+    wanted: u64,
+    /// Left out, or drawn more coarsely than within half a pixel.
+    left_out: u64,
+    neurons_in_picture: u64,
 }
 
 /// Milliseconds.
@@ -61,11 +126,36 @@ impl Stats {
         self.level_histogram = made.levels;
         self.bytes_per_point = made.bytes_per_point;
         self.gpu_bytes = made.bytes;
+        self.exploration = made.exploration.map(|stats| Explored {
+            budget: stats.budget,
+            wanted: stats.wanted,
+            left_out: stats.wanted - stats.triangles.min(stats.wanted),
+            neurons_in_picture: stats.instances,
+        });
         self.gpu_bytes.insert("targets", cost.target_bytes);
         self.frame_ms = FrameTime {
             cpu: cost.cpu_ms,
             gpu: cost.gpu_ms.as_ref().map(|ms| ms.iter().copied().collect()),
         };
+    }
+
+    /// What was left out or lowered.
+    pub(crate) fn lowered(&self) -> Option<String> {
+        let Explored {
+            budget,
+            wanted,
+            left_out,
+            ..
+        } = self.exploration.filter(|explored| explored.left_out > 0)?;
+        Some(format!(
+            "the budget of {budget} triangles: {left_out} of {wanted} are left out, those that show \
+             least; --budget allows more"
+        ))
+    }
+
+    /// How long it took.
+    pub(crate) fn took(&mut self, stages: Stages) {
+        self.seconds = stages;
     }
 
     /// For people.

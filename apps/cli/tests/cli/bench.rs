@@ -64,3 +64,32 @@ fn what_memory_does_not_allow_is_left_out_and_told() {
     let rows = json["rows"].as_array().expect("rows");
     assert!(rows.iter().all(|row| row["method"] != "prerefined"));
 }
+
+#[test]
+fn exploration_is_timed_beside_adaptive_refinement() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    let small = "bench exploration --neurons 1,6 --compare 1 --distinct 2 --points 60 --frames 1 \
+                 --size 64x48 --budget 300";
+    let json = work.run(&format!("{small} --json")).exits(0).json();
+    let rows = json["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 2);
+    for row in rows {
+        let number = |key: &str| row[key].as_u64().expect("a number");
+        assert!(
+            number("triangles") <= 300 && number("triangles") > 0,
+            "{row}"
+        );
+        assert!(number("wanted") >= number("triangles"), "{row}");
+        assert!(
+            row["exploration"]["waited"]
+                .as_f64()
+                .is_some_and(|ms| ms > 0.0)
+        );
+    }
+    assert!(rows[0]["ratio"].as_f64().is_some_and(|ratio| ratio > 0.0));
+    assert!(rows[1]["ratio"].is_null());
+    assert!(work.run(small).exits(0).stdout().contains("wanted"));
+}

@@ -14,6 +14,7 @@ fn help_is_as_agreed() {
         "convert",
         "synth",
         "bench refinement",
+        "bench exploration",
     ] {
         let help = work.run(&format!("{command} --help")).exits(0).stdout();
         // Windows adds `.exe`.

@@ -107,6 +107,8 @@ fn every_option_of_the_contract_draws() {
         "--lod homogeneous --level 2",
         "--pixels 2",
         "--lod prerefined --level 1",
+        "--lod static",
+        "--lod exploration",
         "--samples 1",
         "--background 203040",
         "--transparent",
@@ -346,6 +348,11 @@ fn wrong_usage_of_render_exits_with_2() {
         "render cell.swc -o cell.png --level 65",
         "render cell.swc -o cell.png --lod adaptive --level 3",
         "render cell.swc -o cell.png --level 3 --pixels 1",
+        "render cell.swc -o cell.png --budget 3",
+        "render cell.swc -o cell.png --lod exploration --level 3",
+        "render cell.swc -o cell.png --lod exploration --pixels 1",
+        "render cell.swc -o cell.png --lod exploration --budget 9000000000",
+        "render cell.swc -o cell.png --lod static --pixels 1",
         "render cell.swc -o cell.png --background reddish",
         "render cell.swc -o cell.png --transparent --background white",
         "render cell.swc -o cell.png --color-by luck",
@@ -407,6 +414,19 @@ fn circuits_are_drawn_cell_by_cell_where_they_stand() {
         "{}",
         run.stderr()
     );
+    let run = work
+        .run("render circuit -o c.png --force --lod exploration --budget 400 --stats s.json")
+        .exits(0);
+    let stats = fs::read_to_string(work.path("s.json")).expect("stats");
+    let stats: Value = serde_json::from_str(&stats).expect("JSON");
+    let number = |key: &str| stats["exploration"][key].as_u64().expect("a number");
+    assert!(number("wanted") > 400 && number("left_out") > 0);
+    assert!(
+        stats["triangles"]
+            .as_u64()
+            .is_some_and(|n| n <= 400 && n > 0)
+    );
+    assert!(run.stderr().contains("left out"), "{}", run.stderr());
     let run = work
         .run("render circuit -o c.png --force --lod prerefined --level 1")
         .exits(2);

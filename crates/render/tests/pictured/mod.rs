@@ -1,13 +1,14 @@
 //! A device, a cell and its picture.
 #![allow(dead_code)]
 
+use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::CoarseMesh;
 use neurotess_refine::{Levels, RefineOptions};
 use neurotess_render::{
-    Ball, Camera, ColourTable, DEFAULT_FOV, Gpu, Image, Painted, Palette, PictureOptions,
-    Prerefined, Rgb, Side, category, paint,
+    Ball, Camera, ColourTable, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Painted, Palette,
+    PictureOptions, Placement, Prerefined, Rgb, Side, Sketch, VertexMaker, category, paint,
 };
 
 /// A soma, an axon, and a dendrite that forks.
@@ -97,6 +98,52 @@ pub(crate) fn picture_of(
     draw(gpu, mesh, words, &table, camera, options)
 }
 
+/// A row of cells, each behind the other, within a budget of triangles.
+pub(crate) fn explored(
+    gpu: &Gpu,
+    mesh: &CoarseMesh,
+    count: u32,
+    budget: u32,
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let (words, table) = by_type(mesh);
+    let mut maker = Exploration::new(gpu, options.sub_pixels(gpu)).expect("a maker");
+    maker.set_budget(budget);
+    let ids = maker
+        .add(gpu, &[Sketch::new(mesh, &words)])
+        .expect("uploaded");
+    let instances = (0..count).map(|i| Instance {
+        placement: Placement {
+            rotation: DQuat::from_rotation_y(f64::from(i)),
+            translation: DVec3::new(40.0, 0.0, -90.0) * f64::from(i),
+            ..Placement::default()
+        },
+        ..Instance::new(ids[0])
+    });
+    maker
+        .set_instances(gpu, instances.collect())
+        .expect("placed");
+    whole(gpu, &mut maker, camera, 1.0, &table, options)
+}
+
+fn whole(
+    gpu: &Gpu,
+    maker: &mut dyn VertexMaker,
+    camera: &Camera,
+    near: f64,
+    table: &ColourTable,
+    options: &PictureOptions,
+) -> Image {
+    let mut whole = Image::new(options.size[0], options.size[1]);
+    let taken = |top: u32, band: Image| {
+        whole.lay(0, i64::from(top), &band);
+        Ok::<(), std::convert::Infallible>(())
+    };
+    paint(gpu, maker, camera, near, table, options, taken).expect("painted");
+    whole
+}
+
 fn draw(
     gpu: &Gpu,
     mesh: &CoarseMesh,
@@ -114,12 +161,6 @@ fn draw(
         options.look.wire > 0.0,
     )
     .expect("uploaded");
-    let mut whole = Image::new(options.size[0], options.size[1]);
     let near = camera.near(&balls(mesh));
-    let taken = |top: u32, band: Image| {
-        whole.lay(0, i64::from(top), &band);
-        Ok::<(), std::convert::Infallible>(())
-    };
-    paint(gpu, &mut maker, camera, near, table, options, taken).expect("painted");
-    whole
+    whole(gpu, &mut maker, camera, near, table, options)
 }

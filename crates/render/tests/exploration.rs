@@ -1,0 +1,492 @@
+//! Exploration keeps its budget, spends it where it shows most, and loses nothing on the way.
+
+mod common;
+mod pictured;
+
+use std::convert::Infallible;
+
+use common::{Random, cell, extent, gpu, smooth_cell};
+use glam::{DQuat, DVec3};
+use neurotess_mesh::CoarseMesh;
+use neurotess_render::{
+    Adaptive, Asked, Camera, ColourTable, Exploration, ExplorationError, Frame, Gpu, Image,
+    Instance, MOST_BUDGET, Occlusion, PictureOptions, Placement, Refining, Scene, Sketch, Template,
+    TemplateId, Templates, Tile, VertexMaker, asked, paint,
+};
+use pictured::{CELL, by_type, mesh};
+
+fn frame(camera: Camera, width: u32, height: u32) -> Frame {
+    Frame {
+        camera,
+        near: 1e-2,
+        size: [width, height],
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        },
+    }
+}
+
+/// Instances of so many templates in a box of this edge (µm).
+fn places(random: &mut Random, count: usize, templates: usize, edge: f64) -> Vec<Instance> {
+    let place = |random: &mut Random| {
+        let half = edge / 2.0;
+        let mut at = || random.real(-half, half);
+        let translation = DVec3::new(at(), at(), at());
+        let angle = random.real(0.0, 6.0);
+        Instance {
+            placement: Placement {
+                rotation: DQuat::from_axis_angle(random.direction(), angle).normalize(),
+                scale: random.real(0.5, 2.0),
+                translation,
+            },
+            ..Instance::new(TemplateId(random.whole(templates as u64) as u32))
+        }
+    };
+    (0..count).map(|_| place(random)).collect()
+}
+
+fn explored(gpu: &Gpu, sketches: &[Sketch], instances: Vec<Instance>) -> Exploration {
+    let mut maker = Exploration::new(gpu, 1).expect("a maker");
+    maker.add(gpu, sketches).expect("uploaded");
+    maker.set_instances(gpu, instances).expect("instances");
+    maker
+}
+
+fn any_camera(random: &mut Random, reach: f64) -> Camera {
+    let distance = reach * random.real(-3.0, 4.0).exp2();
+    let eye = random.direction() * distance;
+    let target = random.direction() * reach * 0.3;
+    let up = (target - eye).any_orthogonal_vector();
+    Camera::new(eye, target, up, random.real(0.1, 1.5)).expect("a camera")
+}
+
+#[test]
+fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
+    let Some(gpu) = gpu() else { return };
+    let mut random = Random(5);
+    let sketches: Vec<Sketch> = (0..3).map(|i| Sketch::new(&cell(i, 30), &[])).collect();
+    for (count, edge) in [(1, 1.0), (7, 100.0), (300, 800.0)] {
+        let instances = places(&mut random, count, sketches.len(), edge);
+        let mut maker = explored(&gpu, &sketches, instances);
+        for budget in [0, 1, 2, 3, 10, 100, 1000, 12_345, 100_000, MOST_BUDGET] {
+            maker.set_budget(budget);
+            for _ in 0..4 {
+                let camera = any_camera(&mut random, edge + 60.0);
+                maker
+                    .prepare(&gpu, &frame(camera, 400, 300))
+                    .expect("prepared");
+                let stats = maker.stats(&gpu).expect("counted");
+                assert!(stats.triangles <= u64::from(budget), "{stats:?}");
+                assert_eq!(stats.all_instances, count as u64);
+                if stats.wanted <= u64::from(budget) {
+                    assert_eq!(stats.triangles, stats.wanted, "all that is asked for");
+                } else if budget >= 10_000 {
+                    // What is left of a budget is less than the class that did not fit.
+                    assert!(5 * stats.triangles >= 3 * u64::from(budget), "{stats:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_drawn_is_what_is_worth_most() {
+    let Some(gpu) = gpu() else { return };
+    let mut random = Random(11);
+    let sketches: Vec<Sketch> = (0..2).map(|i| Sketch::new(&cell(i, 40), &[])).collect();
+    let instances = places(&mut random, 40, sketches.len(), 300.0);
+    let mut maker = explored(&gpu, &sketches, instances.clone());
+    let (mut compared, mut off) = (0, 0);
+    for budget in [500, 5000, 60_000, MOST_BUDGET] {
+        maker.set_budget(budget);
+        for _ in 0..4 {
+            let frame = frame(any_camera(&mut random, 300.0), 500, 300);
+            maker.prepare(&gpu, &frame).expect("prepared");
+            let shown = maker.shown(&gpu).expect("read back");
+            let mut shown = shown
+                .iter()
+                .map(|s| ((s.instance, s.run), s.quads))
+                .peekable();
+            let (mut least, mut most) = (f64::MAX, f64::MIN);
+            for (i, instance) in (0..).zip(&instances) {
+                let sketch = &sketches[instance.template.0 as usize];
+                let runs = asked(sketch, &instance.placement, &frame, 1, i);
+                for (run, steps) in (0..).zip(runs) {
+                    let there = shown.next_if(|&(at, _)| at == (i, run));
+                    let quads = there.map_or(0, |(_, quads)| quads);
+                    compared += 1;
+                    match drawn_steps(&steps, quads) {
+                        Some(drawn) => {
+                            let class = |step: &Asked| step.class;
+                            least = steps[..drawn].iter().map(class).fold(least, f64::min);
+                            most = steps[drawn..].iter().map(class).fold(most, f64::max);
+                        }
+                        // On an edge between two forms, f32 and f64 may disagree.
+                        None => off += 1,
+                    }
+                }
+            }
+            assert_eq!(shown.next(), None, "drawn in order, and nothing else");
+            assert!(most < least + 1.01, "{most} was left out, {least} drawn");
+            if budget == MOST_BUDGET {
+                assert_eq!(most, f64::MIN, "nothing is left out");
+            }
+        }
+    }
+    println!("{off} of {compared} runs on an edge");
+    assert!(off * 500 < compared, "{off} of {compared}");
+}
+
+/// How many steps make these quads.
+fn drawn_steps(steps: &[Asked], quads: u32) -> Option<usize> {
+    let mut sum = 0;
+    let sums = steps.iter().map(|step| {
+        sum += step.quads;
+        sum
+    });
+    let mut sums = vec![0].into_iter().chain(sums.collect::<Vec<_>>());
+    sums.position(|sum| sum == quads)
+}
+
+fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, table: &ColourTable) -> Image {
+    let options = PictureOptions {
+        size: [320, 240],
+        samples: 16,
+        occlusion: Occlusion::Off,
+        ..PictureOptions::default()
+    };
+    let mut whole = Image::default();
+    let take = |_: u32, band: Image| {
+        whole = band;
+        Ok::<(), Infallible>(())
+    };
+    paint(gpu, maker, camera, 1.0, table, &options, take).expect("painted");
+    whole
+}
+
+/// How much darker than the background a picture is, summed over tiles of 16 × 16 pixels.
+fn ink(image: &Image) -> Vec<f64> {
+    let across = image.width.div_ceil(16);
+    let mut tiles = vec![0.0; (across * image.height.div_ceil(16)) as usize];
+    for y in 0..image.height {
+        for x in 0..image.width {
+            let [r, g, b, _] = image.at(x, y).map(f64::from);
+            tiles[(y / 16 * across + x / 16) as usize] += 255.0 - (r + g + b) / 3.0;
+        }
+    }
+    tiles
+}
+
+/// Both makers of one scene.
+fn both(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Instance]) -> (Adaptive, Exploration) {
+    let (words, _) = by_type(mesh);
+    let mut templates = Templates::new();
+    let template = Template {
+        mesh,
+        words: &words,
+        values: &[],
+    };
+    templates.add(gpu, &[template]).expect("uploaded");
+    let scene = Scene::new(templates, instances.to_vec()).expect("a scene");
+    let adaptive = Adaptive::new(gpu, scene, Refining::default(), 2).expect("a maker");
+    let mut maker = explored(gpu, &[Sketch::new(mesh, &words)], instances.to_vec());
+    maker.set_sub_pixels(2);
+    (adaptive, maker)
+}
+
+#[test]
+fn nothing_vanishes_near_or_far() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = smooth_cell(3);
+    let (_, table) = by_type(&mesh);
+    let mut random = Random(2);
+    for (count, edge) in [(1, 1.0), (40, 250.0)] {
+        let instances = places(&mut random, count, 1, edge);
+        let (mut adaptive, mut maker) = both(&gpu, &mesh, &instances);
+        maker.set_budget(2_000_000);
+        for distance in [60.0, 200.0, 600.0, 2000.0] {
+            let eye = DVec3::new(0.3, 0.5, 1.0).normalize_or(DVec3::Z) * (distance + edge);
+            let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+            let wanted = ink(&picture(&gpu, &mut adaptive, &camera, &table));
+            let found = ink(&picture(&gpu, &mut maker, &camera, &table));
+            let all: f64 = wanted.iter().sum();
+            let change = found.iter().sum::<f64>() / all - 1.0;
+            let off: f64 = wanted.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
+            println!(
+                "{count} at {distance}: {change:+.4} ink, {:.4} off",
+                off / all
+            );
+            // As much ink within a twentieth, and where it was: in each 16 × 16 pixels.
+            assert!(change.abs() < 0.05, "{count} at {distance}: {change}");
+            assert!(off / all < 0.08, "{count} at {distance}: {}", off / all);
+        }
+    }
+}
+
+#[test]
+fn somata_are_seen_from_any_distance() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh("1 1 0 0 0 6 -1\n");
+    let (_, table) = by_type(&mesh);
+    let (_, mut maker) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
+    for distance in [30.0, 300.0, 3e3, 3e4, 3e5, 3e6] {
+        let camera = Camera::new(DVec3::Z * distance, DVec3::ZERO, DVec3::Y, 0.7).expect("one");
+        let found: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+            .iter()
+            .sum();
+        // Black on white: a pixel's worth of light, were it spread over four.
+        assert!(found > 110.0, "{distance}: {found}");
+    }
+}
+
+#[test]
+fn the_place_in_the_world_does_not_matter() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let (_, table) = by_type(&mesh);
+    let (_, mut maker) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
+    let mut at = |place: DVec3| {
+        let instance = Instance {
+            placement: Placement {
+                translation: place,
+                ..Placement::default()
+            },
+            ..Instance::new(TemplateId(0))
+        };
+        maker.set_instances(&gpu, vec![instance]).expect("placed");
+        let eye = place + DVec3::new(3.0, 4.0, 60.0);
+        let camera = Camera::new(eye, place, DVec3::Y, 0.7).expect("a camera");
+        picture(&gpu, &mut maker, &camera, &table)
+    };
+    let here = at(DVec3::ZERO);
+    let there = at(DVec3::new(1e6 + 0.123, -2e6, 3e6));
+    let steps = here.pixels.iter().zip(&there.pixels);
+    let off = steps.filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    // Positions are kept within a 16,000th of a µm: a sample at an edge may fall to the other side.
+    assert!(off * 1000 < here.pixels.len(), "{off}");
+}
+
+#[test]
+fn a_slow_camera_sees_nothing_pop() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = smooth_cell(3);
+    let (_, table) = by_type(&mesh);
+    let instances = places(&mut Random(4), 30, 1, 200.0);
+    let (mut adaptive, mut maker) = both(&gpu, &mesh, &instances);
+    let worst = |maker: &mut dyn VertexMaker| {
+        let frames: Vec<Image> = (0..9)
+            .map(|i| {
+                let t = f64::from(i);
+                let eye = DVec3::new((0.0005 * t).sin(), 0.3, (0.0005 * t).cos());
+                let eye = eye * 420.0 * 0.999_f64.powf(t);
+                let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+                picture(&gpu, maker, &camera, &table)
+            })
+            .collect();
+        let change = |pair: &[Image]| {
+            let pairs = pair[0].pixels.iter().zip(&pair[1].pixels);
+            pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>()
+        };
+        frames.windows(2).map(change).fold(0.0, f64::max)
+    };
+    let reference = worst(&mut adaptive);
+    maker.set_budget(1_000_000);
+    let all = worst(&mut maker) / reference;
+    maker.set_budget(4_000);
+    let few = worst(&mut maker) / reference;
+    println!("changes: {all:.3} of the refined surface's; within a small budget {few:.3}");
+    assert!(all < 1.15, "{all}");
+    assert!(few < 1.3, "{few}");
+}
+
+#[test]
+fn what_passes_beside_the_eye_takes_no_budget() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = cell(7, 60);
+    let (_, table) = by_type(&mesh);
+    let instances = places(&mut Random(6), 300, 1, 250.0);
+    let (_, mut maker) = both(&gpu, &mesh, &instances);
+    let camera = Camera::new(DVec3::Z * 20.0, DVec3::ZERO, DVec3::Y, 0.9).expect("a camera");
+    maker.set_budget(MOST_BUDGET);
+    let all: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+        .iter()
+        .sum();
+    maker.set_budget(40_000);
+    let found: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+        .iter()
+        .sum();
+    let stats = maker.stats(&gpu).expect("counted");
+    println!("{:.3} of the ink, {stats:?}", found / all);
+    assert!(stats.wanted > 10 * stats.budget && found > 0.8 * all);
+}
+
+#[test]
+fn instances_hide_and_come_back() {
+    let Some(gpu) = gpu() else { return };
+    let sketch = Sketch::new(&cell(1, 20), &[]);
+    let mut random = Random(8);
+    let instances = places(&mut random, 5, 1, 100.0);
+    let mut maker = explored(&gpu, &[sketch], instances);
+    let camera = Camera::new(DVec3::Z * 500.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+    let seen = |maker: &mut Exploration| {
+        maker
+            .prepare(&gpu, &frame(camera, 300, 300))
+            .expect("prepared");
+        let shown = maker.shown(&gpu).expect("read back");
+        let mut instances: Vec<u32> = shown.iter().map(|piece| piece.instance).collect();
+        instances.dedup();
+        instances
+    };
+    assert_eq!(seen(&mut maker), [0, 1, 2, 3, 4]);
+    maker.set_hidden(0, true);
+    maker.set_hidden(3, true);
+    assert_eq!(seen(&mut maker), [1, 2, 4]);
+    maker.set_hidden(3, false);
+    maker.set_state(1, 7);
+    assert_eq!(seen(&mut maker), [1, 2, 3, 4]);
+    assert_eq!(maker.instances()[1].state, 7);
+    for i in 0..5 {
+        maker.set_hidden(i, true);
+    }
+    assert!(seen(&mut maker).is_empty());
+    // Another template while it is in use.
+    let ids = maker
+        .add(&gpu, &[Sketch::new(&cell(2, 10), &[])])
+        .expect("uploaded");
+    assert_eq!(ids, [TemplateId(1)]);
+    maker
+        .set_instances(&gpu, vec![Instance::new(ids[0])])
+        .expect("placed");
+    assert_eq!(seen(&mut maker), [0]);
+}
+
+#[test]
+fn templates_are_recoloured_in_place() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let (words, table) = by_type(&mesh);
+    let plain = vec![words[0]; words.len()];
+    let camera = Camera::new(DVec3::Z * 120.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+    // From one word to many, which needs room, and back; beside another template.
+    let mut sketches = [Sketch::new(&mesh, &plain), Sketch::new(&mesh, &words)];
+    let mut maker = explored(&gpu, &sketches, vec![Instance::new(TemplateId(0))]);
+    let before = picture(&gpu, &mut maker, &camera, &table);
+    sketches[0].set_words(&words);
+    maker
+        .recolour(&gpu, TemplateId(0), &sketches[0])
+        .expect("recoloured");
+    let coloured = picture(&gpu, &mut maker, &camera, &table);
+    assert_ne!(before, coloured);
+    maker
+        .set_instances(&gpu, vec![Instance::new(TemplateId(1))])
+        .expect("placed");
+    assert_eq!(coloured, picture(&gpu, &mut maker, &camera, &table));
+    maker
+        .set_instances(&gpu, vec![Instance::new(TemplateId(0))])
+        .expect("placed");
+    sketches[0].set_words(&plain);
+    maker
+        .recolour(&gpu, TemplateId(0), &sketches[0])
+        .expect("recoloured");
+    assert_eq!(before, picture(&gpu, &mut maker, &camera, &table));
+}
+
+#[test]
+fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
+    let Some(gpu) = gpu() else { return };
+    let camera = Camera::new(DVec3::Z * 50.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+    let table = ColourTable {
+        scale: vec![[0; 3]],
+        ..ColourTable::default()
+    };
+    let mut maker = Exploration::new(&gpu, 1).expect("a maker");
+    assert!(
+        ink(&picture(&gpu, &mut maker, &camera, &table))
+            .iter()
+            .all(|&i| i == 0.0)
+    );
+    let none = Sketch::new(&CoarseMesh::default(), &[]);
+    let soma = Sketch::new(&mesh("1 1 0 0 0 6 -1\n"), &[]);
+    let free = Sketch::new(&mesh("1 3 0 0 0 1 -1\n2 3 5 0 0 1 1\n"), &[]);
+    assert_eq!(
+        (none.balls().len(), soma.balls().len(), free.balls().len()),
+        (0, 1, 1)
+    );
+    let ids = maker.add(&gpu, &[none, soma, free]).expect("uploaded");
+    for (id, drawn) in ids.iter().zip([false, true, true]) {
+        maker
+            .set_instances(&gpu, vec![Instance::new(*id)])
+            .expect("placed");
+        let found = ink(&picture(&gpu, &mut maker, &camera, &table))
+            .iter()
+            .sum::<f64>();
+        assert_eq!(found > 0.0, drawn, "{id:?}");
+    }
+    // Frames of no sense draw something or nothing, within the budget.
+    for near in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let frame = Frame {
+            near,
+            ..frame(camera, 100, 100)
+        };
+        maker.prepare(&gpu, &frame).expect("prepared");
+        let stats = maker.stats(&gpu).expect("counted");
+        assert!(stats.triangles <= stats.budget);
+    }
+    let nowhere = Instance {
+        placement: Placement {
+            translation: DVec3::NAN,
+            ..Placement::default()
+        },
+        ..Instance::new(ids[1])
+    };
+    for wrong in [nowhere, Instance::new(TemplateId(9))] {
+        let refused = maker.set_instances(&gpu, vec![wrong]);
+        assert!(matches!(refused, Err(ExplorationError::Scene(_))));
+    }
+    assert_eq!(maker.instances().len(), 1, "those before stay");
+}
+
+#[test]
+fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
+    let Some(gpu) = gpu() else { return };
+    // Eight neurites of 400 points, each a wave that forks once.
+    let mut swc = String::from("1 1 0 0 0 8 -1\n");
+    for i in 0..3200_u32 {
+        let (neurite, k) = (i / 400, i % 400);
+        let parent = match k {
+            0 => 1,
+            200 => i + 2 - 150,
+            _ => i + 1,
+        };
+        let (along, fork) = (f64::from(k % 200) + 9.0, f64::from(k / 200) * 40.0);
+        let angle = f64::from(neurite) * 0.785 + 0.002 * along;
+        let [x, y] = [angle.cos() * along, angle.sin() * along];
+        let z = (0.3 * along).sin() + fork;
+        swc += &format!("{} 3 {x:.3} {y:.3} {z:.3} 0.4 {parent}\n", i + 2);
+    }
+    let mesh = mesh(&swc);
+    let sketch = Sketch::new(&mesh, &[]);
+    let (_, reach) = extent(&mesh);
+    let resident = |count: usize| {
+        let instances = places(&mut Random(1), count, 1, 4.0 * reach);
+        let mut maker = explored(&gpu, std::slice::from_ref(&sketch), instances);
+        let camera = Camera::new(DVec3::Z * 9e3, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+        maker
+            .prepare(&gpu, &frame(camera, 300, 300))
+            .expect("prepared");
+        let bytes = maker.bytes().iter().map(|(_, bytes)| bytes).sum::<u64>();
+        (bytes, maker.bytes_per_point())
+    };
+    let (few, per_point) = resident(20_000);
+    let (many, _) = resident(40_000);
+    let per_instance = (many - few) as f64 / 20_000.0;
+    println!(
+        "{per_point:.1} bytes a point of {}, {per_instance:.1} an instance",
+        sketch.point_count()
+    );
+    assert!(per_point < 16.0, "{per_point}");
+    assert!(per_instance < 128.0, "{per_instance}");
+}
