@@ -14,6 +14,7 @@
 pub mod app;
 pub mod command;
 pub mod document;
+mod explorer;
 pub mod files;
 mod headless;
 pub mod history;

@@ -326,6 +326,7 @@ pub(crate) fn pictures(
         scene::maker(gpu, &scenery.shown, picture.sub_pixels(gpu)).map_err(|e| e.to_string())?;
     maker.set_refining(neurotess::render::Refining {
         choice: Choice::PixelError(0.25),
+        wires: picture.look.wire > 0.0,
         ..Default::default()
     });
     let mut studio = Studio::new();

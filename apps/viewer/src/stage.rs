@@ -15,9 +15,10 @@ use neurotess::render::{
 };
 
 use crate::document::{ColourBy, Detail, Look};
+use crate::explorer::Explorer;
 use crate::picks::{Picks, Seen, seen};
 use crate::scene::{self, BuildError, Shown, ShownSource, Standing};
-use crate::state::{Counters, Picked, State};
+use crate::state::{Counters, Draft, Picked, State};
 
 /// How long nothing must have moved before the full picture is made.
 const REST: Duration = Duration::from_millis(130);
@@ -40,6 +41,9 @@ pub struct Stage {
     render: RenderState,
     live: Live,
     maker: Adaptive,
+    explorer: Explorer,
+    /// Whether the last draft was the explorer's.
+    explored: bool,
     texture: Option<(egui::TextureId, [u32; 2], bool)>,
     /// What is on the device.
     shown: Shown,
@@ -127,6 +131,8 @@ impl Stage {
             render,
             live,
             maker,
+            explorer: Explorer::default(),
+            explored: false,
             texture: None,
             shown,
             colours: None,
@@ -198,6 +204,7 @@ impl Stage {
     ) -> Result<Option<egui::TextureId>, DeviceError> {
         self.take_built(ctx)?;
         self.want_scene(state, ctx)?;
+        self.explorer.update(&self.gpu, &self.shown, ctx);
         if size.contains(&0) {
             return Ok(None);
         }
@@ -210,7 +217,10 @@ impl Stage {
         self.take_ids(ctx)?;
         self.outline(state);
         state.counters.frames_ms = self.frames.iter().copied().collect();
-        state.counters.draft_error = self.coarser;
+        state.counters.draft = match self.explored {
+            true => Draft::Budget(self.explorer.budget()),
+            false => Draft::Error(self.coarser),
+        };
         self.gpu.check()?;
         Ok(self.texture_id())
     }
@@ -369,25 +379,40 @@ impl Stage {
             self.stand(&wanted.standing);
         }
         self.live.set_states(wanted.states.clone());
-        self.maker.set_refining(Refining {
-            // Nothing is left out that would show at rest: holes that come and go look broken.
-            choice: coarser(wanted.detail.choice(), self.coarser),
-            smallest: wanted.detail.smallest,
-            ..Refining::default()
-        });
         self.picks = None;
         self.namer = None;
         self.counted = false;
         self.live.set_outlines(&self.gpu, Outlines::default(), None);
         self.mask = None;
-        let mut shot = wanted.shot;
-        if self.coarser > HALF_FROM {
-            shot.size = shot.size.map(|n| n.div_ceil(2));
-        }
-        self.live.draft(&self.gpu, &mut self.maker, &shot)?;
+        self.draw_draft(&wanted)?;
         self.drawn = Some(wanted);
         ctx.request_repaint_after(REST);
         Ok(())
+    }
+
+    /// By the explorer where it can: it knows neither grids nor another camera.
+    fn draw_draft(&mut self, wanted: &Drawn) -> Result<(), DeviceError> {
+        let mut shot = wanted.shot;
+        let wires = shot.look.wire > 0.0;
+        let explorer = match wires || shot.frozen.is_some() {
+            true => None,
+            false => self.explorer.maker(&self.gpu, &self.shown),
+        };
+        self.explored = explorer.is_some();
+        if let Some(maker) = explorer {
+            return self.live.draft(&self.gpu, maker, &shot);
+        }
+        self.maker.set_refining(Refining {
+            // Nothing is left out that would show at rest: holes that come and go look broken.
+            choice: coarser(wanted.detail.choice(), self.coarser),
+            smallest: wanted.detail.smallest,
+            wires,
+            ..Refining::default()
+        });
+        if self.coarser > HALF_FROM {
+            shot.size = shot.size.map(|n| n.div_ceil(2));
+        }
+        self.live.draft(&self.gpu, &mut self.maker, &shot)
     }
 
     fn stand(&mut self, standing: &[Standing]) {
@@ -404,7 +429,9 @@ impl Stage {
     fn keep_up(&mut self) {
         let took = self.live.last_ms();
         self.note_frame(took);
-        if took > 1.5 * DRAFT_MS {
+        if self.explored {
+            self.explorer.keep_up(took, DRAFT_MS);
+        } else if took > 1.5 * DRAFT_MS {
             self.coarser = (self.coarser * 2.0).min(32.0);
         } else if took < 0.4 * DRAFT_MS {
             self.coarser = (self.coarser / 1.4).max(1.0);
@@ -435,6 +462,7 @@ impl Stage {
                 self.maker.set_refining(Refining {
                     choice: detail.choice(),
                     smallest: detail.smallest,
+                    wires: shot.look.wire > 0.0,
                     ..Refining::default()
                 });
                 let steps = Steps {

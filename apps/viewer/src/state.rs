@@ -53,8 +53,23 @@ pub struct Counters {
     pub bytes: [u64; 2],
     /// Milliseconds of the last frames.
     pub frames_ms: Vec<f32>,
-    /// Error (pixels) of drafts, if coarser than asked for.
-    pub draft_error: f32,
+    /// How drafts are lowered.
+    pub draft: Draft,
+}
+
+/// How what is drawn while something moves is less than the full picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Draft {
+    /// At most so many triangles, for those that show most.
+    Budget(u32),
+    /// So many times the error.
+    Error(f32),
+}
+
+impl Default for Draft {
+    fn default() -> Self {
+        Self::Error(1.0)
+    }
 }
 
 /// All that there is.

@@ -9,7 +9,7 @@ use crate::frame::Frame;
 use crate::maker::VertexMaker;
 use crate::painter::Painter;
 use crate::present::texture;
-use crate::shade::{DEPTH_FORMAT, GUARD, Shade, shader_text};
+use crate::shade::{DEPTH_FORMAT, GUARD, Shade, Way, shader_text};
 
 /// What is drawn at a pixel, as a [`Namer`](crate::Namer) reads it; zeros where nothing is.
 pub type Id = [u32; 2];
@@ -49,7 +49,13 @@ const FAILED: u8 = 3;
 
 /// The text for one of a maker's shaders.
 pub(crate) fn ids_text(maker: &str, id: &str) -> String {
-    let shading = shader_text(maker, 1);
+    let shading = shader_text(
+        maker,
+        Way {
+            samples: 1,
+            ..Way::default()
+        },
+    );
     let ids = include_str!("ids.wgsl");
     let constants =
         format!("const BATCH_SHIFT: u32 = {BATCH_SHIFT}u;\nconst FINE: u32 = {FINE}u;\n");

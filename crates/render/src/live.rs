@@ -26,7 +26,7 @@ use crate::maker::VertexMaker;
 use crate::painter::{Painter, Part, kind};
 use crate::picture::{Occlusion, samples_in_sub_pixel};
 use crate::present::{Outlines, Presenter};
-use crate::shade::{Look, Shade};
+use crate::shade::{Look, Shade, Way};
 use crate::targets::{Targets, make};
 
 /// What is to be seen.
@@ -319,11 +319,16 @@ impl Live {
         shot: &Shot,
     ) -> Result<usize, DeviceError> {
         let cut = shot.look.clip.is_some();
-        let wanted = kind(maker, samples, cut);
+        let way = Way {
+            samples,
+            cut,
+            valued: self.table.values.instances() > 0,
+        };
+        let wanted = kind(maker, way);
         let place = match self.painters.iter().position(|p| p.fits(wanted)) {
             Some(place) => place,
             None => {
-                self.painters.push(Painter::new(gpu, maker, samples, cut)?);
+                self.painters.push(Painter::new(gpu, maker, way)?);
                 self.painters.len() - 1
             }
         };

@@ -9,7 +9,7 @@ use crate::error::DeviceError;
 use crate::frame::Frame;
 use crate::maker::VertexMaker;
 use crate::painter::Painter;
-use crate::shade::Look;
+use crate::shade::{Look, Way};
 use crate::timing::Pass;
 
 /// What a frame took.
@@ -47,7 +47,15 @@ impl<'g> Meter<'g> {
         maker: &dyn VertexMaker,
         table: &ColourTable,
     ) -> Result<Self, DeviceError> {
-        let mut painter = Painter::new(gpu, maker, 1, false)?;
+        let mut painter = Painter::new(
+            gpu,
+            maker,
+            Way {
+                samples: 1,
+                valued: table.values.instances() > 0,
+                ..Way::default()
+            },
+        )?;
         painter.set_table(gpu, table);
         Ok(Self { gpu, painter })
     }

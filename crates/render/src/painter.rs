@@ -13,7 +13,7 @@ use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher, Last};
 use crate::frame::Frame;
 use crate::maker::VertexMaker;
-use crate::shade::{GUARD, Look, Shade, Shader, TableSizes};
+use crate::shade::{GUARD, Look, Shade, Shader, TableSizes, Way};
 use crate::targets::{Targets, make};
 use crate::timing::{Pass, Timer};
 
@@ -80,28 +80,22 @@ pub(crate) struct Painter {
     pub(crate) timer: Timer,
 }
 
-/// What pipelines depend on: the maker's shaders, the samples of a sub-pixel, and whether the inside
-/// may show.
-pub(crate) fn kind(maker: &dyn VertexMaker, samples: u32, cut: bool) -> u64 {
+/// What pipelines depend on: the maker's shaders, and the way they are drawn.
+pub(crate) fn kind(maker: &dyn VertexMaker, way: Way) -> u64 {
     let mut hasher = DefaultHasher::new();
-    (samples, cut).hash(&mut hasher);
+    way.hash(&mut hasher);
     (0..maker.shaders()).for_each(|shader| maker.wgsl(shader).hash(&mut hasher));
     hasher.finish()
 }
 
 impl Painter {
-    /// `samples`: of a sub-pixel, 1 or 4; `cut`: whether the inside may show.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        maker: &dyn VertexMaker,
-        samples: u32,
-        cut: bool,
-    ) -> Result<Self, DeviceError> {
+    pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, way: Way) -> Result<Self, DeviceError> {
+        let samples = way.samples;
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let painter = Self {
-            kind: kind(maker, samples, cut),
-            shader: Shader::new(gpu, maker, samples, cut),
+            kind: kind(maker, way),
+            shader: Shader::new(gpu, maker, way),
             finisher: Finisher::new(gpu, samples, Last::Gather),
             shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
             finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
@@ -120,7 +114,7 @@ impl Painter {
         self.kind
     }
 
-    /// Whether it can draw what the maker makes, with so many samples, cut or not.
+    /// Whether it can draw what the maker makes, in that way.
     pub(crate) fn fits(&self, kind: u64) -> bool {
         self.kind == kind
     }

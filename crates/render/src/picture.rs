@@ -17,7 +17,7 @@ use crate::frame::{Frame, Tile};
 use crate::image::Image;
 use crate::maker::VertexMaker;
 use crate::painter::{self, Finishing, Painter};
-use crate::shade::{GUARD, Look};
+use crate::shade::{GUARD, Look, Way};
 use crate::timing::PASSES;
 
 /// How a picture is made.
@@ -208,14 +208,13 @@ impl Studio {
         &mut self,
         gpu: &Gpu,
         maker: &dyn VertexMaker,
-        samples: u32,
-        cut: bool,
+        way: Way,
     ) -> Result<&mut Painter, DeviceError> {
-        let kind = painter::kind(maker, samples, cut);
+        let kind = painter::kind(maker, way);
         let place = match self.painters.iter().position(|p| p.fits(kind)) {
             Some(place) => place,
             None => {
-                self.painters.push(Painter::new(gpu, maker, samples, cut)?);
+                self.painters.push(Painter::new(gpu, maker, way)?);
                 self.painters.len() - 1
             }
         };
@@ -248,7 +247,12 @@ impl Studio {
             ..
         } = parting;
         let cut = options.look.clip.is_some();
-        let painter = self.painter(gpu, maker, parting.samples, cut)?;
+        let way = Way {
+            samples: parting.samples,
+            cut,
+            valued: table.values.instances() > 0,
+        };
+        let painter = self.painter(gpu, maker, way)?;
         painter.set_table(gpu, table);
         painter.timer.reset();
         let finishing = Finishing {

@@ -6,7 +6,7 @@ use crate::ids::ids_text;
 use crate::prerefined::{Placement, StoredVertex, WGSL};
 use crate::present::Present;
 use crate::refiner::Refiner;
-use crate::shade::{Shade, shader_text};
+use crate::shade::{Shade, Way, shader_text};
 use crate::shader_tests::languages;
 
 #[test]
@@ -14,7 +14,17 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
     for samples in [1, 4] {
         for barycentric in [false, true] {
             let maker = format!("const BARYCENTRIC: bool = {barycentric};\n{WGSL}");
-            let module = languages::check("shade", &shader_text(&maker, samples));
+            let module = languages::check(
+                "shade",
+                &shader_text(
+                    &maker,
+                    Way {
+                        samples,
+                        valued: samples > 1,
+                        ..Way::default()
+                    },
+                ),
+            );
             assert_layout!(
                 &module,
                 "Shade",

@@ -184,8 +184,8 @@ pub(crate) struct Shader {
 }
 
 impl Shader {
-    /// `cut`: whether the inside may show.
-    pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, samples: u32, cut: bool) -> Self {
+    pub(crate) fn new(gpu: &Gpu, maker: &dyn VertexMaker, way: Way) -> Self {
+        let Way { samples, cut, .. } = way;
         let device = &gpu.device;
         let layout = layout(device);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -203,7 +203,7 @@ impl Shader {
         let pipeline = |shader: usize| {
             let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("shade"),
-                source: wgpu::ShaderSource::Wgsl(shader_text(&maker.wgsl(shader), samples).into()),
+                source: wgpu::ShaderSource::Wgsl(shader_text(&maker.wgsl(shader), way).into()),
             });
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("shade"),
@@ -244,8 +244,22 @@ impl Shader {
     }
 }
 
-/// The whole text for a maker, with this many samples per sub-pixel.
-pub(crate) fn shader_text(maker: &str, samples: u32) -> String {
+/// What pipelines depend on beside the maker.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Way {
+    /// Samples of a sub-pixel: 1 or 4.
+    pub(crate) samples: u32,
+    /// Whether the inside may show.
+    pub(crate) cut: bool,
+    /// Whether instances have values: looking for them in every vertex took software Vulkan 10 ms a frame.
+    pub(crate) valued: bool,
+}
+
+/// The whole text for a maker.
+pub(crate) fn shader_text(maker: &str, way: Way) -> String {
+    let Way {
+        samples, valued, ..
+    } = way;
     // With one sample a mask is of no use: what covers less than half is left out instead.
     let (member, statement) = if samples > 1 {
         (
@@ -259,7 +273,7 @@ pub(crate) fn shader_text(maker: &str, samples: u32) -> String {
         .replace("MASK_MEMBER", member)
         .replace("MASK_STATEMENT", statement);
     format!(
-        "const SAMPLES: u32 = {samples}u;\nconst CATEGORY_BIT: u32 = {CATEGORY_BIT}u;\n\
+        "const SAMPLES: u32 = {samples}u;\nconst VALUED: bool = {valued};\nconst CATEGORY_BIT: u32 = {CATEGORY_BIT}u;\n\
          {SURFACE_VERTEX_WGSL}{maker}{shading}"
     )
 }

@@ -85,7 +85,7 @@ fn colour_of(word: u32, instance: u32) -> vec3<f32> {
         return category_colour(word & ~CATEGORY_BIT);
     }
     var share = f32(word) / f32(CATEGORY_BIT);
-    if shade.valued > 0u {
+    if VALUED {
         share = value_of_instance(word, instance);
         if share < 0.0 {
             return category_colour(0u);

@@ -6,7 +6,7 @@ use super::{figures, grouped, heading};
 use crate::command::Command;
 use crate::document::{Criterion, Detail};
 use crate::files::size;
-use crate::state::State;
+use crate::state::{Draft, State};
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let mut detail = state.document.detail;
@@ -135,11 +135,19 @@ fn counters(state: &State, ui: &mut Ui) {
     );
     heading(ui, "Frames");
     graph(&c.frames_ms, ui);
-    if c.draft_error > 1.05 {
-        ui.weak(format!(
-            "While moving: {:.0} times as coarse, to keep up.",
-            c.draft_error
-        ));
+    match c.draft {
+        Draft::Budget(triangles) => {
+            let most = grouped(u64::from(triangles));
+            ui.weak(format!(
+                "While moving: at most {most} triangles, to keep up."
+            ));
+        }
+        Draft::Error(times) if times > 1.05 => {
+            ui.weak(format!(
+                "While moving: {times:.0} times as coarse, to keep up."
+            ));
+        }
+        Draft::Error(_) => {}
     }
 }
 

@@ -99,7 +99,7 @@ pub fn write<W: Write + Seek>(
 /// file once. Translations are `f64` in the file, but most readers keep them in `f32`.
 ///
 /// # Errors
-/// As [`write`]; all surfaces together hold at most 4 GiB.
+/// As [`write()`]; all surfaces together hold at most 4 GiB.
 pub fn write_glb<W: Write + Seek>(
     surfaces: &[&dyn Surface],
     nodes: &[GlbNode],

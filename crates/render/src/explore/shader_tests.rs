@@ -4,7 +4,7 @@ use super::layout::{Eye, MOST_SWAY, Piece, Run, Shape, Standing, Sums};
 use super::passes::{Arguments, Live, choose_wgsl, pieces_wgsl};
 use crate::SURFACE_VERTEX_WGSL;
 use crate::assert_layout;
-use crate::shade::shader_text;
+use crate::shade::{Way, shader_text};
 use crate::shader_tests::languages;
 
 #[test]
@@ -51,7 +51,17 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
     assert_layout!(&choose, "Live", Live, [chunk, quads, pieces]);
     assert_layout!(&choose, "Arguments", Arguments, [chunks, live, draws]);
     for samples in [1, 4] {
-        languages::check("pieces", &shader_text(&pieces_wgsl(), samples));
+        languages::check(
+            "pieces",
+            &shader_text(
+                &pieces_wgsl(),
+                Way {
+                    samples,
+                    valued: samples > 1,
+                    ..Way::default()
+                },
+            ),
+        );
     }
     assert!(SURFACE_VERTEX_WGSL.contains("SurfaceVertex"));
 }
