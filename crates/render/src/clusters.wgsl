@@ -1,6 +1,6 @@
 // What the passes that choose share: placed parts, queues of clusters, and marks.
 //
-// Called by classify.wgsl, decide.wgsl, coarse.wgsl and list.wgsl. Sizes: work.rs.
+// Called by all that passes.rs lists. Sizes: work.rs.
 
 @group(1) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(1) var<uniform> batch: Batch;

@@ -41,7 +41,7 @@ pub(crate) const INDEX_PATCH_SHIFT: u32 = 14;
 pub(crate) const INDEX_PATCH_MASK: u32 = 0xff;
 pub(crate) const INDEX_BUCKET_SHIFT: u32 = 22;
 
-/// A bucket as shaders have it. Twin of the struct of the same name in list.wgsl.
+/// A bucket as shaders have it. Twin of the struct of the same name in scan.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Bucket {

@@ -26,7 +26,7 @@ const CLUSTERS_WGSL: &str = include_str!("clusters.wgsl");
 const SHOWN_WGSL: &str = include_str!("shown.wgsl");
 
 /// The modules of the passes, by name.
-pub(crate) fn modules() -> [(&'static str, String); 5] {
+pub(crate) fn modules() -> [(&'static str, String); 7] {
     let classify = [CLUSTERS_WGSL, SHOWN_WGSL, include_str!("classify.wgsl")];
     let decide = [CLUSTERS_WGSL, SHOWN_WGSL, include_str!("decide.wgsl")];
     let note = [CLUSTERS_WGSL, include_str!("note.wgsl")];
@@ -35,12 +35,16 @@ pub(crate) fn modules() -> [(&'static str, String); 5] {
         COARSE_VERTEX_WGSL,
         include_str!("coarse.wgsl"),
     ];
+    let scan = [CLUSTERS_WGSL, include_str!("scan.wgsl")];
+    let flatten = [CLUSTERS_WGSL, include_str!("flatten.wgsl")];
     let list = [CLUSTERS_WGSL, include_str!("list.wgsl")];
     [
         ("classify", compose(&classify)),
         ("decide", compose(&decide)),
         ("note", compose(&note)),
         ("coarse", compose(&coarse)),
+        ("scan", compose(&scan)),
+        ("flatten", compose(&flatten)),
         ("list", compose(&list)),
     ]
 }
@@ -74,10 +78,9 @@ impl Passes {
                 source: wgpu::ShaderSource::Wgsl(text.into()),
             })
         });
-        let [classify, decide, note, coarse, list] = &modules;
-        let pipeline = |module, entry, own: &[&wgpu::BindGroupLayout]| {
-            let mut groups = vec![Some(page), Some(&layouts.clusters)];
-            groups.extend(own.iter().copied().map(Some));
+        let [classify, decide, note, coarse, scan, flatten, list] = &modules;
+        let pipeline = |module, entry, own: &wgpu::BindGroupLayout| {
+            let groups = [page, &layouts.clusters, own].map(Some);
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(entry),
                 bind_group_layouts: &groups,
@@ -96,18 +99,18 @@ impl Passes {
             one, two, three, ..
         } = layouts;
         Self {
-            classify: pipeline(classify, "classify", &[two]),
-            decide_plain: pipeline(decide, "decide_plain", &[three]),
-            level_rings: pipeline(decide, "level_rings", &[three]),
-            decide_tubes: pipeline(decide, "decide_tubes", &[three]),
-            decide_singles: pipeline(decide, "decide_singles", &[two]),
-            note: pipeline(note, "note", &[two]),
-            make_rings: pipeline(coarse, "make_rings", &[one]),
-            make_loose: pipeline(coarse, "make_loose", &[one]),
-            scan_marks: pipeline(list, "scan_marks", &[three, two]),
-            scan_buckets: pipeline(list, "scan_buckets", &[three, two]),
-            flatten: pipeline(list, "flatten", &[three, two]),
-            scatter: pipeline(list, "scatter", &[three, two]),
+            classify: pipeline(classify, "classify", two),
+            decide_plain: pipeline(decide, "decide_plain", three),
+            level_rings: pipeline(decide, "level_rings", three),
+            decide_tubes: pipeline(decide, "decide_tubes", three),
+            decide_singles: pipeline(decide, "decide_singles", two),
+            note: pipeline(note, "note", two),
+            make_rings: pipeline(coarse, "make_rings", one),
+            make_loose: pipeline(coarse, "make_loose", one),
+            scan_marks: pipeline(scan, "scan_marks", two),
+            scan_buckets: pipeline(scan, "scan_buckets", two),
+            flatten: pipeline(flatten, "flatten", two),
+            scatter: pipeline(list, "scatter", three),
         }
     }
 
@@ -154,15 +157,16 @@ impl Passes {
         pass.set_pipeline(&self.make_loose);
         pass.dispatch_workgroups(lanes(loose), 1, 1);
 
-        pass.set_bind_group(2, &work.groups.lists, &[]);
-        pass.set_bind_group(3, &work.groups.draws, &[]);
+        pass.set_bind_group(2, &work.groups.scan, &[]);
         pass.set_pipeline(&self.scan_marks);
         // One for each bucket, and one for flat patches.
         pass.dispatch_workgroups(BUCKETS as u32 + 1, 1, 1);
         pass.set_pipeline(&self.scan_buckets);
         pass.dispatch_workgroups(1, 1, 1);
+        pass.set_bind_group(2, &work.groups.flatten, &[]);
         pass.set_pipeline(&self.flatten);
         pass.dispatch_workgroups_indirect(queues, at(QUEUE_SHOWN));
+        pass.set_bind_group(2, &work.groups.list, &[]);
         pass.set_pipeline(&self.scatter);
         pass.dispatch_workgroups_indirect(&b.noted_dispatches, at(QUEUE_SECTIONS));
     }

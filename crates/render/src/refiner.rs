@@ -28,7 +28,7 @@ use crate::work::{Sizes, Work};
 /// Most patches that are decided on and drawn together.
 pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
 
-/// Arguments of an indexed indirect draw. Twin of the struct of the same name in list.wgsl.
+/// Arguments of an indexed indirect draw. Twin of the struct of the same name in scan.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct DrawIndexed {

@@ -13,7 +13,8 @@ use crate::work::CoarseVertex;
 
 #[test]
 fn shaders_are_valid_in_every_language_and_have_our_layouts() {
-    let [_, decide, _, coarse, list] = modules().map(|(name, text)| languages::check(name, &text));
+    let [_, decide, _, coarse, scan, _, list] =
+        modules().map(|(name, text)| languages::check(name, &text));
     assert_layout!(
         &coarse,
         "CoarseVertex",
@@ -71,7 +72,7 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         [first, placed, slots, clusters, sections, loose]
     );
     let expand = languages::check("expand", &expand_wgsl());
-    for module in [&list, &expand] {
+    for module in [&scan, &list, &expand] {
         assert_layout!(
             module,
             "Bucket",
@@ -80,7 +81,7 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         );
     }
     assert_layout!(
-        &list,
+        &scan,
         "DrawIndexed",
         DrawIndexed,
         [

@@ -92,8 +92,9 @@ pub(crate) struct WorkGroups {
     pub(crate) decide_singles: wgpu::BindGroup,
     pub(crate) note: wgpu::BindGroup,
     pub(crate) coarse: wgpu::BindGroup,
-    pub(crate) lists: wgpu::BindGroup,
-    pub(crate) draws: wgpu::BindGroup,
+    pub(crate) scan: wgpu::BindGroup,
+    pub(crate) flatten: wgpu::BindGroup,
+    pub(crate) list: wgpu::BindGroup,
 }
 
 impl Buffers {
@@ -213,12 +214,17 @@ impl WorkGroups {
                 &[whole(&b.decisions), whole(&b.noted_dispatches)],
             ),
             coarse: group("coarse", &layouts.one, &[whole(&b.coarse)]),
-            lists: group(
-                "lists",
-                &layouts.three,
-                &[whole(&b.decisions), whole(&b.list), whole(&b.flat_indices)],
+            scan: group("scan", &layouts.two, &[whole(buckets), whole(&b.draws)]),
+            flatten: group(
+                "flatten",
+                &layouts.two,
+                &[whole(&b.decisions), whole(&b.flat_indices)],
             ),
-            draws: group("draws", &layouts.two, &[whole(buckets), whole(&b.draws)]),
+            list: group(
+                "list",
+                &layouts.three,
+                &[whole(&b.decisions), whole(&b.list), whole(buckets)],
+            ),
         }
     }
 }

@@ -1,12 +1,10 @@
 //! What a frame of exploration drew, read back on request: for statistics and for tests.
 
-use bytemuck::Pod;
-
 use super::Exploration;
 use super::layout::{Piece, Sums};
 use crate::device::Gpu;
 use crate::error::DeviceError;
-use crate::painter::read;
+use crate::readback::read;
 
 /// Sums of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,7 +61,7 @@ impl Exploration {
     pub fn shown(&self, gpu: &Gpu) -> Result<Vec<ShownPiece>, DeviceError> {
         let sums = self.sums(gpu)?;
         let count = sums.pieces as usize;
-        let pieces: Vec<Piece> = read_back(gpu, &self.work.pieces, count)?;
+        let pieces: Vec<Piece> = read(gpu, &self.work.pieces, count)?;
         let ends = pieces.iter().skip(1).map(|next| next.first);
         let ends = ends.chain([sums.quads]);
         Ok(pieces
@@ -88,28 +86,7 @@ impl Exploration {
         self.passes
             .record(&mut encoder, &self.work, groups, instances, None);
         gpu.queue.submit([encoder.finish()]);
-        let sums = read_back(gpu, &self.work.book, 1)?;
+        let sums = read(gpu, &self.work.book, 1)?;
         Ok(sums.first().copied().unwrap_or_default())
     }
-}
-
-fn read_back<T: Pod>(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    count: usize,
-) -> Result<Vec<T>, DeviceError> {
-    let bytes = (count * size_of::<T>()) as u64;
-    if bytes == 0 {
-        return Ok(Vec::new());
-    }
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read back"),
-        size: bytes,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
-    gpu.queue.submit([encoder.finish()]);
-    Ok(bytemuck::pod_collect_to_vec(&read(gpu, &copy, bytes)?))
 }
