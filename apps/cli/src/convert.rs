@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::args::ConvertArgs;
 use crate::info::{Entry, MORPHOLOGIES, ReaderWarning, each};
 use crate::inputs::{Input, Inputs};
-use crate::output::{Output, OutputError, broken, refuse_existing};
+use crate::output::{Output, OutputError, existing};
 use crate::report::{Failure, Reporter, usage};
 use crate::targets;
 
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
         let out = outs[&input.path];
         let file = input.path.display().to_string();
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
-        refuse_existing(out, args.out.force).map_err(failed)?;
+        existing(args.out.force).check(out).map_err(failed)?;
         let read = formats::read(&input.path, &options).map_err(|e| Failure(e.to_string()))?;
         let lost = write(&read.morphology, format, out, args.out.force).map_err(failed)?;
         Ok(Converted {
@@ -90,9 +90,10 @@ pub(crate) fn write(
     out: &Path,
     force: bool,
 ) -> Result<Vec<formats::Warning>, OutputError> {
-    let mut output = Output::create(out, force)?;
+    let mut output = Output::create(out, existing(force))?;
     let writer = BufWriter::new(output.file());
-    let lost = formats::write(morphology, format, writer).map_err(|e| broken(out, &e))?;
+    let lost =
+        formats::write(morphology, format, writer).map_err(|e| OutputError::broken(out, e))?;
     output.finish()?;
     Ok(lost)
 }

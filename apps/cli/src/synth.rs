@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::args::{SynthArgs, What};
 use crate::info::{Entry, Failed, bug};
-use crate::output::refuse_existing;
+use crate::output::existing;
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use crate::workers;
@@ -95,7 +95,7 @@ fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>>
 fn grow(options: &Options, out: &Path, force: bool) -> Result<Grown, Failure> {
     // The message names the file already.
     let failed = |e: crate::output::OutputError| Failure(e.to_string());
-    refuse_existing(out, force).map_err(failed)?;
+    existing(force).check(out).map_err(failed)?;
     let morphology = synth::grow(options);
     convert::write(&morphology, Format::Swc, out, force).map_err(failed)?;
     Ok(Grown {

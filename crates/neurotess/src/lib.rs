@@ -65,9 +65,11 @@
 //! | [`render`] | from coarse meshes to pictures |
 //! | [`colouring`] | what the colours of pictures tell |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
+//! | [`output`] | files that are there whole or not at all |
 #![forbid(unsafe_code)]
 
 pub mod colouring;
+pub mod output;
 
 pub use neurotess_circuit as circuit;
 pub use neurotess_formats as formats;

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 pub(crate) use args::BenchArgs;
 
-use crate::output::{Output, broken, refuse_existing};
+use crate::output::{Output, OutputError, existing};
 use crate::report::Reporter;
 use args::{Bench, RefinementArgs};
 use methods::{Drawing, Method, Row};
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &BenchArgs, reporter: &Reporter) -> anyhow::Result<()> {
 fn refinement(args: &RefinementArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if let Some(folder) = &args.out {
         for name in [JSON, SVG] {
-            refuse_existing(&folder.join(name), args.force)?;
+            existing(args.force).check(&folder.join(name))?;
         }
     }
     let gpu = Gpu::open(args.adapter.as_deref())?;
@@ -225,8 +225,8 @@ fn tell(rows: &mut Vec<Row>, row: Row, reporter: &Reporter) {
 
 fn write(path: &Path, text: &str, args: &RefinementArgs) -> anyhow::Result<()> {
     use std::io::Write;
-    let mut output = Output::create(path, args.force)?;
+    let mut output = Output::create(path, existing(args.force))?;
     let written = output.file().write_all(text.as_bytes());
-    written.map_err(|e| broken(path, &e))?;
+    written.map_err(|e| OutputError::broken(path, e))?;
     output.finish().context("a benchmark's figures")
 }

@@ -18,7 +18,7 @@ use serde_json::Value;
 use crate::args::SynthArgs;
 use crate::convert;
 use crate::info::bug;
-use crate::output::{Output, OutputError, broken, refuse_existing};
+use crate::output::{Output, OutputError, existing};
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use crate::workers;
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     let force = args.out.force;
     for name in [CIRCUIT, SIMULATION, "nodes.h5"] {
-        if let Err(e) = refuse_existing(&folder.join(name), force) {
+        if let Err(e) = existing(force).check(&folder.join(name)) {
             reporter.failure(&Failure(e.to_string()));
             return Ok(());
         }
@@ -127,11 +127,11 @@ fn grow_all(
 fn write_all(made: &SyntheticCircuit, folder: &Path, force: bool) -> Result<u64, OutputError> {
     let put = |name: &str, write: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
         let path = folder.join(name);
-        let mut output = Output::create(&path, force)?;
+        let mut output = Output::create(&path, existing(force))?;
         let mut writer = BufWriter::new(output.file());
         write(&mut writer)
             .and_then(|()| io::Write::flush(&mut writer))
-            .map_err(|e| broken(&path, &e))?;
+            .map_err(|e| OutputError::broken(&path, e))?;
         drop(writer);
         output.finish()
     };
@@ -145,7 +145,8 @@ fn write_all(made: &SyntheticCircuit, folder: &Path, force: bool) -> Result<u64,
     put("nodes.h5", &|writer| write::nodes(populations, writer))?;
     let spikes = std::slice::from_ref(&made.spikes);
     put("reports/spikes.h5", &|w| write::spikes(spikes, w))?;
-    let (layout, data) = report(made).map_err(|e| broken(&folder.join("reports"), &e))?;
+    let (layout, data) =
+        report(made).map_err(|e| OutputError::broken(&folder.join("reports"), e))?;
     put("reports/voltage.h5", &|w| write::report(&layout, &data, w))?;
     json(
         "node_sets.json",

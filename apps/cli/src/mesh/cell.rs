@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::observed::Observed;
 use super::options::{Fineness, Recipe};
-use crate::output::{Output, OutputError, broken, refuse_existing};
+use crate::output::{Output, OutputError, existing};
 use crate::progress::Progress;
 use crate::report::Failure;
 use crate::targets::Job;
@@ -100,7 +100,7 @@ pub(crate) fn mesh(
 ) -> Result<Cell, Failure> {
     let file = job.input.display();
     let failed = |e: OutputError| Failure(format!("{file}: {e}"));
-    refuse_existing(&job.out, recipe.force).map_err(failed)?;
+    existing(recipe.force).check(&job.out).map_err(failed)?;
     let prepared = prepare(&job.input, recipe)?;
     finish(&prepared, recipe, &job.out, None, progress)
 }
@@ -210,10 +210,10 @@ fn write(
 
     let clock = Instant::now();
     let observed = Observed::new(surface, progress);
-    let mut output = Output::create(out, recipe.force)?;
+    let mut output = Output::create(out, existing(recipe.force))?;
     surfaces::write(&observed, recipe.format, output.file()).map_err(|e| match e {
-        surfaces::WriteError::Io(e) => broken(out, &e),
-        other => broken(out, &std::io::Error::other(other)),
+        surfaces::WriteError::Io(e) => OutputError::broken(out, e),
+        other => OutputError::broken(out, std::io::Error::other(other)),
     })?;
     output.finish()?;
     let pass = clock.elapsed().as_secs_f64();

@@ -13,7 +13,7 @@ use super::options::Recipe;
 use crate::args::MeshArgs;
 use crate::info::bug;
 use crate::inputs::Inputs;
-use crate::output::{Output, broken, refuse_existing};
+use crate::output::{Output, OutputError, existing};
 use crate::progress::Progress;
 use crate::report::{Reporter, count, usage};
 use crate::workers;
@@ -59,7 +59,7 @@ pub(super) fn run(
     if recipe.format != Format::Glb {
         return usage("only GLB holds a circuit in one file: leave out --format");
     }
-    refuse_existing(out, recipe.force)?;
+    existing(recipe.force).check(out)?;
     let prepared = prepare_all(circuit, instances, &recipe, reporter)?;
     let shown: Vec<&Instance> = instances
         .iter()
@@ -81,10 +81,10 @@ pub(super) fn run(
                 .world_from_cell(prepared[&instance.template.0].soma_center),
         })
         .collect();
-    let mut output = Output::create(out, recipe.force)?;
+    let mut output = Output::create(out, existing(recipe.force))?;
     write_glb(&surfaces, &nodes, output.file()).map_err(|e| match e {
-        WriteError::Io(e) => broken(out, &e),
-        other => broken(out, &std::io::Error::other(other)),
+        WriteError::Io(e) => OutputError::broken(out, e),
+        other => OutputError::broken(out, std::io::Error::other(other)),
     })?;
     output.finish()?;
     let scene = Scene {

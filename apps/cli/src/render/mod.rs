@@ -25,7 +25,7 @@ use neurotess::render::{
 };
 
 use crate::info::Entry;
-use crate::output::{Output, OutputError, broken, refuse_existing};
+use crate::output::{Output, OutputError, existing};
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use args::{ColorBy, Fit, RenderArgs};
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let files = files(args)?;
     maker::mode(args)?;
     for file in files.iter().chain(&args.stats) {
-        refuse_existing(file, args.force)?;
+        existing(args.force).check(file)?;
     }
     if let [session] = &args.inputs[..]
         && neurotess_viewer::session::is_session(session)
@@ -93,7 +93,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     stages.end(Stage::Draw);
     stats.took(stages);
     if let Some(path) = &args.stats {
-        let mut output = Output::create(path, args.force)?;
+        let mut output = Output::create(path, existing(args.force))?;
         serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
         output.finish()?;
     }
@@ -281,9 +281,12 @@ fn write(
     args: &RenderArgs,
     paint: impl FnOnce(&mut dyn FnMut(&Image) -> Result<(), OutputError>) -> anyhow::Result<Cost>,
 ) -> anyhow::Result<Cost> {
-    let mut output = Output::create(path, args.force)?;
-    let file = output.file().try_clone().map_err(|e| broken(path, &e))?;
-    let fault = |e: std::io::Error| broken(path, &e);
+    let mut output = Output::create(path, existing(args.force))?;
+    let file = output
+        .file()
+        .try_clone()
+        .map_err(|e| OutputError::broken(path, e))?;
+    let fault = |e: std::io::Error| OutputError::broken(path, e);
     let mut png =
         PngWriter::new(BufWriter::new(file), args.size.0, args.transparent).map_err(fault)?;
     let cost = paint(&mut |band| png.write(band).map_err(fault))?;
