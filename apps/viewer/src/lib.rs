@@ -30,7 +30,6 @@ pub mod state;
 pub mod view;
 mod window;
 pub mod worker;
-mod write;
 
 pub use app::Viewer;
 pub use command::Command;

@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Detail, Look, PlaceFile, SomaEdit};
 use crate::state::State;
 use crate::view::View;
-use crate::write::write_whole;
 
 /// Extension of sessions.
 pub const EXTENSION: &str = "neurotess";
@@ -166,7 +166,7 @@ impl Session {
     /// What went wrong and what to do.
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let text = toml::to_string_pretty(self).map_err(|e| e.to_string())?;
-        write_whole(path, true, |to| {
+        write_whole(path, Existing::Replace, |to| {
             use std::io::Write;
             writeln!(
                 to,
@@ -174,6 +174,7 @@ impl Session {
             )?;
             to.write_all(text.as_bytes())
         })
+        .map_err(|e| e.to_string())
     }
 }
 

@@ -5,10 +5,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use directories::ProjectDirs;
+use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Detail, Look};
-use crate::write::write_whole;
 
 /// Most files in the recent list.
 const RECENT: usize = 12;
@@ -89,7 +89,8 @@ impl Settings {
             return Ok(());
         };
         let text = toml::to_string_pretty(self).map_err(|e| e.to_string())?;
-        write_whole(&file, true, |to| to.write_all(text.as_bytes()))
+        write_whole(&file, Existing::Replace, |to| to.write_all(text.as_bytes()))
+            .map_err(|e| e.to_string())
     }
 
     /// Puts files on top of the recent list.

@@ -1,0 +1,228 @@
+//! The window: state, workers and stage together.
+
+mod loading;
+mod messages;
+mod saving;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Key};
+use egui_wgpu::RenderState;
+use neurotess::render::DeviceError;
+
+use crate::command::Command;
+use crate::panels;
+use crate::settings::Settings;
+use crate::stage::Stage;
+use crate::state::{Effect, State};
+use crate::view::View;
+use crate::worker::Worker;
+use loading::Loading;
+
+/// How long going to another view takes.
+const GO: Duration = Duration::from_millis(260);
+
+/// The whole program, without its frame.
+pub struct Viewer {
+    /// All that shows.
+    pub state: State,
+    /// What draws.
+    pub stage: Stage,
+    worker: Worker,
+    /// A loading: what was found, and its cells by file.
+    loading: Option<Loading>,
+    going: Option<(View, View, Instant)>,
+    /// What is fatal: the device is lost.
+    pub fatal: Option<String>,
+    quits: bool,
+    theme: Option<(bool, u32)>,
+    remembered: Settings,
+    smooth: bool,
+}
+
+impl Viewer {
+    /// In a window that has a device.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(
+        ctx: &egui::Context,
+        render: RenderState,
+        settings: Settings,
+    ) -> Result<Self, DeviceError> {
+        let waker = ctx.clone();
+        let stage = Stage::new(render)?;
+        let mut state = State::new(settings.clone());
+        let adapter = &stage.gpu().adapter;
+        state.adapter = (adapter.to_string(), adapter.software);
+        Ok(Self {
+            state,
+            stage,
+            worker: Worker::new(move || waker.request_repaint()),
+            loading: None,
+            going: None,
+            fatal: None,
+            quits: false,
+            theme: None,
+            remembered: settings,
+            smooth: true,
+        })
+    }
+
+    /// Views change at once: for tests.
+    pub fn without_motion(mut self) -> Self {
+        self.smooth = false;
+        self
+    }
+
+    /// Whether nothing is under way: all that is to be read is, and all is drawn.
+    pub fn is_settled(&self) -> bool {
+        let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
+        !self.worker.is_busy() && self.going.is_none() && self.loading.is_none() && drawn
+    }
+
+    /// Job of reading and of saving, for the status bar.
+    pub(crate) fn jobs(&self) -> [Option<crate::worker::Job>; 2] {
+        [self.worker.loading.clone(), self.worker.saving.clone()]
+    }
+
+    /// One frame.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        self.look(&ctx);
+        for message in self.worker.messages() {
+            self.take(message);
+        }
+        self.take_drops(&ctx);
+        self.go_on(&ctx);
+        panels::show(self, ui);
+        for command in std::mem::take(&mut self.state.asked) {
+            self.state.run(command);
+            ctx.request_repaint();
+        }
+        let effects = std::mem::take(&mut self.state.effects);
+        for effect in effects {
+            self.effect(effect);
+            ctx.request_repaint();
+        }
+        self.want_somata();
+        if self.quits {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    /// Draws the picture of this size; what cannot go on is kept in `fatal`.
+    pub(crate) fn picture(
+        &mut self,
+        size: [u32; 2],
+        ctx: &egui::Context,
+    ) -> Option<egui::TextureId> {
+        match self.stage.update(&mut self.state, size, ctx) {
+            Ok(texture) => texture,
+            Err(DeviceError::Lost(why)) => {
+                self.fatal = Some(self.rescue(&why));
+                self.quits = true;
+                None
+            }
+            Err(e) => {
+                self.state.problem("drawing", e.to_string());
+                None
+            }
+        }
+    }
+
+    fn look(&mut self, ctx: &egui::Context) {
+        let zoom = self.state.settings.zoom.clamp(0.5, 3.0);
+        let theme = (self.state.settings.dark, (zoom * 100.0) as u32);
+        if self.theme != Some(theme) {
+            panels::style(ctx, theme.0);
+            ctx.set_zoom_factor(zoom);
+            self.theme = Some(theme);
+        }
+    }
+
+    fn take_drops(&mut self, ctx: &egui::Context) {
+        let paths: Vec<PathBuf> = ctx.input(|input| {
+            let files = input.raw.dropped_files.iter();
+            files.map(|file| file.path().to_path_buf()).collect()
+        });
+        let paths: Vec<PathBuf> = paths
+            .into_iter()
+            .filter(|p| !p.as_os_str().is_empty())
+            .collect();
+        if !paths.is_empty() {
+            self.state.run(Command::Open(paths));
+        }
+    }
+
+    /// The camera on its way.
+    fn go_on(&mut self, ctx: &egui::Context) {
+        let Some((from, to, begun)) = self.going else {
+            return;
+        };
+        let t = begun.elapsed().as_secs_f64() / GO.as_secs_f64();
+        if t >= 1.0 {
+            (self.state.view, self.going) = (to, None);
+        } else {
+            self.state.view = from.between(&to, t * t * (3.0 - 2.0 * t));
+        }
+        ctx.request_repaint();
+    }
+
+    /// Moves the camera by hand.
+    pub(crate) fn steer(&mut self, view: View) {
+        self.going = None;
+        self.state.view = view;
+    }
+
+    fn effect(&mut self, effect: Effect) {
+        match effect {
+            Effect::Load(paths) => self.load(paths),
+            Effect::Reload => self.reload(),
+            Effect::Cancel => {
+                for job in self.jobs().into_iter().flatten() {
+                    job.cancelled
+                        .store(true, std::sync::atomic::Ordering::Relaxed);
+                    self.state.said = format!("Stopped {}", job.what);
+                }
+            }
+            Effect::Go(view) => {
+                if self.smooth && !self.state.document.neurons.is_empty() {
+                    self.going = Some((self.state.view, view, Instant::now()));
+                } else {
+                    self.state.view = view;
+                }
+            }
+            Effect::Quit => self.quits = true,
+            Effect::Save(command) => self.save(command),
+        }
+    }
+
+    /// Keys that are commands; not while somebody types.
+    pub(crate) fn shortcuts(&mut self, ctx: &egui::Context) {
+        if ctx.egui_wants_keyboard_input() {
+            return;
+        }
+        for (_, items) in crate::command::listed(&self.state.toggles()) {
+            for item in items {
+                if let Some(keys) = item.keys
+                    && ctx.input_mut(|input| input.consume_shortcut(&keys))
+                {
+                    self.state.asked.push(item.command);
+                }
+            }
+        }
+        // Some keyboards send ? as a text only.
+        let asks = ctx.input(|input| {
+            input
+                .events
+                .iter()
+                .any(|e| matches!(e, egui::Event::Text(t) if t == "?"))
+                && !input.key_pressed(Key::Questionmark)
+        });
+        if asks {
+            self.state.asked.push(Command::ToggleKeys);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! What goes to files.
+
+use std::path::Path;
+
+use super::Viewer;
+use crate::command::Command;
+use crate::document::Neuron;
+use crate::save::{self, MeshPlan, Scenery};
+use crate::scene;
+use crate::session::{self, Session};
+
+impl Viewer {
+    /// Saves the session before the program ends by itself.
+    pub(super) fn rescue(&self, why: &str) -> String {
+        let lost = format!("the graphics device was lost ({why})");
+        if self.state.document.neurons.is_empty() {
+            return format!("{lost}: start again, or choose another one by NEUROTESS_ADAPTER");
+        }
+        let folder = crate::settings::folder().unwrap_or_default();
+        let file = folder.join(format!("rescued.{}", session::EXTENSION));
+        match Session::of(&self.state, &folder).write(&file) {
+            Ok(()) => format!("{lost}: your session is in {}", file.display()),
+            Err(e) => format!("{lost}, and the session could not be saved: {e}"),
+        }
+    }
+
+    pub(super) fn save(&mut self, command: Command) {
+        if self.worker.saving.is_some() {
+            self.state
+                .problem("save", "wait until the last one is written, or stop it");
+            return;
+        }
+        match command {
+            Command::SaveSession(path) => self.save_session(&path),
+            Command::SaveMeshes(options) => {
+                let plans = self.mesh_plans(options.all);
+                let (view, detail) = (self.state.view, self.state.document.detail);
+                let height = self.stage.height();
+                self.worker.save("writing meshes", plans.len(), move |job| {
+                    save::meshes(&plans, &options, &view, &detail, height, job)
+                });
+            }
+            Command::SavePicture(options) => {
+                self.state.settings.picture_size = options.size;
+                let (scenery, view) = (self.scenery(), self.state.view);
+                self.worker.save("drawing the picture", 1, move |job| {
+                    let files = save::pictures(&scenery, &[view], &options, job)?;
+                    let file = files.first().map(|f| f.display().to_string());
+                    Ok(format!("Saved {}", file.unwrap_or_default()))
+                });
+            }
+            Command::SaveFilm(film) => {
+                let views = save::film_views(&self.state.key_views, film.frames);
+                let scenery = self.scenery();
+                self.worker
+                    .save("drawing the film", views.len(), move |job| {
+                        let files = save::pictures(&scenery, &views, &film.picture, job)?;
+                        let (count, first) =
+                            (files.len(), files.first().cloned().unwrap_or_default());
+                        let also = match film.video && count > 1 {
+                            true => format!(" and {}", save::video(&first)?.display()),
+                            false => String::new(),
+                        };
+                        Ok(format!(
+                            "Saved {count} pictures from {}{also}",
+                            first.display()
+                        ))
+                    });
+            }
+            _ => {}
+        }
+    }
+
+    fn save_session(&mut self, path: &Path) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match Session::of(&self.state, folder).write(path) {
+            Ok(()) => {
+                self.state.said = format!("Saved {}", path.display());
+                self.state.session = Some(path.to_path_buf());
+                self.state.settings.remember_files(&[path.to_path_buf()]);
+            }
+            Err(why) => {
+                self.state.said = "The session was not saved".into();
+                self.state.problem(path.display().to_string(), why);
+            }
+        }
+    }
+
+    fn mesh_plans(&self, all: bool) -> Vec<MeshPlan> {
+        let state = &self.state;
+        let neurons = state.document.neurons.iter().zip(state.placements());
+        let wanted = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
+        let plan = |(neuron, placement): (&Neuron, _)| {
+            Some(MeshPlan {
+                name: neuron.name.clone(),
+                generated: state.sources.get(neuron.source)?.generated.clone(),
+                placement,
+            })
+        };
+        wanted.filter_map(plan).collect()
+    }
+
+    fn scenery(&self) -> Scenery {
+        Scenery {
+            gpu: self.stage.gpu().clone(),
+            shown: self.stage.shown().clone(),
+            look: self.state.document.look.clone(),
+            states: scene::states(&self.state.document),
+            balls: self.state.balls(|_| true),
+        }
+    }
+
+    /// Writes what is remembered, if it has changed.
+    pub fn remember(&mut self) {
+        if self.state.settings != self.remembered {
+            self.remembered = self.state.settings.clone();
+            if let Err(why) = self.remembered.save() {
+                self.state.problem("settings", why);
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Colours, light, what is shown of cells.
+
+use neurotess::colouring;
+use neurotess::render::{ColourMap, Light, Palette, Rgb};
+use serde::{Deserialize, Serialize};
+
+/// Colours, light, what is shown of cells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Look {
+    /// What colours tell.
+    pub colour_by: ColourBy,
+    /// Colours of types.
+    #[serde(with = "palette")]
+    pub palette: Palette,
+    /// Colours of numbers.
+    #[serde(with = "colour_map")]
+    pub colour_map: ColourMap,
+    /// Behind everything.
+    pub background: Rgb,
+    /// What surfaces are lit by.
+    pub light: Lighting,
+    /// Whether corners darken one another.
+    pub occlusion: bool,
+    /// Triangles.
+    pub wires: bool,
+    /// What colours mean.
+    pub legend: bool,
+    /// A length to compare with.
+    pub scale_bar: bool,
+    /// Directions of x, y and z.
+    pub axes: bool,
+    /// A colour of its own for what is selected.
+    pub mark_selected: bool,
+    /// Whether one looks through what is not selected.
+    pub faint_others: bool,
+    /// Share of what is not selected that is still seen.
+    pub faint: f32,
+    /// What is drawn of cells.
+    pub parts: Parts,
+    /// What is cut away.
+    pub cut: Option<Cut>,
+}
+
+/// What colours tell; see [`colouring::ColourBy`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum ColourBy {
+    #[default]
+    Type,
+    Neuron,
+    Neurite,
+    Section,
+    Order,
+    Radius,
+    Depth,
+}
+
+impl ColourBy {
+    /// All, with names for people.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::Type, "type"),
+        (Self::Neuron, "neuron"),
+        (Self::Neurite, "neurite"),
+        (Self::Section, "section"),
+        (Self::Order, "branch order"),
+        (Self::Radius, "radius"),
+        (Self::Depth, "path distance"),
+    ];
+
+    /// Whether it is a number, with a colour map.
+    pub fn is_number(self) -> bool {
+        matches!(self, Self::Order | Self::Radius | Self::Depth)
+    }
+
+    pub(crate) fn in_library(self) -> colouring::ColourBy {
+        match self {
+            Self::Type => colouring::ColourBy::Type,
+            Self::Neuron => colouring::ColourBy::Neuron,
+            Self::Neurite => colouring::ColourBy::Neurite,
+            Self::Section => colouring::ColourBy::Section,
+            Self::Order => colouring::ColourBy::Order,
+            Self::Radius => colouring::ColourBy::Radius,
+            Self::Depth => colouring::ColourBy::Depth,
+        }
+    }
+}
+
+/// What surfaces are lit by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Lighting {
+    /// From the upper left.
+    #[default]
+    Soft,
+    /// Not at all.
+    Flat,
+    /// From a direction (degrees): to the right, and upwards.
+    From {
+        /// From −180 to 180; 0 is from the viewer.
+        right: f32,
+        /// From −90 to 90.
+        up: f32,
+    },
+}
+
+impl Lighting {
+    pub(crate) fn light(self) -> Light {
+        match self {
+            Self::Soft => Light::Soft,
+            Self::Flat => Light::Flat,
+            Self::From { right, up } => {
+                let (right, up) = (right.to_radians(), up.to_radians());
+                Light::From(glam::Vec3::new(
+                    right.sin() * up.cos(),
+                    up.sin(),
+                    right.cos() * up.cos(),
+                ))
+            }
+        }
+    }
+}
+
+/// What is drawn of cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Parts {
+    /// All.
+    #[default]
+    All,
+    /// Somata.
+    Soma,
+    /// Neurites.
+    Neurites,
+}
+
+/// A plane across the scene: what lies behind it is cut away.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cut {
+    /// 0: x, 1: y, 2: z.
+    pub axis: usize,
+    /// Where, from 0 to 1 through the scene.
+    pub place: f32,
+    /// The other side is cut away.
+    pub flipped: bool,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            colour_by: ColourBy::Type,
+            palette: Palette::default(),
+            colour_map: ColourMap::default(),
+            background: [255; 3],
+            light: Lighting::Soft,
+            occlusion: true,
+            wires: false,
+            legend: true,
+            scale_bar: true,
+            axes: true,
+            mark_selected: false,
+            faint_others: false,
+            faint: 0.25,
+            parts: Parts::All,
+            cut: None,
+        }
+    }
+}
+
+macro_rules! by_name {
+    ($module:ident, $type:ty) => {
+        mod $module {
+            use serde::{Deserialize, Deserializer, Serializer};
+
+            pub(super) fn serialize<S: Serializer>(
+                value: &$type,
+                serializer: S,
+            ) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(value.name())
+            }
+
+            pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+                deserializer: D,
+            ) -> Result<$type, D::Error> {
+                String::deserialize(deserializer)?
+                    .parse()
+                    .map_err(serde::de::Error::custom)
+            }
+        }
+    };
+}
+
+by_name!(palette, neurotess::render::Palette);
+by_name!(colour_map, neurotess::render::ColourMap);

@@ -1,0 +1,150 @@
+//! What is drawn while something moves.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use neurotess::render::{Choice, DeviceError, Occlusion, Outlines, Refining, Scene, Shot};
+
+use super::rest::REST;
+use super::{Drawn, Rest, Stage};
+use crate::scene::{self, Standing};
+use crate::state::State;
+
+/// A draft should take no longer.
+const DRAFT_MS: f64 = 40.0;
+/// Drafts that are coarser than this have half as many pixels to each side.
+const HALF_FROM: f32 = 6.0;
+/// So many frame times are shown.
+const FRAMES: usize = 90;
+
+impl Stage {
+    pub(super) fn wanted(&mut self, state: &State, size: [u32; 2]) -> Drawn {
+        let look = &state.document.look;
+        let camera = state.view.camera();
+        let balls = state.balls(|_| true);
+        let mut surface = scene::surface_look(look);
+        surface.clip = scene::clip(look, &balls);
+        let frozen = state.frozen.map(|view| {
+            let camera = view.camera();
+            (camera, camera.near(&balls))
+        });
+        Drawn {
+            shot: Shot {
+                camera,
+                near: camera.near(&balls),
+                size,
+                look: surface,
+                occlusion: if look.occlusion {
+                    Occlusion::Fit
+                } else {
+                    Occlusion::Off
+                },
+                background: look.background,
+                frozen,
+            },
+            detail: state.document.detail,
+            states: scene::states(&state.document),
+            standing: scene::standing(state, &self.shown.sources),
+        }
+    }
+
+    /// Draws at once and coarsely, as coarsely as it takes to keep up.
+    pub(super) fn draft(&mut self, wanted: Drawn, ctx: &egui::Context) -> Result<(), DeviceError> {
+        self.moved = Instant::now();
+        self.rest = Rest::Waits;
+        self.live.stop();
+        if self.live.is_busy(&self.gpu) {
+            // What was submitted must end first: drafts that pile up come too late.
+            ctx.request_repaint_after(Duration::from_millis(3));
+            return Ok(());
+        }
+        if self.drawn.is_some() && self.live.shows_draft() {
+            self.keep_up();
+        }
+        let before = self.drawn.as_ref();
+        if before.is_none_or(|d| d.standing != wanted.standing) {
+            self.stand(&wanted.standing);
+        }
+        self.live.set_states(wanted.states.clone());
+        self.picks = None;
+        self.namer = None;
+        self.counted = false;
+        self.live.set_outlines(&self.gpu, Outlines::default(), None);
+        self.mask = None;
+        self.draw_draft(&wanted)?;
+        self.drawn = Some(wanted);
+        ctx.request_repaint_after(REST);
+        Ok(())
+    }
+
+    /// By the explorer where it can: it knows neither grids nor another camera.
+    pub(super) fn draw_draft(&mut self, wanted: &Drawn) -> Result<(), DeviceError> {
+        let mut shot = wanted.shot;
+        let wires = shot.look.wire > 0.0;
+        let explorer = match wires || shot.frozen.is_some() {
+            true => None,
+            false => self.explorer.maker(&self.gpu, &self.shown),
+        };
+        self.explored = explorer.is_some();
+        if let Some(maker) = explorer {
+            return self.live.draft(&self.gpu, maker, &shot);
+        }
+        self.maker.set_refining(Refining {
+            // Nothing is left out that would show at rest: holes that come and go look broken.
+            choice: coarser(wanted.detail.choice(), self.coarser),
+            smallest: wanted.detail.smallest,
+            wires,
+            ..Refining::default()
+        });
+        if self.coarser > HALF_FROM {
+            shot.size = shot.size.map(|n| n.div_ceil(2));
+        }
+        self.live.draft(&self.gpu, &mut self.maker, &shot)
+    }
+
+    pub(super) fn stand(&mut self, standing: &[Standing]) {
+        self.shown.instances = standing.to_vec();
+        let (templates, _) = self.maker.take_scene().into_parts();
+        match Scene::new(templates, scene::instances(standing)) {
+            Ok(scene) => self.maker.set_scene(scene),
+            // Placements are finite by construction; if not, all is built anew.
+            Err(_) => self.colours = None,
+        }
+    }
+
+    /// Drafts become coarser where they take too long, and finer where there is time.
+    pub(super) fn keep_up(&mut self) {
+        let took = self.live.last_ms();
+        self.note_frame(took);
+        if self.explored {
+            self.explorer.keep_up(took, DRAFT_MS);
+        } else if took > 1.5 * DRAFT_MS {
+            self.coarser = (self.coarser * 2.0).min(32.0);
+        } else if took < 0.4 * DRAFT_MS {
+            self.coarser = (self.coarser / 1.4).max(1.0);
+        }
+    }
+
+    pub(super) fn note_frame(&mut self, took: f64) {
+        self.frames.push_back(took as f32);
+        if self.frames.len() > FRAMES {
+            self.frames.pop_front();
+        }
+    }
+}
+
+/// The same choice, so much coarser.
+fn coarser(choice: Choice, factor: f32) -> Choice {
+    let level = |level: u32| ((level as f32 / factor).round() as u32).max(1);
+    match choice {
+        Choice::PixelError(error) => Choice::PixelError(error * factor),
+        Choice::PixelSize(size) => Choice::PixelSize(size * factor),
+        Choice::MaxError(error) => Choice::MaxError(error * factor),
+        Choice::Homogeneous(l) => Choice::Homogeneous(level(l)),
+        Choice::Distance { level: l, far } => Choice::Distance {
+            level: level(l),
+            far,
+        },
+        Choice::PerPoint => Choice::PerPoint,
+    }
+}

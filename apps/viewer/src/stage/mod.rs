@@ -1,0 +1,204 @@
+//! The picture in the window: the scene on the device, drafts while something moves, the full picture at
+//! rest, and what is under the cursor. Nothing is drawn when nothing changes.
+
+mod building;
+mod drafts;
+mod pointing;
+mod rest;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::time::Instant;
+
+use eframe::egui;
+use egui_wgpu::RenderState;
+use neurotess::colouring::Colouring;
+use neurotess::render::{Adaptive, DeviceError, Gpu, Live, Namer, Refining, Scene, Shot};
+
+use crate::document::{Detail, Look};
+use crate::explorer::Explorer;
+use crate::picks::Picks;
+use crate::scene::{self, Shown, Standing};
+use crate::state::{Draft, State};
+use building::{Built, ColourKey};
+use pointing::MaskKey;
+
+/// All that draws.
+pub struct Stage {
+    gpu: Arc<Gpu>,
+    render: RenderState,
+    live: Live,
+    maker: Adaptive,
+    explorer: Explorer,
+    /// Whether the last draft was the explorer's.
+    explored: bool,
+    texture: Option<(egui::TextureId, [u32; 2], bool)>,
+    /// What is on the device.
+    shown: Shown,
+    colours: Option<ColourKey>,
+    building: Option<Receiver<Built>>,
+    drawn: Option<Drawn>,
+    moved: Instant,
+    rest: Rest,
+    coarser: f32,
+    bands: u32,
+    frames: VecDeque<f32>,
+    picks: Option<Picks>,
+    namer: Option<(Namer, Shot)>,
+    mask: Option<MaskKey>,
+    counted: bool,
+}
+
+/// What a picture depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Drawn {
+    shot: Shot,
+    detail: Detail,
+    states: Vec<u32>,
+    standing: Vec<Standing>,
+}
+
+/// How far the full picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rest {
+    /// Something moved a moment ago.
+    Waits,
+    /// Slices are being made.
+    Slices,
+    /// All is drawn.
+    Done,
+}
+
+impl Stage {
+    /// On a device that the window has.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(render: RenderState) -> Result<Self, DeviceError> {
+        let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
+        let live = Live::new(&gpu);
+        let maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
+        let shown = Shown {
+            sources: Vec::new(),
+            instances: Vec::new(),
+            colouring: Arc::new(scene::colours(&[], &Look::default())),
+        };
+        let software = gpu.adapter.software;
+        Ok(Self {
+            gpu: Arc::new(gpu),
+            render,
+            live,
+            maker,
+            explorer: Explorer::default(),
+            explored: false,
+            texture: None,
+            shown,
+            colours: None,
+            building: None,
+            drawn: None,
+            moved: Instant::now(),
+            rest: Rest::Done,
+            coarser: if software { 4.0 } else { 1.0 },
+            bands: if software { 2 } else { 1 },
+            frames: VecDeque::new(),
+            picks: None,
+            namer: None,
+            mask: None,
+            counted: false,
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    /// What is on the device.
+    pub(crate) fn shown(&self) -> &Shown {
+        &self.shown
+    }
+
+    /// What colours mean.
+    pub fn colouring(&self) -> &Colouring {
+        &self.shown.colouring
+    }
+
+    /// Whether all that there is to draw is drawn.
+    pub fn is_settled(&self) -> bool {
+        self.rest == Rest::Done && self.building.is_none() && self.drawn.is_some()
+    }
+
+    /// Height (pixels) of the picture.
+    pub fn height(&self) -> f64 {
+        self.drawn
+            .as_ref()
+            .map_or(800.0, |d| f64::from(d.shot.size[1]))
+    }
+
+    /// Share of the full picture that is made, while it is.
+    pub fn progress(&self) -> Option<f32> {
+        self.live.progress()
+    }
+
+    /// Draws what has changed; asks for another frame while there is more to draw.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn update(
+        &mut self,
+        state: &mut State,
+        size: [u32; 2],
+        ctx: &egui::Context,
+    ) -> Result<Option<egui::TextureId>, DeviceError> {
+        self.take_built(ctx)?;
+        self.want_scene(state, ctx)?;
+        self.explorer.update(&self.gpu, &self.shown, ctx);
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        let wanted = self.wanted(state, size);
+        if self.drawn.as_ref() != Some(&wanted) {
+            self.draft(wanted, ctx)?;
+        } else {
+            self.refine(state, ctx)?;
+        }
+        self.take_ids(ctx)?;
+        self.outline(state);
+        state.counters.frames_ms = self.frames.iter().copied().collect();
+        state.counters.draft = match self.explored {
+            true => Draft::Budget(self.explorer.budget()),
+            false => Draft::Error(self.coarser),
+        };
+        self.gpu.check()?;
+        Ok(self.texture_id())
+    }
+
+    /// The picture for egui; the same number for as long as the texture is the same.
+    fn texture_id(&mut self) -> Option<egui::TextureId> {
+        let texture = self.live.texture()?;
+        let key = ([texture.width(), texture.height()], self.live.shows_draft());
+        if let Some((id, size, draft)) = self.texture
+            && (size, draft) == key
+        {
+            return Some(id);
+        }
+        let view = texture.create_view(&Default::default());
+        let mut renderer = self.render.renderer.write();
+        // Drafts may be smaller than they are shown.
+        let filter = match key.1 {
+            true => wgpu::FilterMode::Linear,
+            false => wgpu::FilterMode::Nearest,
+        };
+        let id = match self.texture {
+            Some((id, ..)) => {
+                let device = &self.render.device;
+                renderer.update_egui_texture_from_wgpu_texture(device, &view, filter, id);
+                id
+            }
+            None => renderer.register_native_texture(&self.render.device, &view, filter),
+        };
+        self.texture = Some((id, key.0, key.1));
+        Some(id)
+    }
+}
