@@ -7,6 +7,7 @@ mod frame;
 mod joint;
 mod options;
 mod prepare;
+mod rings;
 mod skeleton;
 mod soma;
 mod somata;
@@ -19,10 +20,12 @@ pub use warning::Warning;
 
 use std::time::Instant;
 
+use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_morphology::Morphology;
 
 use assemble::Assembly;
+use rings::Wishes;
 use skeleton::Skeleton;
 use warning::Warnings;
 
@@ -33,6 +36,8 @@ pub struct Generated {
     pub mesh: CoarseMesh,
     /// One report per soma.
     pub somata: Vec<SomaReport>,
+    /// Where each neurite of a soma begins, in the order of the tracing.
+    pub rings: Vec<FirstRing>,
     /// What was mended, counted by cause.
     pub warnings: Vec<Warning>,
     /// Seconds spent in somata (solve and seats).
@@ -52,6 +57,23 @@ pub struct SomaReport {
     pub sphere_area: f64,
 }
 
+/// The first ring of a neurite on its soma.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstRing {
+    /// Number of the neurite, from 0 in the order of the tracing. A neurite that forks inside its soma
+    /// has several rings.
+    pub neurite: u32,
+    /// Where it is: 0 on the soma's sphere, 1 at the first traced point outside it, 2 beyond; see
+    /// [`GenerateOptions::rings`].
+    pub position: f64,
+    /// Its centre (µm), relative to the mesh's origin.
+    pub center: DVec3,
+    /// Unit normal of its plane, away from the soma.
+    pub outwards: DVec3,
+    /// Its radius (µm).
+    pub radius: f64,
+}
+
 /// Builds the closed coarse mesh of a cell. Never fails: what cannot be meshed as traced is mended
 /// or left out, and reported.
 pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated {
@@ -62,7 +84,8 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     let mut balls = somata::balls(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &balls, &mut warnings);
     let clock = Instant::now();
-    let built = somata::build(&mut skeleton, &mut balls, options, &mut warnings);
+    let wishes = Wishes::new(morphology, options);
+    let built = somata::build(&mut skeleton, &mut balls, &wishes, options, &mut warnings);
     let soma_seconds = clock.elapsed().as_secs_f64();
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
@@ -75,9 +98,9 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     let orientations = uncross::uncross_rings(&mut skeleton, &balls, &mut warnings);
 
     let mut assembly = Assembly::new(&skeleton, &orientations);
-    let rings = somata::ring_nodes(&skeleton, morphology.somata.len());
+    let seats = somata::ring_nodes(&skeleton, morphology.somata.len());
     let mut somata = Vec::new();
-    for (index, (soma, nodes)) in built.iter().zip(rings).enumerate() {
+    for (index, (soma, nodes)) in built.somata.iter().zip(seats).enumerate() {
         if let (Some(soma), Some(ball)) = (soma, balls[index]) {
             let sample = morphology.somata[index]
                 .samples
@@ -92,6 +115,7 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     Generated {
         mesh,
         somata,
+        rings: built.rings,
         warnings: warnings.into_vec(),
         soma_seconds,
     }

@@ -1,5 +1,7 @@
 //! What the generation can be told.
 
+use std::collections::BTreeMap;
+
 use neurotess_morphology::NeuriteKind;
 
 /// How the soma is rebuilt.
@@ -39,6 +41,12 @@ pub struct GenerateOptions {
     pub sphere: SphereKind,
     /// Resolution of the sphere: octahedron 3 to 5, cube 4 to 32; `None`: what fits the neurites.
     pub sphere_level: Option<u32>,
+    /// Positions of first rings by the number of the neurite (from 0, in the order of the tracing):
+    /// 0 on the soma's sphere, 1 at the first traced point outside it, up to 2 along the path beyond it
+    /// (by as much again, at least half a radius of the soma). Of neurites that are not named: the first
+    /// point, but no farther than 1.35 radii ([`SomaMethod::Fem`]) or 1.5 ([`SomaMethod::Profile`]).
+    /// The other methods have no choice.
+    pub rings: BTreeMap<u32, f64>,
     /// Kinds of neurites to keep; `None`: all.
     pub kinds: Option<Vec<NeuriteKind>>,
 }
@@ -51,6 +59,7 @@ impl Default for GenerateOptions {
             soma_scale: 1.0,
             sphere: SphereKind::Cube,
             sphere_level: None,
+            rings: BTreeMap::new(),
             kinds: None,
         }
     }

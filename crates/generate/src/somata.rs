@@ -3,12 +3,13 @@
 use glam::DVec3;
 use neurotess_morphology::{Morphology, Soma};
 
-use crate::prepare::{self, Ball};
+use crate::prepare::Ball;
+use crate::rings::{self, Given, Wishes};
 use crate::skeleton::{Node, Root, Skeleton};
 use crate::soma::seats::Insertion;
 use crate::soma::{self, SomaRequest, SomaSurface};
 use crate::warning::Warnings;
-use crate::{GenerateOptions, SomaMethod, SomaReport};
+use crate::{FirstRing, GenerateOptions, SomaMethod, SomaReport};
 
 /// The sphere of each soma that is to be meshed.
 pub(crate) fn balls(
@@ -74,58 +75,157 @@ pub(crate) struct BuiltSoma {
 /// Shares of the way from the sphere to the farthest first ring that are tried in turn until the
 /// surface has no fold: close neurites that pull far out would make spikes through one another.
 const REACHES: [f64; 5] = [1.0, 0.6, 0.35, 0.15, 0.03];
+/// Radii of the soma beyond which no ring goes by wish where the surface does not stand what is asked
+/// for. The same for all wishes, so that a ring that is asked farther and farther out comes to a stop.
+const FARTHEST: [f64; 14] = [
+    1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.2, 2.4, 2.7, 3.0, 3.5, 4.0, 5.0,
+];
+
+/// What is tried for a soma.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    /// Farthest rings by wish (radii of the soma).
+    farthest: f64,
+    /// Of [`FARTHEST`], those that may serve, while one is looked for.
+    search: Option<(usize, usize)>,
+    /// Of [`REACHES`].
+    reach: usize,
+}
+
+/// The somata and their rings.
+pub(crate) struct Built {
+    pub(crate) somata: Vec<Option<BuiltSoma>>,
+    pub(crate) rings: Vec<FirstRing>,
+}
 
 /// Gives every neurite of a soma its first ring and rebuilds the somata.
 pub(crate) fn build(
     skeleton: &mut Skeleton,
     balls: &mut [Option<Ball>],
+    wishes: &Wishes<'_>,
     options: &GenerateOptions,
     warnings: &mut Warnings,
-) -> Vec<Option<BuiltSoma>> {
-    let farthest: Vec<f64> = balls.iter().flatten().map(|b| b.reach).collect();
-    let mut nearer = vec![0; balls.len()];
+) -> Built {
+    let farthest: Vec<f64> = balls.iter().map(|b| b.map_or(1.0, |b| b.reach)).collect();
+    let mut trials = vec![Trial::new(); balls.len()];
     loop {
         let mut tried = skeleton.clone();
         let mut said = warnings.clone();
-        prepare::insert_first_rings(&mut tried, balls, &mut said);
-        let rings = ring_nodes(&tried, balls.len());
-        let built: Vec<Option<BuiltSoma>> = balls
-            .iter()
-            .zip(rings)
-            .zip(&nearer)
-            .map(|((ball, nodes), &nearer)| {
-                let last = nearer + 1 == REACHES.len();
-                Some(build_one(&mut tried, (*ball)?, &nodes, options, last))
+        let limits: Vec<f64> = trials.iter().map(|t| t.farthest).collect();
+        let given = rings::insert(&mut tried, balls, wishes, &limits, &mut said);
+        let nodes = ring_nodes(&tried, balls.len());
+        let somata: Vec<Option<BuiltSoma>> = (balls.iter().zip(nodes).zip(&trials))
+            .map(|((ball, nodes), trial)| {
+                Some(build_one(&mut tried, (*ball)?, &nodes, options, trial))
             })
             .collect();
         let mut again = false;
-        for (index, soma) in built.iter().enumerate() {
-            let unsound = soma.as_ref().is_some_and(|s| !s.surface.sound());
-            if let Some(ball) = &mut balls[index]
-                && unsound
-                && nearer[index] + 1 < REACHES.len()
-                && farthest[index] > 1.0
-            {
-                nearer[index] += 1;
-                ball.reach = 1.0 + (farthest[index] - 1.0) * REACHES[nearer[index]];
+        for (index, soma) in somata.iter().enumerate() {
+            let (Some(ball), Some(soma)) = (&mut balls[index], soma) else {
+                continue;
+            };
+            let wished = given
+                .iter()
+                .filter(|g| g.soma as usize == index && g.farther);
+            let wished = wished.map(|g| g.reach).reduce(f64::max);
+            if trials[index].go_on(soma.surface.sound(), wished, farthest[index]) {
+                ball.reach = 1.0 + (farthest[index] - 1.0) * REACHES[trials[index].reach];
                 again = true;
             }
         }
         if again {
             continue;
         }
-        built
-            .iter()
-            .flatten()
-            .for_each(|soma| warn(&soma.surface, &mut said));
-        said.add_many(
-            "ring_nearer",
-            nearer.iter().filter(|&&n| n > 0).count(),
-            "neurites crowd on the soma: it was pulled out less towards them",
-        );
+        (somata.iter().flatten()).for_each(|soma| warn(&soma.surface, &mut said));
+        warn_of_rings(&given, &trials, wishes, &mut said);
+        let rings = given.iter().filter_map(|g| first_ring(&tried, g, balls));
+        let rings = rings.collect();
         (*skeleton, *warnings) = (tried, said);
-        return built;
+        return Built { somata, rings };
     }
+}
+
+impl Trial {
+    fn new() -> Self {
+        Self {
+            farthest: f64::INFINITY,
+            search: None,
+            reach: 0,
+        }
+    }
+
+    /// Whether there is something else to try. `wished`: radii of the farthest ring that is there by
+    /// wish alone. `most`: farthest of those that nobody asked for.
+    fn go_on(&mut self, sound: bool, wished: Option<f64>, most: f64) -> bool {
+        match self.search {
+            None if sound => return false,
+            None => {
+                let Some(wished) = wished.filter(|_| self.farthest == f64::INFINITY) else {
+                    return self.go_nearer(most);
+                };
+                let below = FARTHEST.partition_point(|&f| f < wished - 1e-9);
+                self.search = Some((0, below));
+            }
+            Some((low, high)) => {
+                let middle = usize::midpoint(low, high);
+                self.search = Some(if sound {
+                    (middle + 1, high)
+                } else {
+                    (low, middle)
+                });
+            }
+        }
+        // Those before `low` serve, those from `high` on do not.
+        let (low, high) = self.search.unwrap_or_default();
+        if low < high {
+            self.farthest = FARTHEST[usize::midpoint(low, high)];
+            return true;
+        }
+        self.search = None;
+        // Without any wish that is too far, the rings that nobody asked for have their turn.
+        let best = low.checked_sub(1).map_or(0.0, |best| FARTHEST[best]);
+        let known = sound && self.farthest == best;
+        self.farthest = best;
+        !known
+    }
+
+    fn go_nearer(&mut self, most: f64) -> bool {
+        let nearer = self.reach + 1 < REACHES.len() && most > 1.0;
+        self.reach += usize::from(nearer);
+        nearer
+    }
+}
+
+/// A ring where it is in the end; none: its neurite found no seat.
+fn first_ring(skeleton: &Skeleton, given: &Given, balls: &[Option<Ball>]) -> Option<FirstRing> {
+    let node = skeleton.node(given.node);
+    let ball = balls[given.soma as usize]?;
+    (node.root == Root::Insertion(given.soma)).then(|| FirstRing {
+        neurite: given.neurite,
+        position: given.position,
+        center: node.center,
+        outwards: (node.center - ball.center).normalize_or(DVec3::Y),
+        radius: node.radius,
+    })
+}
+
+fn warn_of_rings(given: &[Given], trials: &[Trial], wishes: &Wishes<'_>, warnings: &mut Warnings) {
+    warnings.add_many(
+        "ring_nearer",
+        trials.iter().filter(|t| t.reach > 0).count(),
+        "neurites crowd on the soma: it was pulled out less towards them",
+    );
+    warnings.add_many(
+        "ring_limited",
+        given.iter().filter(|g| g.limited()).count(),
+        "first ring cannot be as far out as asked for (a fork, an end, a turn of the path, or the \
+         soma would fold): it is nearer",
+    );
+    warnings.add_many(
+        "ring_unused",
+        wishes.unused(given),
+        "no neurite of this number has a first ring: its position is not used",
+    );
 }
 
 /// Nodes of each soma's rings, in order.
@@ -144,7 +244,7 @@ fn build_one(
     ball: Ball,
     nodes: &[u32],
     options: &GenerateOptions,
-    at_any_price: bool,
+    trial: &Trial,
 ) -> BuiltSoma {
     let insertions: Vec<Insertion> = nodes
         .iter()
@@ -157,7 +257,12 @@ fn build_one(
         poisson: options.poisson,
         kind: options.sphere,
         level: options.sphere_level,
-        at_any_price,
+        at_any_price: trial.reach + 1 == REACHES.len(),
+        // What is only tried need not be tried by all means.
+        attempts: match trial.search {
+            Some(_) => soma::ATTEMPTS - 1,
+            None => soma::ATTEMPTS,
+        },
     };
     let mut surface = soma::rebuild(&request, &insertions);
     keep_seated(skeleton, &mut surface, nodes, &ball);

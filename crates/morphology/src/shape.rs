@@ -41,6 +41,22 @@ pub fn child_counts(morphology: &Morphology) -> Vec<u32> {
     counts
 }
 
+/// Number of the neurite that each section belongs to, from 0 in the order of the tracing.
+pub fn neurites(morphology: &Morphology) -> Vec<u32> {
+    let mut count = 0;
+    let mut neurites: Vec<u32> = Vec::with_capacity(morphology.sections.len());
+    for section in &morphology.sections {
+        neurites.push(match section.parent() {
+            Some(parent) => neurites[parent.index()],
+            None => {
+                count += 1;
+                count - 1
+            }
+        });
+    }
+    neurites
+}
+
 /// Number of forks between the neurite's start and the section; a change of type is none.
 pub fn branch_orders(morphology: &Morphology) -> Vec<u32> {
     let children = child_counts(morphology);

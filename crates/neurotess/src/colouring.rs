@@ -95,7 +95,7 @@ pub fn colouring(cells: &[Cell<'_>], by: ColourBy, paint: &Paint) -> Colouring {
     match by {
         ColourBy::Type => by_type(cells, paint),
         ColourBy::Neuron => by_neuron(cells, paint),
-        ColourBy::Neurite => told_apart(cells, paint, "neurite", neurites),
+        ColourBy::Neurite => told_apart(cells, paint, "neurite", shape::neurites),
         ColourBy::Section => told_apart(cells, paint, "section", sections),
         ColourBy::Order => measured(cells, paint, "branch order", "", |cell| {
             let orders = shape::branch_orders(cell.morphology);
@@ -207,20 +207,6 @@ fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) ->
             ..ColourTable::default()
         },
     }
-}
-
-/// Number of the neurite that each section belongs to.
-fn neurites(morphology: &Morphology) -> Vec<u32> {
-    let mut numbers: Vec<u32> = Vec::with_capacity(morphology.sections.len());
-    let mut next = 0;
-    for section in &morphology.sections {
-        let number = section.parent().map(|parent| numbers[parent.index()]);
-        numbers.push(number.unwrap_or_else(|| {
-            next += 1;
-            next - 1
-        }));
-    }
-    numbers
 }
 
 fn sections(morphology: &Morphology) -> Vec<u32> {

@@ -104,3 +104,45 @@ fn the_papers_sphere_serves_every_tracing_too() {
         assert_closed(&generated.mesh, &Levels::Homogeneous(2), &name);
     }
 }
+
+/// Each neurite alone, then all together.
+fn sets(neurites: &[u32], each: bool) -> Vec<Vec<u32>> {
+    let alone = neurites.iter().filter(|_| each).map(|&n| vec![n]);
+    alone.chain([neurites.to_vec()]).collect()
+}
+
+#[test]
+fn first_rings_anywhere_fold_nothing() {
+    for file in all() {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
+        if morphology.points.len() > 50_000 {
+            continue;
+        }
+        let usual = generate(&morphology, &GenerateOptions::default());
+        let mut neurites: Vec<u32> = usual.rings.iter().map(|r| r.neurite).collect();
+        neurites.dedup();
+        let sample = file.parent().is_some_and(|f| f.ends_with("samples"));
+        for set in sets(&neurites, sample) {
+            for position in [0.0, 0.5, 1.0, 1.5, 2.0] {
+                let what = format!("{name}: {set:?} at {position}");
+                let options = GenerateOptions {
+                    rings: set.iter().map(|&n| (n, position)).collect(),
+                    ..GenerateOptions::default()
+                };
+                let made = generate(&morphology, &options);
+                for warning in &made.warnings {
+                    assert!(
+                        !["soma_folded", "soma_inverted", "ring_unused"].contains(&warning.code),
+                        "{what}: {warning}"
+                    );
+                    assert!(
+                        !sample || warning.code != "ring_limited",
+                        "{what}: {warning}"
+                    );
+                }
+                assert_closed(&made.mesh, &Levels::Homogeneous(1), &what);
+            }
+        }
+    }
+}

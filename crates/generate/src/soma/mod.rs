@@ -62,6 +62,8 @@ pub(crate) struct SomaRequest {
     pub(crate) level: Option<u32>,
     /// Whether neurites may be left unattached to avoid folds.
     pub(crate) at_any_price: bool,
+    /// Number of remedies against folds that are tried, up to [`ATTEMPTS`].
+    pub(crate) attempts: u32,
 }
 
 /// A sphere with its factored stiffness.
@@ -79,23 +81,20 @@ pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurfac
     let mut level = request
         .level
         .unwrap_or_else(|| fitting_level(request.kind, wanted));
-    for attempt in 0..ATTEMPTS {
+    for attempt in 0..request.attempts {
         let mut insertions = wanted.to_vec();
-        if attempt + 1 == ATTEMPTS {
+        let smaller = attempt + 1 == ATTEMPTS;
+        if smaller {
             insertions.iter_mut().for_each(|i| i.radius *= 0.7);
         }
         let gap = seats::LEAST_GAP * f64::from(2_u32.pow(attempt));
         let (shrunk, turned) = seats::make_room(&mut insertions, gap);
-        let shrunk = if attempt + 1 == ATTEMPTS {
-            wanted.len()
-        } else {
-            shrunk
-        };
+        let shrunk = if smaller { wanted.len() } else { shrunk };
         let reference = reference(request.kind, level, request.poisson);
         if let Some(seats) = seats::assign(&reference.sphere, &insertions) {
             let mut surface = deform(request, &reference, &seats, &insertions);
             (surface.shrunk, surface.turned) = (shrunk, turned);
-            let last = attempt + 1 == ATTEMPTS;
+            let last = attempt + 1 == request.attempts;
             let enough = !request.at_any_price || surface.folded == 0;
             if surface.sound() || (last && enough) {
                 return surface;
@@ -109,7 +108,7 @@ pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurfac
 }
 
 /// Tries before a surface with folds is handed back.
-const ATTEMPTS: u32 = 3;
+pub(crate) const ATTEMPTS: u32 = 3;
 
 fn finer(kind: SphereKind) -> u32 {
     match kind {
