@@ -12,6 +12,7 @@ use neurotess::synth::Kind;
 pub(crate) use crate::bench::BenchArgs;
 use crate::circuit::CellArgs;
 pub(crate) use crate::render::args::RenderArgs;
+use crate::rings::RingArgs;
 use crate::view::ViewArgs;
 
 /// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
@@ -203,6 +204,7 @@ pub(crate) enum What {
 #[command(after_help = "Examples:
   neurotess mesh cell.swc -o cell.ply
   neurotess mesh cell.swc -o cell.glb --max-error 0.05
+  neurotess mesh cell.swc -o cell.ply --poisson 0.1 --ring 1=0.5 --ring 2=1.5
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
   neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
@@ -251,6 +253,8 @@ pub(crate) struct MeshArgs {
     /// Resolution of the sphere: octahedron 1 to 5, cube 2 to 32 [default: what fits the neurites]
     #[arg(long, value_name = "N", help_heading = "Soma")]
     pub(crate) soma_level: Option<u32>,
+    #[command(flatten)]
+    pub(crate) rings: RingArgs,
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,

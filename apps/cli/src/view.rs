@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use neurotess_viewer::document::SomaEdit;
 
 use crate::info::MORPHOLOGIES;
 use crate::inputs::Inputs;
 use crate::report::Reporter;
+use crate::rings::RingArgs;
 
 /// `neurotess view`
 #[derive(Args, Debug)]
@@ -21,6 +23,8 @@ pub(crate) struct ViewArgs {
     /// saved; nothing: a window to open files in
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) rings: RingArgs,
     /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -43,6 +47,10 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     neurotess_viewer::run(neurotess_viewer::Options {
         inputs,
+        soma: SomaEdit {
+            rings: args.rings.positions(),
+            ..SomaEdit::default()
+        },
         adapter: args.adapter.clone(),
     })?;
     Ok(())

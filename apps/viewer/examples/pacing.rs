@@ -1,4 +1,5 @@
-//! How the window keeps up: many neurons, a camera that turns, and the time until the full picture.
+//! How the window keeps up: many neurons, a camera that turns, the time until the full picture, and a
+//! slider of the soma editor.
 //!
 //! `cargo run --release -p neurotess-viewer --example pacing -- 100` prints milliseconds from an input to the
 //! end of the draft that shows it, and from the last input to the full picture. The figures of
@@ -78,6 +79,29 @@ fn main() {
         "last input to the full picture: {:.0} ms",
         rest.elapsed().as_secs_f64() * 1e3
     );
+    report("step of a first ring to its draft", rings(&mut window));
+}
+
+/// Milliseconds from each of many steps of a ring's slider to the surface that follows.
+fn rings(window: &mut Harness<'_, Option<Viewer>>) -> Vec<f64> {
+    let id = SourceId(0);
+    let mut times = Vec::new();
+    for step in 0..TURNS {
+        let position = 2.0 * step as f64 / TURNS as f64;
+        let clock = Instant::now();
+        let viewer = window.state_mut().as_mut().unwrap();
+        viewer.state.run(Command::SetRing(id, 0, Some(position)));
+        loop {
+            window.step();
+            let state = &window.state().as_ref().unwrap().state;
+            if state.sources.get(id).unwrap().soma == state.document.soma(id) {
+                break;
+            }
+        }
+        window.state().as_ref().unwrap().stage.gpu().wait().unwrap();
+        times.push(clock.elapsed().as_secs_f64() * 1e3);
+    }
+    times
 }
 
 /// Milliseconds of each of many small turns, each waited for.

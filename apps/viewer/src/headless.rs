@@ -37,7 +37,7 @@ pub fn draw_session(
     let mut drawn = Drawn::default();
     let mut ids = Vec::new();
     for entry in &session.file {
-        let soma = entry.soma.unwrap_or_default();
+        let soma = entry.soma.clone().unwrap_or_default();
         ids.push(match sources::load(&entry.path, soma) {
             Ok(source) => Some(state.sources.add(source)),
             Err(why) => {

@@ -223,6 +223,8 @@ mod tests {
             ..SomaEdit::default()
         };
         state.run(Command::SetSoma(vec![id], soma));
+        state.run(Command::SetRing(id, 0, Some(1.25)));
+        state.run(Command::SetRing(id, 3, Some(0.0)));
         let mut look = state.document.look.clone();
         look.colour_by = ColourBy::Depth;
         look.light = Lighting::From {
@@ -259,6 +261,14 @@ mod tests {
             ("version = 99\n", "newer"),
             ("not a session", "line 1"),
             ("version = 1\n[[neuron]]\nname = 'a'\nfile = 3\n", "file 3"),
+            (
+                "version = 1\n[[file]]\npath = 'a'\nsoma.rings = [{ neurite = 1, position = 3 }]",
+                "from 0 to 2",
+            ),
+            (
+                "version = 1\n[[file]]\npath = 'a'\nsoma.rings = [{ neurite = 0, position = 1 }]",
+                "from 1",
+            ),
         ] {
             fs::write(&file, text).expect("written");
             let error = Session::read(&file).expect_err("broken");

@@ -9,7 +9,7 @@ use glam::DVec3;
 use neurotess::circuit::{Circuit, is_circuit, soma_center};
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{Generated, generate};
-use neurotess::morphology::{Attachment, Measures, Morphology, shape};
+use neurotess::morphology::{Measures, Morphology, shape};
 use neurotess::render::{Ball, Placement, bounds};
 use neurotess::synth::{self, Kind};
 use walkdir::WalkDir;
@@ -304,24 +304,14 @@ fn section_facts(morphology: &Morphology) -> Vec<SectionFacts> {
     let lengths = shape::section_lengths(morphology);
     let orders = shape::branch_orders(morphology);
     let paths = shape::path_lengths(morphology);
-    let mut neurites = 0;
-    let mut facts: Vec<SectionFacts> = Vec::with_capacity(morphology.sections.len());
-    for (i, section) in morphology.sections.iter().enumerate() {
-        let neurite = match section.attachment {
-            Attachment::Section(parent) => facts[parent.index()].neurite,
-            _ => {
-                neurites += 1;
-                neurites - 1
-            }
-        };
-        facts.push(SectionFacts {
-            length: lengths[i],
-            order: orders[i],
-            path: paths[i],
-            neurite,
-        });
-    }
-    facts
+    let neurites = shape::neurites(morphology);
+    let facts = |i: usize| SectionFacts {
+        length: lengths[i],
+        order: orders[i],
+        path: paths[i],
+        neurite: neurites[i],
+    };
+    (0..neurites.len()).map(facts).collect()
 }
 
 /// What has become of a source's file.

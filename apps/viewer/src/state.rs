@@ -88,6 +88,8 @@ pub struct State {
     pub frozen: Option<View>,
     /// What is under the cursor, in the picture or in the tree.
     pub hovered: Option<Picked>,
+    /// The neurite whose ring's slider is touched.
+    pub touched: Option<(SourceId, u32)>,
     /// What was clicked last.
     pub picked: Option<Picked>,
     /// What went wrong, in the order in which it did.
@@ -172,6 +174,7 @@ impl State {
             key_views: Vec::new(),
             frozen: None,
             hovered: None,
+            touched: None,
             picked: None,
             problems: Vec::new(),
             said: String::new(),

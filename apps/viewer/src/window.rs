@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use crate::app::Viewer;
 use crate::command::Command;
+use crate::document::SomaEdit;
 use crate::settings::Settings;
 
 /// What to begin with.
@@ -17,6 +18,8 @@ use crate::settings::Settings;
 pub struct Options {
     /// Files, folders, circuits or a session to open.
     pub inputs: Vec<PathBuf>,
+    /// How their somata are made, but those of a session.
+    pub soma: SomaEdit,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
 }
@@ -123,7 +126,8 @@ impl Window {
             .clone()
             .ok_or("the window has no device")?;
         let (settings, said) = Settings::load();
-        let mut viewer = Viewer::new(&context.egui_ctx, render, settings)?;
+        let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
+        let mut viewer = viewer.with_soma(options.soma);
         if let Some(said) = said {
             viewer.state.problem("settings", said);
         }

@@ -131,8 +131,9 @@ impl Worker {
         });
     }
 
-    /// Reads files, folders and circuits on all cores.
-    pub fn load(&mut self, paths: Vec<PathBuf>, somata: Vec<(PathBuf, SomaEdit)>) {
+    /// Reads files, folders and circuits on all cores. `somata` are those of single files, `usual` that
+    /// of the others.
+    pub fn load(&mut self, paths: Vec<PathBuf>, somata: Vec<(PathBuf, SomaEdit)>, usual: SomaEdit) {
         let job = Job::new("reading", 0);
         self.loading = Some(job.clone());
         self.start(move |send| {
@@ -146,7 +147,7 @@ impl Worker {
             std::thread::scope(|scope| {
                 for _ in 0..cores.min(files.len()) {
                     let (sender, next, files, job) = (sender.clone(), &next, &files, &job);
-                    let somata = &somata;
+                    let (somata, usual) = (&somata, &usual);
                     scope.spawn(move || {
                         loop {
                             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -155,7 +156,7 @@ impl Worker {
                                 break;
                             };
                             let soma = somata.iter().find(|(path, _)| path == file);
-                            let soma = soma.map(|(_, soma)| *soma).unwrap_or_default();
+                            let soma = soma.map_or(usual, |(_, soma)| soma).clone();
                             let loaded = guarded(|| sources::load(file, soma));
                             let loaded = loaded.map_err(|why| (file.clone(), why));
                             job.done.fetch_add(1, Ordering::Relaxed);

@@ -206,6 +206,76 @@ fn tabs_show_their_panels() {
     window.get_by_label("Open this whole folder");
 }
 
+/// Middle of the rail of the n-th slider of the panel.
+fn slider(window: &mut Window, n: usize) -> egui::Rect {
+    let sliders = window.get_all_by_role(egui::accesskit::Role::Slider);
+    let rects: Vec<egui::Rect> = sliders.map(|slider| slider.rect()).collect();
+    rects[n]
+}
+
+#[test]
+fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
+    let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
+        return;
+    };
+    run(&mut window, Command::Select(vec![0], false));
+    run(&mut window, Command::Show(Tab::Soma));
+    let close = state(&mut window).view.focused((glam::DVec3::ZERO, 16.0));
+    run(&mut window, Command::Go(close));
+    let source = |window: &mut Window| {
+        let source = state(window).source_of(0).expect("there");
+        (source.generated.rings[0], source.generated.somata[0].volume)
+    };
+    let (before, volume) = source(&mut window);
+    // Poisson's ratio and the radius come first.
+    let rail = slider(&mut window, 2);
+    window.event(Event::PointerMoved(rail.center()));
+    window.step();
+    window.step();
+    settle(&mut window);
+    let part = state(&mut window).hovered.expect("touched").part;
+    assert_eq!(part, Part::Neurite(0));
+    assert!(state(&mut window).touched.is_some());
+    assert!(
+        state(&mut window).document.somata.is_empty(),
+        "only touched"
+    );
+    window.event(Event::PointerButton {
+        pos: rail.center(),
+        button: PointerButton::Primary,
+        pressed: true,
+        modifiers: Modifiers::NONE,
+    });
+    window.step();
+    for share in [0.6, 0.7, 0.85] {
+        let at = rail.min + Vec2::new(share * rail.width(), rail.height() / 2.0);
+        window.event(Event::PointerMoved(at));
+        window.step();
+        settle(&mut window);
+    }
+    assert!(state(&mut window).touched.is_some(), "while it is dragged");
+    snapshot(&mut window, "ring");
+    window.event(Event::PointerButton {
+        pos: rail.min + Vec2::new(0.85 * rail.width(), rail.height() / 2.0),
+        button: PointerButton::Primary,
+        pressed: false,
+        modifiers: Modifiers::NONE,
+    });
+    window.step();
+    settle(&mut window);
+    let (after, larger) = source(&mut window);
+    assert!(after.position > 1.5, "{after:?} after {before:?}");
+    assert!(larger > volume, "the surface follows");
+    // The whole drag is one edit.
+    run(&mut window, Command::Undo);
+    assert_eq!(source(&mut window), (before, volume));
+    run(&mut window, Command::Redo);
+    assert_eq!(source(&mut window), (after, larger));
+    window.event(Event::PointerMoved(Pos2::new(600.0, 730.0)));
+    window.step();
+    assert!(state(&mut window).touched.is_none());
+}
+
 #[test]
 fn several_neurons_are_laid_out_selected_and_hidden() {
     let kinds = [Kind::Star, Kind::Granule, Kind::Motor];
@@ -254,6 +324,7 @@ fn every_edit_can_be_undone_and_done_again() {
         scale: 1.3,
         ..SomaEdit::default()
     };
+    run(&mut window, Command::SetRing(SourceId(0), 2, Some(1.5)));
     let edits = [
         Command::Select(vec![1], false),
         Command::SelectAll,
@@ -263,6 +334,9 @@ fn every_edit_can_be_undone_and_done_again() {
         Command::SetHidden(1, true),
         Command::Hide,
         Command::SetSoma(vec![SourceId(0)], soma),
+        Command::SetRing(SourceId(0), 1, Some(0.25)),
+        Command::SetRing(SourceId(0), 2, None),
+        Command::ResetRings(SourceId(0)),
         Command::SetLook(Box::new(look)),
         Command::SetDetail(detail),
         Command::SetGrid(true),
@@ -320,7 +394,10 @@ fn the_surface_follows_the_soma_editor() {
             true,
         ),
     ] {
-        run(&mut window, Command::SetSoma(vec![SourceId(0)], edit));
+        run(
+            &mut window,
+            Command::SetSoma(vec![SourceId(0)], edit.clone()),
+        );
         assert_eq!(volume(&mut window) > usual, grows, "{edit:?}");
     }
     run(&mut window, Command::Undo);

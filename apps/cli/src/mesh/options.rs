@@ -116,6 +116,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         soma_scale: args.soma_scale,
         sphere,
         sphere_level: args.soma_level,
+        rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
     })
 }

@@ -9,6 +9,7 @@ use neurotess::render::{ColourMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
 
 use crate::args::{SomaArg, Types};
 use crate::circuit::CellArgs;
+use crate::rings::RingArgs;
 
 /// `neurotess render`
 #[derive(Args, Debug)]
@@ -182,8 +183,11 @@ pub(crate) struct RenderArgs {
           help_heading = "Look")]
     pub(crate) ao: Option<Fit>,
     /// How the soma is made
-    #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD")]
+    #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD",
+          help_heading = "Soma")]
     pub(crate) soma: SomaArg,
+    #[command(flatten)]
+    pub(crate) rings: RingArgs,
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,

@@ -43,6 +43,7 @@ pub(crate) fn read(
     let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
     let options = GenerateOptions {
         soma: args.soma.method(),
+        rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
         ..GenerateOptions::default()
     };

@@ -39,6 +39,7 @@ fn wrong_usage_exits_with_2() {
         "mesh cell.swc -o cell.ply --poisson 0.5",
         "mesh cell.swc -o cell.ply --soma-scale 0",
         "mesh cell.swc -o cell.ply --soma-level 99",
+        "mesh cell.swc -o cell.ply --ring 1=3",
         "mesh cell.swc -o cell.ply --types branch",
         "mesh cell.swc -o cell.ply --shard 0/3",
         "mesh cell.swc -o cell.ply --threads 0",

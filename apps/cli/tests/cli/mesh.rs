@@ -122,6 +122,7 @@ fn options_change_the_shape() {
         "--soma none",
         "--poisson 0.45",
         "--soma-scale 1.2",
+        "--ring 1=0",
         "--soma-sphere octahedron --soma-level 3",
         "--path linear",
         "--caps flat",

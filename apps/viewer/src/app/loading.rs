@@ -55,7 +55,7 @@ impl Viewer {
                 let somata = session
                     .file
                     .iter()
-                    .filter_map(|f| Some((f.path.clone(), f.soma?)));
+                    .filter_map(|f| Some((f.path.clone(), f.soma.clone()?)));
                 let somata: Vec<(PathBuf, SomaEdit)> = somata.collect();
                 loading.session = Some(Box::new(session));
                 (files, somata)
@@ -63,7 +63,8 @@ impl Viewer {
             None => (paths, Vec::new()),
         };
         self.loading = Some(loading);
-        self.worker.load(files, somata);
+        let usual = std::mem::take(&mut self.soma);
+        self.worker.load(files, somata, usual);
     }
 
     /// All but the cells.
@@ -89,7 +90,7 @@ impl Viewer {
             .sources
             .iter()
             .filter(|(_, s)| s.stale == Some(Stale::Changed))
-            .map(|(id, s)| (id, s.file.clone(), s.soma))
+            .map(|(id, s)| (id, s.file.clone(), s.soma.clone()))
             .collect();
         if stale.is_empty() {
             self.state.said = "No file has changed".into();
@@ -121,7 +122,7 @@ impl Viewer {
                 return;
             }
         };
-        let soma = source.soma;
+        let soma = source.soma.clone();
         let name = source.name.clone();
         let id = self.state.sources.add(source);
         self.state.document.set_soma(id, soma);

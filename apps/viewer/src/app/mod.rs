@@ -12,6 +12,7 @@ use egui_wgpu::RenderState;
 use neurotess::render::DeviceError;
 
 use crate::command::Command;
+use crate::document::SomaEdit;
 use crate::panels;
 use crate::settings::Settings;
 use crate::stage::Stage;
@@ -39,6 +40,8 @@ pub struct Viewer {
     theme: Option<(bool, u32)>,
     remembered: Settings,
     smooth: bool,
+    /// Somata of what is opened first.
+    soma: SomaEdit,
 }
 
 impl Viewer {
@@ -67,7 +70,14 @@ impl Viewer {
             theme: None,
             remembered: settings,
             smooth: true,
+            soma: SomaEdit::default(),
         })
+    }
+
+    /// Somata of what is opened first are made so.
+    pub fn with_soma(mut self, soma: SomaEdit) -> Self {
+        self.soma = soma;
+        self
     }
 
     /// Views change at once: for tests.

@@ -92,6 +92,10 @@ pub enum Command {
     Remove,
     /// Makes somata in another way.
     SetSoma(Vec<SourceId>, SomaEdit),
+    /// Puts the first ring of a neurite somewhere, or leaves it to itself.
+    SetRing(SourceId, u32, Option<f64>),
+    /// Leaves all first rings to themselves.
+    ResetRings(SourceId),
     /// Colours and light.
     SetLook(Box<Look>),
     /// How finely.
@@ -147,6 +151,7 @@ impl Command {
             Self::ShowAll | Self::SetHidden(_, false) => "Show",
             Self::Remove => "Remove",
             Self::SetSoma(..) => "Soma",
+            Self::SetRing(..) | Self::ResetRings(_) => "First ring",
             Self::SetLook(_) => "Look",
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
@@ -158,7 +163,7 @@ impl Command {
     pub fn joins(&self) -> bool {
         matches!(
             self,
-            Self::SetSoma(..) | Self::SetLook(_) | Self::SetDetail(_)
+            Self::SetSoma(..) | Self::SetRing(..) | Self::SetLook(_) | Self::SetDetail(_)
         )
     }
 
@@ -203,8 +208,24 @@ impl Command {
             Self::Remove => neurons.retain(|n| !n.selected),
             Self::SetSoma(sources, edit) => {
                 for source in sources {
-                    document.set_soma(source, edit);
+                    // Rings are each cell's own.
+                    let rings = document.soma(source).rings;
+                    let edit = edit.clone();
+                    document.set_soma(source, SomaEdit { rings, ..edit });
                 }
+            }
+            Self::SetRing(source, neurite, position) => {
+                let mut edit = document.soma(source);
+                match position {
+                    Some(position) => edit.rings.insert(neurite, position.clamp(0.0, 2.0)),
+                    None => edit.rings.remove(&neurite),
+                };
+                document.set_soma(source, edit);
+            }
+            Self::ResetRings(source) => {
+                let mut edit = document.soma(source);
+                edit.rings.clear();
+                document.set_soma(source, edit);
             }
             Self::SetLook(look) => document.look = *look,
             Self::SetDetail(detail) => document.detail = detail,

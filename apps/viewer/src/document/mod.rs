@@ -77,7 +77,7 @@ impl Document {
     /// How the soma of a source is made.
     pub fn soma(&self, source: SourceId) -> SomaEdit {
         let edit = self.somata.iter().find(|(id, _)| *id == source);
-        edit.map_or_else(SomaEdit::default, |(_, edit)| *edit)
+        edit.map(|(_, edit)| edit.clone()).unwrap_or_default()
     }
 
     /// Another soma for a source.
@@ -158,7 +158,7 @@ mod tests {
             poisson: 0.1,
             ..SomaEdit::default()
         };
-        document.set_soma(SourceId(3), edit);
+        document.set_soma(SourceId(3), edit.clone());
         assert_eq!(document.soma(SourceId(3)), edit);
         document.set_soma(SourceId(3), SomaEdit::default());
         assert!(document.somata.is_empty());

@@ -47,7 +47,6 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
         ui.separator();
         tree_of(state, picked.neuron, &mut hovered, ui);
     }
-    // What lies under the cursor in the picture was set before; the lists win while they are used.
     if hovered.is_some() {
         state.hovered = hovered;
     }

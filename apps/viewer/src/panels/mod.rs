@@ -7,6 +7,7 @@ mod inspect;
 mod look;
 mod menu;
 mod over;
+mod rings;
 mod save;
 mod soma;
 mod status;
@@ -22,6 +23,8 @@ use crate::command::{Command, Tab};
 /// Everything.
 pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
     let ctx = ui.ctx().clone();
+    let before = viewer.state.hovered.take();
+    viewer.state.touched = None;
     Panel::top("menu").show(ui, |ui| menu::show(&mut viewer.state, ui));
     let jobs = viewer.jobs();
     let progress = viewer.stage.progress();
@@ -43,7 +46,7 @@ pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
     }
     CentralPanel::no_frame().show(ui, |ui| {
         if any {
-            viewport::show(viewer, ui);
+            viewport::show(viewer, before, ui);
         } else {
             let reads = viewer.jobs()[0].is_some();
             empty::show(&mut viewer.state, reads, ui);

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Button, Slider, Ui};
 
-use super::{figures, heading, measured};
+use super::{figures, heading, measured, rings};
 use crate::command::Command;
 use crate::document::{Method, SomaEdit, SourceId};
 use crate::state::State;
@@ -24,7 +24,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         return;
     };
     let mut edit = state.document.soma(first);
-    let before = edit;
+    let before = edit.clone();
     heading(ui, "Method");
     ui.horizontal_wrapped(|ui| {
         for (method, name, says) in METHODS {
@@ -62,18 +62,32 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         reference(&mut edit, ui);
     }
     ui.add_space(6.0);
-    let usual = SomaEdit::default();
+    let usual = SomaEdit {
+        rings: edit.rings.clone(),
+        ..SomaEdit::default()
+    };
     if ui
         .add_enabled(edit != usual, Button::new("As usual"))
-        .on_hover_text("Reset all values")
+        .on_hover_text("Reset these values")
         .clicked()
     {
         edit = usual;
     }
     if edit != before {
-        state.asked.push(Command::SetSoma(sources.clone(), edit));
+        state
+            .asked
+            .push(Command::SetSoma(sources.clone(), edit.clone()));
     } else if dropped {
         state.history.end_joining();
+    }
+    if edit.places_rings() {
+        match sources.len() {
+            1 => rings::show(state, first, ui),
+            _ => {
+                heading(ui, "First rings");
+                ui.weak("Select one neuron to place the first rings of its neurites.");
+            }
+        }
     }
     measures(state, first, &edit, ui);
 }

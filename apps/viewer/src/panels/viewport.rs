@@ -7,7 +7,7 @@ use eframe::egui::{
 use glam::DVec3;
 use neurotess::render::{Legend, is_dark, nice_length};
 
-use super::plate;
+use super::{plate, rings};
 use crate::app::Viewer;
 use crate::command::Command;
 use crate::state::{Picked, State};
@@ -19,7 +19,8 @@ const WHEEL: f64 = 0.0022;
 /// Flying: so many times the distance to the target in a second.
 const SPEED: f64 = 0.7;
 
-pub(super) fn show(viewer: &mut Viewer, ui: &mut Ui) {
+/// `before`: what was under the cursor in the frame before.
+pub(super) fn show(viewer: &mut Viewer, before: Option<Picked>, ui: &mut Ui) {
     let rect = ui.available_rect_before_wrap();
     let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
     let points = ui.ctx().pixels_per_point();
@@ -29,7 +30,7 @@ pub(super) fn show(viewer: &mut Viewer, ui: &mut Ui) {
     }
     viewer.state.aspect = f64::from(size[0]) / f64::from(size[1]);
     steer(viewer, &response, ui);
-    point(viewer, &response, points);
+    point(viewer, before, &response, points);
     let ctx = ui.ctx().clone();
     let texture = viewer.picture(size, &ctx);
     let [r, g, b] = viewer.state.document.look.background;
@@ -145,13 +146,17 @@ fn fly(viewer: &mut Viewer, upwards: DVec3, ui: &Ui) {
 }
 
 /// What is under the cursor, and what clicks do.
-fn point(viewer: &mut Viewer, response: &Response, points: f32) {
+fn point(viewer: &mut Viewer, before: Option<Picked>, response: &Response, points: f32) {
     let at = response
         .hover_pos()
         .map(|at| (at - response.rect.min) * points);
     let seen = at.and_then(|at| viewer.stage.seen_at(at.x, at.y));
-    if viewer.stage.can_pick() {
-        viewer.state.hovered = seen.map(|s| s.picked);
+    // Lists and sliders have said what they point at; elsewhere it is the picture.
+    if at.is_some() {
+        viewer.state.hovered = match viewer.stage.can_pick() {
+            true => seen.map(|s| s.picked),
+            false => before,
+        };
     }
     if response.double_clicked() {
         if let Some(seen) = seen {
@@ -232,6 +237,7 @@ fn over(viewer: &Viewer, rect: Rect, ui: &mut Ui) {
     if look.axes {
         axes(&viewer.state, rect, ui);
     }
+    rings::mark(&viewer.state, rect, ui.painter());
     if !viewer.stage.is_settled() && viewer.stage.shown().sources.is_empty() {
         Area::new(Id::unique("meshing"))
             .fixed_pos(rect.center())

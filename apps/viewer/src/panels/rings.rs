@@ -1,0 +1,210 @@
+//! Sliders of first rings: where each neurite leaves its soma. What is touched is shown in the picture.
+
+use eframe::egui::{
+    Button, Color32, Label, Painter, Pos2, Rect, RichText, Sense, Slider, Stroke, Ui,
+};
+use glam::DVec3;
+use neurotess::generate::FirstRing;
+use neurotess::render::{Outlines, Placement};
+
+use super::cells;
+use crate::command::Command;
+use crate::document::SourceId;
+use crate::sources::Source;
+use crate::state::{Part, Picked, State};
+
+/// Points of a ring as it is drawn.
+const ROUND: usize = 48;
+
+/// A neurite that has a ring.
+struct Row {
+    neurite: u32,
+    name: String,
+    colour: Color32,
+    /// Where the ring is; where it is asked to be.
+    position: f64,
+    asked: Option<f64>,
+}
+
+/// Sliders for one cell.
+pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
+    let Some(source) = state.sources.get(id) else {
+        return;
+    };
+    let rows = rows(state, id, source);
+    if rows.is_empty() {
+        return;
+    }
+    let any = rows.iter().any(|row| row.asked.is_some());
+    ui.add_space(6.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("First rings").strong().size(13.5));
+        let reset = Button::new("reset all").small();
+        if ui
+            .add_enabled(any, reset)
+            .on_hover_text("All rings where they are by themselves")
+            .clicked()
+        {
+            state.asked.push(Command::ResetRings(id));
+        }
+    });
+    ui.weak("0: on the sphere, 1: at the first point");
+    for row in &rows {
+        self::row(state, id, row, ui);
+    }
+}
+
+fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
+    let asked = state.document.soma(id).rings;
+    let palette = state.document.look.palette;
+    let mut rows: Vec<Row> = Vec::new();
+    for ring in &source.generated.rings {
+        // A neurite that forks inside the soma has several rings, which go together.
+        if rows.iter().any(|row| row.neurite == ring.neurite) {
+            continue;
+        }
+        let root = source
+            .sections
+            .iter()
+            .position(|s| s.neurite == ring.neurite);
+        let Some(root) = root else { continue };
+        let [r, g, b] = palette.of_type(source.morphology.sections[root].kind.0);
+        let kind = cells::kind_name(&source.morphology, root);
+        rows.push(Row {
+            neurite: ring.neurite,
+            name: format!("{kind} {}", ring.neurite + 1),
+            colour: Color32::from_rgb(r, g, b),
+            position: ring.position,
+            asked: asked.get(&ring.neurite).copied(),
+        });
+    }
+    rows.sort_by_key(|row| row.neurite);
+    rows
+}
+
+fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
+    let mut value = row.asked.unwrap_or(row.position);
+    let before = value;
+    let mut touched = false;
+    ui.horizontal(|ui| {
+        let (swatch, _) = ui.allocate_exact_size([10.0, 10.0].into(), Sense::hover());
+        ui.painter().rect_filled(swatch, 2.0, row.colour);
+        let name = ui.add(Label::new(&row.name).sense(Sense::hover()));
+        touched |= name.hovered();
+        name.on_hover_text(
+            "Place of the neurite's first ring: 0 on the soma's sphere, 1 at the first traced point \
+             outside it, 2 as far beyond along the path (at least half the soma's radius)",
+        );
+        match row.asked {
+            None => {
+                ui.weak("by itself");
+            }
+            Some(asked) if row.position < asked - 5e-3 => {
+                let text = format!("stops at {:.2}", row.position);
+                ui.label(RichText::new(text).color(ui.visuals().warn_fg_color))
+                    .on_hover_text(
+                        "A fork, the neurite's end or a turn of its path is in the way, or the soma \
+                         would fold",
+                    );
+            }
+            Some(_) => {}
+        }
+    });
+    ui.horizontal(|ui| {
+        let slider = Slider::new(&mut value, 0.0..=2.0).fixed_decimals(2);
+        // No tooltip: it would hide the ring that moves.
+        let response = ui.add(slider);
+        touched |= response.hovered() || response.dragged() || response.has_focus();
+        let ended = response.drag_stopped() || response.lost_focus();
+        if value != before {
+            state
+                .asked
+                .push(Command::SetRing(id, row.neurite, Some(value)));
+        } else if ended {
+            state.history.end_joining();
+        }
+        let reset = Button::new("reset").small();
+        if ui
+            .add_enabled(row.asked.is_some(), reset)
+            .on_hover_text("Where it is by itself")
+            .clicked()
+        {
+            state.asked.push(Command::SetRing(id, row.neurite, None));
+        }
+    });
+    if touched {
+        touch(state, id, row.neurite);
+    }
+}
+
+/// The neurite shows in the picture as if the cursor were on it, and its ring with it.
+fn touch(state: &mut State, id: SourceId, neurite: u32) {
+    state.touched = Some((id, neurite));
+    let neurons = &state.document.neurons;
+    let shows = |selected: bool| {
+        neurons
+            .iter()
+            .position(|n| n.source == id && !n.hidden && (n.selected || !selected))
+    };
+    state.hovered = shows(true).or_else(|| shows(false)).map(|neuron| Picked {
+        neuron,
+        part: Part::Neurite(neurite),
+    });
+}
+
+/// Draws the rings of the neurite whose slider is touched.
+pub(super) fn mark(state: &State, rect: Rect, painter: &Painter) {
+    let Some((id, neurite)) = state.touched else {
+        return;
+    };
+    let Some(source) = state.sources.get(id) else {
+        return;
+    };
+    let (placements, neurons) = (state.placements(), &state.document.neurons);
+    for (neuron, placement) in neurons.iter().zip(placements) {
+        if neuron.source != id || neuron.hidden {
+            continue;
+        }
+        let origin = source.generated.mesh.origin;
+        let rings = source.generated.rings.iter();
+        for ring in rings.filter(|r| r.neurite == neurite) {
+            circle(state, ring, origin, &placement, rect, painter);
+        }
+    }
+}
+
+fn circle(
+    state: &State,
+    ring: &FirstRing,
+    origin: DVec3,
+    placement: &Placement,
+    rect: Rect,
+    painter: &Painter,
+) {
+    let camera = state.view.camera();
+    let (across, along) = ring.outwards.any_orthonormal_pair();
+    // Far away a ring is a dot that still can be found.
+    let center = placement.world_from_cell(origin + ring.center);
+    let point = camera.pixel_slope(f64::from(rect.height())) * camera.depth(center).max(0.0);
+    let least = 5.0 * point / placement.scale;
+    let radius = (1.08 * ring.radius).max(least);
+    let at = |i: usize| {
+        let angle = std::f64::consts::TAU * i as f64 / ROUND as f64;
+        let offset = across * angle.cos() + along * angle.sin();
+        let place = placement.world_from_cell(origin + ring.center + offset * radius);
+        let size = [rect.width(), rect.height()].map(|n| (16.0 * n) as u32);
+        let [x, y] = camera.pixel_of(place, size)?;
+        Some(rect.min + eframe::egui::vec2(x as f32, y as f32) / 16.0)
+    };
+    let points: Option<Vec<Pos2>> = (0..=ROUND).map(at).collect();
+    let Some(points) = points else {
+        return;
+    };
+    let [r, g, b] = Outlines::default().hovered;
+    let painter = painter.with_clip_rect(rect);
+    painter.line(
+        points.clone(),
+        Stroke::new(5.0, Color32::from_white_alpha(150)),
+    );
+    painter.line(points, Stroke::new(2.5, Color32::from_rgb(r, g, b)));
+}
