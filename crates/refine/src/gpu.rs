@@ -1,8 +1,8 @@
 //! What shaders share with this crate: constants, structs and the twins of its functions.
 //!
 //! A shader is composed by joining [`prelude`], [`EVALUATE_WGSL`], [`LEVEL_WGSL`],
-//! [`TEMPLATE_WGSL`], [`PLAN_WGSL`] and [`TUBE_WGSL`] with its own text: [`compose`]. Constants go one way, from
-//! Rust into the prelude; layouts are compared field by field in `tests/shaders.rs`.
+//! [`TEMPLATE_WGSL`], [`PLAN_WGSL`] and a source of corners with its own text: [`compose`]. Constants go one
+//! way, from Rust into the prelude; layouts are compared field by field in `tests/shaders.rs`.
 
 use std::fmt::Write;
 
@@ -40,19 +40,14 @@ const LEVELS_DISTANCE: u32 = 3;
 const LEVELS_PIXEL_SIZE: u32 = 4;
 const LEVELS_PIXEL_ERROR: u32 = 5;
 
-/// Vertices of plain tubes, the quick way.
-pub const TUBE_WGSL: &str = include_str!("tube.wgsl");
+/// Corners as they are resident, for whoever has no others: see [`compose`].
+pub const SOURCE_WGSL: &str = include_str!("source.wgsl");
 
-/// A shader's whole text: constants, the twins, and what is its own.
+/// A shader's whole text: constants, the twins, and what is its own, in which `Source`, `base_of` and
+/// `corner_of` say where patches have their corners from; [`SOURCE_WGSL`] is one such text.
 pub fn compose(own: &[&str]) -> String {
     let mut text = prelude();
-    for part in [
-        EVALUATE_WGSL,
-        LEVEL_WGSL,
-        TEMPLATE_WGSL,
-        PLAN_WGSL,
-        TUBE_WGSL,
-    ] {
+    for part in [EVALUATE_WGSL, LEVEL_WGSL, TEMPLATE_WGSL, PLAN_WGSL] {
         text.push_str(part);
     }
     own.iter().for_each(|part| text.push_str(part));
@@ -73,7 +68,6 @@ pub fn prelude() -> String {
     whole("PATCH_CAP", PatchKind::Cap as u32);
     whole("PATCH_SOMA", PatchKind::Soma as u32);
     whole("LOOSE", LOOSE);
-    whole("NO_VERTEX", u32::MAX);
     whole("POINT_KIND_SHIFT", POINT_KIND_SHIFT);
     whole("POINT_END", POINT_END);
     whole("POINT_LOOSE", POINT_LOOSE);

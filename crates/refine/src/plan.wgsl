@@ -1,7 +1,8 @@
 // Which vertex is where in a patch's grid.
 //
 // Called by everything that evaluates patches. Rust twin: plan.rs; where that numbers the vertices of
-// the whole surface, this evaluates one vertex of one patch's grid, which is the same point.
+// the whole surface, this evaluates one vertex of one patch's grid, which is the same point. Its corners
+// come from a Source: the resident data (source.wgsl), or what a renderer made of them.
 
 // A side of a patch as an edge in its own direction.
 struct Side {
@@ -24,8 +25,6 @@ struct SurfacePoint {
     radius: f32,
     // The vertex whose attributes it has.
     nearest: u32,
-    // The coarse vertex that it is, or NO_VERTEX.
-    coarse: u32,
 }
 
 fn patch_side(base: Base, p: Patch, index: u32) -> Side {
@@ -96,7 +95,7 @@ fn snap(i: u32, n: u32, level: u32) -> u32 {
 
 // Vertex at column i and row j of a patch's grid. On a side it is that of the side's edge.
 fn grid_vertex(
-    base: Base,
+    source: Source,
     p: Patch,
     options: Criterion,
     levels: vec4<u32>,
@@ -122,30 +121,30 @@ fn grid_vertex(
         level = levels.y;
     }
     if (index == 4u) {
-        return inner_vertex(base, p, options, grid, i, j);
+        return inner_vertex(source, p, options, grid, i, j);
     }
     if ((index & 1u) == 1u) {
         place = j;
         count = grid.ny;
     }
     place = snap(place, count, level);
-    let s = patch_side(base, p, index);
+    let s = patch_side(base_of(source), p, index);
     if (s.reversed) {
         place = level - place;
     }
-    return edge_vertex(base, options, s, place, level);
+    return edge_vertex(source, options, s, place, level);
 }
 
 // Vertex k of an edge of `level` parts, both ends included.
-fn edge_vertex(base: Base, options: Criterion, s: Side, k: u32, level: u32) -> SurfacePoint {
+fn edge_vertex(source: Source, options: Criterion, s: Side, k: u32, level: u32) -> SurfacePoint {
     if (k == 0u) {
-        return coarse_vertex(base, s.start);
+        return coarse_vertex(source, s.start);
     }
     if (k == level) {
-        return coarse_vertex(base, s.end);
+        return coarse_vertex(source, s.end);
     }
-    let a = corner(base, s.start);
-    let b = corner(base, s.end);
+    let a = corner_of(source, s.start);
+    let b = corner_of(source, s.end);
     let t = f32(k) / f32(level);
     let jet = edge(s.kind, a, b, options.path, t);
     let normal = edge_normal(a, b, jet.derivative, t);
@@ -160,26 +159,26 @@ fn edge_vertex(base: Base, options: Criterion, s: Side, k: u32, level: u32) -> S
         } else if (b.role == ROLE_SOMA) {
             nearest = s.end;
         }
-        return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest, NO_VERTEX);
+        return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest);
     }
     let radius = a.radius * (1.0 - t) + b.radius * t;
     if (s.kind == EDGE_RING) {
-        return SurfacePoint(jet.position, normal, a.center, radius, nearest, NO_VERTEX);
+        return SurfacePoint(jet.position, normal, a.center, radius, nearest);
     }
     let axis = center_line(a, b, options.path, t).position;
-    return SurfacePoint(jet.position, normal, axis, radius, nearest, NO_VERTEX);
+    return SurfacePoint(jet.position, normal, axis, radius, nearest);
 }
 
-fn coarse_vertex(base: Base, vertex: u32) -> SurfacePoint {
-    let k = corner(base, vertex);
+fn coarse_vertex(source: Source, vertex: u32) -> SurfacePoint {
+    let k = corner_of(source, vertex);
     if (k.role == ROLE_SOMA) {
-        return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex, vertex);
+        return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex);
     }
-    return SurfacePoint(k.position, k.normal, k.center, k.radius, vertex, vertex);
+    return SurfacePoint(k.position, k.normal, k.center, k.radius, vertex);
 }
 
 fn inner_vertex(
-    base: Base,
+    source: Source,
     p: Patch,
     options: Criterion,
     grid: Grid,
@@ -188,7 +187,7 @@ fn inner_vertex(
 ) -> SurfacePoint {
     let x = f32(i) / f32(grid.nx);
     let y = f32(j) / f32(grid.ny);
-    let shape = patch_shape(base, p);
+    let shape = patch_shape(source, p);
     let inside = interior(shape, options.path, options.caps, x, y);
     var nearest = p.corners.x;
     if (x >= 0.5 && y < 0.5) {
@@ -200,7 +199,7 @@ fn inner_vertex(
     }
     if (p.kind == PATCH_SOMA) {
         nearest = first_of_soma(shape, p, nearest);
-        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest, NO_VERTEX);
+        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest);
     }
     let radius = (shape.a.radius * (1.0 - x) + shape.b.radius * x) * (1.0 - y)
         + (shape.d.radius * (1.0 - x) + shape.c.radius * x) * y;
@@ -208,7 +207,7 @@ fn inner_vertex(
     if (p.kind == PATCH_LATERAL) {
         axis = center_line(shape.a, shape.d, options.path, y).position;
     }
-    return SurfacePoint(inside.position, inside.normal, axis, radius, nearest, NO_VERTEX);
+    return SurfacePoint(inside.position, inside.normal, axis, radius, nearest);
 }
 
 fn first_of_soma(shape: PatchShape, p: Patch, otherwise: u32) -> u32 {
@@ -227,18 +226,18 @@ fn first_of_soma(shape: PatchShape, p: Patch, otherwise: u32) -> u32 {
     return otherwise;
 }
 
-fn patch_shape(base: Base, p: Patch) -> PatchShape {
+fn patch_shape(source: Source, p: Patch) -> PatchShape {
     return PatchShape(
         p.kind,
-        corner(base, p.corners.x),
-        corner(base, p.corners.y),
-        corner(base, p.corners.z),
-        corner(base, p.corners.w),
+        corner_of(source, p.corners.x),
+        corner_of(source, p.corners.y),
+        corner_of(source, p.corners.z),
+        corner_of(source, p.corners.w),
         vec4<u32>(
-            side_word(patch_side(base, p, 0u)),
-            side_word(patch_side(base, p, 1u)),
-            side_word(patch_side(base, p, 2u)),
-            side_word(patch_side(base, p, 3u)),
+            side_word(patch_side(base_of(source), p, 0u)),
+            side_word(patch_side(base_of(source), p, 1u)),
+            side_word(patch_side(base_of(source), p, 2u)),
+            side_word(patch_side(base_of(source), p, 3u)),
         ),
     );
 }

@@ -177,13 +177,23 @@ struct OwnRing {
     role: u32,
 }
 
+// How fast the radius of a point with a ring of its own grows, as five bits: the root, and whether it
+// narrows.
+fn slope_bits(words: vec4<u32>) -> u32 {
+    return ((words.w >> 18u) & 0xfu) | select(0u, 16u, (words.y & POINT_NARROWS) != 0u);
+}
+
+fn slope_of_bits(bits: u32) -> f32 {
+    let root = f32(bits & 0xfu) / 15.0;
+    return select(root * root, -(root * root), (bits & 16u) != 0u);
+}
+
 fn own_ring(base: Base, point: u32, words: vec4<u32>) -> OwnRing {
-    let root = f32((words.w >> 18u) & 0xfu) / 15.0;
     return OwnRing(
         point_center(base, point, words),
         point_radius(words),
         octahedral(words.w & 0x1ffu, (words.w >> 9u) & 0x1ffu, 511.0),
-        select(root * root, -(root * root), (words.y & POINT_NARROWS) != 0u),
+        slope_of_bits(slope_bits(words)),
         (words.z >> 16u) & 0x3ffu,
         select(ROLE_ORDINARY, ROLE_END, (words.y >> POINT_KIND_SHIFT) == POINT_END),
     );
@@ -278,6 +288,11 @@ fn value_of(base: Base, vertex: u32) -> u32 {
         return heap[base.loose + 3u * (vertex & ~LOOSE) + 2u] >> 24u;
     }
     return (heap[base.points + 4u * (vertex >> 2u) + 2u] >> 26u) + 1u;
+}
+
+// The renderer's word of a point with a ring of its own.
+fn point_word(base: Base, words: vec4<u32>) -> u32 {
+    return heap[base.words + (words.w >> 22u)];
 }
 
 // What the renderer put beside a vertex's tracing point: its colour.

@@ -19,12 +19,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 
 #[test]
 fn twins_are_valid_in_every_language() {
-    languages::check("twins", &gpu::compose(&[ENTRY]));
+    languages::check("twins", &gpu::compose(&[gpu::SOURCE_WGSL, ENTRY]));
 }
 
 #[test]
 fn structs_have_one_layout() {
-    let module = languages::check("twins", &gpu::compose(&[ENTRY]));
+    let module = languages::check("twins", &gpu::compose(&[gpu::SOURCE_WGSL, ENTRY]));
     assert_layout!(
         &module,
         "Criterion",

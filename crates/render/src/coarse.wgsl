@@ -1,10 +1,9 @@
-// Makes coarse vertices: the corners of all rings that are needed, and the loose vertices of all placed
-// parts.
+// Makes coarse points: the rings that are needed, and the loose vertices of all placed parts.
 //
 // Called by refiner.rs for a batch, after note.wgsl: a lane for each point of queued clusters, and
 // one for each loose vertex.
 
-@group(2) @binding(0) var<storage, read_write> coarse: array<CoarseVertex>;
+@group(2) @binding(0) var<storage, read_write> coarse: array<CoarsePoint>;
 
 @compute @workgroup_size(CLUSTER)
 fn make_rings(
@@ -28,10 +27,23 @@ fn make_rings(
         return;
     }
     let ring = own_ring(part.base, point, words);
-    let word = tube_word(part.base, words);
-    for (var corner = 0u; corner < 4u; corner += 1u) {
-        coarse[slot + corner] = coarse_vertex_of(part, ring_corner(ring, corner), word);
-    }
+    let center = relative(part, ring.center);
+    let turn = pack_turn(
+        direction_of(part, ring_direction(ring.tangent, ring.turn, 0u)),
+        direction_of(part, ring_direction(ring.tangent, ring.turn, 1u)),
+        direction_of(part, ring.tangent),
+        slope_bits(words),
+    );
+    coarse[slot / 4u] = CoarsePoint(
+        center.x,
+        center.y,
+        center.z,
+        ring.radius * part.scale,
+        turn.x,
+        turn.y,
+        point_word(part.base, words),
+        part.instance,
+    );
 }
 
 @compute @workgroup_size(CLUSTER)
@@ -39,11 +51,24 @@ fn make_loose(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= batch.loose) {
         return;
     }
-    let at = batch.slots + id.x;
+    let at = frame.first_loose + id.x;
     let part = placed[loose_owner_of(at)];
     let vertex = (at - part.first_loose) | LOOSE;
     let v = loose_corner(part.base, vertex);
-    coarse[at] = coarse_vertex_of(part, v, word_of(part.base, vertex));
+    let position = relative(part, v.position);
+    coarse[coarse_index(at)] = CoarsePoint(
+        position.x,
+        position.y,
+        position.z,
+        v.radius * part.scale,
+        pack_direction(turned(part, v.normal)),
+        pack_direction(turned(part, v.tangent)),
+        word_of(part.base, vertex),
+        part.instance,
+    );
+    let center = relative(part, v.center);
+    coarse[coarse_index(at) + 1u] =
+        CoarsePoint(center.x, center.y, center.z, 0.0, v.role, 0u, 0u, part.instance);
 }
 
 // The placed part that a loose vertex belongs to.
@@ -61,22 +86,6 @@ fn loose_owner_of(at: u32) -> u32 {
     return low;
 }
 
-fn coarse_vertex_of(part: Placed, v: Corner, word: u32) -> CoarseVertex {
-    let position = relative(part, v.position);
-    let normal = pack_direction(turned(part, v.normal));
-    if (v.role == ROLE_SOMA) {
-        // Somata are never widened.
-        return CoarseVertex(
-            position.x, position.y, position.z, 0.0, normal, normal, word, part.instance);
-    }
-    return CoarseVertex(
-        position.x,
-        position.y,
-        position.z,
-        v.radius * part.scale,
-        normal,
-        pack_direction(turned(part, v.radial)),
-        word,
-        part.instance,
-    );
+fn direction_of(part: Placed, v: vec3<f32>) -> vec3<f32> {
+    return turned(part, v) / part.scale;
 }

@@ -8,7 +8,7 @@ use wgpu::{BufferUsages, ShaderStages};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::maker::SURFACE_VERTEX_WGSL;
-use crate::passes::COARSE_VERTEX_WGSL;
+use crate::passes::COARSE_POINT_WGSL;
 use crate::readback::read;
 use crate::refiner::{Batch, Refiner, draws, storage};
 use crate::refining::compose;
@@ -58,12 +58,14 @@ pub(crate) fn expand_wgsl() -> String {
         "const EXPAND_ROW: u32 = {ROW}u;\n{}",
         draws(Refiner::SHADERS - 1)
     );
+    let tube = include_str!("tube.wgsl");
     let vertices = include_str!("vertices.wgsl");
     let expand = include_str!("expand.wgsl");
     compose(&[
         &row,
         SURFACE_VERTEX_WGSL,
-        COARSE_VERTEX_WGSL,
+        COARSE_POINT_WGSL,
+        tube,
         vertices,
         expand,
     ])

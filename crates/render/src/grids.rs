@@ -11,7 +11,7 @@
 //! together**, about 256 vertices.
 //!
 //! Patches at level 1, most of what is far away, are in no bucket: they are drawn as the **flat** quads
-//! that they are, with shared corners (coarse_vertex.wgsl) and an index buffer that the device writes.
+//! that they are, with shared corners (coarse_point.wgsl) and an index buffer that the device writes.
 //!
 //! Why not one draw per grid: 4,096 draws, most of them empty. Why not triangles without an index
 //! buffer: a vertex is evaluated once per grid place instead of up to six times.

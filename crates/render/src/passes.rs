@@ -10,6 +10,8 @@
 //! not asked for each of them; and the four patches of a tube are asked together. Each of these ways is a
 //! pass of its own with a queue, not a branch: Mesa's software Vulkan takes the time of both sides.
 
+use neurotess_refine::gpu::SOURCE_WGSL;
+
 use crate::grids::BUCKETS;
 use crate::layouts::WorkLayouts;
 use crate::refiner::Batch;
@@ -21,7 +23,7 @@ use crate::templates::Page;
 use crate::work::Work;
 
 /// What coarse.wgsl writes and vertices.wgsl reads.
-pub(crate) const COARSE_VERTEX_WGSL: &str = include_str!("coarse_vertex.wgsl");
+pub(crate) const COARSE_POINT_WGSL: &str = include_str!("coarse_point.wgsl");
 const CLUSTERS_WGSL: &str = include_str!("clusters.wgsl");
 const SHOWN_WGSL: &str = include_str!("shown.wgsl");
 
@@ -32,21 +34,22 @@ pub(crate) fn modules() -> [(&'static str, String); 7] {
     let note = [CLUSTERS_WGSL, include_str!("note.wgsl")];
     let coarse = [
         CLUSTERS_WGSL,
-        COARSE_VERTEX_WGSL,
+        COARSE_POINT_WGSL,
         include_str!("coarse.wgsl"),
     ];
     let scan = [CLUSTERS_WGSL, include_str!("scan.wgsl")];
     let flatten = [CLUSTERS_WGSL, include_str!("flatten.wgsl")];
     let list = [CLUSTERS_WGSL, include_str!("list.wgsl")];
     [
-        ("classify", compose(&classify)),
-        ("decide", compose(&decide)),
-        ("note", compose(&note)),
-        ("coarse", compose(&coarse)),
-        ("scan", compose(&scan)),
-        ("flatten", compose(&flatten)),
-        ("list", compose(&list)),
+        ("classify", &classify[..]),
+        ("decide", &decide),
+        ("note", &note),
+        ("coarse", &coarse),
+        ("scan", &scan),
+        ("flatten", &flatten),
+        ("list", &list),
     ]
+    .map(|(name, own)| (name, compose(&[&[SOURCE_WGSL], own].concat())))
 }
 
 /// Pipelines.

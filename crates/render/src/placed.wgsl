@@ -8,9 +8,11 @@ struct Frame {
     slope: f32,
     flat: f32,
     smallest: f32,
-    // Whether each patch has corners of its own, which wires need; also pads to 16 bytes.
+    // Whether each patch has corners of its own, which wires need.
     wires: u32,
-    levels: Criterion,
+    // Place of the first loose vertex of every batch: behind the slots of all.
+    first_loose: u32,
+    @align(16) levels: Criterion,
 }
 
 // One part of a template where an instance puts it.
@@ -29,7 +31,7 @@ struct Placed {
     patches: u32,
     instance: u32,
     state: u32,
-    // Place of its first loose vertex among the coarse vertices.
+    // Place of its first loose vertex.
     first_loose: u32,
 }
 
@@ -76,7 +78,7 @@ fn is_flat(word: u32) -> bool {
     return word != 0u && (word & ((1u << DECISION_KIND_SHIFT) - 1u)) == FLAT_LEVELS;
 }
 
-// Place of a corner among the coarse vertices: of a ring by its slot, else behind all slots.
+// Place of a corner: of a ring by its slot, else behind all slots.
 fn coarse_place(place: Placed, vertex: u32) -> u32 {
     if ((vertex & LOOSE) != 0u) {
         return place.first_loose + (vertex & ~LOOSE);

@@ -19,7 +19,7 @@ use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
 use crate::layouts::WorkLayouts;
-use crate::passes::{COARSE_VERTEX_WGSL, Passes};
+use crate::passes::{COARSE_POINT_WGSL, Passes};
 use crate::refining::{BatchWords, CLUSTER, FrameWords, Placed, Refining, SECTION, Sight, compose};
 use crate::scene::Scene;
 use crate::templates::{self, MOST_PATCHES};
@@ -107,7 +107,8 @@ impl Refiner {
     pub fn vertex_wgsl(shader: usize) -> String {
         compose(&[
             &draws(shader),
-            COARSE_VERTEX_WGSL,
+            COARSE_POINT_WGSL,
+            include_str!("tube.wgsl"),
             include_str!("vertices.wgsl"),
         ])
     }
@@ -128,11 +129,12 @@ impl Refiner {
         sight: &Sight,
         refining: &Refining,
     ) -> Result<FramePlan, DeviceError> {
-        let frame = FrameWords::new(sight, refining);
+        let mut frame = FrameWords::new(sight, refining);
         let (mut placed, patches) = place_all(scene, sight, &frame);
         // By page, else in the scene's order.
         placed.sort_by_key(|&(page, _)| page);
-        let batches = cut(&mut placed);
+        let (batches, first_loose) = cut(&mut placed);
+        frame.first_loose = first_loose;
         let most_of = |of: fn(&BatchWords) -> u32| {
             let all = batches.iter().map(|batch| of(&batch.words) as usize);
             all.max().unwrap_or(0)
@@ -259,8 +261,8 @@ fn place_all(scene: &Scene, sight: &Sight, frame: &FrameWords) -> (Vec<(usize, P
 }
 
 /// Gives every placed part its slots, a whole number of clusters, and begins a new batch where the
-/// page changes or the slots end.
-fn cut(placed: &mut [(usize, Placed)]) -> Vec<Batch> {
+/// page changes or the slots end. Also gives the place of every batch's first loose vertex.
+fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
     let mut batches: Vec<Batch> = Vec::new();
     for (i, (page, place)) in placed.iter_mut().enumerate() {
         let slots = (place.patches as usize).next_multiple_of(CLUSTER);
@@ -284,18 +286,20 @@ fn cut(placed: &mut [(usize, Placed)]) -> Vec<Batch> {
         batch.words.clusters = batch.words.slots / CLUSTER as u32;
         batch.words.sections = batch.words.slots.div_ceil(SECTION as u32);
     }
+    let slots = batches.iter().map(|batch| batch.words.slots);
+    let first_loose = slots.max().unwrap_or(0);
     for batch in &mut batches {
-        place_loose(batch, placed);
+        place_loose(batch, first_loose, placed);
     }
-    batches
+    (batches, first_loose)
 }
 
 /// Gives the loose vertices of a batch's parts their places behind all slots.
-fn place_loose(batch: &mut Batch, placed: &mut [(usize, Placed)]) {
+fn place_loose(batch: &mut Batch, first_loose: u32, placed: &mut [(usize, Placed)]) {
     let words = &mut batch.words;
     let first = words.first as usize;
     for (_, place) in &mut placed[first..first + words.placed as usize] {
-        place.first_loose = words.slots + words.loose;
+        place.first_loose = first_loose + words.loose;
         words.loose += place.base.loose_count();
     }
 }

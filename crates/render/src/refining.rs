@@ -167,8 +167,11 @@ pub(crate) struct FrameWords {
     pub(crate) flat: f32,
     pub(crate) smallest: f32,
     pub(crate) wires: u32,
-    pub(crate) levels: Criterion,
+    /// Place of the first loose vertex of every batch.
+    pub(crate) first_loose: u32,
     pad: [u32; 3],
+    pub(crate) levels: Criterion,
+    pad_end: [u32; 3],
 }
 
 impl FrameWords {
@@ -180,8 +183,10 @@ impl FrameWords {
             flat: 0.0,
             smallest: refining.smallest.max(0.0),
             wires: u32::from(refining.wires),
-            levels: Criterion::new(&levels, &refining.options()),
+            first_loose: 0,
             pad: [0; 3],
+            levels: Criterion::new(&levels, &refining.options()),
+            pad_end: [0; 3],
         }
     }
 }

@@ -65,8 +65,8 @@ struct Varying {
     @location(5) thin: f32,
 }
 
-fn category_colour(category: u32) -> vec3<f32> {
-    return table[min(shade.scale_entries + category, shade.colours - 1u)].rgb;
+fn category_entry(category: u32) -> u32 {
+    return min(shade.scale_entries + category, shade.colours - 1u);
 }
 
 // The value that a word means for an instance: see InstanceValues.
@@ -81,19 +81,18 @@ fn value_of_instance(word: u32, instance: u32) -> f32 {
 // A category counts from the end of the scale; anything else is a fraction of the scale, or a place
 // among the instance's values.
 fn colour_of(word: u32, instance: u32) -> vec3<f32> {
-    if (word & CATEGORY_BIT) != 0u {
-        return category_colour(word & ~CATEGORY_BIT);
-    }
     var share = f32(word) / f32(CATEGORY_BIT);
-    if VALUED {
+    var category = (word & CATEGORY_BIT) != 0u;
+    var named = word & ~CATEGORY_BIT;
+    if VALUED && !category {
         share = value_of_instance(word, instance);
-        if share < 0.0 {
-            return category_colour(0u);
-        }
+        category = share < 0.0;
+        named = 0u;
     }
-    let place = share * f32(max(shade.scale_entries, 1u) - 1u);
-    let low = u32(place);
-    let high = min(low + 1u, max(shade.scale_entries, 1u) - 1u);
+    let last = max(shade.scale_entries, 1u) - 1u;
+    let place = select(share * f32(last), 0.0, category);
+    let low = select(u32(place), category_entry(named), category);
+    let high = select(min(u32(place) + 1u, last), low, category);
     return mix(table[low].rgb, table[high].rgb, fract(place));
 }
 

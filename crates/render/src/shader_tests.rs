@@ -9,7 +9,7 @@ use crate::grids::Bucket;
 use crate::passes::modules;
 use crate::refiner::DrawIndexed;
 use crate::refining::{Base, BatchWords, FrameWords, Placed};
-use crate::work::CoarseVertex;
+use crate::work::CoarsePoint;
 
 #[test]
 fn shaders_are_valid_in_every_language_and_have_our_layouts() {
@@ -17,15 +17,15 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         modules().map(|(name, text)| languages::check(name, &text));
     assert_layout!(
         &coarse,
-        "CoarseVertex",
-        CoarseVertex,
-        [x, y, z, radius, normal, radial, word, instance]
+        "CoarsePoint",
+        CoarsePoint,
+        [x, y, z, radius, low, high, word, instance]
     );
     assert_layout!(
         &decide,
         "Frame",
         FrameWords,
-        [planes, slope, flat, smallest, wires, levels]
+        [planes, slope, flat, smallest, wires, first_loose, levels]
     );
     assert_layout!(
         &decide,

@@ -1,7 +1,7 @@
 // What a vertex is drawn for: see `surface_vertex` in vertices.wgsl, whose places these are. Called by
 // ids.wgsl; Rust twin: named.rs.
 
-// First: the corner's number in a flat patch, or FINE. Second: the coarse vertex's place, or the patch's
+// First: the corner's number in a flat patch, or FINE. Second: the corner's place, or the patch's
 // slot.
 fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {
     if (DRAWS == DRAWS_FLAT) {

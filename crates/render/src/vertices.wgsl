@@ -1,7 +1,8 @@
 // Who makes vertices: on the fly, from the resident patch and its decided levels.
 //
 // `surface_vertex` is the seam to whatever shades (maker.rs); SurfaceVertex comes before. Called with
-// the builtin indices of a draw that refiner.rs sets up. The index buffer (grids.rs) hands out vertex indices that say which bucket, which
+// the builtin indices of a draw that refiner.rs sets up. The index buffer (grids.rs) hands out vertex
+// indices that say which bucket, which
 // patch of the instance, and which column and row of its grid.
 
 struct Bucket {
@@ -17,7 +18,7 @@ struct Bucket {
 @group(0) @binding(6) var<storage, read> owners: array<u32>;
 @group(0) @binding(7) var<storage, read> list: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read> buckets: array<Bucket>;
-@group(0) @binding(9) var<storage, read> coarse: array<CoarseVertex>;
+@group(0) @binding(9) var<storage, read> coarse: array<CoarsePoint>;
 
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     if (DRAWS == DRAWS_FLAT) {
@@ -64,66 +65,65 @@ fn grid_of_corner(corner: u32) -> vec2<f32> {
     return vec2<f32>(f32(corner == 1u || corner == 2u), -f32(corner >= 2u));
 }
 
-// A coarse vertex, as it was made for the frame.
 fn flat_vertex(place: u32, grid: vec2<f32>) -> SurfaceVertex {
-    let v = coarse[place];
-    let position = vec3<f32>(v.x, v.y, v.z);
+    let point = coarse[coarse_index(place)];
+    let v = corner_at(place);
+    // Somata are never widened.
+    let soma = v.role == ROLE_SOMA;
     return SurfaceVertex(
-        position,
-        unpack_direction(v.normal),
-        position - unpack_direction(v.radial) * v.radius,
-        v.radius,
-        v.word,
-        v.instance,
+        v.position,
+        v.normal,
+        select(v.center, v.position, soma),
+        select(v.radius, 0.0, soma),
+        point.word,
+        point.instance,
         grid,
     );
 }
 
 fn listed_tube_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
-    let part = placed[owners[listed.x / CLUSTER]];
     let levels = decided_levels(listed.y);
     let grid = patch_grid(PATCH_LATERAL, frame.levels.caps, levels);
-    let column = min(i, grid.nx);
-    let row = min(j, grid.ny);
-    let index = listed.x - part.first_slot;
-    let v = tube_vertex(part.base, index, frame.levels, levels, grid, column, row);
-    let wires = wire_grid(PATCH_LATERAL, grid, column, row);
-    if (v.coarse != NO_VERTEX) {
-        return flat_vertex(coarse_place(part, v.coarse), wires);
-    }
-    return SurfaceVertex(
-        relative(part, v.position),
-        turned(part, v.normal) / part.scale,
-        relative(part, v.axis),
-        v.radius * part.scale,
-        tube_word(part.base, v.words),
-        part.instance,
-        wires,
-    );
+    return tube_vertex(listed.x / 4u, listed.x & 3u, levels, grid, min(i, grid.nx), min(j, grid.ny));
 }
 
 fn listed_other_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     let part = placed[owners[listed.x / CLUSTER]];
-    let base = part.base;
     let levels = decided_levels(listed.y);
     let grid = patch_grid(decided_kind(listed.y), frame.levels.caps, levels);
-    let p = patch_at(base, listed.x - part.first_slot);
+    let p = patch_at(part.base, listed.x - part.first_slot);
     let column = min(i, grid.nx);
     let row = min(j, grid.ny);
-    let v = grid_vertex(base, p, frame.levels, levels, grid, column, row);
-    let wires = wire_grid(p.kind, grid, column, row);
-    if (v.coarse != NO_VERTEX) {
-        return flat_vertex(coarse_place(part, v.coarse), wires);
-    }
+    let v = grid_vertex(part, p, frame.levels, levels, grid, column, row);
     return SurfaceVertex(
-        relative(part, v.position),
-        turned(part, v.normal) / part.scale,
-        relative(part, v.axis),
-        v.radius * part.scale,
-        word_of(base, v.nearest),
+        v.position,
+        v.normal,
+        v.axis,
+        v.radius,
+        coarse[coarse_index(coarse_place(part, v.nearest))].word,
         part.instance,
-        wires,
+        wire_grid(p.kind, grid, column, row),
     );
+}
+
+// Where plan.wgsl has corners from: a placed part's, relative to the eye.
+alias Source = Placed;
+
+fn base_of(source: Source) -> Base {
+    return source.base;
+}
+
+fn corner_of(source: Source, vertex: u32) -> Corner {
+    return corner_at(coarse_place(source, vertex));
+}
+
+fn corner_at(place: u32) -> Corner {
+    let index = coarse_index(place);
+    let point = coarse[index];
+    if (place >= frame.first_loose) {
+        return corner_of_loose(point, coarse[index + 1u]);
+    }
+    return corner_of_ring(drawn_ring(point), place & 3u);
 }
 
 // Coordinates whose sum is whole on the diagonals that grids.rs draws: rising, or on round patches

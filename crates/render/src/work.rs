@@ -11,16 +11,16 @@ use crate::refiner::{Batch, DrawIndexed};
 use crate::refining::{BatchWords, CLUSTER, FrameWords, Placed, SECTION};
 use crate::templates::Page;
 
-/// A coarse vertex as it is drawn. Twin of the struct of the same name in coarse_vertex.wgsl.
+/// A ring or a loose vertex as it is drawn. Twin of the struct of the same name in coarse_point.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub(crate) struct CoarseVertex {
+pub(crate) struct CoarsePoint {
     pub(crate) x: f32,
     pub(crate) y: f32,
     pub(crate) z: f32,
     pub(crate) radius: f32,
-    pub(crate) normal: u32,
-    pub(crate) radial: u32,
+    pub(crate) low: u32,
+    pub(crate) high: u32,
     pub(crate) word: u32,
     pub(crate) instance: u32,
 }
@@ -122,7 +122,7 @@ impl Buffers {
         let queues = (4 + CLUSTER / 4) * clusters + sections;
         let marks = 3 + 3 * clusters + (1 + BUCKETS) * sections;
         let placed = words(size_of::<Placed>(), sizes.placed);
-        let coarse = words(size_of::<CoarseVertex>(), sizes.slots + sizes.loose);
+        let coarse = words(size_of::<CoarsePoint>(), sizes.slots / 4 + 2 * sizes.loose);
         let draws = words(size_of::<DrawIndexed>(), 1 + BUCKETS);
         Self {
             frame: make("frame", size_of::<FrameWords>() / 4, uniform | written),
@@ -333,7 +333,7 @@ impl Work {
             ("queues", b.queues.size() + dispatches),
             ("marks", b.marks.size()),
             ("decisions", b.decisions.size() + b.ring_levels.size()),
-            ("coarse_vertices", b.coarse.size()),
+            ("coarse_points", b.coarse.size()),
             ("list", b.list.size()),
             ("flat_patches", b.flat_indices.size()),
             ("draws", b.draws.size()),

@@ -208,8 +208,8 @@ fn vertices_are_the_reference_s() {
     }
     println!("{count} vertices ({kinds:?}): {most:e} of the extent, normals {most_normal:e}");
     assert!(kinds.iter().all(|&n| n > 100), "{kinds:?}");
-    // Measured on lavapipe: see above. Coordinates of f32, relative to an eye five extents away,
-    // are rounded to 3e-7 of the extent.
-    assert!(most < 1e-6, "{most:e} of the extent");
-    assert!(most_normal < 2e-2, "{most_normal:e}");
+    // Measured on lavapipe: 2.7e-6 and 2.2e-3. Corners are relative to an eye five extents away, where an
+    // f32 is rounded to 3e-7 of the extent, and some terms are added; both fall with the distance.
+    assert!(most < 4e-6, "{most:e} of the extent");
+    assert!(most_normal < 5e-3, "{most_normal:e}");
 }
