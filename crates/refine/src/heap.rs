@@ -14,7 +14,7 @@ use crate::decode::{
 use crate::pack::{Contents, PLACES_OF_BALL, Packer, Part, Slot, cap_ring, widened};
 
 /// Most different words of a part's points.
-const MOST_WORDS: usize = 1 << 10;
+pub(crate) const MOST_WORDS: usize = 1 << 10;
 
 impl Packer<'_> {
     pub(crate) fn write(&self, contents: &Contents) -> Part {

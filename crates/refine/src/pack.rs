@@ -4,13 +4,14 @@
 //! loose, and loose vertices keep the mesh's order, so that both sides of every edge have the same bits
 //! and run along it in the same direction: no crack opens.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::ball::{ball_around, patch_ball};
 use crate::decode::{BALL_WORDS, OwnRing, POINTS_OF_BALL};
+use crate::heap::MOST_WORDS;
 use crate::loose::accurate;
 use crate::plan::patch_bends;
 use crate::runs::{Run, find_runs, own_ring};
@@ -97,8 +98,9 @@ impl Part {
 /// Packs a mesh into parts of at most `most_places` places for patches. `words`: one per tracing point
 /// for the renderer; `values`: one level per tracing point. Missing ones are 0 and 1.
 ///
-/// A soma has the word of its first vertex. More than 1,024 different words of a part's points lose
-/// their lowest bits.
+/// A soma has the word of its first vertex. A part's points have at most 1,024 different words. Where all
+/// words below 2³¹ are numbers below 2²⁰, a mesh with more of them has more parts; else, they are shares of
+/// a scale, and lose their lowest bits.
 pub fn pack(mesh: &CoarseMesh, words: &[u32], values: &[u8], most_places: usize) -> Vec<Part> {
     let packer = Packer::new(mesh, words, values);
     let piles = packer.piles(most_places.max(4 * PLACES_OF_BALL));
@@ -138,6 +140,9 @@ pub fn dequantized(mesh: &CoarseMesh, parts: &[Part]) -> CoarseMesh {
     }
     rounded
 }
+
+/// Words below are taken for numbers if all are.
+const MOST_NUMBERS: u32 = 1 << 20;
 
 /// What goes into one part.
 #[derive(Default)]
@@ -195,25 +200,31 @@ impl<'m> Packer<'m> {
     pub(crate) fn piles(&self, most_places: usize) -> Vec<Pile> {
         let mut piles = vec![Pile::default()];
         let (mut places, mut loose) = (PLACES_OF_BALL, 0);
-        let mut room = |piles: &mut Vec<Pile>, more_places: usize, more_loose: usize| {
-            places += more_places;
+        let exact = self.has_numbers();
+        let mut numbers = BTreeSet::new();
+        let mut room = |piles: &mut Vec<Pile>, more: usize, more_loose: usize, words: &[u32]| {
+            places += more;
             loose += more_loose;
-            if places > most_places || loose > MOST_LOOSE {
+            numbers.extend(words);
+            if places > most_places || loose > MOST_LOOSE || exact && numbers.len() > MOST_WORDS {
                 piles.push(Pile::default());
-                (places, loose) = (PLACES_OF_BALL + more_places, more_loose);
+                (places, loose) = (PLACES_OF_BALL + more, more_loose);
+                numbers = words.iter().copied().collect();
             }
             piles.len() - 1
         };
         for (i, run) in self.runs.iter().enumerate() {
             let used = run.rings.iter().filter(|ring| self.loose[ring[0] as usize]);
             let most = run.rings.len() + POINTS_OF_BALL;
-            let pile = room(&mut piles, 4 * most, 4 * used.count());
+            let tracing = |ring: &[u32; 4]| self.mesh.vertices[ring[0] as usize].tracing;
+            let words: Vec<u32> = run.rings.iter().map(|r| self.word(tracing(r))).collect();
+            let pile = room(&mut piles, 4 * most, 4 * used.count(), &words);
             piles[pile].runs.push(i);
         }
         for &other in &self.others {
             let corners = self.mesh.patches[other].corners;
             if self.loose[corners[0] as usize] {
-                let pile = room(&mut piles, 1, 4);
+                let pile = room(&mut piles, 1, 4, &[]);
                 piles[pile].others.push(other);
             }
         }
@@ -336,6 +347,12 @@ impl<'m> Packer<'m> {
 
     pub(crate) fn word(&self, tracing: u32) -> u32 {
         self.words.get(tracing as usize).copied().unwrap_or(0)
+    }
+
+    /// Whether words are numbers, of which no bit may be lost, and not shares of a scale.
+    fn has_numbers(&self) -> bool {
+        let mut words = self.words.iter();
+        words.all(|&word| !(MOST_NUMBERS..1 << 31).contains(&word))
     }
 
     pub(crate) fn level(&self, tracing: u32) -> u32 {

@@ -53,6 +53,32 @@ fn largest_move(mesh: &CoarseMesh, rounded: &CoarseMesh) -> f32 {
     vertices.chain(centers).fold(0.0, f32::max)
 }
 
+/// Words of the points of each part.
+fn words_of(parts: &[Part]) -> Vec<&[u32]> {
+    let words = parts.iter().map(|p| &p.heap[p.places.words as usize..]);
+    words.collect()
+}
+
+#[test]
+fn numbers_keep_all_their_bits_and_shares_of_a_scale_the_highest() {
+    let mesh = tree(300, 20, 0.5);
+    let points = mesh.tracing.len() as u32;
+    assert!(points > 4 * 1024, "{points}");
+    let numbers: Vec<u32> = (0..points).collect();
+    let parts = pack(&mesh, &numbers, &[], 1 << 20);
+    assert_complete(&mesh, &parts);
+    let words = words_of(&parts);
+    assert!(words.iter().all(|list| list.len() <= 1024));
+    let odd = words.concat().iter().filter(|&word| word % 2 == 1).count();
+    // Of the others rings are loose: they have a word to themselves.
+    assert!(odd as u32 > points * 2 / 5, "{odd} of {points}");
+    let shares: Vec<u32> = numbers.iter().map(|n| n << 16).collect();
+    let parts = pack(&mesh, &shares, &[], 1 << 20);
+    let words = words_of(&parts);
+    assert_eq!(words.len(), 1, "parts");
+    assert!((512..=1024).contains(&words[0].len()), "{}", words[0].len());
+}
+
 #[test]
 fn resident_form_is_within_a_hundredth_of_the_radius() {
     let mut worst: f32 = 0.0;
