@@ -99,6 +99,7 @@ pub(crate) fn colours(sources: &[ShownSource], look: &Look) -> Colouring {
         .collect();
     let background = Some(look.background);
     let paint = Paint {
+        range: None,
         palette: look.palette,
         background,
         scale: look.colour_map.scale(background),

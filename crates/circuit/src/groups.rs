@@ -73,8 +73,8 @@ fn numbers(values: &[f64]) -> (Vec<String>, Vec<u32>) {
     (distinct.iter().map(f64::to_string).collect(), rows)
 }
 
-/// Numbers by value and before words, words by letters.
-fn natural(a: &str, b: &str) -> std::cmp::Ordering {
+/// The order of words for people: numbers by value and before words, words by letters.
+pub fn natural(a: &str, b: &str) -> std::cmp::Ordering {
     match (a.parse::<f64>(), b.parse::<f64>()) {
         (Ok(x), Ok(y)) => x.total_cmp(&y).then_with(|| a.cmp(b)),
         (Ok(_), Err(_)) => std::cmp::Ordering::Less,

@@ -72,7 +72,7 @@ mod warning;
 pub mod write;
 
 pub use error::{CircuitError, Fault};
-pub use groups::Groups;
+pub use groups::{Groups, natural};
 pub use model::{Attribute, Circuit, Instance, NodeRef, Population};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;

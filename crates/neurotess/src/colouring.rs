@@ -1,4 +1,17 @@
 //! What colours tell: a word for every tracing point, the table of colours and the legend.
+//!
+//! Words belong to a cell, whatever shows it. What differs from neuron to neuron of one cell is in the
+//! table's values: a colour for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
+//! ([`Replay`]).
+
+mod by_node;
+mod elements;
+mod moment;
+mod replay;
+
+pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
+pub use moment::Moment;
+pub use replay::{DECAY, Replay, ReplayError};
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -57,6 +70,8 @@ pub struct Paint {
     pub background: Option<Rgb>,
     /// Of numbers.
     pub scale: Vec<Rgb>,
+    /// Numbers at both ends of the scale; none: those that fit.
+    pub range: Option<[f32; 2]>,
 }
 
 /// Colour of what has no value: a grey that no scale has.
@@ -235,6 +250,7 @@ fn measured(
     } else {
         (at(0.0), at(0.98))
     };
+    let [low, high] = paint.range.unwrap_or([low, high]);
     let high = if high > low { high } else { low + 1.0 };
     let word = |value: &Option<f32>| match value {
         Some(value) => fraction((value - low) / (high - low)),

@@ -44,9 +44,11 @@ pub struct InstanceValues {
 
 impl InstanceValues {
     /// Adds the values of the next instance: fractions of the scale, 0 to 1. What is not a number has the
-    /// colour of the first category.
+    /// colour of the first category, and so has all of an instance without values.
     pub fn push(&mut self, values: &[f32]) {
-        self.first.push(self.fours.len() as u32);
+        let first = self.fours.len() as u32;
+        self.first
+            .push(if values.is_empty() { NOWHERE } else { first });
         // Shaders need not know what is not a number.
         let value = |value: &f32| {
             if value.is_nan() {
@@ -71,6 +73,8 @@ impl InstanceValues {
 }
 
 const NO_VALUE: f32 = -1.0;
+/// Where the values of an instance begin that has none: beyond all, so that shaders take the last entry.
+const NOWHERE: u32 = 1 << 24;
 
 impl ColourTable {
     /// Linear colours, those of the scale first; never empty.
@@ -93,7 +97,9 @@ impl ColourTable {
         let behind = first.len().div_ceil(4) as u32 + colours;
         entries.extend(first.chunks(4).map(|chunk| {
             let mut entry = [0.0; 4];
-            let places = chunk.iter().map(|&place| (behind + place) as f32);
+            let places = chunk
+                .iter()
+                .map(|&place| (behind + place).min(NOWHERE) as f32);
             entry
                 .iter_mut()
                 .zip(places)
@@ -101,6 +107,9 @@ impl ColourTable {
             entry
         }));
         entries.extend(fours);
+        if !first.is_empty() {
+            entries.push([NO_VALUE; 4]);
+        }
         (entries, colours)
     }
 }
@@ -349,6 +358,25 @@ mod tests {
         assert_eq!(fraction(f32::NAN), 0);
         assert!(fraction(2.0) < CATEGORY_BIT && fraction(1.0) > CATEGORY_BIT - 512);
         assert!(fraction(0.2) < fraction(0.3));
+    }
+
+    #[test]
+    fn an_instance_without_values_has_not_those_of_the_next() {
+        let mut values = InstanceValues::default();
+        values.push(&[]);
+        values.push(&[0.5; 5]);
+        let table = ColourTable {
+            scale: vec![[0; 3]; 2],
+            values,
+            ..ColourTable::default()
+        };
+        let (entries, colours) = table.entries();
+        let value = |instance: usize, word: usize| {
+            let first = entries[colours as usize + instance / 4][instance % 4] as usize;
+            entries[(first + word / 4).min(entries.len() - 1)][word % 4]
+        };
+        assert_eq!([0, 4].map(|word| value(0, word)), [NO_VALUE; 2]);
+        assert_eq!([0, 4].map(|word| value(1, word)), [0.5; 2]);
     }
 
     #[test]

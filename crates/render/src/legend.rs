@@ -8,6 +8,7 @@ use crate::text::Text;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
     title: String,
+    note: String,
     kind: Kind,
 }
 
@@ -29,6 +30,7 @@ impl Legend {
     pub fn swatches(title: &str, entries: impl IntoIterator<Item = (Rgb, String)>) -> Self {
         Self {
             title: title.to_owned(),
+            note: String::new(),
             kind: Kind::Swatches(entries.into_iter().collect()),
         }
     }
@@ -42,8 +44,16 @@ impl Legend {
         };
         Self {
             title,
+            note: String::new(),
             kind: Kind::Bar { scale, range, more },
         }
+    }
+
+    /// With a line below: the time of a picture.
+    #[must_use]
+    pub fn noted(mut self, note: &str) -> Self {
+        note.clone_into(&mut self.note);
+        self
     }
 
     /// Draws it on nothing, in lines of this height (pixels).
@@ -67,9 +77,19 @@ impl Legend {
                 BAR_LINES * line + line,
             ),
         };
-        let width = width.max(text.width(&self.title)) + 2.0;
-        let mut image = Image::new(width.ceil() as u32, (height + title).ceil() as u32);
+        let width = width
+            .max(text.width(&self.title))
+            .max(text.width(&self.note))
+            + 2.0;
+        let note = if self.note.is_empty() {
+            0.0
+        } else {
+            1.35 * line
+        };
+        let all = (height + title + note).ceil();
+        let mut image = Image::new(width.ceil() as u32, all as u32);
         text.draw(&mut image, 0.0, 0.55 * line, &self.title, ink);
+        text.draw(&mut image, 0.0, all - 0.6 * line, &self.note, ink);
         match &self.kind {
             Kind::Swatches(entries) => {
                 for ((colour, name), row) in entries.iter().zip(0_u8..) {

@@ -10,11 +10,22 @@ use crate::legend::{Legend, nice_length, scale_bar};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlay {
     pieces: Vec<(i64, i64, Image)>,
+    labelled: Option<Labelled>,
     /// Whether the legend found no place.
     pub legend_left_out: bool,
     /// Where the legend covers something: the share of the picture's width, on the left (negative)
     /// or the right, that would have to be free for it.
     pub covering: Option<f64>,
+}
+
+/// Where the legend is: the first of the pieces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Labelled {
+    pieces: usize,
+    corner: usize,
+    size: [u32; 2],
+    line: f32,
+    background: Option<Rgb>,
 }
 
 /// What to write into the corners.
@@ -64,6 +75,13 @@ impl Overlay {
                     }
                 }
                 overlay.pieces.push((x, y, image));
+                overlay.labelled = Some(Labelled {
+                    pieces: overlay.pieces.len(),
+                    corner,
+                    size,
+                    line,
+                    background: options.background,
+                });
             } else {
                 overlay.legend_left_out = image.width > 2;
             }
@@ -80,6 +98,22 @@ impl Overlay {
             let [x, y] = place(corner, size, &image, line);
             overlay.pieces.push((x, y, image));
         }
+        overlay
+    }
+
+    /// The same with another legend in the same corner: that of the next picture of a series.
+    #[must_use]
+    pub fn relabelled(&self, legend: &Legend) -> Self {
+        let mut overlay = self.clone();
+        let Some(label) = overlay.labelled else {
+            return overlay;
+        };
+        let image = legend.draw(label.line, ink(label.background));
+        let [x, y] = place(label.corner, label.size, &image, label.line);
+        let behind = label.background.filter(|_| label.pieces == 2);
+        let behind = behind.map(|background| (x, y, panel(&image, background)));
+        let pieces = behind.into_iter().chain([(x, y, image)]);
+        overlay.pieces.splice(..label.pieces, pieces);
         overlay
     }
 

@@ -7,9 +7,11 @@ use clap::{Args, ValueEnum};
 use glam::{DVec3, Vec3};
 use neurotess::render::{ColourMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
 
+use super::times::{MOST, Time, times};
 use crate::args::{SomaArg, Types};
 use crate::circuit::CellArgs;
 use crate::rings::RingArgs;
+use crate::report::usage;
 
 /// `neurotess render`
 #[derive(Args, Debug)]
@@ -21,13 +23,14 @@ use crate::rings::RingArgs;
   neurotess render cell.swc -o turn.png --turntable --frames 120
   neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
   neurotess render circuit/ -o all.png --lod exploration --budget 1000000
-  neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30")]
+  neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30
+  neurotess render circuit/ -o film.png --report voltage.h5 --time 0:100:0.5")]
 pub(crate) struct RenderArgs {
     /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit, or
     /// one session of neurotess view, in its own view and look
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The picture; with --frames NAME_0000.png and so on
+    /// The picture; of a series NAME_0000.png and so on
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     /// Replace files that exist
@@ -66,7 +69,7 @@ pub(crate) struct RenderArgs {
     /// Values of a simulation: a SONATA report, or a file of spikes
     #[arg(long, value_name = "FILE", help_heading = "Colours")]
     pub(crate) report: Option<PathBuf>,
-    /// Time (ms) in the report [default: its first]
+    /// Time (ms) in the report [default: its first]; FROM:TO:STEP, TO left out, makes a series of pictures
     #[arg(
         long,
         value_name = "MS",
@@ -74,9 +77,9 @@ pub(crate) struct RenderArgs {
         allow_hyphen_values = true,
         help_heading = "Colours"
     )]
-    pub(crate) time: Option<f64>,
-    /// Values at both ends of the colour map [default: the least and the greatest]
-    #[arg(long, value_name = "LOW,HIGH", requires = "report", value_parser = range,
+    pub(crate) time: Option<Time>,
+    /// Numbers at both ends of the colour map [default: the least and the greatest of all pictures]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range,
           allow_hyphen_values = true, help_heading = "Colours")]
     pub(crate) range: Option<[f32; 2]>,
     /// Colours of types and of things told apart: neurom, neuromorpho, okabe-ito
@@ -162,9 +165,9 @@ pub(crate) struct RenderArgs {
     /// Go once around the scene, in --frames pictures
     #[arg(long, help_heading = "Camera")]
     pub(crate) turntable: bool,
-    /// Number of pictures: OUT_0000.png and so on [default: 36]
-    #[arg(long, value_name = "N", requires = "turntable", help_heading = "Camera",
-          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// Number of pictures of --turntable [default: 36] or of --time FROM:TO: OUT_0000.png and so on
+    #[arg(long, value_name = "N", help_heading = "Camera",
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST)))]
     pub(crate) frames: Option<u32>,
     /// Show the triangles by thin lines
     #[arg(long, help_heading = "Look")]
@@ -212,8 +215,25 @@ impl RenderArgs {
     }
 
     /// Number of pictures of a series; none: one picture.
-    pub(crate) fn series(&self) -> Option<u32> {
-        self.turntable.then(|| self.frames.unwrap_or(36))
+    ///
+    /// # Errors
+    /// Wrong usage: no series, or two that do not fit.
+    pub(crate) fn series(&self) -> anyhow::Result<Option<u32>> {
+        match self.time {
+            Some(Time::Series(..)) => Ok(times(self)?.map(|times| times.len() as u32)),
+            _ if self.turntable => Ok(Some(self.frames.unwrap_or(36))),
+            _ if self.frames.is_some() => {
+                usage("--frames is for --turntable, and for --time FROM:TO")
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether colours tell numbers.
+    pub(crate) fn is_number(&self) -> bool {
+        let by = [ColorBy::Order, ColorBy::Radius, ColorBy::Depth];
+        let number = self.color_by.is_some_and(|what| by.contains(&what));
+        number || self.report.is_some() || self.color_by_attribute.is_some()
     }
 }
 

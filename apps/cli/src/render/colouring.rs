@@ -2,74 +2,161 @@
 
 use std::path::Path;
 
-use neurotess::colouring::{self, ColourBy};
-pub(crate) use neurotess::colouring::{Colouring, NOTHING, Paint};
+use neurotess::colouring::{self, Cell, ColourBy, Colouring, Paint, Replay, by_attribute};
+use neurotess::render::{ColourTable, Legend};
 
 use super::args::{ColorBy, RenderArgs};
-use super::by_node;
-use super::cells::Cell;
-use super::values::{self, Shown};
+use super::cells;
+use super::shown::Shown;
+use super::times::{self, said};
 use crate::report::Reporter;
+
+/// Colours of all pictures.
+pub(crate) struct Coloured {
+    /// Of the first.
+    pub(crate) colouring: Colouring,
+    /// Of a series over time: what differs.
+    film: Option<Film>,
+}
+
+/// A recording, and the time (ms) of each picture.
+struct Film {
+    replay: Replay,
+    times: Vec<f64>,
+    range: [f32; 2],
+}
+
+impl Coloured {
+    /// Table and legend of a picture: of a series only the values differ.
+    pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColourTable, Legend)> {
+        let Colouring { table, legend, .. } = &self.colouring;
+        let time = |film: &Film| film.times.get(number).copied();
+        let Some((film, time)) = self.film.as_ref().and_then(|f| Some((f, time(f)?))) else {
+            return Ok((table.clone(), legend.clone()));
+        };
+        let moment = film.replay.at(time, &|_| true).map_err(told)?;
+        let table = ColourTable {
+            scale: table.scale.clone(),
+            categories: table.categories.clone(),
+            values: moment.values(film.range),
+        };
+        Ok((table, legend.clone().noted(&said(&film.times, time))))
+    }
+}
 
 /// Chooses the colours. `shown`: what a circuit shows; `places`: the cell at each.
 ///
 /// # Errors
 /// What is wrong with a report.
-pub(crate) fn colouring(
-    cells: &[&Cell],
+pub(crate) fn coloured(
+    cells: &[&cells::Cell],
     shown: Option<&Shown>,
     places: &[usize],
     args: &RenderArgs,
     reporter: &Reporter,
-) -> anyhow::Result<Colouring> {
+) -> anyhow::Result<Coloured> {
     let background = (!args.transparent).then_some(args.background.0);
     let paint = Paint {
         palette: args.palette,
         background,
         scale: args.colormap.scale(background),
+        range: args.range,
     };
-    if let (Some(report), Some(shown)) = (&args.report, shown) {
-        return values::colouring((cells, shown), places, report, (args, &paint), reporter);
-    }
-    if let Some(shown) = shown {
-        match (&args.color_by_attribute, args.color_by) {
-            (Some(attribute), _) => return by_node::by_attribute(cells, shown, attribute, &paint),
-            (None, Some(ColorBy::Neuron)) => return Ok(by_node::each(cells, shown, &paint)),
-            (None, None) => {
-                if let Some(colouring) = by_node::given(cells, shown) {
-                    return Ok(colouring);
-                }
-            }
-            (None, Some(_)) => {}
-        }
-    }
-    let names: Vec<String> = cells
-        .iter()
-        .map(|cell| {
-            let stem = Path::new(&cell.file).file_stem().unwrap_or_default();
-            stem.to_string_lossy().into_owned()
-        })
-        .collect();
-    let cells: Vec<colouring::Cell<'_>> = cells
+    let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();
+    let cells: Vec<Cell<'_>> = cells
         .iter()
         .zip(&names)
-        .map(|(cell, name)| seen(cell, name))
+        .map(|(cell, name)| Cell {
+            name,
+            morphology: &cell.morphology,
+            mesh: &cell.mesh,
+        })
         .collect();
-    let by = by(args.color_by.unwrap_or(ColorBy::Type));
-    Ok(colouring::colouring(&cells, by, &paint))
-}
-
-/// Way (µm) along the neurite from its first point to each tracing point.
-pub(crate) fn depths(cell: &Cell) -> Vec<Option<f32>> {
-    colouring::depths(&seen(cell, ""))
-}
-
-fn seen<'c>(cell: &'c Cell, name: &'c str) -> colouring::Cell<'c> {
-    colouring::Cell {
-        name,
-        morphology: &cell.morphology,
-        mesh: &cell.mesh,
+    if let (Some(report), Some(shown)) = (&args.report, shown) {
+        let stand = shown.stand(places);
+        let replay = Replay::open(report, &shown.circuit, &cells, &stand).map_err(told)?;
+        return over_time(replay, args, &paint, reporter);
     }
+    let colouring = match shown {
+        Some(shown) => of_circuit(&cells, shown, args, &paint)?,
+        None => None,
+    };
+    let by = by(args.color_by.unwrap_or(ColorBy::Type));
+    let of_cells = || colouring::colouring(&cells, by, &paint);
+    Ok(Coloured {
+        colouring: colouring.unwrap_or_else(of_cells),
+        film: None,
+    })
+}
+
+/// Colours that cells of a circuit have as a whole, if those are wanted.
+fn of_circuit(
+    cells: &[Cell<'_>],
+    shown: &Shown,
+    args: &RenderArgs,
+    paint: &Paint,
+) -> anyhow::Result<Option<Colouring>> {
+    let neurons = shown.neurons();
+    match (&args.color_by_attribute, args.color_by) {
+        (Some(attribute), _) => {
+            let named = |e| anyhow::anyhow!("{}: {e}", shown.circuit.file);
+            let colouring = by_attribute(cells, &neurons, attribute, paint);
+            colouring.map(Some).map_err(named)
+        }
+        (None, Some(ColorBy::Neuron)) => {
+            Ok(Some(colouring::each(cells, &shown.names(), paint)))
+        }
+        (None, None) => Ok(colouring::given(cells, &neurons)),
+        (None, Some(_)) => Ok(None),
+    }
+}
+
+/// Values of a recording: at one time, or of a series.
+fn over_time(
+    replay: Replay,
+    args: &RenderArgs,
+    paint: &Paint,
+    reporter: &Reporter,
+) -> anyhow::Result<Coloured> {
+    let without = replay.without();
+    if without > 0 {
+        let (all, file) = (replay.places(), &replay.file);
+        reporter.warning(&format!(
+            "{file}: no values for {without} of {all} cells: drawn grey"
+        ));
+    }
+    if args.time.is_none() && replay.is_of_spikes() {
+        let file = &replay.file;
+        anyhow::bail!("{file}: spikes flash at a time: choose one with --time");
+    }
+    let times = times::times(args)?.unwrap_or_else(|| vec![replay.time.start]);
+    let range = match args.range {
+        Some(range) => range,
+        None => {
+            let times = times.iter().copied();
+            replay.range_at(times, &|_| true).map_err(told)?
+        }
+    };
+    let colouring = replay.colouring(range, paint);
+    let film = Some(Film {
+        replay,
+        times,
+        range,
+    });
+    let mut coloured = Coloured { colouring, film };
+    let (table, legend) = coloured.picture(0)?;
+    (coloured.colouring.table, coloured.colouring.legend) = (table, legend);
+    Ok(coloured)
+}
+
+/// The whole message is the error's own: its source would be told twice.
+fn told(error: impl std::fmt::Display) -> anyhow::Error {
+    anyhow::anyhow!("{error}")
+}
+
+fn stem(file: &str) -> String {
+    let stem = Path::new(file).file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
 }
 
 fn by(what: ColorBy) -> ColourBy {

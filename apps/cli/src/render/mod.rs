@@ -5,20 +5,19 @@
 //! ```
 
 pub(crate) mod args;
-mod by_node;
 mod cells;
 mod colouring;
 mod maker;
 mod places;
+mod shown;
 mod sight;
 mod stats;
-mod values;
+mod times;
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use neurotess::colouring::Colouring;
 use neurotess::render::{
     Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, PictureOptions,
     Placement, PngWriter, Studio,
@@ -30,6 +29,7 @@ use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use args::{ColorBy, Fit, RenderArgs};
 use cells::Cell;
+use colouring::Coloured;
 use maker::Maker;
 use places::Cast;
 use stats::{Stage, Stages, Stats};
@@ -76,13 +76,13 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
     let stand: Vec<usize> = places.iter().map(|&(cell, _)| cell).collect();
-    let colouring = colouring::colouring(&cells, shown.as_ref(), &stand, args, reporter)?;
-    let (overlay, cameras) = overlay(args, &colouring, cameras, &balls);
+    let coloured = colouring::coloured(&cells, shown.as_ref(), &stand, args, reporter)?;
+    let (overlay, cameras) = overlay(args, &coloured, cameras, &balls);
     let sitting = Sitting {
         args,
         cells: &cells,
         places: &places,
-        colouring: &colouring,
+        coloured: &coloured,
         cameras: &cameras,
         balls: &balls,
         overlay: &overlay,
@@ -111,7 +111,7 @@ fn draw_session(
     reporter: &Reporter,
 ) -> anyhow::Result<()> {
     let [out] = files else {
-        return usage("a session is one picture: leave out --turntable");
+        return usage("a session is one picture: leave out --turntable and times");
     };
     let picture = neurotess_viewer::save::PictureFile {
         out: out.clone(),
@@ -141,6 +141,9 @@ fn check_value(args: &RenderArgs) -> anyhow::Result<()> {
         (Some(other), Some(_)) if other != ColorBy::Value => {
             usage("a --report gives values: leave out --color-by")
         }
+        _ if args.range.is_some() && !args.is_number() => {
+            usage("--range is for numbers: use --color-by order, radius or depth, or a --report")
+        }
         _ => Ok(()),
     }
 }
@@ -157,7 +160,7 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
             out.display()
         ));
     };
-    let Some(frames) = args.series() else {
+    let Some(frames) = args.series()? else {
         return Ok(vec![out.clone()]);
     };
     let stem = stem.to_string_lossy();
@@ -169,12 +172,12 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
 /// room for it if it can.
 fn overlay(
     args: &RenderArgs,
-    colouring: &Colouring,
+    coloured: &Coloured,
     mut cameras: Vec<Camera>,
     balls: &[Ball],
 ) -> (Overlay, Vec<Camera>) {
     let options = OverlayOptions {
-        legend: (!args.no_legend).then(|| colouring.legend.clone()),
+        legend: (!args.no_legend).then(|| coloured.colouring.legend.clone()),
         scale_bar: args.scale_bar.map(|bar| match bar {
             Fit::Auto => 0.0,
             Fit::Length(length) => length,
@@ -197,7 +200,7 @@ struct Sitting<'a> {
     args: &'a RenderArgs,
     cells: &'a [&'a Cell],
     places: &'a [(usize, Placement)],
-    colouring: &'a Colouring,
+    coloured: &'a Coloured,
     cameras: &'a [Camera],
     balls: &'a [Ball],
     overlay: &'a Overlay,
@@ -213,7 +216,7 @@ fn draw(
     let Sitting {
         args,
         places,
-        colouring,
+        coloured,
         cameras,
         balls,
         overlay,
@@ -233,16 +236,17 @@ fn draw(
     stages.end(Stage::Upload);
     let mut stats = Stats::new(gpu, places.len());
     let progress = Progress::new(reporter, files.len(), "pictures");
-    for (camera, file) in cameras.iter().zip(files) {
+    for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
         let near = camera.near(balls);
+        let (table, legend) = coloured.picture(number)?;
+        let overlay = overlay.relabelled(&legend);
         let cost = write(file, args, |take| {
             let lay = |top: u32, mut band: Image| {
                 overlay.lay_on(top, &mut band);
                 take(&band)
             };
-            let table = &colouring.table;
             studio
-                .paint(gpu, maker.as_maker(), camera, near, table, &options, lay)
+                .paint(gpu, maker.as_maker(), camera, near, &table, &options, lay)
                 .map_err(|e| anyhow::anyhow!("{e}"))
         })?;
         stats.add(&cost, maker.made(gpu, camera, near, &options)?);

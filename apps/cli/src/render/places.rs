@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::args::RenderArgs;
 use super::cells::{self, Cell};
-use super::values::Shown;
+use super::shown::Shown;
 use crate::circuit;
 use crate::info::Entry;
 use crate::inputs::{Input, Inputs};

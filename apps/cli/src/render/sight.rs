@@ -19,8 +19,11 @@ pub(crate) fn cameras(args: &RenderArgs, balls: &[Ball]) -> anyhow::Result<Vec<C
         Ok(camera) => camera,
         Err(e) => return usage(e.to_string()),
     };
-    let frames = args.series().unwrap_or(1);
-    let turn = std::f64::consts::TAU / f64::from(frames);
+    let frames = args.series()?.unwrap_or(1);
+    let turn = match args.turntable {
+        true => std::f64::consts::TAU / f64::from(frames),
+        false => 0.0,
+    };
     Ok((0..frames)
         .map(|frame| first.turned(turn * f64::from(frame)))
         .collect())
