@@ -17,6 +17,7 @@ use crate::rings::RingArgs;
   neurotess view cell.swc
   neurotess view cells/ other.asc
   neurotess view circuit/circuit_config.json
+  neurotess view circuit/ --report circuit/reports/voltage.h5
   neurotess view yesterday.neurotess")]
 pub(crate) struct ViewArgs {
     /// Morphology files, folders (searched recursively), globs, circuits, or a session that the window
@@ -25,6 +26,9 @@ pub(crate) struct ViewArgs {
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) rings: RingArgs,
+    /// Values of a simulation of the circuit: a SONATA report, or a file of spikes
+    #[arg(long, value_name = "FILE", requires = "inputs")]
+    pub(crate) report: Option<PathBuf>,
     /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -51,6 +55,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
             rings: args.rings.positions(),
             ..SomaEdit::default()
         },
+        report: args.report.clone(),
         adapter: args.adapter.clone(),
     })?;
     Ok(())

@@ -39,7 +39,7 @@ impl FilePanel {
                 let name = format!("session.{}", session::EXTENSION);
                 folder.join(name).display().to_string()
             }
-            (Ask::Open, _) => String::new(),
+            (Ask::Open | Ask::Report, _) => String::new(),
         };
         let mut panel = Self {
             ask,
@@ -87,6 +87,7 @@ impl FilePanel {
             Ask::Open => {
                 is_folder || sources::is_readable(path) || session::is_session(path) || json
             }
+            Ask::Report => is_folder || sources::is_hdf5(path),
             Ask::SaveSession => is_folder || session::is_session(path),
         };
         (wanted && !name.starts_with('.')).then(|| Entry {
@@ -101,6 +102,7 @@ impl FilePanel {
     pub fn show(&mut self, ctx: &egui::Context, open: &mut bool) -> Option<Command> {
         let title = match self.ask {
             Ask::Open => "Open tracings, folders, circuits or a session",
+            Ask::Report => "Open a report or spikes of a simulation",
             Ask::SaveSession => "Save the session",
         };
         let mut done = None;
@@ -210,7 +212,7 @@ impl FilePanel {
             let many = self.chosen.len();
             let name = match (self.ask, many) {
                 (Ask::SaveSession, _) => "Save".to_owned(),
-                (Ask::Open, 0 | 1) => "Open".to_owned(),
+                (Ask::Open, 0 | 1) | (Ask::Report, _) => "Open".to_owned(),
                 (Ask::Open, many) => format!("Open {many}"),
             };
             let typed = PathBuf::from(self.typed.trim());
@@ -222,7 +224,8 @@ impl FilePanel {
                 } else {
                     vec![self.whole(&typed)]
                 };
-                match paths.iter().find(|p| self.ask == Ask::Open && !p.exists()) {
+                let saves = self.ask == Ask::SaveSession;
+                match paths.iter().find(|p| !saves && !p.exists()) {
                     Some(missing) => self.said = format!("{} is not there", missing.display()),
                     None => *done = Some(self.command(paths)),
                 }
@@ -245,6 +248,7 @@ impl FilePanel {
     fn command(&self, mut paths: Vec<PathBuf>) -> Command {
         match self.ask {
             Ask::Open => Command::Open(paths),
+            Ask::Report => Command::SetReport(paths.pop()),
             Ask::SaveSession => {
                 let path = paths.pop().unwrap_or_default();
                 let named = if session::is_session(&path) {

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use neurotess::render::Gpu;
 
+use crate::colours::Wish;
 use crate::document::Neuron;
-use crate::save::{self, PictureFile, Scenery};
+use crate::save::{self, PictureFile, Scenery, Still};
 use crate::scene::{self, Shown};
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::sources;
+use crate::sources::{self, Wanted};
 use crate::state::State;
 use crate::worker::Job;
 
@@ -36,6 +37,16 @@ pub fn draw_session(
     let mut state = State::new(Settings::default());
     let mut drawn = Drawn::default();
     let mut ids = Vec::new();
+    let found = sources::find(&Wanted {
+        circuits: session.circuit.iter().map(|c| c.path.clone()).collect(),
+        ..Wanted::default()
+    });
+    for (file, why) in found.failures {
+        drawn.failures.push((file.display().to_string(), why));
+    }
+    for opened in found.circuits {
+        state.circuits.add(opened);
+    }
     for entry in &session.file {
         let soma = entry.soma.clone().unwrap_or_default();
         ids.push(match sources::load(&entry.path, soma) {
@@ -49,25 +60,34 @@ pub fn draw_session(
     }
     state.document.look = session.look.clone();
     state.document.grid = session.grid;
+    state.document.report = session.report.clone();
+    state.playback.pace = session.playback;
     for entry in &session.neuron {
         if let Some(id) = ids.get(entry.file).copied().flatten() {
-            state.document.neurons.push(Neuron::of_session(id, entry));
+            let node = session.node_of(entry, &state.circuits);
+            state.document.neurons.push(Neuron {
+                node,
+                ..Neuron::of_session(id, entry)
+            });
         }
     }
     drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
-    let scenery = scenery(Arc::new(gpu), &state);
-    save::pictures(&scenery, &[session.view], picture, &Job::new("drawing", 1))?;
+    let scenery = scenery(Arc::new(gpu), &state, &mut drawn);
+    let still = Still {
+        view: session.view,
+        time: Some(session.playback.time),
+    };
+    save::pictures(&scenery, &[still], picture, &Job::new("drawing", 1))?;
     Ok(drawn)
 }
 
-fn scenery(gpu: Arc<Gpu>, state: &State) -> Scenery {
+fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
     let sources = scene::sources(state);
-    let shown = Shown {
-        instances: scene::standing(state, &sources),
-        colouring: Arc::new(scene::colours(&sources, &state.document.look)),
-        sources,
-    };
+    let mut coloured = Wish::new(state, &sources).colours(&sources);
+    drawn.failures.extend(coloured.problem.take());
+    let standing = scene::standing(state, &sources);
+    let shown = Shown::new(sources, standing, coloured);
     Scenery {
         gpu,
         shown,

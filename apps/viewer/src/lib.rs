@@ -12,6 +12,8 @@
 #![forbid(unsafe_code)]
 
 pub mod app;
+pub mod circuits;
+mod colours;
 pub mod command;
 pub mod document;
 mod explorer;
@@ -20,6 +22,8 @@ mod headless;
 pub mod history;
 mod panels;
 pub mod picks;
+pub mod playback;
+mod reader;
 pub mod save;
 mod scene;
 pub mod session;

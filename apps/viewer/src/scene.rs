@@ -3,15 +3,17 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use neurotess::colouring::{self, Colouring, Paint};
+use neurotess::colouring::{Colouring, Replay};
 use neurotess::generate::Generated;
 use neurotess::morphology::Morphology;
 use neurotess::render::{
-    Adaptive, Ball, Clip, DeviceError, FAINT, Gpu, Instance, MARKED, Placement, Refining, Scene,
-    SceneError, Template, TemplateId, Templates, WITHOUT_NEURITES, WITHOUT_SOMA,
+    Adaptive, Ball, Clip, ColourTable, DeviceError, FAINT, Gpu, Instance, Legend, MARKED,
+    Placement, Refining, Scene, SceneError, Template, TemplateId, Templates, WITHOUT_NEURITES,
+    WITHOUT_SOMA,
 };
 use thiserror::Error;
 
+use crate::colours::Coloured;
 use crate::document::{Document, Look, Parts, SourceId};
 use crate::sources::extent;
 use crate::state::State;
@@ -44,7 +46,33 @@ pub(crate) struct ShownSource {
 pub(crate) struct Shown {
     pub(crate) sources: Vec<ShownSource>,
     pub(crate) instances: Vec<Standing>,
+    /// What points say on the device.
     pub(crate) colouring: Arc<Colouring>,
+    /// What that means now.
+    pub(crate) table: ColourTable,
+    pub(crate) legend: Legend,
+    /// A recording, with the range of all its values.
+    pub(crate) replay: Option<(Arc<Replay>, [f32; 2])>,
+}
+
+impl Shown {
+    pub(crate) fn new(
+        sources: Vec<ShownSource>,
+        instances: Vec<Standing>,
+        coloured: Coloured,
+    ) -> Self {
+        let Coloured {
+            colouring, replay, ..
+        } = coloured;
+        Self {
+            sources,
+            instances,
+            table: colouring.table.clone(),
+            legend: colouring.legend.clone(),
+            colouring: Arc::new(colouring),
+            replay,
+        }
+    }
 }
 
 /// A neuron: which source, where, and whether it is drawn.
@@ -85,26 +113,6 @@ pub(crate) fn standing(state: &State, sources: &[ShownSource]) -> Vec<Standing> 
         }
     });
     standing.collect()
-}
-
-/// Colours of all sources.
-pub(crate) fn colours(sources: &[ShownSource], look: &Look) -> Colouring {
-    let cells: Vec<colouring::Cell<'_>> = sources
-        .iter()
-        .map(|s| colouring::Cell {
-            name: &s.name,
-            morphology: &s.morphology,
-            mesh: &s.generated.mesh,
-        })
-        .collect();
-    let background = Some(look.background);
-    let paint = Paint {
-        range: None,
-        palette: look.palette,
-        background,
-        scale: look.colour_map.scale(background),
-    };
-    colouring::colouring(&cells, look.colour_by.in_library(), &paint)
 }
 
 /// Uploads all sources; their numbers are their places.

@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Detail, Look, PlaceFile, SomaEdit};
+use crate::circuits::{self, CircuitId, Circuits};
+use crate::document::{Detail, Look, NodeOf, PlaceFile, SomaEdit};
+use crate::playback::Pace;
+use crate::sources::Wanted;
 use crate::state::State;
 use crate::view::View;
 
@@ -39,12 +42,41 @@ pub struct Session {
     /// Views of a film.
     #[serde(default)]
     pub key_view: Vec<View>,
+    /// The recording whose values can be shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub report: Option<PathBuf>,
+    /// The moment of it.
+    #[serde(default)]
+    pub playback: Pace,
+    /// Circuits that neurons are of.
+    #[serde(default)]
+    pub circuit: Vec<CircuitEntry>,
     /// Tracings.
     #[serde(default)]
     pub file: Vec<FileEntry>,
     /// What is shown of them.
     #[serde(default)]
     pub neuron: Vec<NeuronEntry>,
+}
+
+/// A circuit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitEntry {
+    /// Relative to the session's folder where it can be.
+    pub path: PathBuf,
+}
+
+/// A node of a circuit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NodeEntry {
+    /// Place of the circuit in the list, from 0.
+    pub circuit: usize,
+    /// The population's name.
+    pub population: String,
+    /// Its id there.
+    pub id: u64,
 }
 
 /// A tracing.
@@ -72,6 +104,9 @@ pub struct NeuronEntry {
     /// Selected.
     #[serde(default, skip_serializing_if = "is_false")]
     pub selected: bool,
+    /// What it is in its circuit; nothing: it is of none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<NodeEntry>,
     /// Where it stands; nothing: where it was traced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) place: Option<PlaceFile>,
@@ -102,7 +137,28 @@ impl Session {
                 soma: (soma != SomaEdit::default()).then_some(soma),
             })
         });
+        let mut circuits: Vec<CircuitId> = document
+            .neurons
+            .iter()
+            .filter_map(|neuron| Some(neuron.node?.circuit))
+            .collect();
+        circuits.sort_unstable();
+        circuits.dedup();
+        let node = |of: NodeOf| {
+            let population = &state.circuits.get(of.circuit)?.populations;
+            let population = population.get(of.node.population as usize)?;
+            Some(NodeEntry {
+                circuit: circuits.binary_search(&of.circuit).ok()?,
+                population: population.name.clone(),
+                id: *population.ids.get(of.node.row as usize)?,
+            })
+        };
+        let circuit = circuits.iter().filter_map(|&id| {
+            let path = relative(state.circuits.file(id)?, folder);
+            Some(CircuitEntry { path })
+        });
         let neuron = document.neurons.iter().map(|neuron| NeuronEntry {
+            node: neuron.node.and_then(node),
             name: neuron.name.clone(),
             file: used.binary_search(&neuron.source).unwrap_or(0),
             hidden: neuron.hidden,
@@ -117,6 +173,9 @@ impl Session {
             look: document.look.clone(),
             detail: document.detail,
             key_view: state.key_views.clone(),
+            report: document.report.as_ref().map(|file| relative(file, folder)),
+            playback: state.playback.pace,
+            circuit: circuit.collect(),
             file: file.collect(),
             neuron: neuron.collect(),
         }
@@ -144,9 +203,11 @@ impl Session {
             ));
         }
         let folder = path.parent().unwrap_or(Path::new(""));
-        for entry in &mut session.file {
-            if entry.path.is_relative() && !entry.path.to_string_lossy().starts_with("sample:") {
-                entry.path = folder.join(&entry.path);
+        let files = session.file.iter_mut().map(|entry| &mut entry.path);
+        let circuits = session.circuit.iter_mut().map(|entry| &mut entry.path);
+        for path in files.chain(circuits).chain(&mut session.report) {
+            if path.is_relative() && !path.to_string_lossy().starts_with("sample:") {
+                *path = folder.join(&*path);
             }
         }
         if let Some(neuron) = session.neuron.iter().find(|n| n.file >= session.file.len()) {
@@ -158,6 +219,30 @@ impl Session {
             ));
         }
         Ok(session)
+    }
+
+    /// What is to be read for it.
+    pub(crate) fn wanted(&self) -> Wanted {
+        let files = &self.file;
+        Wanted {
+            paths: files.iter().map(|f| f.path.clone()).collect(),
+            circuits: self.circuit.iter().map(|c| c.path.clone()).collect(),
+            somata: files
+                .iter()
+                .filter_map(|f| Some((f.path.clone(), f.soma.clone()?)))
+                .collect(),
+            usual: SomaEdit::default(),
+        }
+    }
+
+    /// The node that a neuron is, if its circuit is open.
+    pub(crate) fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<NodeOf> {
+        let said = entry.node.as_ref()?;
+        let file = self.circuit.get(said.circuit)?.path.as_path();
+        let mut ids = open.iter().map(|(id, _)| id);
+        let circuit = ids.find(|&id| open.file(id) == Some(file))?;
+        let node = circuits::node(open.get(circuit)?, &said.population, said.id)?;
+        Some(NodeOf { circuit, node })
     }
 
     /// Writes it.

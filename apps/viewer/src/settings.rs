@@ -8,7 +8,7 @@ use directories::ProjectDirs;
 use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Detail, Look};
+use crate::document::{ColourBy, Detail, Look};
 
 /// Most files in the recent list.
 const RECENT: usize = 12;
@@ -67,6 +67,11 @@ impl Settings {
                 // A cut of another scene would hide half of this one.
                 settings.look.cut = None;
                 settings.look.faint_others = false;
+                // So would colours of another circuit be.
+                settings.look.range = None;
+                if !settings.look.colour_by.is_of_tracings() {
+                    settings.look.colour_by = ColourBy::default();
+                }
                 (settings, None)
             }
             Err(e) => (

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use glam::DVec3;
-use neurotess::circuit::{Circuit, is_circuit, soma_center};
+use neurotess::circuit::{Circuit, is_circuit, is_recording, soma_center};
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{Generated, generate};
 use neurotess::morphology::{Measures, Morphology, shape};
@@ -14,6 +14,7 @@ use neurotess::render::{Ball, Placement, bounds};
 use neurotess::synth::{self, Kind};
 use walkdir::WalkDir;
 
+use crate::circuits::Opened;
 use crate::document::{SomaEdit, SourceId};
 
 /// Before the name of a built-in sample.
@@ -100,10 +101,25 @@ impl Sources {
 pub struct Standing {
     /// Among the files that were found.
     pub file: usize,
+    /// Among the circuits that were found.
+    pub circuit: usize,
     /// Where.
     pub position: DVec3,
     /// The instance, for its place once the soma is known.
     pub instance: neurotess::circuit::Instance,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// Files, folders, circuits with their cells.
+    pub paths: Vec<PathBuf>,
+    /// Circuits whose cells are among the files.
+    pub circuits: Vec<PathBuf>,
+    /// How somata are made of files where it is not as usual.
+    pub somata: Vec<(PathBuf, SomaEdit)>,
+    /// How those of the others are made.
+    pub usual: SomaEdit,
 }
 
 /// What is to be read.
@@ -111,6 +127,10 @@ pub struct Standing {
 pub struct Found {
     /// Files, each once.
     pub files: Vec<PathBuf>,
+    /// Circuits.
+    pub circuits: Vec<Opened>,
+    /// Reports and spikes.
+    pub reports: Vec<PathBuf>,
     /// Cells of circuits; files that no cell stands for are shown where they were traced.
     pub standing: Vec<Standing>,
     /// What could not be searched or opened: file and reason.
@@ -118,15 +138,23 @@ pub struct Found {
 }
 
 /// Files below folders, cells of circuits.
-pub fn find(paths: &[PathBuf]) -> Found {
+pub fn find(wanted: &Wanted) -> Found {
     let mut found = Found::default();
-    for path in paths {
+    for path in &wanted.circuits {
+        match Circuit::open(path) {
+            Ok(circuit) => found.circuits.push((path.clone(), Arc::new(circuit))),
+            Err(e) => found.failures.push((path.clone(), e.to_string())),
+        }
+    }
+    for path in &wanted.paths {
         if is_sample(path) {
             found.files.push(path.clone());
         } else if is_circuit(path) {
             find_circuit(path, &mut found);
         } else if path.is_dir() {
             find_folder(path, &mut found);
+        } else if is_hdf5(path) && is_recording(path) {
+            found.reports.push(path.clone());
         } else {
             found.files.push(path.clone());
         }
@@ -164,6 +192,12 @@ pub fn is_readable(path: &Path) -> bool {
     !name.as_encoded_bytes().starts_with(b".") && known.any(|k| extension.eq_ignore_ascii_case(k))
 }
 
+/// Whether a file is named as HDF5 is: a morphology, a report, spikes.
+pub fn is_hdf5(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    extension.eq_ignore_ascii_case("h5") || extension.eq_ignore_ascii_case("hdf5")
+}
+
 fn find_circuit(path: &Path, found: &mut Found) {
     let circuit = match Circuit::open(path) {
         Ok(circuit) => circuit,
@@ -188,6 +222,7 @@ fn find_circuit(path: &Path, found: &mut Found) {
         found.failures.push((path.to_path_buf(), why));
     }
     let mut files = std::collections::BTreeMap::new();
+    let number = found.circuits.len();
     for instance in instances {
         let template = &circuit.templates[instance.template.index()].path;
         let next = found.files.len();
@@ -197,10 +232,12 @@ fn find_circuit(path: &Path, found: &mut Found) {
         });
         found.standing.push(Standing {
             file,
+            circuit: number,
             position: instance.position,
             instance,
         });
     }
+    found.circuits.push((path.to_path_buf(), Arc::new(circuit)));
 }
 
 impl Standing {
@@ -350,12 +387,16 @@ mod tests {
     fn folders_are_searched_and_empty_ones_told_of() {
         let folder = tempfile::tempdir().expect("a folder");
         let root = folder.path();
-        let empty = find(&[root.to_path_buf()]);
+        let wanted = Wanted {
+            paths: vec![root.to_path_buf()],
+            ..Wanted::default()
+        };
+        let empty = find(&wanted);
         assert_eq!((empty.files.len(), empty.failures.len()), (0, 1));
         for name in ["b.swc", "a.SWC", "note.txt", ".c.swc"] {
             fs::write(root.join(name), "1 1 0 0 0 5 -1\n").expect("written");
         }
-        assert_eq!(find(&[root.to_path_buf()]).files.len(), 2);
+        assert_eq!(find(&wanted).files.len(), 2);
     }
 
     #[test]

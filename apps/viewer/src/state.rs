@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use neurotess::render::{Ball, Placement};
 
+use crate::circuits::Circuits;
 use crate::command::{Ask, Command, Tab, Toggles};
 use crate::document::{self, Document, SourceId};
 use crate::files::FilePanel;
 use crate::history::History;
+use crate::playback::Playback;
 use crate::save::SaveForm;
 use crate::settings::Settings;
 use crate::sources::{Source, Sources, extent};
@@ -80,6 +82,10 @@ pub struct State {
     pub history: History,
     /// Open tracings.
     pub sources: Sources,
+    /// Open circuits.
+    pub circuits: Circuits,
+    /// The recording's time, and how that goes on.
+    pub playback: Playback,
     /// From where one looks.
     pub view: View,
     /// Views of a film.
@@ -170,6 +176,8 @@ impl State {
             },
             history: History::default(),
             sources: Sources::default(),
+            circuits: Circuits::default(),
+            playback: Playback::default(),
             view: View::default(),
             key_views: Vec::new(),
             frozen: None,
@@ -201,6 +209,7 @@ impl State {
             grid: self.document.grid,
             frozen: self.frozen.is_some(),
             dark: self.settings.dark,
+            playing: self.playback.playing,
         }
     }
 
@@ -267,6 +276,10 @@ impl State {
                 self.settings.y_down = y_down;
                 self.run(Command::Home);
             }
+            Command::TogglePlay => self.playback.play(!self.playback.playing),
+            Command::Seek(time) => self.playback.seek(time),
+            Command::StepTime(frames) => self.playback.step(frames),
+            Command::SetPace(pace) => self.playback.pace = pace,
             Command::SetFrozen(frozen) => self.frozen = frozen.then_some(self.view),
             Command::Show(tab) => (self.tab, self.panels) = (tab, true),
             Command::ToggleKeys => self.toggle(Over::Keys),

@@ -20,6 +20,8 @@ pub struct Options {
     pub inputs: Vec<PathBuf>,
     /// How their somata are made, but those of a session.
     pub soma: SomaEdit,
+    /// A report or spikes to show on them.
+    pub report: Option<PathBuf>,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
 }
@@ -133,6 +135,9 @@ impl Window {
         }
         if !options.inputs.is_empty() {
             viewer.state.run(Command::Open(options.inputs));
+        }
+        if options.report.is_some() {
+            viewer.state.run(Command::SetReport(options.report));
         }
         Ok(Self { viewer, fatal })
     }

@@ -13,7 +13,7 @@ use neurotess::generate::{Generated, generate};
 use neurotess::morphology::Morphology;
 
 use crate::document::{SomaEdit, SourceId};
-use crate::sources::{self, Found, Source, Stale};
+use crate::sources::{self, Found, Source, Stale, Wanted};
 
 /// What work gives.
 #[derive(Debug)]
@@ -131,13 +131,12 @@ impl Worker {
         });
     }
 
-    /// Reads files, folders and circuits on all cores. `somata` are those of single files, `usual` that
-    /// of the others.
-    pub fn load(&mut self, paths: Vec<PathBuf>, somata: Vec<(PathBuf, SomaEdit)>, usual: SomaEdit) {
+    /// Reads files, folders and circuits on all cores.
+    pub fn load(&mut self, wanted: Wanted) {
         let job = Job::new("reading", 0);
         self.loading = Some(job.clone());
         self.start(move |send| {
-            let found = sources::find(&paths);
+            let found = sources::find(&wanted);
             let files = found.files.clone();
             job.all.store(files.len(), Ordering::Relaxed);
             send(Message::Found(Box::new(found)));
@@ -147,7 +146,7 @@ impl Worker {
             std::thread::scope(|scope| {
                 for _ in 0..cores.min(files.len()) {
                     let (sender, next, files, job) = (sender.clone(), &next, &files, &job);
-                    let (somata, usual) = (&somata, &usual);
+                    let (somata, usual) = (&wanted.somata, &wanted.usual);
                     scope.spawn(move || {
                         loop {
                             let index = next.fetch_add(1, Ordering::Relaxed);

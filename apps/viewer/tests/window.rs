@@ -4,107 +4,25 @@
 //! renews them. They are compared on software Vulkan: a pixel may be off by 0.8 of dify's measure, and
 //! 0.5 % of the pixels more than that, for times that are written out and for rasterisers.
 
+mod common;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
-use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
-use egui_kittest::{Harness, SnapshotOptions};
-use egui_wgpu::RendererOptions;
-use neurotess::render::{Side, adapters};
+use neurotess::render::Side;
 use neurotess::synth::Kind;
+use neurotess_viewer::Command;
 use neurotess_viewer::command::{Ask, Tab};
 use neurotess_viewer::document::{Criterion, Cut, Detail, Look, Method, SomaEdit, SourceId};
 use neurotess_viewer::save::{Fineness, MeshOptions, PictureFile};
-use neurotess_viewer::settings::Settings;
 use neurotess_viewer::sources::Stale;
 use neurotess_viewer::state::{Part, State};
 use neurotess_viewer::view::View;
-use neurotess_viewer::{Command, Viewer, wgpu_setup};
 
-const SIZE: Vec2 = Vec2::new(1180.0, 740.0);
-
-type Window = Harness<'static, Option<Viewer>>;
-
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-/// The window on a software adapter if there is one, or nothing with a word about it.
-fn window() -> Option<Window> {
-    let found = adapters();
-    let Some(adapter) = found.iter().find(|a| a.software).or(found.first()) else {
-        println!("SKIPPED: no graphics adapter here");
-        return None;
-    };
-    let setup = wgpu_setup(Some(adapter.name.clone()), Arc::default());
-    let render = create_render_state(setup, RendererOptions::PREDICTABLE);
-    let ours = render.clone();
-    let settings = Settings {
-        folder: PathBuf::from("/"),
-        ..Settings::default()
-    };
-    let harness = Harness::builder()
-        .with_size(SIZE)
-        .renderer(WgpuTestRenderer::from_render_state(render))
-        .build_ui_state(
-            move |ui, viewer: &mut Option<Viewer>| {
-                let viewer = viewer.get_or_insert_with(|| {
-                    let made = Viewer::new(ui.ctx(), ours.clone(), settings.clone());
-                    made.expect("a viewer").without_motion()
-                });
-                viewer.ui(ui);
-            },
-            None,
-        );
-    Some(harness)
-}
-
-fn viewer(window: &mut Window) -> &mut Viewer {
-    window.state_mut().as_mut().expect("begun")
-}
-
-fn state(window: &mut Window) -> &mut State {
-    &mut viewer(window).state
-}
-
-/// Frames until nothing is under way.
-fn settle(window: &mut Window) {
-    let begun = Instant::now();
-    let mut quiet = 0;
-    while quiet < 3 {
-        assert!(begun.elapsed() < Duration::from_secs(120), "never settles");
-        window.step();
-        quiet = if viewer(window).is_settled() {
-            quiet + 1
-        } else {
-            0
-        };
-        std::thread::sleep(Duration::from_millis(3));
-    }
-}
-
-fn run(window: &mut Window, command: Command) {
-    state(window).run(command);
-    settle(window);
-}
-
-fn with_samples(kinds: &[Kind]) -> Option<Window> {
-    let mut window = window()?;
-    window.step();
-    for &kind in kinds {
-        run(&mut window, Command::OpenSample(kind));
-    }
-    Some(window)
-}
-
-/// A picture of the window beside the one that is kept.
-fn snapshot(window: &mut Window, name: &str) {
-    let options = SnapshotOptions::new()
-        .threshold(0.8)
-        .max_failed_pixels((SIZE.x * SIZE.y * 0.005) as usize);
-    window.snapshot_options(name, &options);
-}
+use common::{SIZE, Window, run, settle, snapshot, state, viewer, window, with_samples};
 
 /// Middle of the picture.
 fn middle(window: &mut Window) -> Pos2 {

@@ -78,7 +78,7 @@ pub use node_sets::NodeSets;
 pub use open::is_circuit;
 pub use report::{
     Compartment, Place, Recording, Report, ReportKind, ReportPopulation, SectionOrder,
-    SpikePopulation, Spikes, TimeAxis,
+    SpikePopulation, Spikes, TimeAxis, is_recording,
 };
 pub use scene::color;
 pub use select::Selection;

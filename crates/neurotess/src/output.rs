@@ -114,6 +114,11 @@ impl Output {
         })
     }
 
+    /// The file that another program writes to, before it has its name.
+    pub fn part(&self) -> &Path {
+        &self.part
+    }
+
     /// Where to write.
     pub fn file(&mut self) -> &mut File {
         self.file.as_mut().expect("open until it is finished")

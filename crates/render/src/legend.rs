@@ -49,6 +49,11 @@ impl Legend {
         }
     }
 
+    /// Whether it has a scale of numbers.
+    pub fn is_bar(&self) -> bool {
+        matches!(self.kind, Kind::Bar { .. })
+    }
+
     /// With a line below: the time of a picture.
     #[must_use]
     pub fn noted(mut self, note: &str) -> Self {

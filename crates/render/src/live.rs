@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use crate::camera::Camera;
-use crate::colour::{ColourTable, Rgb, linear};
+use crate::colour::{ColourTable, InstanceValues, Rgb, linear};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher, Last};
@@ -69,6 +69,8 @@ pub struct Live {
     shows_draft: bool,
     outlines: Outlines,
     table: ColourTable,
+    /// Counts tables, so that each painter gets each once.
+    tables: u64,
     states: Vec<u32>,
     under_way: Option<UnderWay>,
     clock: Arc<Clock>,
@@ -122,6 +124,7 @@ impl Live {
             shows_draft: false,
             outlines: Outlines::default(),
             table: ColourTable::default(),
+            tables: 1,
             states: Vec::new(),
             under_way: None,
             clock: Arc::default(),
@@ -131,6 +134,13 @@ impl Live {
     /// Colours from the next picture on.
     pub fn set_colours(&mut self, table: ColourTable) {
         self.table = table;
+        self.tables += 1;
+    }
+
+    /// Other values of instances from the next picture on; the colours stay.
+    pub fn set_values(&mut self, values: InstanceValues) {
+        self.table.values = values;
+        self.tables += 1;
     }
 
     /// States of instances from the next picture on, in the scene's order: [`MARKED`](crate::MARKED) and
@@ -333,7 +343,10 @@ impl Live {
             }
         };
         let painter = &mut self.painters[place];
-        painter.set_table(gpu, &self.table);
+        if painter.holds != self.tables {
+            painter.set_table(gpu, &self.table);
+            painter.holds = self.tables;
+        }
         painter.set_states(gpu, &self.states);
         if !self.finishers.iter().any(|(n, _)| *n == samples) {
             let finisher = Finisher::new(gpu, samples, Last::Accumulate);

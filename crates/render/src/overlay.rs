@@ -10,7 +10,7 @@ use crate::legend::{Legend, nice_length, scale_bar};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlay {
     pieces: Vec<(i64, i64, Image)>,
-    labelled: Option<Labelled>,
+    kept: Option<Kept>,
     /// Whether the legend found no place.
     pub legend_left_out: bool,
     /// Where the legend covers something: the share of the picture's width, on the left (negative)
@@ -18,14 +18,16 @@ pub struct Overlay {
     pub covering: Option<f64>,
 }
 
-/// Where the legend is: the first of the pieces.
+/// What pictures of a series have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Labelled {
-    pieces: usize,
-    corner: usize,
+struct Kept {
     size: [u32; 2],
     line: f32,
     background: Option<Rgb>,
+    /// Corner of the legend, and whether it covers something.
+    legend: Option<(usize, bool)>,
+    /// Corner of the scale bar and its length (µm), 0: what fits.
+    bar: Option<(usize, f64)>,
 }
 
 /// What to write into the corners.
@@ -55,14 +57,19 @@ impl Overlay {
         let line = (LINE * height.min(width)).max(9.0);
         let ink = ink(options.background);
         let seen = Seen::new(size, cameras, balls);
-        let mut taken = None;
+        let mut kept = Kept {
+            size,
+            line,
+            background: options.background,
+            legend: None,
+            bar: None,
+        };
         if let Some(legend) = &options.legend {
             let image = legend.draw(line, ink);
             let fits = (image.width as f32) < 0.7 * width && (image.height as f32) < 0.9 * height;
             if fits && image.width > 2 {
                 let (corner, count) = seen.emptiest(&image, line, &[0, 1, 2, 3]);
-                taken = Some(corner);
-                let [x, y] = place(corner, size, &image, line);
+                kept.legend = Some((corner, count > 0));
                 if count > 0 {
                     let share = f64::from((image.width as f32 + 1.5 * line) / width);
                     overlay.covering = Some(if corner.is_multiple_of(2) {
@@ -70,50 +77,31 @@ impl Overlay {
                     } else {
                         share
                     });
-                    if let Some(background) = options.background {
-                        overlay.pieces.push((x, y, panel(&image, background)));
-                    }
                 }
-                overlay.pieces.push((x, y, image));
-                overlay.labelled = Some(Labelled {
-                    pieces: overlay.pieces.len(),
-                    corner,
-                    size,
-                    line,
-                    background: options.background,
-                });
             } else {
                 overlay.legend_left_out = image.width > 2;
             }
         }
         if let (Some(length), Some(camera)) = (options.scale_bar, cameras.first()) {
-            let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(camera.target());
-            let length = match length {
-                0.0 => nice_length(0.2 * f64::from(size[0]) * pixel),
-                length => length,
-            };
-            let image = scale_bar(length, (length / pixel) as f32, line, ink);
+            let taken = kept.legend.map(|(corner, _)| corner);
+            let image = bar(camera, length, size, line, ink);
             let corners: Vec<usize> = [3, 2].into_iter().filter(|&c| Some(c) != taken).collect();
             let (corner, _) = seen.emptiest(&image, line, &corners);
-            let [x, y] = place(corner, size, &image, line);
-            overlay.pieces.push((x, y, image));
+            kept.bar = Some((corner, length));
         }
+        overlay.kept = Some(kept);
+        let camera = cameras.first();
+        overlay.pieces = pieces(&kept, options.legend.as_ref(), camera);
         overlay
     }
 
-    /// The same with another legend in the same corner: that of the next picture of a series.
+    /// The same for another picture of a series: its legend and scale bar, in the same corners.
     #[must_use]
-    pub fn relabelled(&self, legend: &Legend) -> Self {
+    pub fn again(&self, legend: Option<&Legend>, camera: &Camera) -> Self {
         let mut overlay = self.clone();
-        let Some(label) = overlay.labelled else {
-            return overlay;
-        };
-        let image = legend.draw(label.line, ink(label.background));
-        let [x, y] = place(label.corner, label.size, &image, label.line);
-        let behind = label.background.filter(|_| label.pieces == 2);
-        let behind = behind.map(|background| (x, y, panel(&image, background)));
-        let pieces = behind.into_iter().chain([(x, y, image)]);
-        overlay.pieces.splice(..label.pieces, pieces);
+        if let Some(kept) = &self.kept {
+            overlay.pieces = pieces(kept, legend, Some(camera));
+        }
         overlay
     }
 
@@ -123,6 +111,41 @@ impl Overlay {
             band.lay(*x, y - i64::from(top), image);
         }
     }
+}
+
+fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<(i64, i64, Image)> {
+    let Kept {
+        size,
+        line,
+        background,
+        ..
+    } = *kept;
+    let ink = ink(background);
+    let mut pieces = Vec::new();
+    if let (Some((corner, covers)), Some(legend)) = (kept.legend, legend) {
+        let image = legend.draw(line, ink);
+        let [x, y] = place(corner, size, &image, line);
+        if let Some(background) = background.filter(|_| covers) {
+            pieces.push((x, y, panel(&image, background)));
+        }
+        pieces.push((x, y, image));
+    }
+    if let (Some((corner, length)), Some(camera)) = (kept.bar, camera) {
+        let image = bar(camera, length, size, line, ink);
+        let [x, y] = place(corner, size, &image, line);
+        pieces.push((x, y, image));
+    }
+    pieces
+}
+
+/// A scale bar of this length (µm), 0: what fits.
+fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Image {
+    let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(camera.target());
+    let length = match length {
+        0.0 => nice_length(0.2 * f64::from(size[0]) * pixel),
+        length => length,
+    };
+    scale_bar(length, (length / pixel) as f32, line, ink)
 }
 
 /// Black on light, white on dark; black on nothing.

@@ -75,6 +75,8 @@ pub(crate) struct Painter {
     table: wgpu::Buffer,
     states: wgpu::Buffer,
     pub(crate) sizes: TableSizes,
+    /// Number of the table that it holds, where somebody counts them.
+    pub(crate) holds: u64,
     samples: u32,
     targets: Option<Targets>,
     pub(crate) timer: Timer,
@@ -102,6 +104,7 @@ impl Painter {
             table: make(gpu, "colours", 16, storage),
             states: make(gpu, "states", 16, storage),
             sizes: TableSizes::default(),
+            holds: 0,
             samples,
             targets: None,
             timer: Timer::new(gpu),

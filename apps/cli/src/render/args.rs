@@ -10,8 +10,8 @@ use neurotess::render::{ColourMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
 use super::times::{MOST, Time, times};
 use crate::args::{SomaArg, Types};
 use crate::circuit::CellArgs;
-use crate::rings::RingArgs;
 use crate::report::usage;
+use crate::rings::RingArgs;
 
 /// `neurotess render`
 #[derive(Args, Debug)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use neurotess::colouring::{self, Cell, ColourBy, Colouring, Paint, Replay, by_attribute};
+use neurotess::colouring::{self, Cell, ColourBy, Colouring, DECAY, Paint, Replay, by_attribute};
 use neurotess::render::{ColourTable, Legend};
 
 use super::args::{ColorBy, RenderArgs};
@@ -34,7 +34,7 @@ impl Coloured {
         let Some((film, time)) = self.film.as_ref().and_then(|f| Some((f, time(f)?))) else {
             return Ok((table.clone(), legend.clone()));
         };
-        let moment = film.replay.at(time, &|_| true).map_err(told)?;
+        let moment = film.replay.at(time, DECAY, &|_| true).map_err(told)?;
         let table = ColourTable {
             scale: table.scale.clone(),
             categories: table.categories.clone(),
@@ -103,9 +103,7 @@ fn of_circuit(
             let colouring = by_attribute(cells, &neurons, attribute, paint);
             colouring.map(Some).map_err(named)
         }
-        (None, Some(ColorBy::Neuron)) => {
-            Ok(Some(colouring::each(cells, &shown.names(), paint)))
-        }
+        (None, Some(ColorBy::Neuron)) => Ok(Some(colouring::each(cells, &shown.names(), paint))),
         (None, None) => Ok(colouring::given(cells, &neurons)),
         (None, Some(_)) => Ok(None),
     }

@@ -239,7 +239,7 @@ fn draw(
     for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
         let near = camera.near(balls);
         let (table, legend) = coloured.picture(number)?;
-        let overlay = overlay.relabelled(&legend);
+        let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);
         let cost = write(file, args, |take| {
             let lay = |top: u32, mut band: Image| {
                 overlay.lay_on(top, &mut band);

@@ -70,7 +70,9 @@ pub(crate) fn times(args: &RenderArgs) -> anyhow::Result<Option<Vec<f64>>> {
 pub(crate) fn said(times: &[f64], time: f64) -> String {
     let rounded = |digits: i32| {
         let unit = 10f64.powi(digits);
-        times.iter().all(|t| ((t * unit).round() / unit - t).abs() < 1e-6)
+        times
+            .iter()
+            .all(|t| ((t * unit).round() / unit - t).abs() < 1e-6)
     };
     let digits = (0..6).find(|&digits| rounded(digits)).unwrap_or(6);
     format!("{time:.*} ms", digits as usize)

@@ -3,17 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use super::Viewer;
+use crate::circuits::CircuitId;
 use crate::command::Command;
-use crate::document::{Neuron, SomaEdit, SourceId};
+use crate::document::{Neuron, NodeOf, SourceId};
 use crate::session::{self, Session};
-use crate::sources::{Found, Source, Stale};
-use crate::state::State;
+use crate::sources::{Found, Source, Stale, Wanted};
+use crate::state::{Effect, State};
 
 /// A loading: what was found, and its cells by file.
 #[derive(Default)]
 pub(super) struct Loading {
     found: Found,
     ids: Vec<Option<SourceId>>,
+    circuits: Vec<CircuitId>,
     session: Option<Box<Session>>,
     failed: usize,
     /// Nothing was open before: the camera goes home.
@@ -23,8 +25,7 @@ pub(super) struct Loading {
 impl Viewer {
     pub(super) fn load(&mut self, paths: Vec<PathBuf>) {
         if self.loading.is_some() {
-            self.state
-                .problem("open", "wait until what is being read is there, or stop it");
+            self.waiting.extend(paths);
             return;
         }
         let sessions: Vec<&PathBuf> = paths.iter().filter(|p| session::is_session(p)).collect();
@@ -48,23 +49,24 @@ impl Viewer {
             first: self.state.document.neurons.is_empty(),
             ..Loading::default()
         };
-        let (files, somata) = match session {
+        let wanted = match session {
             Some((file, session)) => {
                 self.take_session(&file, &session);
-                let files: Vec<PathBuf> = session.file.iter().map(|f| f.path.clone()).collect();
-                let somata = session
-                    .file
-                    .iter()
-                    .filter_map(|f| Some((f.path.clone(), f.soma.clone()?)));
-                let somata: Vec<(PathBuf, SomaEdit)> = somata.collect();
+                let wanted = session.wanted();
                 loading.session = Some(Box::new(session));
-                (files, somata)
+                wanted
             }
-            None => (paths, Vec::new()),
+            None => Wanted {
+                paths,
+                ..Wanted::default()
+            },
+        };
+        let wanted = Wanted {
+            usual: std::mem::take(&mut self.soma),
+            ..wanted
         };
         self.loading = Some(loading);
-        let usual = std::mem::take(&mut self.soma);
-        self.worker.load(files, somata, usual);
+        self.worker.load(wanted);
     }
 
     /// All but the cells.
@@ -78,6 +80,8 @@ impl Viewer {
         state.document.look = session.look.clone();
         state.document.detail = session.detail;
         state.document.grid = session.grid;
+        state.document.report = session.report.clone();
+        state.playback.pace = session.playback;
         state.view = session.view;
         state.key_views = session.key_view.clone();
         state.session = Some(file.to_path_buf());
@@ -104,7 +108,18 @@ impl Viewer {
         for (file, why) in &found.failures {
             self.state.problem(file.display().to_string(), why);
         }
+        if let [.., report] = &found.reports[..] {
+            self.state.run(Command::SetReport(Some(report.clone())));
+            self.state.said = format!("{} is shown", report.display());
+            for other in &found.reports[..found.reports.len() - 1] {
+                let why = "one report shows at a time: open it alone";
+                self.state.problem(other.display().to_string(), why);
+            }
+        }
         if let Some(loading) = &mut self.loading {
+            let circuits = found.circuits.iter().cloned();
+            let add = |opened| self.state.circuits.add(opened);
+            loading.circuits = circuits.map(add).collect();
             loading.ids = vec![None; found.files.len()];
             loading.failed += found.failures.len();
             loading.found = found;
@@ -171,7 +186,11 @@ impl Viewer {
                 for entry in &session.neuron {
                     let id = loading.ids.get(entry.file).copied().flatten();
                     if let Some(id) = id {
-                        self.open(Neuron::of_session(id, entry));
+                        let node = session.node_of(entry, &self.state.circuits);
+                        self.open(Neuron {
+                            node,
+                            ..Neuron::of_session(id, entry)
+                        });
                     }
                 }
             }
@@ -182,8 +201,14 @@ impl Viewer {
                         id.and_then(|id| Some((id, self.state.sources.get(id)?)))
                     {
                         let (name, placement) = standing.place(source);
+                        let circuit = loading.circuits.get(standing.circuit);
+                        let node = circuit.map(|&circuit| NodeOf {
+                            circuit,
+                            node: standing.instance.node,
+                        });
                         self.open(Neuron {
                             placement,
+                            node,
                             ..Neuron::new(id, name)
                         });
                     }
@@ -192,6 +217,13 @@ impl Viewer {
                     self.home();
                 }
             }
+        }
+        let waiting = std::mem::take(&mut self.waiting);
+        if !waiting.is_empty() {
+            self.state.effects.push(Effect::Load(waiting));
+        }
+        if loading.found.files.is_empty() && !loading.found.reports.is_empty() {
+            return;
         }
         let read = loading.ids.iter().flatten().count();
         let failed = match loading.failed {

@@ -33,6 +33,8 @@ pub struct Viewer {
     worker: Worker,
     /// A loading: what was found, and its cells by file.
     loading: Option<Loading>,
+    /// What is to be read after it.
+    waiting: Vec<PathBuf>,
     going: Option<(View, View, Instant)>,
     /// What is fatal: the device is lost.
     pub fatal: Option<String>,
@@ -42,6 +44,8 @@ pub struct Viewer {
     smooth: bool,
     /// Somata of what is opened first.
     soma: SomaEdit,
+    /// When the recording's time was looked at last.
+    ticked: Instant,
 }
 
 impl Viewer {
@@ -64,6 +68,7 @@ impl Viewer {
             stage,
             worker: Worker::new(move || waker.request_repaint()),
             loading: None,
+            waiting: Vec::new(),
             going: None,
             fatal: None,
             quits: false,
@@ -71,6 +76,7 @@ impl Viewer {
             remembered: settings,
             smooth: true,
             soma: SomaEdit::default(),
+            ticked: Instant::now(),
         })
     }
 
@@ -106,6 +112,7 @@ impl Viewer {
         }
         self.take_drops(&ctx);
         self.go_on(&ctx);
+        self.tick();
         panels::show(self, ui);
         for command in std::mem::take(&mut self.state.asked) {
             self.state.run(command);
@@ -180,6 +187,13 @@ impl Viewer {
         ctx.request_repaint();
     }
 
+    /// Lets the recording's time go on by the clock.
+    fn tick(&mut self) {
+        let seconds = self.ticked.elapsed().as_secs_f64();
+        self.ticked = Instant::now();
+        self.state.playback.advance(seconds);
+    }
+
     /// Moves the camera by hand.
     pub(crate) fn steer(&mut self, view: View) {
         self.going = None;
@@ -191,6 +205,7 @@ impl Viewer {
             Effect::Load(paths) => self.load(paths),
             Effect::Reload => self.reload(),
             Effect::Cancel => {
+                self.waiting.clear();
                 for job in self.jobs().into_iter().flatten() {
                     job.cancelled
                         .store(true, std::sync::atomic::Ordering::Relaxed);

@@ -5,9 +5,10 @@ use std::path::Path;
 use super::Viewer;
 use crate::command::Command;
 use crate::document::Neuron;
-use crate::save::{self, MeshPlan, Scenery};
+use crate::save::{self, FilmOptions, MeshPlan, Scenery, Still};
 use crate::scene;
 use crate::session::{self, Session};
+use crate::worker::Job;
 
 impl Viewer {
     /// Saves the session before the program ends by itself.
@@ -42,33 +43,53 @@ impl Viewer {
             }
             Command::SavePicture(options) => {
                 self.state.settings.picture_size = options.size;
-                let (scenery, view) = (self.scenery(), self.state.view);
+                let scenery = self.scenery();
+                let still = Still {
+                    view: self.state.view,
+                    time: Some(self.state.playback.pace.time),
+                };
                 self.worker.save("drawing the picture", 1, move |job| {
-                    let files = save::pictures(&scenery, &[view], &options, job)?;
+                    let files = save::pictures(&scenery, &[still], &options, job)?;
                     let file = files.first().map(|f| f.display().to_string());
                     Ok(format!("Saved {}", file.unwrap_or_default()))
                 });
             }
             Command::SaveFilm(film) => {
-                let views = save::film_views(&self.state.key_views, film.frames);
-                let scenery = self.scenery();
-                self.worker
-                    .save("drawing the film", views.len(), move |job| {
-                        let files = save::pictures(&scenery, &views, &film.picture, job)?;
-                        let (count, first) =
-                            (files.len(), files.first().cloned().unwrap_or_default());
-                        let also = match film.video && count > 1 {
-                            true => format!(" and {}", save::video(&first)?.display()),
-                            false => String::new(),
-                        };
-                        Ok(format!(
-                            "Saved {count} pictures from {}{also}",
-                            first.display()
-                        ))
-                    });
+                self.save_film(film);
             }
             _ => {}
         }
+    }
+
+    fn save_film(&mut self, film: FilmOptions) {
+        let state = &self.state;
+        let (keys, now) = (&state.key_views, state.view);
+        let at = Some(state.playback.pace.time);
+        let time = film.time.filter(|_| state.playback.facts.is_some());
+        let stills = save::stills(keys, now, film.frames, time, at);
+        if stills.is_empty() {
+            let why = "keep two views for it (K), or open a report whose time goes on";
+            self.state.problem("film", why);
+            return;
+        }
+        let scenery = self.scenery();
+        let work = move |job: &Job| {
+            let files = save::pictures(&scenery, &stills, &film.picture, job)?;
+            let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
+            let also = match film.video && count > 1 {
+                true => {
+                    let video = save::video(&first, film.picture.replace, job)?;
+                    format!(" and {}", video.display())
+                }
+                false => String::new(),
+            };
+            Ok(format!(
+                "Saved {count} pictures from {}{also}",
+                first.display()
+            ))
+        };
+        let length = save::length(keys.len(), film.frames, time.is_some());
+        self.worker.save("drawing the film", length, work);
     }
 
     fn save_session(&mut self, path: &Path) {

@@ -40,6 +40,12 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
             vec![
                 item("Open…", Some((CTRL, Key::O)), Command::AskFiles(Ask::Open)),
                 item(
+                    "Open report or spikes…",
+                    Some((CTRL_SHIFT, Key::O)),
+                    Command::AskFiles(Ask::Report),
+                ),
+                item("Close the report", None, Command::SetReport(None)),
+                item(
                     "Save session…",
                     Some((CTRL, Key::S)),
                     Command::AskFiles(Ask::SaveSession),
@@ -149,6 +155,21 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::SetFrozen(!now.frozen),
                 ),
                 item(
+                    choose(now.playing, "Play the report", "Stop the report"),
+                    Some((PLAIN, Key::Space)),
+                    Command::TogglePlay,
+                ),
+                item(
+                    "A frame back",
+                    Some((PLAIN, Key::Comma)),
+                    Command::StepTime(-1),
+                ),
+                item(
+                    "A frame on",
+                    Some((PLAIN, Key::Period)),
+                    Command::StepTime(1),
+                ),
+                item(
                     "Keep this view for a film",
                     Some((PLAIN, Key::K)),
                     Command::AddKeyView,
@@ -225,6 +246,8 @@ pub struct Toggles {
     pub frozen: bool,
     /// Dark theme.
     pub dark: bool,
+    /// A recording's time goes on.
+    pub playing: bool,
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use neurotess::render::Side;
 use neurotess::synth::Kind;
 
 use crate::document::{Detail, Document, Look, SomaEdit, SourceId};
+use crate::playback::Pace;
 use crate::save::{FilmOptions, MeshOptions, PictureFile};
 use crate::view::View;
 
@@ -45,6 +46,8 @@ impl Tab {
 pub enum Ask {
     /// Tracings, circuits, folders, sessions.
     Open,
+    /// A report or spikes.
+    Report,
     /// Where a session goes.
     SaveSession,
 }
@@ -102,6 +105,17 @@ pub enum Command {
     SetDetail(Detail),
     /// Side by side, or where traced.
     SetGrid(bool),
+    /// Shows the values of a report or spikes, or no longer.
+    SetReport(Option<PathBuf>),
+
+    /// Lets the recording's time go on, or no longer.
+    TogglePlay,
+    /// Goes to a time (ms) of the recording.
+    Seek(f64),
+    /// Goes by frames of the recording.
+    StepTime(i64),
+    /// How the recording's time goes on.
+    SetPace(Pace),
 
     /// Goes to a side.
     Look(Side),
@@ -155,6 +169,7 @@ impl Command {
             Self::SetLook(_) => "Look",
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
+            Self::SetReport(_) => "Report",
             _ => return None,
         })
     }
@@ -230,6 +245,7 @@ impl Command {
             Self::SetLook(look) => document.look = *look,
             Self::SetDetail(detail) => document.detail = detail,
             Self::SetGrid(grid) => document.grid = grid,
+            Self::SetReport(report) => document.set_report(report),
             _ => {}
         }
     }

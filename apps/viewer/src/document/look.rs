@@ -10,6 +10,12 @@ use serde::{Deserialize, Serialize};
 pub struct Look {
     /// What colours tell.
     pub colour_by: ColourBy,
+    /// Name of the attribute, where that is what they tell.
+    pub attribute: String,
+    /// Numbers at both ends of the colour map; none: those that fit.
+    pub range: Option<[f32; 2]>,
+    /// After this time (ms) the flash of a spike has a third of its light.
+    pub decay: f64,
     /// Colours of types.
     #[serde(with = "palette")]
     pub palette: Palette,
@@ -55,11 +61,13 @@ pub enum ColourBy {
     Order,
     Radius,
     Depth,
+    Attribute,
+    Value,
 }
 
 impl ColourBy {
     /// All, with names for people.
-    pub const ALL: [(Self, &'static str); 7] = [
+    pub const ALL: [(Self, &'static str); 9] = [
         (Self::Type, "type"),
         (Self::Neuron, "neuron"),
         (Self::Neurite, "neurite"),
@@ -67,15 +75,33 @@ impl ColourBy {
         (Self::Order, "branch order"),
         (Self::Radius, "radius"),
         (Self::Depth, "path distance"),
+        (Self::Attribute, "attribute"),
+        (Self::Value, "values of a report"),
     ];
+
+    /// Whether tracings alone have it.
+    pub fn is_of_tracings(self) -> bool {
+        self.in_library().is_some()
+    }
+
+    /// Whether it differs among neurons of one tracing.
+    pub fn is_of_neurons(self) -> bool {
+        matches!(self, Self::Neuron | Self::Attribute | Self::Value)
+    }
+
+    /// Whether it may be a number, whose range can be fixed.
+    pub fn has_range(self) -> bool {
+        self.is_number() || self == Self::Attribute
+    }
 
     /// Whether it is a number, with a colour map.
     pub fn is_number(self) -> bool {
-        matches!(self, Self::Order | Self::Radius | Self::Depth)
+        matches!(self, Self::Order | Self::Radius | Self::Depth | Self::Value)
     }
 
-    pub(crate) fn in_library(self) -> colouring::ColourBy {
-        match self {
+    /// As the library has it; none: it is no matter of a tracing alone.
+    pub(crate) fn in_library(self) -> Option<colouring::ColourBy> {
+        Some(match self {
             Self::Type => colouring::ColourBy::Type,
             Self::Neuron => colouring::ColourBy::Neuron,
             Self::Neurite => colouring::ColourBy::Neurite,
@@ -83,7 +109,8 @@ impl ColourBy {
             Self::Order => colouring::ColourBy::Order,
             Self::Radius => colouring::ColourBy::Radius,
             Self::Depth => colouring::ColourBy::Depth,
-        }
+            Self::Attribute | Self::Value => return None,
+        })
     }
 }
 
@@ -150,6 +177,9 @@ impl Default for Look {
     fn default() -> Self {
         Self {
             colour_by: ColourBy::Type,
+            attribute: String::new(),
+            range: None,
+            decay: colouring::DECAY,
             palette: Palette::default(),
             colour_map: ColourMap::default(),
             background: [255; 3],

@@ -5,10 +5,14 @@ mod look;
 mod place;
 mod soma;
 
+use std::path::PathBuf;
+
 use glam::DVec3;
+use neurotess::circuit::NodeRef;
 use neurotess::render::Placement;
 use serde::{Deserialize, Serialize};
 
+use crate::circuits::CircuitId;
 use crate::session::NeuronEntry;
 
 pub use detail::{Criterion, Detail};
@@ -19,6 +23,15 @@ pub use soma::{Method, SomaEdit};
 /// Place of a tracing in [`Sources`](crate::sources::Sources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SourceId(pub u32);
+
+/// A node of an open circuit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NodeOf {
+    /// Which circuit.
+    pub circuit: CircuitId,
+    /// Which of its nodes.
+    pub node: NodeRef,
+}
 
 /// All that an edit changes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +46,8 @@ pub struct Document {
     pub detail: Detail,
     /// Side by side instead of where they were traced.
     pub grid: bool,
+    /// The recording whose values can be shown.
+    pub report: Option<PathBuf>,
 }
 
 /// A tracing somewhere.
@@ -40,6 +55,8 @@ pub struct Document {
 pub struct Neuron {
     /// Its shape.
     pub source: SourceId,
+    /// What it is in its circuit, if it is of one.
+    pub node: Option<NodeOf>,
     /// Name in the list.
     pub name: String,
     /// Where it was traced, or where its circuit puts it.
@@ -55,6 +72,7 @@ impl Neuron {
     pub fn new(source: SourceId, name: String) -> Self {
         Self {
             source,
+            node: None,
             name,
             placement: Placement::default(),
             hidden: false,
@@ -87,6 +105,16 @@ impl Document {
             self.somata.push((source, edit));
             self.somata.sort_by_key(|(id, _)| *id);
         }
+    }
+
+    /// Shows the values of a recording, or no longer.
+    pub fn set_report(&mut self, report: Option<PathBuf>) {
+        match (&report, self.look.colour_by) {
+            (Some(_), _) => self.look.colour_by = ColourBy::Value,
+            (None, ColourBy::Value) => self.look.colour_by = ColourBy::default(),
+            (None, _) => {}
+        }
+        self.report = report;
     }
 
     /// Indices of what is selected.

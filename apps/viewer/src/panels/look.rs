@@ -1,18 +1,17 @@
 //! Colours, light, what is shown of cells.
 
-use eframe::egui::{self, ComboBox, Slider, Ui};
-use neurotess::colouring::Colouring;
-use neurotess::render::{ColourMap, Palette};
+use eframe::egui::{self, ComboBox, DragValue, Slider, Ui};
+use neurotess::render::{ColourMap, Legend, Palette};
 
 use super::heading;
-use crate::command::Command;
+use crate::command::{Ask, Command};
 use crate::document::{ColourBy, Cut, Lighting, Look, Parts};
 use crate::state::State;
 
-pub(super) fn show(state: &mut State, _colouring: &Colouring, ui: &mut Ui) {
+pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     let mut look = state.document.look.clone();
     let released = ui.input(|i| i.pointer.any_released());
-    colours(&mut look, ui);
+    colours(state, &mut look, legend, ui);
     heading(ui, "Shown");
     ui.horizontal_wrapped(|ui| {
         ui.selectable_value(&mut look.parts, Parts::All, "All");
@@ -45,6 +44,13 @@ pub(super) fn show(state: &mut State, _colouring: &Colouring, ui: &mut Ui) {
     if dark != state.settings.dark {
         state.asked.push(Command::SetDark(dark));
     }
+    if look.colour_by == ColourBy::Value && state.document.report.is_none() {
+        look.colour_by = state.document.look.colour_by;
+        state.asked.push(match state.circuits.reports().pop() {
+            Some((_, file)) => Command::SetReport(Some(file)),
+            None => Command::AskFiles(Ask::Report),
+        });
+    }
     if look != state.document.look {
         state.asked.push(Command::SetLook(Box::new(look)));
     } else if released {
@@ -52,7 +58,7 @@ pub(super) fn show(state: &mut State, _colouring: &Colouring, ui: &mut Ui) {
     }
 }
 
-fn colours(look: &mut Look, ui: &mut Ui) {
+fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
     heading(ui, "Colours");
     egui::Grid::new("colours").num_columns(2).show(ui, |ui| {
         ui.label("by");
@@ -63,12 +69,24 @@ fn colours(look: &mut Look, ui: &mut Ui) {
         ComboBox::from_id_salt("colour by")
             .selected_text(name)
             .show_ui(ui, |ui| {
+                let circuits = state.circuits.iter().next().is_some();
                 for (by, name) in ColourBy::ALL {
-                    ui.selectable_value(&mut look.colour_by, by, name);
+                    // A tracing alone has neither.
+                    if circuits || by.is_of_tracings() || by == look.colour_by {
+                        ui.selectable_value(&mut look.colour_by, by, name);
+                    }
                 }
             });
         ui.end_row();
-        if look.colour_by.is_number() {
+        match look.colour_by {
+            ColourBy::Attribute => attribute(state, look, ui),
+            ColourBy::Value => report(state, ui),
+            _ => {}
+        }
+        // Numbers of an attribute are on a scale if there are many.
+        let scaled = look.colour_by == ColourBy::Attribute && legend.is_bar();
+        if look.colour_by.is_number() || scaled {
+            range(state, look, ui);
             ui.label("map");
             ComboBox::from_id_salt("map")
                 .selected_text(look.colour_map.name())
@@ -101,6 +119,91 @@ fn colours(look: &mut Look, ui: &mut Ui) {
         });
         ui.end_row();
     });
+}
+
+/// Attributes of the circuits' cells.
+fn attribute(state: &State, look: &mut Look, ui: &mut Ui) {
+    let names = state.circuits.attributes();
+    if !names.contains(&look.attribute) {
+        let usual = ["layer", "mtype", "model_name", "population"];
+        let first = usual
+            .into_iter()
+            .find(|&n| names.iter().any(|own| own == n));
+        let first = first.map(str::to_owned).or_else(|| names.first().cloned());
+        look.attribute = first.unwrap_or_default();
+    }
+    ui.label("attribute");
+    ComboBox::from_id_salt("attribute")
+        .selected_text(&look.attribute)
+        .show_ui(ui, |ui| {
+            for name in names {
+                ui.selectable_value(&mut look.attribute, name.clone(), name);
+            }
+        });
+    ui.end_row();
+}
+
+/// Which report: those that circuits name, or another file.
+fn report(state: &mut State, ui: &mut Ui) {
+    let reports = state.circuits.reports();
+    let shown = state.document.report.clone();
+    let stem = |file: &std::path::Path| {
+        let stem = file.file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    };
+    ui.label("report");
+    ComboBox::from_id_salt("report")
+        .selected_text(shown.as_deref().map_or("choose…".into(), stem))
+        .show_ui(ui, |ui| {
+            for (name, file) in reports {
+                let chosen = shown.as_ref() == Some(&file);
+                let line = ui.selectable_label(chosen, name);
+                if line.on_hover_text(file.display().to_string()).clicked() {
+                    state.asked.push(Command::SetReport(Some(file)));
+                }
+            }
+            if ui.selectable_label(false, "another file…").clicked() {
+                state.asked.push(Command::AskFiles(Ask::Report));
+            }
+        });
+    ui.end_row();
+}
+
+/// Numbers at both ends of the colour map.
+fn range(state: &State, look: &mut Look, ui: &mut Ui) {
+    ui.label("range")
+        .on_hover_text("Numbers at both ends of the colours");
+    ui.horizontal(|ui| {
+        let facts = state.playback.facts.as_ref();
+        let fitting = facts.filter(|_| look.colour_by == ColourBy::Value);
+        let mut fixed = look.range.is_some();
+        ui.checkbox(&mut fixed, "fixed")
+            .on_hover_text("Otherwise the least and the greatest are at the ends");
+        if fixed != look.range.is_some() {
+            let fit = fitting.map_or([0.0, 100.0], |facts| facts.range);
+            look.range = fixed.then_some(fit);
+        }
+        if let Some([low, high]) = &mut look.range {
+            let speed = 0.005 * (*high - *low).abs().max(1e-3);
+            ui.add(DragValue::new(low).speed(speed));
+            ui.label("–");
+            ui.add(DragValue::new(high).speed(speed));
+        } else if let Some([low, high]) = fitting.map(|facts| facts.range) {
+            ui.weak(format!("{low:.1} – {high:.1}"));
+        }
+    });
+    ui.end_row();
+    if look.colour_by == ColourBy::Value && state.playback.facts.as_ref().is_some_and(|f| f.spikes)
+    {
+        ui.label("flashes");
+        let decay = DragValue::new(&mut look.decay)
+            .range(0.1..=1000.0)
+            .speed(0.1)
+            .suffix(" ms");
+        ui.add(decay)
+            .on_hover_text("After this time a flash has a third of its light");
+        ui.end_row();
+    }
 }
 
 fn light(look: &mut Look, ui: &mut Ui) {

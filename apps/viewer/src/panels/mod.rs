@@ -11,6 +11,7 @@ mod rings;
 mod save;
 mod soma;
 mod status;
+mod timeline;
 mod viewport;
 
 use eframe::egui::{
@@ -32,6 +33,9 @@ pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
         status::show(&mut viewer.state, &jobs, progress, ui);
     });
     let any = !viewer.state.document.neurons.is_empty();
+    if let Some(facts) = viewer.state.playback.facts.clone().filter(|_| any) {
+        Panel::bottom("time").show(ui, |ui| timeline::show(&mut viewer.state, &facts, ui));
+    }
     if viewer.state.panels && any {
         Panel::left("cells")
             .default_size(236.0)
@@ -53,6 +57,7 @@ pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
         }
     });
     over::show(&mut viewer.state, &ctx);
+    over::hover(&ctx);
     viewer.shortcuts(&ctx);
 }
 
@@ -73,7 +78,7 @@ fn side(viewer: &mut Viewer, ui: &mut egui::Ui) {
         match state.tab {
             Tab::Inspect => inspect::show(state, ui),
             Tab::Soma => soma::show(state, ui),
-            Tab::Look => look::show(state, viewer.stage.colouring(), ui),
+            Tab::Look => look::show(state, viewer.stage.legend(), ui),
             Tab::Detail => detail::show(state, ui),
             Tab::Save => save::show(state, ui),
         }

@@ -32,6 +32,29 @@ pub(super) fn show(state: &mut State, ctx: &Context) {
     }
 }
 
+/// What a drop would do, while files are held over the window.
+pub(super) fn hover(ctx: &Context) {
+    let count = ctx.input(|input| input.raw.hovered_files.len());
+    if count == 0 {
+        return;
+    }
+    let rect = ctx.content_rect();
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let painter = ctx.layer_painter(layer);
+    painter.rect_filled(rect, 0.0, egui::Color32::from_black_alpha(150));
+    let text = match count {
+        1 => "Drop it to open it".to_owned(),
+        n => format!("Drop these {n} to open them"),
+    };
+    painter.text(
+        rect.center(),
+        Align2::CENTER_CENTER,
+        text,
+        egui::FontId::proportional(26.0),
+        egui::Color32::WHITE,
+    );
+}
+
 fn window<'a>(title: &'a str, ctx: &Context) -> egui::Window<'a> {
     egui::Window::new(title)
         .collapsible(false)

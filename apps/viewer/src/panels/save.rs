@@ -9,7 +9,7 @@ use neurotess::render::LARGEST;
 use super::cells::count;
 use super::heading;
 use crate::command::{Ask, Command};
-use crate::save::{FilmOptions, Fineness, PictureFile, has_ffmpeg};
+use crate::save::{FilmOptions, Fineness, PictureFile, has_ffmpeg, length};
 use crate::state::{Over, State};
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
@@ -217,6 +217,40 @@ fn size(picture: &mut PictureFile, ui: &mut Ui) {
     });
 }
 
+/// From when to when a recording goes on.
+fn film_time(state: &mut State, ui: &mut Ui) {
+    let Some(facts) = &state.playback.facts else {
+        return;
+    };
+    let axis = facts.time;
+    let (start, end) = (axis.start, axis.nearest(f64::INFINITY));
+    let form = &mut state.save;
+    if form.time[0] >= form.time[1] || form.time.iter().any(|t| *t < start || *t > end) {
+        form.time = [start, end];
+    }
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut form.over_time, "time goes on")
+            .on_hover_text(
+                "The report's time runs through the film; with fewer than two views, from here",
+            );
+        if form.over_time {
+            let [from, to] = form.time;
+            ui.add(
+                DragValue::new(&mut form.time[0])
+                    .range(start..=to)
+                    .speed(axis.step),
+            );
+            ui.label("–");
+            ui.add(
+                DragValue::new(&mut form.time[1])
+                    .range(from..=end)
+                    .speed(axis.step)
+                    .suffix(" ms"),
+            );
+        }
+    });
+}
+
 fn film(state: &mut State, ui: &mut Ui) {
     heading(ui, "Film");
     if state.key_views.is_empty() {
@@ -239,19 +273,24 @@ fn film(state: &mut State, ui: &mut Ui) {
     if ui.button("Keep this view").clicked() {
         state.asked.push(Command::AddKeyView);
     }
-    if state.key_views.len() < 2 {
+    let keys = state.key_views.len();
+    film_time(state, ui);
+    let over_time = state.save.over_time && state.playback.facts.is_some();
+    if keys < 2 && !over_time {
         return;
     }
-    let keys = state.key_views.len() as u32;
     let form = &mut state.save;
     ui.horizontal(|ui| {
         ui.add(DragValue::new(&mut form.frames).range(1..=3000));
-        ui.label("pictures from view to view");
+        ui.label(match keys {
+            0 | 1 => "pictures",
+            _ => "pictures from view to view",
+        });
     });
-    let all = (keys - 1) * form.frames + 1;
+    let all = length(keys, form.frames, over_time);
     ui.weak(format!(
         "{all} pictures, {:.1} s at 30 a second",
-        f64::from(all) / 30.0
+        all as f64 / 30.0
     ));
     let ffmpeg = *form.ffmpeg.get_or_insert_with(has_ffmpeg);
     ui.add_enabled_ui(ffmpeg, |ui| {
@@ -280,6 +319,7 @@ fn film(state: &mut State, ui: &mut Ui) {
                     ..form.picture.clone()
                 },
                 frames: form.frames,
+                time: over_time.then_some(form.time),
                 video: form.video && ffmpeg,
             })
         };

@@ -229,7 +229,7 @@ fn ink(state: &State) -> Color32 {
 fn over(viewer: &Viewer, rect: Rect, ui: &mut Ui) {
     let look = &viewer.state.document.look;
     if look.legend {
-        legend(viewer.stage.colouring().legend.clone(), viewer, rect, ui);
+        legend(viewer.stage.legend().clone(), viewer, rect, ui);
     }
     if look.scale_bar {
         scale_bar(&viewer.state, rect, ui);
@@ -272,6 +272,9 @@ fn legend(legend: Legend, viewer: &Viewer, rect: Rect, ui: &Ui) {
         None => {
             let image = legend.draw(line, ink);
             let size = [image.width as usize, image.height as usize];
+            if size.contains(&0) {
+                return;
+            }
             let image = ColorImage::from_rgba_unmultiplied(size, &image.pixels);
             let texture = ui
                 .ctx()

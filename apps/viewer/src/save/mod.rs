@@ -12,7 +12,7 @@ use neurotess::output::Existing;
 use crate::settings::Settings;
 
 pub use film::FilmOptions;
-pub(crate) use film::{film_views, has_ffmpeg, video};
+pub(crate) use film::{Still, has_ffmpeg, length, stills, video};
 pub use meshes::{Fineness, MeshOptions};
 pub(crate) use meshes::{MeshPlan, meshes};
 pub use pictures::PictureFile;
@@ -33,6 +33,10 @@ pub struct SaveForm {
     pub film_out: String,
     /// Pictures from one key view to the next.
     pub frames: u32,
+    /// Whether a recording's time goes on meanwhile.
+    pub over_time: bool,
+    /// From and to (ms).
+    pub time: [f64; 2],
     /// Also a video.
     pub video: bool,
     /// Whether ffmpeg is there; asked once.
@@ -65,6 +69,8 @@ impl SaveForm {
             },
             film_out: at("film.png"),
             frames: 60,
+            over_time: true,
+            time: [0.0; 2],
             video: false,
             ffmpeg: None,
         }

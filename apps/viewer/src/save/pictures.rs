@@ -7,14 +7,15 @@ use std::sync::atomic::Ordering;
 
 use neurotess::output::{Output, OutputError};
 use neurotess::render::{
-    Ball, Choice, Gpu, Image, Occlusion, Overlay, OverlayOptions, PictureOptions, PngWriter,
-    Refining, Studio,
+    Ball, Camera, Choice, ColourTable, Gpu, Image, Legend, Occlusion, Overlay, OverlayOptions,
+    PictureOptions, PngWriter, Refining, Studio,
 };
 
-use super::existing;
+use super::{Still, existing};
+use crate::colours::paint;
 use crate::document::Look;
+use crate::playback::said;
 use crate::scene::{self, Shown};
-use crate::view::View;
 use crate::worker::Job;
 
 /// A picture.
@@ -41,10 +42,44 @@ pub(crate) struct Scenery {
     pub(crate) balls: Vec<Ball>,
 }
 
-/// Writes pictures of views: one, or a numbered series.
+impl Scenery {
+    /// Table and legend of a picture, at its time of a recording if one shows.
+    fn colours(&self, time: Option<f64>) -> Result<(ColourTable, Legend), String> {
+        let (table, legend) = (&self.shown.table, &self.shown.legend);
+        let (Some((replay, all)), Some(time)) = (&self.shown.replay, time) else {
+            return Ok((table.clone(), legend.clone()));
+        };
+        let time = replay.time.nearest(time);
+        let standing = &self.shown.instances;
+        let shows = |place: usize| standing.get(place).is_none_or(|s| !s.hidden);
+        let moment = replay.at(time, self.look.decay, &shows);
+        let moment = moment.map_err(|e| e.to_string())?;
+        let range = paint(&self.look).range.unwrap_or(*all);
+        let table = ColourTable {
+            scale: table.scale.clone(),
+            categories: table.categories.clone(),
+            values: moment.values(range),
+        };
+        Ok((table, legend.clone().noted(&said(&replay.time, time))))
+    }
+
+    /// What stands in the corners, the same ones for all pictures.
+    fn overlay(&self, stills: &[Still], options: &PictureFile) -> Result<Overlay, String> {
+        let cameras: Vec<Camera> = stills.iter().map(|still| still.view.camera()).collect();
+        let (_, legend) = self.colours(stills.first().and_then(|still| still.time))?;
+        let overlay = OverlayOptions {
+            legend: self.look.legend.then_some(legend),
+            scale_bar: self.look.scale_bar.then_some(0.0),
+            background: (!options.transparent).then_some(self.look.background),
+        };
+        Ok(Overlay::new(&overlay, options.size, &cameras, &self.balls))
+    }
+}
+
+/// Writes pictures: one, or a numbered series.
 pub(crate) fn pictures(
     scenery: &Scenery,
-    views: &[View],
+    stills: &[Still],
     options: &PictureFile,
     job: &Job,
 ) -> Result<Vec<PathBuf>, String> {
@@ -54,11 +89,11 @@ pub(crate) fn pictures(
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
-    let file = |i: usize| match views.len() {
+    let file = |i: usize| match stills.len() {
         1 => options.out.with_extension("png"),
         _ => options.out.with_file_name(format!("{stem}_{i:04}.png")),
     };
-    let files: Vec<PathBuf> = (0..views.len()).map(file).collect();
+    let files: Vec<PathBuf> = (0..stills.len()).map(file).collect();
     let existing = existing(options.replace);
     for file in &files {
         existing.check(file).map_err(|e| e.to_string())?;
@@ -74,34 +109,30 @@ pub(crate) fn pictures(
     });
     let mut studio = Studio::new();
     studio.set_states(&scenery.states);
-    for (view, file) in views.iter().zip(&files) {
+    let overlay = scenery.overlay(stills, options)?;
+    for (number, (still, file)) in stills.iter().zip(&files).enumerate() {
         if job.is_cancelled() {
-            return Err("stopped".into());
+            return Err(format!(
+                "stopped after {number} of {} pictures",
+                files.len()
+            ));
         }
-        let camera = view.camera();
+        let camera = still.view.camera();
+        let (table, legend) = scenery.colours(still.time)?;
+        let overlay = overlay.again(scenery.look.legend.then_some(&legend), &camera);
         let mut picture = picture;
         picture.look.clip = scene::clip(&scenery.look, &scenery.balls);
-        let overlay = OverlayOptions {
-            legend: scenery
-                .look
-                .legend
-                .then(|| scenery.shown.colouring.legend.clone()),
-            scale_bar: scenery.look.scale_bar.then_some(0.0),
-            background: picture.background,
-        };
-        let overlay = Overlay::new(&overlay, options.size, &[camera], &scenery.balls);
         let near = camera.near(&scenery.balls);
         let broken = |e: std::io::Error| OutputError::broken(file, e).to_string();
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
         let to = BufWriter::new(output.file().try_clone().map_err(broken)?);
         let mut png = PngWriter::new(to, options.size, options.transparent).map_err(broken)?;
-        let table = &scenery.shown.colouring.table;
         let painted = studio.paint(
             gpu,
             &mut maker,
             &camera,
             near,
-            table,
+            &table,
             &picture,
             |top, mut band: Image| {
                 overlay.lay_on(top, &mut band);

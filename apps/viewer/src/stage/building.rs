@@ -5,42 +5,32 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{
-    ColourMap, DeviceError, Palette, Rgb, Scene, Template, TemplateId, Templates,
-};
+use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 
 use super::Stage;
-use crate::document::{ColourBy, Look};
+use crate::colours::{ColourKey, Wish};
 use crate::scene::{self, BuildError, Shown, ShownSource};
 use crate::state::State;
 
 /// Cells up to which a soma is changed at once; with more, all colours are made anew beside.
 const QUICK: usize = 24;
 
-pub(super) type Built = Result<(Templates, Shown, ColourKey), DeviceError>;
+pub(super) type Built = Result<Made, DeviceError>;
 
-/// What colours depend on.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct ColourKey {
-    by: ColourBy,
-    palette: Palette,
-    map: ColourMap,
-    background: Rgb,
-}
-
-impl ColourKey {
-    fn new(look: &Look) -> Self {
-        Self {
-            by: look.colour_by,
-            palette: look.palette,
-            map: look.colour_map,
-            background: look.background,
-        }
-    }
+/// What was made beside: the scene, what shows, what could not be coloured.
+pub(super) struct Made {
+    templates: Templates,
+    shown: Shown,
+    key: ColourKey,
+    problem: Option<(String, String)>,
 }
 
 impl Stage {
-    pub(super) fn take_built(&mut self, ctx: &egui::Context) -> Result<(), DeviceError> {
+    pub(super) fn take_built(
+        &mut self,
+        state: &mut State,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
         let Some(building) = &self.building else {
             return Ok(());
         };
@@ -49,27 +39,31 @@ impl Stage {
             return Ok(());
         };
         self.building = None;
-        let (templates, shown, colours) = built?;
-        let scene = Scene::new(templates, scene::instances(&shown.instances));
+        let made = built?;
+        let scene = Scene::new(made.templates, scene::instances(&made.shown.instances));
         self.maker.set_scene(scene.unwrap_or_default());
-        self.live.set_colours(shown.colouring.table.clone());
-        self.shown = shown;
-        self.colours = Some(colours);
+        self.live.set_colours(made.shown.table.clone());
+        self.shown = made.shown;
+        self.colours = Some(made.key);
         self.drawn = None;
+        self.replay(state, ctx);
+        if let Some((what, why)) = made.problem {
+            state.problem(what, why);
+        }
         Ok(())
     }
 
     /// Brings sources and neurons on the device up to date: at once, or beside.
     pub(super) fn want_scene(
         &mut self,
-        state: &State,
+        state: &mut State,
         ctx: &egui::Context,
     ) -> Result<(), DeviceError> {
         if self.building.is_some() {
             return Ok(());
         }
         let sources = scene::sources(state);
-        let colours = ColourKey::new(&state.document.look);
+        let colours = ColourKey::new(&state.document);
         let same_sources = sources.len() == self.shown.sources.len()
             && sources
                 .iter()
@@ -88,8 +82,15 @@ impl Stage {
         if same_sources && !recoloured && changed.is_empty() {
             return Ok(());
         }
-        if same_sources && !recoloured && sources.len() <= QUICK {
-            return self.replace(sources, &changed, &state.document.look);
+        let replays = self.shown.replay.is_some();
+        let same_matter = self.colours.as_ref().map(|c| &c.matter) == Some(&colours.matter);
+        if same_sources && replays && same_matter && changed.is_empty() {
+            self.tint(state, colours);
+            return Ok(());
+        }
+        if same_sources && !recoloured && !replays && sources.len() <= QUICK {
+            let wish = Wish::new(state, &sources);
+            return self.replace(sources, &changed, &wish);
         }
         self.build(state, sources, colours, ctx);
         Ok(())
@@ -99,24 +100,25 @@ impl Stage {
         &mut self,
         sources: Vec<ShownSource>,
         changed: &[usize],
-        look: &Look,
+        wish: &Wish,
     ) -> Result<(), DeviceError> {
-        let colouring = scene::colours(&sources, look);
+        let coloured = wish.colours(&sources);
+        let words = &coloured.colouring.words;
         let mut scene = self.maker.take_scene();
         let mut replaced = Ok(());
         for &place in changed {
             let template = Template {
                 mesh: &sources[place].generated.mesh,
-                words: &colouring.words[place],
+                words: &words[place],
                 values: &[],
             };
             let id = TemplateId(place as u32);
             replaced = replaced.and_then(|()| scene.replace(&self.gpu, id, &template));
         }
         self.maker.set_scene(scene);
-        self.live.set_colours(colouring.table.clone());
-        self.shown.sources = sources;
-        self.shown.colouring = Arc::new(colouring);
+        let standing = std::mem::take(&mut self.shown.instances);
+        self.shown = Shown::new(sources, standing, coloured);
+        self.live.set_colours(self.shown.table.clone());
         self.drawn = None;
         replaced
     }
@@ -129,23 +131,23 @@ impl Stage {
         ctx: &egui::Context,
     ) {
         let (sender, receiver) = channel();
-        let (gpu, look, ctx) = (
-            Arc::clone(&self.gpu),
-            state.document.look.clone(),
-            ctx.clone(),
-        );
+        let (gpu, ctx) = (Arc::clone(&self.gpu), ctx.clone());
+        let wish = Wish::new(state, &sources);
         let instances = scene::standing(state, &sources);
         self.building = Some(receiver);
         std::thread::spawn(move || {
-            let colouring = Arc::new(scene::colours(&sources, &look));
-            let templates = scene::templates(&gpu, &sources, &colouring);
-            let shown = Shown {
-                sources,
-                instances,
-                colouring,
-            };
+            let mut coloured = wish.colours(&sources);
+            let problem = coloured.problem.take();
+            let shown = Shown::new(sources, instances, coloured);
+            let templates = scene::templates(&gpu, &shown.sources, &shown.colouring);
+            let made = templates.map(|templates| Made {
+                templates,
+                shown,
+                key,
+                problem,
+            });
             // Nobody waits for it if the window is closed.
-            let _ = sender.send(templates.map(|templates| (templates, shown, key)));
+            let _ = sender.send(made);
             ctx.request_repaint();
         });
     }

@@ -73,6 +73,7 @@ impl Stage {
         self.mask = None;
         self.draw_draft(&wanted)?;
         self.drawn = Some(wanted);
+        self.revalued = false;
         ctx.request_repaint_after(REST);
         Ok(())
     }

@@ -3,6 +3,7 @@
 
 mod building;
 mod drafts;
+mod moments;
 mod pointing;
 mod rest;
 
@@ -13,15 +14,19 @@ use std::time::Instant;
 
 use eframe::egui;
 use egui_wgpu::RenderState;
-use neurotess::colouring::Colouring;
-use neurotess::render::{Adaptive, DeviceError, Gpu, Live, Namer, Refining, Scene, Shot};
+use neurotess::colouring::{ColourBy, colouring};
+use neurotess::render::{
+    Adaptive, DeviceError, Gpu, InstanceValues, Legend, Live, Namer, Refining, Scene, Shot,
+};
 
+use crate::colours::{ColourKey, paint};
 use crate::document::{Detail, Look};
 use crate::explorer::Explorer;
 use crate::picks::Picks;
-use crate::scene::{self, Shown, Standing};
+use crate::reader::Reader;
+use crate::scene::{Shown, Standing};
 use crate::state::{Draft, State};
-use building::{Built, ColourKey};
+use building::Built;
 use pointing::MaskKey;
 
 /// All that draws.
@@ -38,6 +43,13 @@ pub struct Stage {
     shown: Shown,
     colours: Option<ColourKey>,
     building: Option<Receiver<Built>>,
+    /// Reads the recording that shows.
+    reader: Option<Reader>,
+    values: Option<Arc<InstanceValues>>,
+    /// Whether values of the moment have not come yet.
+    values_due: bool,
+    /// Whether values are other ones than those that were drawn.
+    revalued: bool,
     drawn: Option<Drawn>,
     moved: Instant,
     rest: Rest,
@@ -79,11 +91,8 @@ impl Stage {
         let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
         let live = Live::new(&gpu);
         let maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
-        let shown = Shown {
-            sources: Vec::new(),
-            instances: Vec::new(),
-            colouring: Arc::new(scene::colours(&[], &Look::default())),
-        };
+        let no_colours = colouring(&[], ColourBy::Type, &paint(&Look::default()));
+        let shown = Shown::new(Vec::new(), Vec::new(), no_colours.into());
         let software = gpu.adapter.software;
         Ok(Self {
             gpu: Arc::new(gpu),
@@ -96,6 +105,10 @@ impl Stage {
             shown,
             colours: None,
             building: None,
+            reader: None,
+            values: None,
+            values_due: false,
+            revalued: false,
             drawn: None,
             moved: Instant::now(),
             rest: Rest::Done,
@@ -120,13 +133,19 @@ impl Stage {
     }
 
     /// What colours mean.
-    pub fn colouring(&self) -> &Colouring {
-        &self.shown.colouring
+    pub fn legend(&self) -> &Legend {
+        &self.shown.legend
     }
 
     /// Whether all that there is to draw is drawn.
     pub fn is_settled(&self) -> bool {
-        self.rest == Rest::Done && self.building.is_none() && self.drawn.is_some()
+        let drawn = self.rest == Rest::Done && self.drawn.is_some();
+        drawn && self.building.is_none() && !self.values_due
+    }
+
+    /// Whether values are those of the recording's moment, in a draft or a better picture.
+    pub fn shows_moment(&self) -> bool {
+        !self.values_due && !self.revalued && self.drawn.is_some()
     }
 
     /// Height (pixels) of the picture.
@@ -151,14 +170,19 @@ impl Stage {
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<Option<egui::TextureId>, DeviceError> {
-        self.take_built(ctx)?;
+        self.take_built(state, ctx)?;
         self.want_scene(state, ctx)?;
         self.explorer.update(&self.gpu, &self.shown, ctx);
         if size.contains(&0) {
             return Ok(None);
         }
+        if self.building.is_some() && !self.is_in_order(state) {
+            // Neurons came or went: values are still those of others.
+            return Ok(self.texture_id());
+        }
+        self.revalued |= self.take_values(state, ctx);
         let wanted = self.wanted(state, size);
-        if self.drawn.as_ref() != Some(&wanted) {
+        if self.revalued || self.drawn.as_ref() != Some(&wanted) {
             self.draft(wanted, ctx)?;
         } else {
             self.refine(state, ctx)?;

@@ -43,6 +43,15 @@ impl TimeAxis {
         (frame >= 0.0 && frame < self.frames as f64).then_some(frame as u64)
     }
 
+    /// The nearest time (ms) at which a frame shows; no number is the first one's.
+    pub fn nearest(&self, time: f64) -> f64 {
+        let last = self.time_of(self.frames.saturating_sub(1)).max(self.start);
+        if time.is_nan() {
+            return self.start;
+        }
+        time.clamp(self.start, last)
+    }
+
     /// Time of a frame (ms).
     pub fn time_of(&self, frame: u64) -> f64 {
         self.start + frame as f64 * self.step
@@ -62,6 +71,8 @@ mod tests {
             assert_eq!(axis.frame_at(axis.time_of(frame) + 0.09), Some(frame));
         }
         assert_eq!([-0.01, 1.0, f64::NAN].map(|t| axis.frame_at(t)), [None; 3]);
+        let nearest = [-1.0, 0.25, 7.0, f64::NAN].map(|t| axis.nearest(t));
+        assert_eq!(nearest, [0.0, 0.25, axis.time_of(9), 0.0]);
         for wrong in [[0.0, 1.0, 0.0], [1.0, 0.0, 0.1], [0.0, f64::NAN, 0.1]] {
             assert!(TimeAxis::new(wrong, 1).is_err());
         }

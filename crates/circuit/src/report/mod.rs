@@ -59,6 +59,13 @@ impl Recording {
     }
 }
 
+/// Whether an HDF5 file is to be opened as a recording and not, say, as a morphology.
+pub fn is_recording(path: &Path) -> bool {
+    Store::open(path).is_ok_and(|store| {
+        store.has_group("report") || store.has("data") || store.has_group("spikes")
+    })
+}
+
 /// Values of compartments or somata, open for reading.
 #[derive(Debug)]
 pub struct Report {

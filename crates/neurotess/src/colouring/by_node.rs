@@ -302,7 +302,8 @@ mod tests {
 
     #[test]
     fn many_numbers_are_on_a_scale_and_few_are_kinds() {
-        let numbers = |most: u32| Attribute::Numbers((0..30).map(|i| f64::from(i % most)).collect());
+        let numbers =
+            |most: u32| Attribute::Numbers((0..30).map(|i| f64::from(i % most)).collect());
         let circuit = circuit(vec![("depth", numbers(30)), ("layer", numbers(3))]);
         let neurons = neurons(&circuit);
         let colouring = |name, range| {

@@ -91,8 +91,7 @@ mod tests {
             .chain(dendrite)
             .chain(axon)
             .collect();
-        let read =
-            crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
+        let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
         let morphology = read.expect("a cell").morphology;
         let mesh = crate::generate::generate(&morphology, &Default::default()).mesh;
         let cell = Cell {

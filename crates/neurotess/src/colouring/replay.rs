@@ -17,15 +17,15 @@ use super::elements::{matched, on_cell};
 use super::moment::{Moment, NO_BOUNDS, Part, merged, opened};
 use super::{Cell, Colouring, Paint};
 use crate::circuit::{
-    Circuit, CircuitError, Compartment, NodeRef, Recording, Report, ReportPopulation, Spikes,
-    TimeAxis,
+    Circuit, CircuitError, Compartment, NodeRef, Recording, Report, ReportPopulation,
+    SpikePopulation, Spikes, TimeAxis,
 };
 use crate::render::category;
 
 /// After this time (ms) a flash has a third of its light, unless told otherwise.
 pub const DECAY: f64 = 5.0;
 /// Between two steps (ms) through spikes, which have no frames.
-const SPIKE_STEP: f64 = 1.0;
+const SPIKE_STEP: f64 = 0.5;
 /// Flashes fade from 1 to 0.
 const OF_FLASHES: [f32; 2] = [0.0, 1.0];
 /// Most values that are read to find a range, and fewest frames.
@@ -63,18 +63,19 @@ pub struct Replay {
     pub unit: String,
     /// Times (ms); of spikes, steps through them.
     pub time: TimeAxis,
-    /// After this time (ms) a flash has a third of its light.
-    pub decay: f64,
     words: Vec<Vec<u32>>,
     has_values: Vec<bool>,
     source: Source,
 }
 
+/// Where the nodes of a population of spikes stand, by id.
+type Places = HashMap<u64, Vec<usize>>;
+
 #[derive(Debug)]
 enum Source {
     Report(Report, Vec<Part>),
     /// The place of each node that stands somewhere, by population of the file.
-    Spikes(Spikes, Vec<HashMap<u64, Vec<usize>>>),
+    Spikes(Spikes, Vec<Places>),
 }
 
 impl Replay {
@@ -140,7 +141,6 @@ impl Replay {
             title: String::new(),
             unit,
             time: together(&report.populations),
-            decay: DECAY,
             words,
             has_values,
             source: Source::Report(report, parts),
@@ -164,10 +164,13 @@ impl Replay {
         for population in &spikes.populations {
             let nodes = population.nodes_in(circuit, &spikes.file)?;
             known.extend(nodes.iter().map(|node| node.population));
-            let shown = nodes.iter().zip(&population.nodes).filter_map(|(node, &id)| {
-                let places = of_node.get(node)?;
-                Some((id, places.clone()))
-            });
+            let shown = nodes
+                .iter()
+                .zip(&population.nodes)
+                .filter_map(|(node, &id)| {
+                    let places = of_node.get(node)?;
+                    Some((id, places.clone()))
+                });
             firing.push(shown.collect());
         }
         // A neuron that never fires is silent, not without a value.
@@ -178,7 +181,6 @@ impl Replay {
             title: String::new(),
             unit: String::new(),
             time: steps_through(&spikes),
-            decay: DECAY,
             words: first_values(cells),
             has_values,
             source: Source::Spikes(spikes, firing),
@@ -205,14 +207,28 @@ impl Replay {
         &self.words
     }
 
-    /// Values at a time (ms), of those neurons that show; the others have none.
+    /// Values at a time (ms), of those neurons that show; the others have none. `decay`: after this time
+    /// (ms) the flash of a spike has a third of its light.
     ///
     /// # Errors
     /// The recording has none at that time; what is wrong with the file.
-    pub fn at(&self, time: f64, shows: &dyn Fn(usize) -> bool) -> Result<Moment, ReplayError> {
+    pub fn at(
+        &self,
+        time: f64,
+        decay: f64,
+        shows: &dyn Fn(usize) -> bool,
+    ) -> Result<Moment, ReplayError> {
         match &self.source {
             Source::Report(report, parts) => self.values_at(report, parts, time, shows),
-            Source::Spikes(spikes, firing) => Ok(self.flashes_at(spikes, firing, time, shows)),
+            Source::Spikes(spikes, firing) => {
+                let flashes = |(population, places): (&SpikePopulation, &Places)| {
+                    let lit = population.flashes(time, decay).into_iter();
+                    let of = |(id, flash)| places.get(&id).map(|places| (places.clone(), flash));
+                    lit.filter_map(of).collect::<Vec<_>>()
+                };
+                let all = spikes.populations.iter().zip(firing).flat_map(flashes);
+                Ok(self.flashes(all, shows))
+            }
         }
     }
 
@@ -244,27 +260,19 @@ impl Replay {
         Ok(moment)
     }
 
-    fn flashes_at(
+    fn flashes(
         &self,
-        spikes: &Spikes,
-        firing: &[HashMap<u64, Vec<usize>>],
-        time: f64,
+        lit: impl Iterator<Item = (Vec<usize>, f32)>,
         shows: &dyn Fn(usize) -> bool,
     ) -> Moment {
-        let mut flashes: Vec<f32> = self
-            .has_values
-            .iter()
-            .map(|&has| if has { 0.0 } else { f32::NAN })
-            .collect();
-        for (population, places) in spikes.populations.iter().zip(firing) {
-            for (id, flash) in population.flashes(time, self.decay) {
-                for &place in places.get(&id).into_iter().flatten() {
-                    flashes[place] = flash;
-                }
+        let mut flashes = vec![0.0; self.has_values.len()];
+        for (places, flash) in lit {
+            for place in places {
+                flashes[place] = flash;
             }
         }
         let mut moment = Moment::none(self.has_values.len());
-        for (place, &flash) in flashes.iter().enumerate() {
+        for (place, flash) in flashes.into_iter().enumerate() {
             if shows(place) && self.has_values[place] {
                 moment.put(place, [flash]);
             }
@@ -282,7 +290,7 @@ impl Replay {
             return Ok(OF_FLASHES);
         }
         let axis = &self.time;
-        let values = self.at(axis.start, shows)?.len() as u64;
+        let values = self.at(axis.start, DECAY, shows)?.len() as u64;
         let affordable = RANGE_VALUES / values.max(1);
         let frames = affordable.max(RANGE_FRAMES).min(axis.frames.max(1));
         let frame = |i: u64| i * axis.frames.saturating_sub(1) / (frames - 1).max(1);
@@ -303,7 +311,7 @@ impl Replay {
         }
         let mut bounds = NO_BOUNDS;
         for time in times {
-            bounds = merged(bounds, self.at(time, shows)?.bounds());
+            bounds = merged(bounds, self.at(time, DECAY, shows)?.bounds());
         }
         Ok(opened(bounds))
     }

@@ -1,0 +1,232 @@
+//! What colours tell in the window: of tracings, of a circuit's nodes, of a recording.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use neurotess::circuit::NodeRef;
+use neurotess::colouring::{self, Cell, Colouring, Node, Paint, Replay, ReplayError};
+use neurotess::render::{ColourMap, Palette, Rgb};
+
+use crate::circuits::{CircuitId, Circuits};
+use crate::document::{ColourBy, Document, Look, NodeOf, SourceId};
+use crate::scene::ShownSource;
+use crate::state::State;
+
+/// What colours depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ColourKey {
+    /// What they tell, and of whom.
+    pub(crate) matter: Matter,
+    /// Which they are.
+    pub(crate) tints: Tints,
+}
+
+/// What colours tell, and of whom.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Matter {
+    by: ColourBy,
+    attribute: String,
+    report: Option<PathBuf>,
+    /// The neurons in their order, where colours differ among those of one tracing.
+    pub(crate) own: Vec<(SourceId, Option<NodeOf>)>,
+}
+
+/// The colours themselves.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tints {
+    palette: Palette,
+    map: ColourMap,
+    background: Rgb,
+    range: Option<[f32; 2]>,
+}
+
+impl ColourKey {
+    pub(crate) fn new(document: &Document) -> Self {
+        let look = &document.look;
+        let by = look.colour_by;
+        let neurons = document.neurons.iter().filter(|_| by.is_of_neurons());
+        let attribute = match by {
+            ColourBy::Attribute => look.attribute.clone(),
+            _ => String::new(),
+        };
+        let report = document.report.clone();
+        Self {
+            matter: Matter {
+                by,
+                attribute,
+                report: report.filter(|_| by == ColourBy::Value),
+                own: neurons.map(|n| (n.source, n.node)).collect(),
+            },
+            tints: Tints {
+                palette: look.palette,
+                map: look.colour_map,
+                background: look.background,
+                range: look.range.filter(|_| by.has_range()),
+            },
+        }
+    }
+}
+
+/// The colours to choose from.
+pub(crate) fn paint(look: &Look) -> Paint {
+    let background = Some(look.background);
+    Paint {
+        palette: look.palette,
+        background,
+        scale: look.colour_map.scale(background),
+        range: look.range.filter(|[low, high]| low < high),
+    }
+}
+
+/// All that colours are made of, free of the window.
+#[derive(Clone, Debug)]
+pub(crate) struct Wish {
+    look: Look,
+    report: Option<PathBuf>,
+    /// Time (ms) of the recording that shows.
+    time: f64,
+    circuits: Circuits,
+    /// Place of the source, name and node of each neuron.
+    neurons: Vec<(usize, String, Option<NodeOf>)>,
+}
+
+/// Colours, and what they were made from.
+#[derive(Clone, Debug)]
+pub(crate) struct Coloured {
+    pub(crate) colouring: Colouring,
+    /// A recording with the range of its values.
+    pub(crate) replay: Option<(Arc<Replay>, [f32; 2])>,
+    /// What could not be told by colours: what, and why.
+    pub(crate) problem: Option<(String, String)>,
+}
+
+impl From<Colouring> for Coloured {
+    fn from(colouring: Colouring) -> Self {
+        Self {
+            colouring,
+            replay: None,
+            problem: None,
+        }
+    }
+}
+
+impl Wish {
+    /// `sources`: as they stand on the device, sorted.
+    pub(crate) fn new(state: &State, sources: &[ShownSource]) -> Self {
+        let document = &state.document;
+        let neurons = document.neurons.iter().map(|neuron| {
+            let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
+            (source.unwrap_or(0), neuron.name.clone(), neuron.node)
+        });
+        Self {
+            look: document.look.clone(),
+            report: document.report.clone(),
+            time: state.playback.pace.time,
+            circuits: state.circuits.clone(),
+            neurons: neurons.collect(),
+        }
+    }
+
+    /// The colours; where they cannot be had, those of types.
+    pub(crate) fn colours(&self, sources: &[ShownSource]) -> Coloured {
+        let cells: Vec<Cell<'_>> = sources
+            .iter()
+            .map(|s| Cell {
+                name: &s.name,
+                morphology: &s.morphology,
+                mesh: &s.generated.mesh,
+            })
+            .collect();
+        let paint = paint(&self.look);
+        let of_type = || colouring::colouring(&cells, colouring::ColourBy::Type, &paint);
+        let instead = |(what, why): (String, String)| Coloured {
+            problem: Some((what, why)),
+            ..of_type().into()
+        };
+        match self.look.colour_by {
+            _ if sources.is_empty() => of_type().into(),
+            ColourBy::Neuron => {
+                let names: Vec<String> = self.neurons.iter().map(|n| n.1.clone()).collect();
+                colouring::each(&cells, &names, &paint).into()
+            }
+            ColourBy::Attribute => self.by_attribute(&cells, &paint).unwrap_or_else(instead),
+            ColourBy::Value => self.by_value(&cells, &paint).unwrap_or_else(instead),
+            by => {
+                let by = by.in_library().unwrap_or_default();
+                colouring::colouring(&cells, by, &paint).into()
+            }
+        }
+    }
+
+    fn by_attribute(
+        &self,
+        cells: &[Cell<'_>],
+        paint: &Paint,
+    ) -> Result<Coloured, (String, String)> {
+        let node = |of: &Option<NodeOf>| of.and_then(|of| self.circuits.node(of));
+        let neurons: Vec<Option<Node<'_>>> = self.neurons.iter().map(|n| node(&n.2)).collect();
+        let what = || "colours by attribute".to_owned();
+        if neurons.iter().all(Option::is_none) {
+            let why = "attributes are those of a circuit's cells: open a circuit";
+            return Err((what(), why.into()));
+        }
+        let attribute = &self.look.attribute;
+        colouring::by_attribute(cells, &neurons, attribute, paint)
+            .map(Coloured::from)
+            .map_err(|e| (what(), e.to_string()))
+    }
+
+    /// Of the first circuit that the recording fits.
+    fn by_value(&self, cells: &[Cell<'_>], paint: &Paint) -> Result<Coloured, (String, String)> {
+        let Some(report) = &self.report else {
+            let why = "there is no report: open one (File, Open report)";
+            return Err(("colours by value".into(), why.into()));
+        };
+        let file = report.display().to_string();
+        let mut circuits: Vec<CircuitId> = self
+            .neurons
+            .iter()
+            .filter_map(|n| Some(n.2?.circuit))
+            .collect();
+        circuits.sort_unstable();
+        circuits.dedup();
+        let mut why = "a report has values of a circuit's cells: open its circuit".to_owned();
+        for id in circuits.into_iter().rev() {
+            let Some(circuit) = self.circuits.get(id) else {
+                continue;
+            };
+            let node = |of: NodeOf| (of.circuit == id).then_some(of.node);
+            let stand: Vec<(usize, Option<NodeRef>)> = self
+                .neurons
+                .iter()
+                .map(|(source, _, of)| (*source, of.and_then(node)))
+                .collect();
+            match Replay::open(report, circuit, cells, &stand) {
+                Ok(replay) => return self.replayed(replay, paint).map_err(|e| (file, e)),
+                Err(e) => why = without(&file, &e.to_string()),
+            }
+        }
+        Err((file, why))
+    }
+
+    fn replayed(&self, replay: Replay, paint: &Paint) -> Result<Coloured, String> {
+        let told = |e: ReplayError| without(&replay.file, &e.to_string());
+        let all = replay.range(&|_| true).map_err(told)?;
+        let range = paint.range.unwrap_or(all);
+        let time = replay.time.nearest(self.time);
+        let moment = replay.at(time, self.look.decay, &|_| true).map_err(told)?;
+        let mut colouring = replay.colouring(range, paint);
+        colouring.table.values = moment.values(range);
+        Ok(Coloured {
+            colouring,
+            replay: Some((Arc::new(replay), all)),
+            problem: None,
+        })
+    }
+}
+
+/// A reason without the file's name, which stands beside it.
+fn without(file: &str, text: &str) -> String {
+    let rest = text.strip_prefix(file).unwrap_or(text);
+    rest.trim_start_matches([':', ' ']).to_owned()
+}

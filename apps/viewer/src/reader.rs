@@ -1,0 +1,216 @@
+//! Values of a recording, read before they are due on a thread of their own: the window never waits.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use eframe::egui;
+use neurotess::colouring::Replay;
+use neurotess::render::InstanceValues;
+
+/// Pictures that are read ahead.
+const AHEAD: u64 = 8;
+/// Most frames that are kept.
+const MOST: usize = 64;
+
+/// Reads until it is dropped.
+pub(crate) struct Reader {
+    shared: Arc<Shared>,
+    replay: Arc<Replay>,
+}
+
+/// What values depend on, beside the frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sight {
+    /// By neuron: whether it shows.
+    pub(crate) shows: Vec<bool>,
+    /// Numbers at both ends of the colour map.
+    pub(crate) range: [f32; 2],
+    /// Of flashes (ms).
+    pub(crate) decay: f64,
+}
+
+#[derive(Default)]
+struct Shared {
+    inner: Mutex<Inner>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Inner {
+    sight: Option<Arc<Sight>>,
+    frame: u64,
+    /// Frames from one picture to the next; 0: no more than one is wanted.
+    stride: u64,
+    ready: BTreeMap<u64, Arc<InstanceValues>>,
+    problem: Option<String>,
+    ends: bool,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Reader {
+    /// `ctx` is told when something is there.
+    pub(crate) fn new(replay: Arc<Replay>, ctx: &egui::Context) -> Self {
+        let shared = Arc::new(Shared::default());
+        let (own, of, ctx) = (Arc::clone(&shared), Arc::clone(&replay), ctx.clone());
+        std::thread::spawn(move || read(&own, &of, &ctx));
+        Self { shared, replay }
+    }
+
+    /// What it reads.
+    pub(crate) fn replay(&self) -> &Arc<Replay> {
+        &self.replay
+    }
+
+    /// The values of a frame if they are there; if not they are read next. `stride`: the frames that will
+    /// be wanted after this one; 0: none.
+    pub(crate) fn get(
+        &self,
+        frame: u64,
+        stride: u64,
+        sight: &Sight,
+    ) -> Option<Arc<InstanceValues>> {
+        let mut inner = self.shared.lock();
+        if inner.sight.as_deref() != Some(sight) {
+            inner.sight = Some(Arc::new(sight.clone()));
+            inner.ready.clear();
+        }
+        if (inner.frame, inner.stride) != (frame, stride) || !inner.ready.contains_key(&frame) {
+            (inner.frame, inner.stride) = (frame, stride);
+            self.shared.changed.notify_one();
+        }
+        inner.ready.get(&frame).cloned()
+    }
+
+    /// What went wrong since this was asked last.
+    pub(crate) fn problem(&self) -> Option<String> {
+        self.shared.lock().problem.take()
+    }
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        self.shared.lock().ends = true;
+        self.shared.changed.notify_one();
+    }
+}
+
+impl Inner {
+    /// The frame to read next: the one that shows, then those that will.
+    fn next(&self, frames: u64) -> Option<(u64, Arc<Sight>)> {
+        let sight = self.sight.as_ref()?;
+        let ahead = if self.stride > 0 { AHEAD } else { 0 };
+        let wanted = (0..=ahead).map(|i| {
+            let frame = self.frame + i * self.stride;
+            // It may begin again.
+            if frame < frames {
+                frame
+            } else {
+                (frame - frames) % frames.max(1)
+            }
+        });
+        let mut missing = wanted.filter(|frame| !self.ready.contains_key(frame));
+        Some((missing.next()?, Arc::clone(sight)))
+    }
+
+    fn keep(&mut self, frame: u64, values: InstanceValues, frames: u64) {
+        self.ready.insert(frame, Arc::new(values));
+        // The one that will not be wanted for longest goes.
+        let until = |&frame: &u64| (frame + frames - self.frame.min(frames)) % frames.max(1);
+        if self.ready.len() > MOST
+            && let Some(far) = self.ready.keys().copied().max_by_key(until)
+        {
+            self.ready.remove(&far);
+        }
+    }
+}
+
+fn read(shared: &Shared, replay: &Replay, ctx: &egui::Context) {
+    let frames = replay.time.frames;
+    loop {
+        let mut inner = shared.lock();
+        let (frame, sight) = loop {
+            if inner.ends {
+                return;
+            }
+            if let Some(next) = inner.next(frames) {
+                break next;
+            }
+            inner = match shared.changed.wait(inner) {
+                Ok(inner) => inner,
+                Err(poisoned) => poisoned.into_inner(),
+            };
+        };
+        drop(inner);
+        let shows = |place: usize| sight.shows.get(place).copied().unwrap_or(true);
+        let moment = replay.at(replay.time.time_of(frame), sight.decay, &shows);
+        let (values, problem) = match moment {
+            Ok(moment) => (moment.values(sight.range), None),
+            // Grey instead of the values of another time; it is not read again and again.
+            Err(e) => (none(sight.shows.len()), Some(e.to_string())),
+        };
+        let mut inner = shared.lock();
+        inner.problem = problem.or(inner.problem.take());
+        if inner
+            .sight
+            .as_ref()
+            .is_some_and(|now| Arc::ptr_eq(now, &sight))
+        {
+            inner.keep(frame, values, frames);
+        }
+        let due = inner.frame == frame;
+        drop(inner);
+        if due {
+            ctx.request_repaint();
+        }
+    }
+}
+
+fn none(neurons: usize) -> InstanceValues {
+    let mut values = InstanceValues::default();
+    (0..neurons).for_each(|_| values.push(&[]));
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn inner(frame: u64, stride: u64, ready: &[u64]) -> Inner {
+        let sight = Sight {
+            shows: vec![true],
+            range: [0.0, 1.0],
+            decay: 5.0,
+        };
+        Inner {
+            sight: Some(Arc::new(sight)),
+            frame,
+            stride,
+            ready: ready.iter().map(|&f| (f, Arc::default())).collect(),
+            ..Inner::default()
+        }
+    }
+
+    #[test]
+    fn what_shows_is_read_first_and_then_what_will() {
+        let next = |inner: Inner| inner.next(100).map(|(frame, _)| frame);
+        assert_eq!(next(inner(5, 2, &[])), Some(5));
+        assert_eq!(next(inner(5, 2, &[5, 7])), Some(9));
+        assert_eq!(next(inner(97, 2, &[97, 99])), Some(1), "it begins again");
+        assert_eq!(next(inner(5, 0, &[5])), None);
+    }
+
+    #[test]
+    fn what_is_long_over_is_forgotten() {
+        let mut inner = inner(50, 1, &[]);
+        for frame in 0..=MOST as u64 + 20 {
+            inner.keep(frame, InstanceValues::default(), 100);
+        }
+        assert_eq!(inner.ready.len(), MOST);
+        assert!(inner.ready.contains_key(&50) && !inner.ready.contains_key(&49));
+    }
+}

@@ -1,0 +1,64 @@
+//! A small circuit with spikes and a report, written as SONATA.
+
+use std::fs::{self, File};
+use std::path::Path;
+
+use neurotess::circuit::TimeAxis;
+use neurotess::circuit::write::{self, ReportLayout};
+use neurotess::formats::swc;
+use neurotess::synth::circuit::{
+    CIRCUIT, CircuitOptions, POPULATION, circuit, circuit_config, voltages,
+};
+use neurotess::synth::grow;
+
+/// Writes a circuit: `voltage.h5` has the first `reported` cells, 20 frames of 0.5 ms.
+pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, reported: usize) {
+    let made = circuit(&CircuitOptions {
+        neurons,
+        morphologies,
+        seed: 3,
+        points: Some(120),
+        reported,
+    });
+    fs::create_dir_all(folder.join("morphologies")).expect("a folder");
+    let create = |name: &str| File::create(folder.join(name)).expect("a file");
+    for cell in &made.morphologies {
+        let file = create(&format!("morphologies/{}.swc", cell.name));
+        swc::write(&grow(&cell.options), file).expect("written");
+    }
+    write::nodes(std::slice::from_ref(&made.population), create("nodes.h5")).expect("written");
+    fs::write(folder.join(CIRCUIT), circuit_config().to_string()).expect("written");
+    write::spikes(std::slice::from_ref(&made.spikes), create("spikes.h5")).expect("written");
+    let of_node = |node: &u64| {
+        let names = &made.population.attributes["morphology"];
+        let name = names.word(*node as usize);
+        let cell = made.morphologies.iter().find(|m| Some(&*m.name) == name);
+        voltages(
+            &grow(&cell.expect("a morphology").options),
+            *node,
+            &made.spikes,
+        )
+    };
+    let nodes: Vec<u64> = (0..reported as u64).collect();
+    let cells: Vec<_> = nodes.iter().map(of_node).collect();
+    let frames = 20;
+    let data = (0..frames).flat_map(|frame| {
+        cells.iter().flat_map(move |cell| {
+            let n = cell.sections.len();
+            // Every cell brightens with time, a node later than the one before.
+            let of = move |k: usize| -80.0 + 5.0 * frame as f32 + k as f32 / n as f32;
+            (0..n).map(of)
+        })
+    });
+    let layout = ReportLayout {
+        population: POPULATION.into(),
+        time: TimeAxis::of_frames(0.0, 0.5, frames as u64).expect("an axis"),
+        units: "mV".into(),
+        nodes,
+        sections: cells.iter().map(|cell| cell.sections.clone()).collect(),
+        chunk: [4, 64],
+        compressed: true,
+    };
+    let data: Vec<f32> = data.collect();
+    write::report(&layout, &data, create("voltage.h5")).expect("written");
+}

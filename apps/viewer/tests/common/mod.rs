@@ -1,0 +1,100 @@
+//! The window in tests: without a desktop, driven by commands, looked at by snapshots.
+#![allow(dead_code, reason = "not every test file needs all of it")]
+#![allow(missing_docs, reason = "tests")]
+
+pub(crate) mod circuit;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui::Vec2;
+use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
+use egui_kittest::{Harness, SnapshotOptions};
+use egui_wgpu::RendererOptions;
+use neurotess::render::adapters;
+use neurotess::synth::Kind;
+use neurotess_viewer::settings::Settings;
+use neurotess_viewer::state::State;
+use neurotess_viewer::{Command, Viewer, wgpu_setup};
+
+pub(crate) const SIZE: Vec2 = Vec2::new(1180.0, 740.0);
+
+pub(crate) type Window = Harness<'static, Option<Viewer>>;
+
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
+/// The window on a software adapter if there is one, or nothing with a word about it.
+pub(crate) fn window() -> Option<Window> {
+    let found = adapters();
+    let Some(adapter) = found.iter().find(|a| a.software).or(found.first()) else {
+        println!("SKIPPED: no graphics adapter here");
+        return None;
+    };
+    let setup = wgpu_setup(Some(adapter.name.clone()), Arc::default());
+    let render = create_render_state(setup, RendererOptions::PREDICTABLE);
+    let ours = render.clone();
+    let settings = Settings {
+        folder: PathBuf::from("/"),
+        ..Settings::default()
+    };
+    let harness = Harness::builder()
+        .with_size(SIZE)
+        .renderer(WgpuTestRenderer::from_render_state(render))
+        .build_ui_state(
+            move |ui, viewer: &mut Option<Viewer>| {
+                let viewer = viewer.get_or_insert_with(|| {
+                    let made = Viewer::new(ui.ctx(), ours.clone(), settings.clone());
+                    made.expect("a viewer").without_motion()
+                });
+                viewer.ui(ui);
+            },
+            None,
+        );
+    Some(harness)
+}
+
+pub(crate) fn viewer(window: &mut Window) -> &mut Viewer {
+    window.state_mut().as_mut().expect("begun")
+}
+
+pub(crate) fn state(window: &mut Window) -> &mut State {
+    &mut viewer(window).state
+}
+
+/// Frames until nothing is under way.
+pub(crate) fn settle(window: &mut Window) {
+    let begun = Instant::now();
+    let mut quiet = 0;
+    while quiet < 3 {
+        assert!(begun.elapsed() < Duration::from_secs(120), "never settles");
+        window.step();
+        quiet = if viewer(window).is_settled() {
+            quiet + 1
+        } else {
+            0
+        };
+        std::thread::sleep(Duration::from_millis(3));
+    }
+}
+
+pub(crate) fn run(window: &mut Window, command: Command) {
+    state(window).run(command);
+    settle(window);
+}
+
+pub(crate) fn with_samples(kinds: &[Kind]) -> Option<Window> {
+    let mut window = window()?;
+    window.step();
+    for &kind in kinds {
+        run(&mut window, Command::OpenSample(kind));
+    }
+    Some(window)
+}
+
+/// A picture of the window beside the one that is kept.
+pub(crate) fn snapshot(window: &mut Window, name: &str) {
+    let options = SnapshotOptions::new()
+        .threshold(0.8)
+        .max_failed_pixels((SIZE.x * SIZE.y * 0.005) as usize);
+    window.snapshot_options(name, &options);
+}

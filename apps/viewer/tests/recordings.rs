@@ -1,0 +1,264 @@
+//! Circuits in the window: colours of their cells, reports and spikes played back.
+
+mod common;
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::Key;
+use egui_kittest::kittest::Queryable;
+use neurotess::synth::Kind;
+use neurotess_viewer::Command;
+use neurotess_viewer::command::Tab;
+use neurotess_viewer::document::{ColourBy, Look};
+use neurotess_viewer::playback::Pace;
+
+use common::circuit::write_circuit;
+use common::{Window, run, settle, snapshot, state, viewer, window};
+
+/// A window with a circuit of nine cells, of which seven are in the report.
+fn with_circuit() -> Option<(Window, tempfile::TempDir)> {
+    let mut window = window()?;
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_circuit(folder.path(), 9, 3, 7);
+    run(
+        &mut window,
+        Command::Open(vec![folder.path().to_path_buf()]),
+    );
+    let count = state(&mut window).document.neurons.len();
+    assert_eq!(count, 9, "{:?}", state(&mut window).problems);
+    Some((window, folder))
+}
+
+fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
+    let mut look = state(window).document.look.clone();
+    change(&mut look);
+    run(window, Command::SetLook(Box::new(look)));
+}
+
+/// The distinct colours of the picture alone, without its legend, roughly.
+fn hues(window: &mut Window) -> usize {
+    let image = window.render().expect("a picture");
+    let picture = (240..880).flat_map(|x| (30..640).map(move |y| (x, y)));
+    let coloured = picture.filter_map(|(x, y)| {
+        let [r, g, b, _] = image.get_pixel(x, y).0;
+        let spread = r.max(g).max(b) - r.min(g).min(b);
+        (spread > 60).then_some([r / 64, g / 64, b / 64])
+    });
+    coloured.collect::<std::collections::BTreeSet<_>>().len()
+}
+
+#[test]
+fn neurons_of_one_tracing_have_their_own_colours() {
+    let Some((mut window, _folder)) = with_circuit() else {
+        return;
+    };
+    let plain = |look: &mut Look| {
+        look.legend = false;
+        look.axes = false;
+        look.scale_bar = false;
+        look.occlusion = false;
+    };
+    set_look(&mut window, |look| {
+        plain(look);
+        look.colour_by = ColourBy::Neuron;
+    });
+    let each = hues(&mut window);
+    run(&mut window, Command::Select(vec![4], false));
+    run(&mut window, Command::Isolate);
+    run(&mut window, Command::SelectNone);
+    let one = hues(&mut window);
+    assert!(each > 2 * one, "{each}, {one}");
+    run(&mut window, Command::ShowAll);
+    set_look(&mut window, |look| {
+        look.colour_by = ColourBy::Attribute;
+        look.attribute = "synapse_class".into();
+        look.legend = true;
+    });
+    run(&mut window, Command::Show(Tab::Look));
+    snapshot(&mut window, "attribute");
+    // The colour goes with the neuron when others go.
+    run(&mut window, Command::Select(vec![0, 1], false));
+    run(&mut window, Command::Remove);
+    assert_eq!(state(&mut window).problems, []);
+    set_look(&mut window, |look| look.attribute = "weather".into());
+    let problems = &state(&mut window).problems;
+    assert!(
+        problems[0]
+            .why
+            .contains("no cell has an attribute 'weather'"),
+        "{problems:?}"
+    );
+}
+
+#[test]
+fn a_report_is_played_stepped_and_saved() {
+    let Some((mut window, folder)) = with_circuit() else {
+        return;
+    };
+    let report = folder.path().join("voltage.h5");
+    run(&mut window, Command::SetReport(Some(report.clone())));
+    let facts = state(&mut window).playback.facts.clone().expect("open");
+    assert_eq!((facts.unit.as_str(), facts.time.frames), ("mV", 20));
+    assert_eq!(facts.without, [2, 9]);
+    assert!(
+        facts.range[0] >= -80.0 && facts.range[1] <= 16.0,
+        "{:?}",
+        facts.range
+    );
+    snapshot(&mut window, "report");
+    // Space plays, the time goes on, space stops.
+    window.key_press(Key::Space);
+    let before = state(&mut window).playback.pace.time;
+    wait(&mut window, |w| {
+        let playback = &state(w).playback;
+        playback.playing && playback.pace.time > before
+    });
+    window.key_press(Key::Space);
+    wait(&mut window, |w| !state(w).playback.playing);
+    run(&mut window, Command::Seek(6.0));
+    for (key, time) in [(Key::Period, 6.5), (Key::Period, 7.0), (Key::Comma, 6.5)] {
+        window.key_press(key);
+        window.step();
+        settle(&mut window);
+        assert_eq!(state(&mut window).playback.pace.time, time);
+    }
+    window.get_by_label("Play");
+    // The session keeps file, moment and which node each neuron is.
+    let pace = Pace {
+        time: 6.5,
+        speed: 2.0,
+        loops: false,
+    };
+    run(&mut window, Command::SetPace(pace));
+    let session = folder.path().join("a.neurotess");
+    run(&mut window, Command::SaveSession(session.clone()));
+    let document = state(&mut window).document.clone();
+    let text = std::fs::read_to_string(&session).expect("written");
+    assert!(text.contains("report = \"voltage.h5\""), "{text}");
+    let before = window.render().expect("a picture");
+    let Some(mut other) = self::window() else {
+        return;
+    };
+    other.step();
+    run(&mut other, Command::Open(vec![session]));
+    assert_eq!(state(&mut other).playback.pace, pace);
+    let again = state(&mut other).document.clone();
+    assert_eq!(again.look, document.look);
+    assert_eq!(again.neurons.len(), document.neurons.len());
+    let nodes = |d: &neurotess_viewer::document::Document| -> Vec<_> {
+        d.neurons.iter().map(|n| n.node.map(|n| n.node)).collect()
+    };
+    assert_eq!(nodes(&again), nodes(&document));
+    assert_eq!(state(&mut other).problems, []);
+    assert!(viewer(&mut other).fatal.is_none());
+    let after = other.render().expect("a picture");
+    let differ = before.pixels().zip(after.pixels()).filter(|(a, b)| a != b);
+    // The status bar says something else.
+    assert!(differ.count() < 3000);
+}
+
+#[test]
+fn a_frame_changes_values_and_nothing_else() {
+    let Some((mut window, folder)) = with_circuit() else {
+        return;
+    };
+    let report = folder.path().join("voltage.h5");
+    run(&mut window, Command::SetReport(Some(report)));
+    let first = window.render().expect("a picture");
+    run(&mut window, Command::Seek(9.0));
+    let last = window.render().expect("a picture");
+    assert_ne!(first.as_raw(), last.as_raw());
+    run(&mut window, Command::Seek(0.0));
+    let again = window.render().expect("a picture");
+    assert_eq!(first.as_raw(), again.as_raw());
+    // A fixed range has other colours of the same values, and an undo has the old ones.
+    set_look(&mut window, |look| look.range = Some([-80.0, -70.0]));
+    assert_eq!(
+        state(&mut window).playback.facts.as_ref().map(|f| f.range),
+        Some([-80.0, -70.0])
+    );
+    run(&mut window, Command::Undo);
+    run(&mut window, Command::Undo);
+    assert!(
+        state(&mut window).playback.facts.is_none(),
+        "the report is closed"
+    );
+    run(&mut window, Command::Redo);
+    assert!(state(&mut window).playback.facts.is_some());
+}
+
+#[test]
+fn spikes_flash() {
+    let Some((mut window, folder)) = with_circuit() else {
+        return;
+    };
+    let spikes = folder.path().join("spikes.h5");
+    run(&mut window, Command::SetReport(Some(spikes)));
+    let facts = state(&mut window).playback.facts.clone().expect("open");
+    assert!(facts.spikes && facts.range == [0.0, 1.0] && facts.without == [0, 9]);
+    run(&mut window, Command::Show(Tab::Look));
+    window.get_by_label("flashes");
+    let last = facts.time.time_of(facts.time.frames - 1);
+    run(&mut window, Command::Seek(last));
+    set_look(&mut window, |look| look.decay = 100.0);
+    let slow = window.render().expect("a picture");
+    set_look(&mut window, |look| look.decay = 0.2);
+    let fast = window.render().expect("a picture");
+    assert_ne!(slow.as_raw(), fast.as_raw());
+}
+
+#[test]
+fn reports_that_do_not_fit_are_told_while_the_rest_shows() {
+    let Some((mut window, folder)) = with_circuit() else {
+        return;
+    };
+    let other = folder.path().join("other");
+    write_circuit(&other, 20, 2, 20);
+    let nodes = folder.path().join("nodes.h5");
+    for (file, said) in [
+        (other.join("voltage.h5"), "11 nodes of population"),
+        (nodes, "neither a report nor spikes"),
+        (folder.path().join("none.h5"), "cannot be read"),
+    ] {
+        state(&mut window).problems.clear();
+        run(&mut window, Command::SetReport(Some(file)));
+        let state = state(&mut window);
+        assert!(state.problems[0].why.contains(said), "{:?}", state.problems);
+        assert!(state.playback.facts.is_none());
+    }
+    run(&mut window, Command::SetReport(None));
+    assert_eq!(state(&mut window).document.look.colour_by, ColourBy::Type);
+}
+
+#[test]
+fn a_report_without_a_circuit_waits_for_it() {
+    let Some(mut window) = window() else { return };
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_circuit(folder.path(), 4, 2, 4);
+    let at = |name: &str| folder.path().join(name);
+    run(&mut window, Command::OpenSample(Kind::Star));
+    run(&mut window, Command::SetReport(Some(at("voltage.h5"))));
+    let problems = &state(&mut window).problems;
+    assert!(problems[0].why.contains("open its circuit"), "{problems:?}");
+    run(
+        &mut window,
+        Command::Open(vec![folder.path().to_path_buf()]),
+    );
+    let facts = state(&mut window).playback.facts.clone().expect("open");
+    assert_eq!(facts.without, [1, 5], "the sample has no values");
+}
+
+fn wait(window: &mut Window, until: impl Fn(&mut Window) -> bool) {
+    let begun = Instant::now();
+    while !until(window) {
+        let playback = state(window).playback.clone();
+        assert!(
+            begun.elapsed() < Duration::from_secs(30),
+            "never: {playback:?}"
+        );
+        window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
