@@ -2,15 +2,18 @@
 
 mod common;
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
+use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Tab;
 use neurotess_viewer::document::{ColourBy, Look};
 use neurotess_viewer::playback::Pace;
+use neurotess_viewer::save::{FilmOptions, PictureFile};
 
 use common::circuit::write_circuit;
 use common::{Window, run, settle, snapshot, state, viewer, window};
@@ -248,6 +251,101 @@ fn a_report_without_a_circuit_waits_for_it() {
     );
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert_eq!(facts.without, [1, 5], "the sample has no values");
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder").flatten();
+    let mut names: Vec<String> = entries
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_film_runs_through_the_time_of_a_report() {
+    let Some((mut window, folder)) = with_circuit() else {
+        return;
+    };
+    let report = folder.path().join("voltage.h5");
+    run(&mut window, Command::SetReport(Some(report)));
+    let out = folder.path().join("film");
+    let film = FilmOptions {
+        picture: PictureFile {
+            out: out.join("f.png"),
+            size: [200, 160],
+            samples: 4,
+            transparent: false,
+            replace: false,
+        },
+        frames: 5,
+        time: Some([0.0, 8.0]),
+        video: false,
+    };
+    run(&mut window, Command::SaveFilm(film.clone()));
+    let five: Vec<String> = (0..5).map(|i| format!("f_{i:04}.png")).collect();
+    assert_eq!(names(&out), five, "{:?}", state(&mut window).problems);
+    let bytes = |i: usize| std::fs::read(out.join(&five[i])).expect("there");
+    assert_ne!(bytes(0), bytes(4));
+    // Two views and the time: as many as from view to view, and one more.
+    for side in [Side::Front, Side::Iso] {
+        run(&mut window, Command::Look(side));
+        run(&mut window, Command::AddKeyView);
+    }
+    let mut along = film.clone();
+    along.picture.out = out.join("g.png");
+    along.frames = 2;
+    run(&mut window, Command::SaveFilm(along));
+    assert_eq!(names(&out).len(), 5 + 3);
+    // Without either there is none.
+    run(&mut window, Command::DropKeyView(1));
+    run(&mut window, Command::SetReport(None));
+    run(&mut window, Command::SaveFilm(film));
+    assert!(
+        state(&mut window).problems[0]
+            .why
+            .contains("keep two views")
+    );
+}
+
+#[test]
+fn a_film_that_is_stopped_leaves_whole_pictures() {
+    let Some((mut window, folder)) = with_circuit() else {
+        return;
+    };
+    for side in [Side::Front, Side::Iso] {
+        run(&mut window, Command::Look(side));
+        run(&mut window, Command::AddKeyView);
+    }
+    let out = folder.path().join("film");
+    let film = FilmOptions {
+        picture: PictureFile {
+            out: out.join("f.png"),
+            size: [640, 480],
+            samples: 16,
+            transparent: false,
+            replace: false,
+        },
+        frames: 500,
+        time: None,
+        video: true,
+    };
+    state(&mut window).run(Command::SaveFilm(film));
+    wait(&mut window, |_| out.join("f_0001.png").exists());
+    run(&mut window, Command::Cancel);
+    let names = names(&out);
+    assert!(names.len() < 400, "{}", names.len());
+    for name in &names {
+        let bytes = std::fs::read(out.join(name)).expect("there");
+        // Every file is whole: it ends as PNG does.
+        let whole = bytes.starts_with(b"\x89PNG") && bytes.ends_with(b"IEND\xaeB`\x82");
+        assert!(whole, "{name}");
+    }
+    let why = &state(&mut window).problems[0].why;
+    assert!(
+        why.contains(&format!("stopped after {} of 501", names.len())),
+        "{why}"
+    );
 }
 
 fn wait(window: &mut Window, until: impl Fn(&mut Window) -> bool) {

@@ -20,20 +20,6 @@ pub(crate) struct Cell {
     mended: Vec<String>,
 }
 
-#[cfg(test)]
-impl Cell {
-    /// A cell that no file has.
-    pub(crate) fn of(morphology: Morphology) -> Self {
-        Self {
-            file: String::new(),
-            mesh: generate::generate(&morphology, &GenerateOptions::default()).mesh,
-            morphology,
-            warnings: Vec::new(),
-            mended: Vec::new(),
-        }
-    }
-}
-
 /// Reads and meshes all inputs on all cores; tells of those that fail.
 pub(crate) fn read(
     inputs: &Inputs,

@@ -26,7 +26,7 @@ pub(crate) fn can_draw() -> bool {
 pub(crate) struct Picture {
     size: (u32, u32),
     channels: usize,
-    pixels: Vec<u8>,
+    pub(crate) pixels: Vec<u8>,
 }
 
 impl Picture {

@@ -43,6 +43,64 @@ fn an_action_potential_is_seen_when_it_comes() {
 }
 
 #[test]
+fn a_series_runs_through_time_in_one_start() {
+    if !can_draw() {
+        return;
+    }
+    let work = Work::new();
+    work.run(CIRCUIT).exits(0);
+    let look = "--size 160x200 --samples 4 --no-legend --background black --light flat --ao 0";
+    let report = "--report c/reports/voltage.h5 --range=-70,30";
+    let run = work
+        .run(&format!(
+            "render c -o f.png {look} {report} --time 14:15.5:0.5 --json"
+        ))
+        .exits(0);
+    let files = ["f_0000.png", "f_0001.png", "f_0002.png"];
+    assert_eq!(run.json()["files"], serde_json::json!(files));
+    // Each is the picture of its time alone.
+    for (file, time) in files.iter().zip([14.0, 14.5, 15.0]) {
+        work.run(&format!(
+            "render c -o one.png --force {look} {report} --time {time}"
+        ))
+        .exits(0);
+        let [own, alone] = [file, "one.png"].map(|name| Picture::read(&work, name).pixels);
+        assert!(own == alone, "{file}");
+    }
+    let [a, b] = [files[0], files[1]].map(|name| Picture::read(&work, name).pixels);
+    assert!(a != b);
+    // The camera may go around meanwhile, and a number of pictures may stand for the step.
+    work.run(&format!(
+        "render c -o g.png {look} {report} --time 0:3 --frames 2 --turntable"
+    ))
+    .exits(0);
+    let [a, b] = ["g_0000.png", "g_0001.png"].map(|name| Picture::read(&work, name).pixels);
+    assert!(a != b && !work.path("g_0002.png").exists());
+    for (times, said) in [
+        ("--time 0:3", "needs a step"),
+        ("--time 0:3:1 --frames 5", "leave out --frames"),
+        ("--time 0:300000:1", "choose a larger step"),
+        ("--time 3:0:1", "FROM:TO:STEP"),
+        ("--frames 3", "--turntable"),
+    ] {
+        let run = work
+            .run(&format!("render c -o h.png {report} {times}"))
+            .exits(2);
+        assert!(run.stderr().contains(said), "{times}: {}", run.stderr());
+    }
+    let beyond = work
+        .run(&format!(
+            "render c -o h.png {look} {report} --time 99:101:1"
+        ))
+        .exits(1);
+    assert!(
+        beyond.stderr().contains("100 ms: choose a time"),
+        "{}",
+        beyond.stderr()
+    );
+}
+
+#[test]
 fn cells_have_colours_as_a_whole() {
     if !can_draw() {
         return;
