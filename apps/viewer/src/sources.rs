@@ -9,13 +9,17 @@ use glam::DVec3;
 use neurotess::circuit::{Circuit, is_circuit, is_recording, soma_center};
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{Generated, generate};
+use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::{Measures, Morphology, shape};
-use neurotess::render::{Ball, Placement, bounds};
+use neurotess::render::{Ball, Placement, bounds, merged};
 use neurotess::synth::{self, Kind};
 use walkdir::WalkDir;
 
 use crate::circuits::Opened;
 use crate::document::{SomaEdit, SourceId};
+
+/// Balls of a neuron in scenes of many: 1,000 neurons of 1,000 balls would take every frame 10 ms.
+const FEW_BALLS: usize = 48;
 
 /// Before the name of a built-in sample.
 const SAMPLE: &str = "sample:";
@@ -41,6 +45,8 @@ pub struct Source {
     pub written: Option<SystemTime>,
     /// Balls around the mesh (µm).
     pub balls: Vec<Ball>,
+    /// A few that hold them, for scenes of many neurons.
+    pub few_balls: Vec<Ball>,
     /// Its file has changed since, or is gone.
     pub stale: Option<Stale>,
     /// By section: length (µm) and branch order.
@@ -72,6 +78,21 @@ pub struct SectionFacts {
 /// All tracings that are open or were.
 #[derive(Clone, Debug, Default)]
 pub struct Sources(Vec<Source>);
+
+impl Source {
+    /// Another mesh.
+    pub fn set_generated(&mut self, generated: Generated) {
+        (self.balls, self.few_balls) = balls(&generated.mesh);
+        self.generated = Arc::new(generated);
+    }
+}
+
+/// All balls around a mesh, and a few that hold them.
+fn balls(mesh: &CoarseMesh) -> (Vec<Ball>, Vec<Ball>) {
+    let all = bounds(mesh);
+    let few = merged(&all, FEW_BALLS);
+    (all, few)
+}
 
 impl Sources {
     /// Adds a tracing.
@@ -322,12 +343,14 @@ fn source(
 ) -> Source {
     let generated = generate(&morphology, &soma.options());
     warnings.extend(generated.warnings.iter().map(ToString::to_string));
+    let (all, few_balls) = balls(&generated.mesh);
     Source {
         file: file.to_path_buf(),
         name,
         measures: Arc::new(Measures::of(&morphology)),
         sections: Arc::new(section_facts(&morphology)),
-        balls: bounds(&generated.mesh),
+        balls: all,
+        few_balls,
         morphology: Arc::new(morphology),
         generated: Arc::new(generated),
         soma,

@@ -15,6 +15,9 @@ use crate::settings::Settings;
 use crate::sources::{Source, Sources, extent};
 use crate::view::View;
 
+/// From so many neurons on, a few balls around each will do.
+const MANY: usize = 64;
+
 /// A piece of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
@@ -342,7 +345,11 @@ impl State {
     }
 
     fn balls_of(&self, source: SourceId, placement: Placement) -> Vec<Ball> {
-        let balls = self.sources.get(source).map_or(&[][..], |s| &s.balls);
+        let many = self.document.neurons.len() >= MANY;
+        let balls = self.sources.get(source).map_or(&[][..], |s| match many {
+            true => &s.few_balls,
+            false => &s.balls,
+        });
         balls
             .iter()
             .map(|&(c, r)| (placement.world_from_cell(c), r * placement.scale))

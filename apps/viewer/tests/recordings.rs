@@ -295,8 +295,22 @@ fn a_film_runs_through_the_time_of_a_report() {
     let mut along = film.clone();
     along.picture.out = out.join("g.png");
     along.frames = 2;
+    along.video = true;
     run(&mut window, Command::SaveFilm(along));
-    assert_eq!(names(&out).len(), 5 + 3);
+    // Where ffmpeg is not installed the pictures are there, and a word about it.
+    let problems = std::mem::take(&mut state(&mut window).problems);
+    if problems.is_empty() {
+        let video = std::fs::read(out.join("g.mp4")).expect("a video");
+        assert_eq!(&video[4..8], b"ftyp");
+    } else {
+        assert!(problems[0].why.contains("ffmpeg"), "{problems:?}");
+    }
+    let pictures = names(&out).into_iter().filter(|n| n.ends_with(".png"));
+    assert_eq!(pictures.count(), 5 + 3);
+    assert!(
+        names(&out).iter().all(|n| !n.starts_with('.')),
+        "nothing is left"
+    );
     // Without either there is none.
     run(&mut window, Command::DropKeyView(1));
     run(&mut window, Command::SetReport(None));

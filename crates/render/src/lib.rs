@@ -55,7 +55,7 @@ mod timing;
 mod work;
 
 pub use adaptive::Adaptive;
-pub use bounds::{any_shows, bounds};
+pub use bounds::{any_shows, bounds, merged};
 pub use camera::Camera;
 pub use colour::{
     CATEGORY_BIT, ColourMap, ColourTable, InstanceValues, Palette, Rgb, SCALE_ENTRIES, category,

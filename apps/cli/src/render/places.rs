@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use glam::DVec3;
 use neurotess::circuit::soma_center;
-use neurotess::render::{Ball, Placement, bounds};
+use neurotess::render::{Ball, Placement, bounds, merged};
 use rayon::prelude::*;
 
 use super::args::RenderArgs;
@@ -162,28 +161,6 @@ pub(crate) fn covering(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ba
     placed(&own, places)
 }
 
-/// At most so many balls that hold all of these: neighbours in the list are neighbours in the cell.
-fn merged(balls: &[Ball], most: usize) -> Vec<Ball> {
-    if balls.len() <= most {
-        return balls.to_vec();
-    }
-    let around = |balls: &[Ball]| {
-        let low = balls
-            .iter()
-            .map(|&(c, r)| c - r)
-            .fold(DVec3::MAX, DVec3::min);
-        let high = balls
-            .iter()
-            .map(|&(c, r)| c + r)
-            .fold(DVec3::MIN, DVec3::max);
-        let center = (low + high) / 2.0;
-        let reach = balls.iter().map(|&(c, r)| c.distance(center) + r);
-        (center, reach.fold(0.0, f64::max))
-    };
-    let together = balls.len().div_ceil(most);
-    balls.chunks(together).map(around).collect()
-}
-
 /// Balls of cells where the cells stand.
 fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
     let at = |&(cell, placement): &(usize, Placement)| {
@@ -197,20 +174,9 @@ fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DQuat;
+    use glam::{DQuat, DVec3};
 
     use super::*;
-
-    #[test]
-    fn merged_balls_hold_those_that_they_are_of() {
-        let at = |i: usize| DVec3::new(i as f64, (0.3 * i as f64).sin() * 20.0, 0.0);
-        let balls: Vec<Ball> = (0..1000).map(|i| (at(i), 0.1 + 0.01 * i as f64)).collect();
-        let few = merged(&balls, 30);
-        assert!(few.len() <= 30);
-        let held = |&(c, r): &Ball| few.iter().any(|&(m, s)| c.distance(m) + r <= s + 1e-9);
-        assert!(balls.iter().all(held));
-        assert_eq!(merged(&balls, 1000), balls);
-    }
 
     #[test]
     fn balls_go_where_cells_stand() {

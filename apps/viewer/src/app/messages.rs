@@ -31,8 +31,7 @@ impl Viewer {
                 if let Some(source) = self.state.sources.get_mut(id)
                     && !generated.mesh.patches.is_empty()
                 {
-                    source.balls = neurotess::render::bounds(&generated.mesh);
-                    source.generated = (*generated).into();
+                    source.set_generated(*generated);
                     source.soma = edit;
                 } else if let Some(source) = self.state.sources.get_mut(id) {
                     source.soma = edit;

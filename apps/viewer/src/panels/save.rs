@@ -208,7 +208,8 @@ fn size(picture: &mut PictureFile, ui: &mut Ui) {
         );
         ui.label("pixels");
     });
-    ui.horizontal(|ui| {
+    // Wrapped: what is too wide widens all that comes after it.
+    ui.horizontal_wrapped(|ui| {
         ui.label("smoothness").on_hover_text("Samples of a pixel");
         for samples in [4, 16, 64] {
             ui.selectable_value(&mut picture.samples, samples, samples.to_string());
