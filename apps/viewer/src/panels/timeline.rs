@@ -104,13 +104,16 @@ fn scrub(state: &mut State, facts: &Facts, ui: &mut Ui) {
     let axis = &facts.time;
     let last = axis.time_of(axis.frames.saturating_sub(1));
     let digits = digits(axis.step);
-    let mut time = state.playback.pace.time;
+    // Sliders round what they show, and call that a change: time would never go on by less.
+    let unit = 10f64.powi(digits as i32);
+    let rounded = (state.playback.pace.time * unit).round() / unit;
+    let mut time = rounded;
     ui.spacing_mut().slider_width = (ui.available_width() - 100.0).max(60.0);
     let slider = Slider::new(&mut time, axis.start..=last.max(axis.start))
         .suffix(" ms")
         .fixed_decimals(digits);
     let response = ui.add(slider);
-    if response.changed() {
+    if response.changed() && (time - rounded).abs() > 0.5 / unit {
         state.asked.push(Command::Seek(time));
     }
 }
