@@ -18,6 +18,8 @@ struct Bucket {
 @group(2) @binding(2) var<storage, read_write> buckets: array<Bucket>;
 
 var<workgroup> here: array<u32, CLUSTER>;
+// The same of four patches each, 16 bits for each: less to load.
+var<workgroup> fours: array<vec2<u32>, POINTS_OF_CLUSTER>;
 var<workgroup> places: array<atomic<u32>, BUCKETS>;
 
 // Lists a queued section's refined patches, cluster by cluster, each in its bucket.
@@ -44,10 +46,19 @@ fn scatter(
         }
         here[lane] = bucket;
         workgroupBarrier();
+        if (lane < POINTS_OF_CLUSTER) {
+            let first = 4u * lane;
+            fours[lane] = vec2<u32>(here[first], here[first + 2u])
+                | (vec2<u32>(here[first + 1u], here[first + 3u]) << vec2<u32>(16u));
+        }
+        workgroupBarrier();
         var place = 0u;
         if (fine) {
             place = atomicLoad(&places[bucket]);
-            for (var k = 0u; k < lane; k += 1u) {
+            for (var k = 0u; k < lane / 4u; k += 1u) {
+                place += count_of(fours[k], bucket);
+            }
+            for (var k = lane & ~3u; k < lane; k += 1u) {
                 place += u32(here[k] == bucket);
             }
             list[place] = vec2<u32>(slot, word);
@@ -57,4 +68,11 @@ fn scatter(
             atomicMax(&places[bucket], place + 1u);
         }
     }
+}
+
+// How many of four are in a bucket.
+fn count_of(four: vec2<u32>, bucket: u32) -> u32 {
+    let low = vec2<u32>((four & vec2<u32>(0xffffu)) == vec2<u32>(bucket));
+    let high = vec2<u32>((four >> vec2<u32>(16u)) == vec2<u32>(bucket));
+    return low.x + low.y + high.x + high.y;
 }
