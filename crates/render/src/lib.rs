@@ -89,5 +89,5 @@ pub use readback::{Chosen, FrameStats};
 pub use refiner::{Batch, FramePlan, Refiner};
 pub use refining::{Choice, Refining, Sight};
 pub use scene::{Instance, Placement, Scene, SceneError, TemplateId};
-pub use shade::{Clip, FAINT, Light, Look, MARKED, WITHOUT_NEURITES, WITHOUT_SOMA};
+pub use shade::{Clip, FAINT, Light, Look, MARKED, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA};
 pub use templates::{Template, Templates};

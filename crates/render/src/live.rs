@@ -156,7 +156,8 @@ impl Live {
         self.presenter.set_mask(gpu, mask);
     }
 
-    /// Draws a draft at once.
+    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::OUTLINED) have an outline in the
+    /// colour of what is selected, as wide as told by [`Live::set_outlines`].
     ///
     /// # Errors
     /// What the device cannot do.
@@ -257,9 +258,10 @@ impl Live {
     pub fn show(&self, gpu: &Gpu) {
         if let Some(canvas) = self.shown() {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            let (pixels, texture) = (&canvas.targets.pixels, &canvas.texture);
+            let outlines = (&self.outlines, self.shows_draft);
+            let (targets, texture) = (&canvas.targets, &canvas.texture);
             self.presenter
-                .present(gpu, pixels, texture, &self.outlines, &mut encoder);
+                .present(gpu, targets, texture, outlines, &mut encoder);
             gpu.queue.submit([encoder.finish()]);
         }
     }
@@ -457,9 +459,10 @@ impl Live {
         pass.set_pipeline(&finisher.last);
         pass.dispatch_workgroups(over[0], over[1], 1);
         drop(pass);
-        let (pixels, texture) = (&canvas.targets.pixels, &canvas.texture);
+        let outlines = (&self.outlines, way.draft);
+        let (targets, texture) = (&canvas.targets, &canvas.texture);
         self.presenter
-            .present(gpu, pixels, texture, &self.outlines, encoder);
+            .present(gpu, targets, texture, outlines, encoder);
     }
 }
 

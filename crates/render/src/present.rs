@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::colour::Rgb;
 use crate::device::Gpu;
+use crate::targets::Targets;
 
 /// What windows show without converting: bytes of the screen.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -59,10 +60,39 @@ impl Present {
     }
 }
 
-/// The pass, with the mask that it looks at.
-pub(crate) struct Presenter {
+/// What tells what has outlines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MaskKind {
+    /// Bytes by pixel, from the host.
+    Bytes,
+    /// The normals that a draft of one sample has drawn: see `shade.wgsl`.
+    Drawn,
+}
+
+/// The text for a kind of mask.
+pub(crate) fn present_text(kind: MaskKind) -> String {
+    let (texture, bits) = match kind {
+        MaskKind::Bytes => ("texture_2d<u32>", "textureLoad(mask, p, 0).r"),
+        MaskKind::Drawn => (
+            "texture_2d<f32>",
+            "u32(textureLoad(mask, p, 0).a * 255.0 + 0.5)",
+        ),
+    };
+    let text = include_str!("present.wgsl");
+    text.replace("MASK_TEXTURE", texture)
+        .replace("MASK_BITS", bits)
+}
+
+/// The pass for a kind of mask.
+struct Way {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
+}
+
+/// The pass, with the mask that it looks at.
+pub(crate) struct Presenter {
+    bytes: Way,
+    drawn: Way,
     uniform: wgpu::Buffer,
     mask: wgpu::Texture,
     mask_size: Option<[u32; 2]>,
@@ -70,47 +100,15 @@ pub(crate) struct Presenter {
 
 impl Presenter {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let device = &gpu.device;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("present"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("present.wgsl").into()),
-        });
-        let layout = layout(device);
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("present"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("present"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("corner"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("show"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("present"),
             size: size_of::<Present>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         Self {
-            pipeline,
-            layout,
+            bytes: Way::new(gpu, MaskKind::Bytes),
+            drawn: Way::new(gpu, MaskKind::Drawn),
             uniform,
             mask: mask_texture(gpu, [1, 1]),
             mask_size: None,
@@ -143,30 +141,34 @@ impl Presenter {
         );
     }
 
-    /// Encodes the pass.
+    /// Encodes the pass. `drawn`: the normals that were drawn are the mask.
     pub(crate) fn present(
         &self,
         gpu: &Gpu,
-        pixels: &wgpu::Buffer,
+        targets: &Targets,
         to: &wgpu::Texture,
-        outlines: &Outlines,
+        (outlines, drawn): (&Outlines, bool),
         encoder: &mut wgpu::CommandEncoder,
     ) {
         let size = [to.width(), to.height()];
         // Of another size, the mask belongs to another picture.
-        let outlines = (self.mask_size == Some(size)).then_some(outlines);
+        let outlines = (drawn || self.mask_size == Some(size)).then_some(outlines);
         let words = Present::new(size, outlines);
         gpu.queue
             .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&words));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let mask = self.mask.create_view(&Default::default());
+        let bytes = self.mask.create_view(&Default::default());
+        let (way, mask) = match drawn {
+            true => (&self.drawn, &targets.normal),
+            false => (&self.bytes, &bytes),
+        };
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("present"),
-            layout: &self.layout,
+            layout: &way.layout,
             entries: &[
                 entry(0, self.uniform.as_entire_binding()),
-                entry(1, pixels.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(&mask)),
+                entry(1, targets.pixels.as_entire_binding()),
+                entry(2, wgpu::BindingResource::TextureView(mask)),
             ],
         });
         let view = to.create_view(&Default::default());
@@ -180,9 +182,47 @@ impl Presenter {
             })],
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&way.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
+    }
+}
+
+impl Way {
+    fn new(gpu: &Gpu, kind: MaskKind) -> Self {
+        let device = &gpu.device;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("present"),
+            source: wgpu::ShaderSource::Wgsl(present_text(kind).into()),
+        });
+        let layout = layout(device, kind);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("present"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("present"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("corner"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("show"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(FORMAT.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { pipeline, layout }
     }
 }
 
@@ -214,7 +254,7 @@ pub(crate) fn texture(
     })
 }
 
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, kind: MaskKind) -> wgpu::BindGroupLayout {
     let binding = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -227,7 +267,10 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         min_binding_size: None,
     };
     let mask = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Uint,
+        sample_type: match kind {
+            MaskKind::Bytes => wgpu::TextureSampleType::Uint,
+            MaskKind::Drawn => wgpu::TextureSampleType::Float { filterable: false },
+        },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };

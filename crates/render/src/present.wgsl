@@ -1,4 +1,5 @@
-// From the bytes of a picture to a texture, with outlines round what a mask says. Called by present.rs.
+// From the bytes of a picture to a texture, with outlines round what a mask says. Called by present.rs, which
+// says what the mask is: bytes, or what a draft has drawn.
 
 struct Present {
     size: vec2<u32>,
@@ -13,7 +14,7 @@ struct Present {
 @group(0) @binding(0) var<uniform> present: Present;
 @group(0) @binding(1) var<storage, read> pixels: array<u32>;
 // 1: selected, 2: under the cursor.
-@group(0) @binding(2) var mask: texture_2d<u32>;
+@group(0) @binding(2) var mask: MASK_TEXTURE;
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
@@ -25,7 +26,7 @@ fn mask_at(p: vec2<i32>) -> u32 {
     if any(p < vec2(0)) || any(p >= vec2<i32>(textureDimensions(mask))) {
         return 0u;
     }
-    return textureLoad(mask, p, 0).r;
+    return MASK_BITS;
 }
 
 // Bits of the mask within the outline's width of a pixel.

@@ -49,6 +49,8 @@ pub const FAINT: u32 = 2;
 pub const WITHOUT_NEURITES: u32 = 4;
 /// State of an instance: its soma is not drawn.
 pub const WITHOUT_SOMA: u32 = 8;
+/// State of an instance: drafts have an outline round it, see [`Live::draft`](crate::Live::draft).
+pub const OUTLINED: u32 = 16;
 
 /// What surfaces are lit by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

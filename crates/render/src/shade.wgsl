@@ -47,6 +47,7 @@ const MARKED: u32 = 1u;
 const FAINT: u32 = 2u;
 const WITHOUT_NEURITES: u32 = 4u;
 const WITHOUT_SOMA: u32 = 8u;
+const OUTLINED: u32 = 16u;
 
 @group(1) @binding(0) var<uniform> shade: Shade;
 // Linear colours.
@@ -63,6 +64,8 @@ struct Varying {
     @location(4) coverage: f32,
     // From 0, a tube two pixels wide, to 1, nothing.
     @location(5) thin: f32,
+    // 1: has an outline.
+    @location(6) @interpolate(flat) outline: u32,
 }
 
 fn category_entry(category: u32) -> u32 {
@@ -178,6 +181,7 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     out.grid = v.grid;
     out.coverage = coverage;
     out.thin = thin;
+    out.outline = select(0u, 1u, (state & OUTLINED) != 0u);
     return out;
 }
 
@@ -192,7 +196,7 @@ fn vertex(
 struct Sample {
     // Linear, premultiplied by coverage through the mask.
     @location(0) colour: vec4<f32>,
-    // Normal in the view, from -1..1 to 0..1.
+    // Normal in the view, from -1..1 to 0..1, and bits of the mask of outlines in bytes.
     @location(1) normal: vec4<f32>,
     // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
     // draw to floating-point ones.
@@ -265,7 +269,7 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     }
     var out: Sample;
     out.colour = vec4(colour, 1.0);
-    out.normal = vec4(n * 0.5 + 0.5, 1.0);
+    out.normal = vec4(n * 0.5 + 0.5, f32(in.outline) / 255.0);
     out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
     MASK_STATEMENT
     return out;

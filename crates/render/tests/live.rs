@@ -4,9 +4,9 @@ mod pictured;
 use glam::{DQuat, DVec3};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 use neurotess_render::{
-    Adaptive, Camera, Clip, Gpu, Image, Instance, Live, Look, Named, Occlusion, PictureOptions,
-    Placement, Refining, Scene, Shot, Spot, Steps, Template, Templates, WITHOUT_NEURITES,
-    WITHOUT_SOMA, paint,
+    Adaptive, Camera, Clip, Exploration, Gpu, Image, Instance, Live, Look, Named, OUTLINED,
+    Occlusion, Outlines, PictureOptions, Placement, Refining, Scene, Shot, Sketch, Spot, Steps,
+    Template, Templates, VertexMaker, WITHOUT_NEURITES, WITHOUT_SOMA, paint,
 };
 use pictured::{CELL, balls, by_type, camera, gpu, mesh};
 
@@ -199,6 +199,64 @@ fn a_draft_shows_the_same_cell() {
     assert!(live.shows_draft() && live.progress().is_none());
     let apart = difference(&fine, &pixels(&gpu, &live));
     assert!(apart > 0.0 && apart < 3.0, "{apart}");
+}
+
+/// Number of pixels that are nearly of a colour, left and right of the middle.
+fn of_colour(image: &Image, colour: [u8; 3]) -> [usize; 2] {
+    let near = |p: &[u8]| (0..3).all(|k| p[k].abs_diff(colour[k]) < 40);
+    let mut counts = [0; 2];
+    for (i, pixel) in image.pixels.chunks(4).enumerate() {
+        let right = i % image.width as usize >= image.width as usize / 2;
+        counts[usize::from(right)] += usize::from(near(pixel));
+    }
+    counts
+}
+
+#[test]
+fn drafts_have_outlines_round_what_is_outlined() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let aside = |x: f64| Placement {
+        translation: DVec3::X * x,
+        scale: 0.4,
+        ..Placement::default()
+    };
+    // The picture's middle is at -9 µm.
+    let both = [aside(-23.0), aside(5.0)];
+    let mut refined = maker(&gpu, &mesh, &both);
+    let (words, _) = by_type(&mesh);
+    let mut explored = Exploration::new(&gpu, 1).expect("a maker");
+    let ids = explored
+        .add(&gpu, &[Sketch::new(&mesh, &words)])
+        .expect("added");
+    let instance = |&placement: &Placement| Instance {
+        placement,
+        ..Instance::new(ids[0])
+    };
+    explored
+        .set_instances(&gpu, both.iter().map(instance).collect())
+        .expect("placed");
+    let orange = [255, 140, 0];
+    let outlines = Outlines {
+        width: 1,
+        selected: orange,
+        ..Outlines::default()
+    };
+    let makers: [&mut dyn VertexMaker; 2] = [&mut refined, &mut explored];
+    for (which, maker) in makers.into_iter().enumerate() {
+        let mut live = live(&gpu, &mesh);
+        live.set_outlines(&gpu, outlines, None);
+        let mut drawn = |states: [u32; 2]| {
+            live.set_states(states.to_vec());
+            live.draft(&gpu, maker, &shot(&mesh)).expect("drawn");
+            of_colour(&pixels(&gpu, &live), orange)
+        };
+        assert_eq!(drawn([0, 0]), [0, 0], "maker {which}");
+        let [left, right] = drawn([0, OUTLINED]);
+        assert!(left == 0 && right > 100, "maker {which}: {left} {right}");
+        let [left, right] = drawn([OUTLINED, 0]);
+        assert!(left > 100 && right == 0, "maker {which}: {left} {right}");
+    }
 }
 
 #[test]

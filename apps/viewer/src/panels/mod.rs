@@ -5,6 +5,7 @@ mod detail;
 mod empty;
 mod inspect;
 mod look;
+mod marks;
 mod menu;
 mod over;
 mod rings;

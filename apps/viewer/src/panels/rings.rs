@@ -1,20 +1,12 @@
 //! Sliders of first rings: where each neurite leaves its soma. What is touched is shown in the picture.
 
-use eframe::egui::{
-    Button, Color32, Label, Painter, Pos2, Rect, RichText, Sense, Slider, Stroke, Ui,
-};
-use glam::DVec3;
-use neurotess::generate::FirstRing;
-use neurotess::render::{Outlines, Placement};
+use eframe::egui::{Button, Color32, Label, RichText, Sense, Slider, Ui};
 
 use super::cells;
 use crate::command::Command;
 use crate::document::SourceId;
 use crate::sources::Source;
 use crate::state::{Part, Picked, State};
-
-/// Points of a ring as it is drawn.
-const ROUND: usize = 48;
 
 /// A neurite that has a ring.
 struct Row {
@@ -150,61 +142,4 @@ fn touch(state: &mut State, id: SourceId, neurite: u32) {
         neuron,
         part: Part::Neurite(neurite),
     });
-}
-
-/// Draws the rings of the neurite whose slider is touched.
-pub(super) fn mark(state: &State, rect: Rect, painter: &Painter) {
-    let Some((id, neurite)) = state.touched else {
-        return;
-    };
-    let Some(source) = state.sources.get(id) else {
-        return;
-    };
-    let (placements, neurons) = (state.placements(), &state.document.neurons);
-    for (neuron, placement) in neurons.iter().zip(placements) {
-        if neuron.source != id || neuron.hidden {
-            continue;
-        }
-        let origin = source.generated.mesh.origin;
-        let rings = source.generated.rings.iter();
-        for ring in rings.filter(|r| r.neurite == neurite) {
-            circle(state, ring, origin, &placement, rect, painter);
-        }
-    }
-}
-
-fn circle(
-    state: &State,
-    ring: &FirstRing,
-    origin: DVec3,
-    placement: &Placement,
-    rect: Rect,
-    painter: &Painter,
-) {
-    let camera = state.view.camera();
-    let (across, along) = ring.outwards.any_orthonormal_pair();
-    // Far away a ring is a dot that still can be found.
-    let center = placement.world_from_cell(origin + ring.center);
-    let point = camera.pixel_slope(f64::from(rect.height())) * camera.depth(center).max(0.0);
-    let least = 5.0 * point / placement.scale;
-    let radius = (1.08 * ring.radius).max(least);
-    let at = |i: usize| {
-        let angle = std::f64::consts::TAU * i as f64 / ROUND as f64;
-        let offset = across * angle.cos() + along * angle.sin();
-        let place = placement.world_from_cell(origin + ring.center + offset * radius);
-        let size = [rect.width(), rect.height()].map(|n| (16.0 * n) as u32);
-        let [x, y] = camera.pixel_of(place, size)?;
-        Some(rect.min + eframe::egui::vec2(x as f32, y as f32) / 16.0)
-    };
-    let points: Option<Vec<Pos2>> = (0..=ROUND).map(at).collect();
-    let Some(points) = points else {
-        return;
-    };
-    let [r, g, b] = Outlines::default().hovered;
-    let painter = painter.with_clip_rect(rect);
-    painter.line(
-        points.clone(),
-        Stroke::new(5.0, Color32::from_white_alpha(150)),
-    );
-    painter.line(points, Stroke::new(2.5, Color32::from_rgb(r, g, b)));
 }

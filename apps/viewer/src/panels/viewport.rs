@@ -7,7 +7,7 @@ use eframe::egui::{
 use glam::DVec3;
 use neurotess::render::{Legend, is_dark, nice_length};
 
-use super::{plate, rings};
+use super::{marks, plate};
 use crate::app::Viewer;
 use crate::command::Command;
 use crate::state::{Picked, State};
@@ -237,7 +237,11 @@ fn over(viewer: &Viewer, rect: Rect, ui: &mut Ui) {
     if look.axes {
         axes(&viewer.state, rect, ui);
     }
-    rings::mark(&viewer.state, rect, ui.painter());
+    let painter = ui.painter().with_clip_rect(rect);
+    marks::rings(&viewer.state, rect, &painter);
+    if !viewer.stage.can_pick() {
+        marks::hovered(&viewer.state, rect, &painter);
+    }
     if !viewer.stage.is_settled() && viewer.stage.shown().sources.is_empty() {
         Area::new(Id::unique("meshing"))
             .fixed_pos(rect.center())

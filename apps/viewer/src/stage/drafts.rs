@@ -3,8 +3,11 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use neurotess::render::{Choice, DeviceError, Occlusion, Outlines, Refining, Scene, Shot};
+use neurotess::render::{
+    Choice, DeviceError, OUTLINED, Occlusion, Outlines, Refining, Scene, Shot,
+};
 
+use super::pointing::OUTLINES;
 use super::rest::REST;
 use super::{Drawn, Rest, Stage};
 use crate::scene::{self, Standing};
@@ -49,7 +52,12 @@ impl Stage {
     }
 
     /// Draws at once and coarsely, as coarsely as it takes to keep up.
-    pub(super) fn draft(&mut self, wanted: Drawn, ctx: &egui::Context) -> Result<(), DeviceError> {
+    pub(super) fn draft(
+        &mut self,
+        state: &State,
+        wanted: Drawn,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
         self.moved = Instant::now();
         self.rest = Rest::Waits;
         self.live.stop();
@@ -65,11 +73,20 @@ impl Stage {
         if before.is_none_or(|d| d.standing != wanted.standing) {
             self.stand(&wanted.standing);
         }
-        self.live.set_states(wanted.states.clone());
+        let selected = state.document.neurons.iter().map(|n| n.selected);
+        let outlined = selected.map(|selected| if selected { OUTLINED } else { 0 });
+        let states = wanted.states.iter().zip(outlined);
+        self.live.set_states(states.map(|(a, b)| a | b).collect());
         self.picks = None;
         self.namer = None;
         self.counted = false;
-        self.live.set_outlines(&self.gpu, Outlines::default(), None);
+        let any = state.document.selected().next().is_some();
+        let outlines = Outlines {
+            // Looking for outlines takes time.
+            width: u32::from(any),
+            ..OUTLINES
+        };
+        self.live.set_outlines(&self.gpu, outlines, None);
         self.mask = None;
         self.draw_draft(&wanted)?;
         self.drawn = Some(wanted);

@@ -28,6 +28,7 @@ use crate::scene::{Shown, Standing};
 use crate::state::{Draft, State};
 use building::Built;
 use pointing::MaskKey;
+pub(crate) use pointing::OUTLINES;
 
 /// All that draws.
 pub struct Stage {
@@ -183,7 +184,7 @@ impl Stage {
         self.revalued |= self.take_values(state, ctx);
         let wanted = self.wanted(state, size);
         if self.revalued || self.drawn.as_ref() != Some(&wanted) {
-            self.draft(wanted, ctx)?;
+            self.draft(state, wanted, ctx)?;
         } else {
             self.refine(state, ctx)?;
         }

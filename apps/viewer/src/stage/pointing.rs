@@ -10,6 +10,13 @@ use crate::picks::{Picks, Seen, seen};
 use crate::scene;
 use crate::state::{Picked, State};
 
+/// Wider lines would drown thin neurites.
+pub(crate) const OUTLINES: Outlines = Outlines {
+    width: 1,
+    selected: scene::SELECTION,
+    hovered: [0, 150, 255],
+};
+
 /// What outlines depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MaskKey {
@@ -71,14 +78,8 @@ impl Stage {
             source.sections.get(section as usize).copied()
         };
         let mask = picks.mask(&state.document, state.hovered, facts);
-        // Wider lines would drown thin neurites.
-        let outlines = Outlines {
-            width: 1,
-            selected: scene::SELECTION,
-            ..Outlines::default()
-        };
         self.live
-            .set_outlines(&self.gpu, outlines, Some((picks.size(), &mask)));
+            .set_outlines(&self.gpu, OUTLINES, Some((picks.size(), &mask)));
         self.live.show(&self.gpu);
         self.mask = Some(key);
     }
