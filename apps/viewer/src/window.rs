@@ -1,14 +1,15 @@
 //! The frame of the desktop around the viewer.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook, take_hook};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{self, ViewportBuilder};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use neurotess::render::{choose_adapter, device_descriptor};
+use neurotess::render::{DeviceError, choose_adapter, device_descriptor};
 use thiserror::Error;
 
-use crate::app::Viewer;
+use crate::app::{Viewer, lost};
 use crate::command::Command;
 use crate::document::SomaEdit;
 use crate::settings::Settings;
@@ -69,16 +70,20 @@ pub fn run(options: Options) -> Result<(), ViewError> {
         ..eframe::NativeOptions::default()
     };
     let out = Arc::clone(&fatal);
-    let ended = eframe::run_native(
-        "neurotess",
-        native,
-        Box::new(move |context| Ok(Box::new(Window::new(context, options, out)?))),
-    );
-    let taken =
-        |slot: &Mutex<Option<String>>| slot.lock().unwrap_or_else(PoisonError::into_inner).take();
+    quiet_once_fatal(&fatal);
+    // Whoever draws the panels panics where the device is lost.
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        eframe::run_native(
+            "neurotess",
+            native,
+            Box::new(move |context| Ok(Box::new(Window::new(context, options, out)?))),
+        )
+    }));
+    drop(take_hook());
     if let Some(why) = taken(&fatal) {
         return Err(ViewError::Lost(why));
     }
+    let ended = ended.unwrap_or_else(|panic| resume_unwind(panic));
     ended.map_err(|e| match (taken(&refused), e) {
         (Some(why), _) => ViewError::NoAdapter(why),
         (None, eframe::Error::Winit(e)) => ViewError::NoDisplay(e.to_string()),
@@ -87,6 +92,22 @@ pub fn run(options: Options) -> Result<(), ViewError> {
             "the window cannot be drawn ({e}): choose another adapter with --adapter"
         )),
     })
+}
+
+fn taken(slot: &Mutex<Option<String>>) -> Option<String> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// What panics once it is known why the program ends has nothing to add.
+fn quiet_once_fatal(fatal: &Arc<Mutex<Option<String>>>) {
+    let (fatal, usual) = (Arc::clone(fatal), take_hook());
+    set_hook(Box::new(move |panic| {
+        let known = fatal.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.is_none() {
+            drop(known);
+            usual(panic);
+        }
+    }));
 }
 
 fn has_display() -> bool {
@@ -112,9 +133,13 @@ pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -
     WgpuSetup::CreateNew(setup)
 }
 
+/// Environment variable for tests: once the file that it names is there, the device is lost.
+const LOSE: &str = "NEUROTESS_TEST_LOSE_DEVICE";
+
 struct Window {
     viewer: Viewer,
     fatal: Arc<Mutex<Option<String>>>,
+    lose: Option<PathBuf>,
 }
 
 impl Window {
@@ -139,12 +164,20 @@ impl Window {
         if options.report.is_some() {
             viewer.state.run(Command::SetReport(options.report));
         }
-        Ok(Self { viewer, fatal })
+        Ok(Self {
+            viewer,
+            fatal,
+            lose: std::env::var_os(LOSE).map(PathBuf::from),
+        })
     }
 }
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if self.lose.as_ref().is_some_and(|file| file.exists()) {
+            self.viewer.stage.gpu().device.destroy();
+            self.lose = None;
+        }
         self.viewer.ui(ui);
         if let Some(why) = self.viewer.fatal.take() {
             *self.fatal.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
@@ -153,5 +186,24 @@ impl eframe::App for Window {
 
     fn on_exit(&mut self) {
         self.viewer.remember();
+    }
+}
+
+impl Drop for Window {
+    /// Where the panels cannot be drawn any more, the frame panics: what is there is saved.
+    fn drop(&mut self) {
+        let mut fatal = self.fatal.lock().unwrap_or_else(PoisonError::into_inner);
+        if !std::thread::panicking() || fatal.is_some() {
+            return;
+        }
+        let gpu = self.viewer.stage.gpu();
+        // Tells what has become of the device.
+        let _ = gpu.device.poll(wgpu::PollType::Poll);
+        let why = match gpu.check() {
+            Err(DeviceError::Lost(why)) => lost(&why),
+            Err(e) => e.to_string(),
+            Ok(()) => "a bug in neurotess ended it, please report what stands above".into(),
+        };
+        *fatal = Some(self.viewer.rescue(&why));
     }
 }

@@ -359,6 +359,40 @@ fn nothing_is_drawn_when_nothing_changes() {
 }
 
 #[test]
+fn a_lost_device_costs_no_work() {
+    let Some(mut window) = with_samples(&[Kind::Star]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = window.state_mut();
+    *place = place
+        .take()
+        .map(|viewer| viewer.with_rescue(folder.path().to_path_buf()));
+    run(&mut window, Command::Select(vec![0], false));
+    run(&mut window, Command::SetRing(SourceId(0), 1, Some(1.5)));
+    let before = neurotess_viewer::session::Session::of(state(&mut window), folder.path());
+    viewer(&mut window).stage.gpu().device.destroy();
+    // Something must be drawn to notice it.
+    let turned = state(&mut window).view.orbited(0.1, 0.0, glam::DVec3::Y);
+    state(&mut window).view = turned;
+    let clock = Instant::now();
+    while viewer(&mut window).fatal.is_none() {
+        assert!(clock.elapsed() < Duration::from_secs(20), "not noticed");
+        window.step();
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let said = viewer(&mut window).fatal.clone().expect("told");
+    let file = folder.path().join("rescued.neurotess");
+    assert!(said.contains("lost") && said.contains(&file.display().to_string()));
+    let rescued = neurotess_viewer::session::Session::read(&file).expect("rescued");
+    assert_eq!(
+        (&rescued.file, &rescued.neuron),
+        (&before.file, &before.neuron)
+    );
+    assert_eq!(rescued.view, turned);
+}
+
+#[test]
 fn a_session_comes_back_as_it_was() {
     let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
         return;

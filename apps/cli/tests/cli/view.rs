@@ -181,6 +181,37 @@ fn a_window_opens_a_file_is_driven_and_closes() {
 }
 
 #[test]
+fn a_lost_device_ends_the_window_with_a_word_and_a_session() {
+    let Some(display) = display() else { return };
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let mut command = work.command("view cell.swc --ring 1=0.5");
+    command
+        .env("DISPLAY", &display.name)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("NODEVICE_SELECT", "1")
+        .env("NEUROTESS_CONFIG", work.path("config"))
+        .env("NEUROTESS_TEST_LOSE_DEVICE", work.path("lose"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
+    let mut child = command.spawn().expect("it starts");
+    wait_for("a picture of the cell", || {
+        display.screenshot("before_loss") > 300
+    });
+    work.file("lose", "");
+    display.xdotool("mousemove 560 400 mousedown 1 mousemove_relative 60 10 mouseup 1");
+    let status = ends(&mut child);
+    let mut said = String::new();
+    let mut errors = child.stderr.take().expect("its errors");
+    std::io::Read::read_to_string(&mut errors, &mut said).expect("text");
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("device was lost"), "{said}");
+    assert!(said.contains("your session is in"), "{said}");
+    let rescued = fs::read_to_string(work.path("config/rescued.neurotess")).expect("rescued");
+    assert!(rescued.contains("cell.swc") && rescued.contains("position = 0.5"));
+}
+
+#[test]
 fn without_a_display_there_is_a_word_and_a_way_out() {
     let work = Work::new();
     let mut command = work.command("view");

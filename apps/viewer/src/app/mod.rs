@@ -46,6 +46,8 @@ pub struct Viewer {
     soma: SomaEdit,
     /// When the recording's time was looked at last.
     ticked: Instant,
+    /// Where the session is saved when the program must end.
+    rescue: PathBuf,
 }
 
 impl Viewer {
@@ -77,7 +79,14 @@ impl Viewer {
             smooth: true,
             soma: SomaEdit::default(),
             ticked: Instant::now(),
+            rescue: crate::settings::folder().unwrap_or_default(),
         })
+    }
+
+    /// A session that must be rescued goes to this folder instead of that of the settings.
+    pub fn with_rescue(mut self, folder: PathBuf) -> Self {
+        self.rescue = folder;
+        self
     }
 
     /// Somata of what is opened first are made so.
@@ -138,7 +147,7 @@ impl Viewer {
         match self.stage.update(&mut self.state, size, ctx) {
             Ok(texture) => texture,
             Err(DeviceError::Lost(why)) => {
-                self.fatal = Some(self.rescue(&why));
+                self.fatal = Some(self.rescue(&lost(&why)));
                 self.quits = true;
                 None
             }
@@ -250,4 +259,9 @@ impl Viewer {
             self.state.asked.push(Command::ToggleKeys);
         }
     }
+}
+
+/// What is said of a lost device.
+pub(crate) fn lost(why: &str) -> String {
+    format!("the graphics device was lost ({why})")
 }

@@ -11,15 +11,14 @@ use crate::session::{self, Session};
 use crate::worker::Job;
 
 impl Viewer {
-    /// Saves the session before the program ends by itself.
-    pub(super) fn rescue(&self, why: &str) -> String {
-        let lost = format!("the graphics device was lost ({why})");
+    /// Saves the session before the program ends by itself; what to say.
+    pub(crate) fn rescue(&self, lost: &str) -> String {
         if self.state.document.neurons.is_empty() {
             return format!("{lost}: start again, or choose another one by NEUROTESS_ADAPTER");
         }
-        let folder = crate::settings::folder().unwrap_or_default();
+        let folder = &self.rescue;
         let file = folder.join(format!("rescued.{}", session::EXTENSION));
-        match Session::of(&self.state, &folder).write(&file) {
+        match Session::of(&self.state, folder).write(&file) {
             Ok(()) => format!("{lost}: your session is in {}", file.display()),
             Err(e) => format!("{lost}, and the session could not be saved: {e}"),
         }
