@@ -1,5 +1,7 @@
 //! The maker of vertices that refines on the fly: a scene and how it is refined.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::bounds::any_shows;
 use crate::device::Gpu;
 use crate::error::DeviceError;
@@ -21,6 +23,11 @@ pub struct Adaptive {
     sub_pixels: f64,
     plan: FramePlan,
     bounds: Option<Vec<Ball>>,
+    keeps: bool,
+    /// What the lists on the device are chosen for, while they hold.
+    kept: Option<(Sight, Refining)>,
+    /// Whether they are yet to be chosen.
+    stale: AtomicBool,
 }
 
 impl Adaptive {
@@ -41,6 +48,9 @@ impl Adaptive {
             sub_pixels: f64::from(sub_pixels.max(1)),
             plan: FramePlan::default(),
             bounds: None,
+            keeps: false,
+            kept: None,
+            stale: AtomicBool::new(true),
         })
     }
 
@@ -65,12 +75,22 @@ impl Adaptive {
         self.scene = scene;
         self.bounds = None;
         self.plan = FramePlan::default();
+        self.kept = None;
+    }
+
+    /// Whether what was chosen is kept for frames of the same view, one after the other: for windows,
+    /// where a picture is drawn in several steps. Not beyond a million patches, which are chosen and
+    /// drawn in turn.
+    pub fn set_keeping(&mut self, keeps: bool) {
+        self.keeps = keeps;
+        self.kept = None;
     }
 
     /// Takes the scene out, to change it and set it again; until then there is none.
     pub fn take_scene(&mut self) -> Scene {
         self.plan = FramePlan::default();
         self.bounds = None;
+        self.kept = None;
         std::mem::take(&mut self.scene)
     }
 
@@ -140,9 +160,16 @@ impl VertexMaker for Adaptive {
             slope: frame.slope() * self.sub_pixels,
             near: frame.near,
         };
-        self.plan = self
-            .refiner
-            .prepare(gpu, &self.scene, &sight, &self.refining)?;
+        let asked = Some((sight, self.refining));
+        if self.kept != asked {
+            self.kept = None;
+            self.plan = self
+                .refiner
+                .prepare(gpu, &self.scene, &sight, &self.refining)?;
+            *self.stale.get_mut() = true;
+            let keeps = self.keeps && self.plan.batches.len() == 1;
+            self.kept = asked.filter(|_| keeps);
+        }
         Ok(self.plan.batches.len())
     }
 
@@ -152,12 +179,9 @@ impl VertexMaker for Adaptive {
         encoder: &mut wgpu::CommandEncoder,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
-        self.refiner.choose(
-            &self.scene,
-            encoder,
-            self.plan.batches.get(round),
-            timestamps,
-        );
+        let stale = self.stale.swap(false, Ordering::Relaxed) || self.kept.is_none();
+        let batch = self.plan.batches.get(round).filter(|_| stale);
+        self.refiner.choose(&self.scene, encoder, batch, timestamps);
     }
 
     fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>) {

@@ -3,7 +3,7 @@
 //! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
 //! camera moves a **draft** is drawn at once: one sample, no occlusion. At rest the picture is made in
 //! **steps** of one sub-pixel each, moved so that they add up to the samples of a saved picture
-//! (`picture.rs`), and each step in **bands** of rows, so that a slice of work ends soon whatever the
+//! (`picture.rs`), and each step in **slices**, so that each ends soon whatever the
 //! scene: a window can show what there is, and stop.
 //!
 //! ```text
@@ -53,8 +53,9 @@ pub struct Shot {
 pub struct Steps {
     /// Number of steps: 1, 4 or 16.
     pub steps: u32,
-    /// Bands of rows that a step is drawn in.
-    pub bands: u32,
+    /// Slices that a step is drawn in: at most by the maker's shaders, or bands of rows where there are
+    /// so many things that they are chosen in turn.
+    pub slices: u32,
 }
 
 /// A picture on the device.
@@ -93,7 +94,9 @@ struct UnderWay {
     steps: Steps,
     draft: bool,
     step: u32,
-    band: u32,
+    slice: u32,
+    /// Slices are bands of rows, each chosen for itself.
+    banded: bool,
 }
 
 /// Tells when submitted work is done.
@@ -175,10 +178,14 @@ impl Live {
                 occlusion: Occlusion::Off,
                 ..*shot
             },
-            steps: Steps { steps: 1, bands: 1 },
+            steps: Steps {
+                steps: 1,
+                slices: 1,
+            },
             draft: true,
             step: 0,
-            band: 0,
+            slice: 0,
+            banded: false,
         };
         self.shows_draft = true;
         self.draw(gpu, maker, painter, &way)
@@ -186,22 +193,16 @@ impl Live {
 
     /// Begins a picture that [`Live::slice`] makes.
     pub fn begin(&mut self, shot: Shot, steps: Steps) {
-        // Levels for another camera know no bands of this one.
-        let bands = if shot.frozen.is_some() {
-            1
-        } else {
-            steps.bands
-        };
-        let bands = bands.clamp(1, shot.size[1].max(1));
         self.under_way = Some(UnderWay {
             shot,
             steps: Steps {
-                bands,
+                slices: steps.slices.clamp(1, shot.size[1].max(1)),
                 steps: steps.steps.max(1),
             },
             draft: false,
             step: 0,
-            band: 0,
+            slice: 0,
+            banded: false,
         });
     }
 
@@ -213,8 +214,8 @@ impl Live {
     /// Share of the picture under way that is made; none: there is none.
     pub fn progress(&self) -> Option<f32> {
         let way = self.under_way?;
-        let made = way.step * way.steps.bands + way.band;
-        Some(made as f32 / (way.steps.steps * way.steps.bands) as f32)
+        let made = way.step * way.steps.slices + way.slice;
+        Some(made as f32 / (way.steps.steps * way.steps.slices) as f32)
     }
 
     /// The next slice of the picture under way; whether it shows something new. The slice before must be
@@ -223,18 +224,22 @@ impl Live {
     /// # Errors
     /// What the device cannot do.
     pub fn slice(&mut self, gpu: &Gpu, maker: &mut dyn VertexMaker) -> Result<bool, DeviceError> {
-        let Some(way) = self.under_way else {
+        let Some(mut way) = self.under_way else {
             return Ok(false);
         };
+        if (way.step, way.slice) == (0, 0) {
+            let rounds = maker.prepare(gpu, &chosen(&way.shot, None))?;
+            lay_out(&mut way, rounds, maker);
+        }
         let samples = samples_in_sub_pixel(gpu, 4);
         let painter = self.painter(gpu, maker, samples, &way.shot)?;
         self.make_canvas(gpu, false, way.shot.size, samples)?;
         self.draw(gpu, maker, painter, &way)?;
         let mut next = way;
-        next.band += 1;
-        let whole = next.band == way.steps.bands;
+        next.slice += 1;
+        let whole = next.slice == way.steps.slices;
         if whole {
-            (next.band, next.step) = (0, next.step + 1);
+            (next.slice, next.step) = (0, next.step + 1);
             self.shows_draft = false;
         }
         self.under_way = (next.step < way.steps.steps).then_some(next);
@@ -378,7 +383,7 @@ impl Live {
         Ok(())
     }
 
-    /// One band of one step; what comes after the drawing with the last band.
+    /// One slice of one step; what comes after the drawing with the last one.
     fn draw(
         &self,
         gpu: &Gpu,
@@ -396,28 +401,37 @@ impl Live {
             return Ok(());
         };
         let [width, height] = shot.size;
-        let edge =
-            |band: u32| (u64::from(band) * u64::from(height) / u64::from(steps.bands)) as u32;
-        let (top, bottom) = (edge(way.band), edge(way.band + 1));
+        let edge = |slice: u32, all: u32| {
+            (u64::from(slice) * u64::from(all) / u64::from(steps.slices)) as u32
+        };
+        let slice = |all: u32| edge(way.slice, all)..edge(way.slice + 1, all);
+        let (rows, shaders) = match way.banded {
+            true => (slice(height), 0..usize::MAX),
+            false => {
+                let shaders = slice(maker.shaders() as u32);
+                (0..height, shaders.start as usize..shaders.end as usize)
+            }
+        };
         let (jitter, turn) = offset(way.step, steps.steps);
         let shade = shade(painter, shot).moved(jitter, turn);
         gpu.queue
             .write_buffer(&painter.shade, 0, bytemuck::bytes_of(&shade));
         let group = painter.shade_group(gpu);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let band = (steps.bands > 1).then_some((top, bottom));
+        let band = way.banded.then_some((rows.start, rows.end));
         let rounds = maker.prepare(gpu, &chosen(shot, band))?.max(1);
         for round in 0..rounds {
             maker.choose(round, &mut encoder, None);
             let part = Part {
                 round,
-                first: way.band == 0 && round == 0,
-                last: way.band + 1 == steps.bands && round + 1 == rounds,
-                within: Some([0, top, width, bottom - top]),
+                shaders: shaders.clone(),
+                first: way.slice == 0 && round == 0,
+                last: way.slice + 1 == steps.slices && round + 1 == rounds,
+                within: Some([0, rows.start, width, rows.end - rows.start]),
             };
-            painter.draw(maker, part, &canvas.targets, &group, &mut encoder);
+            painter.draw(maker, &part, &canvas.targets, &group, &mut encoder);
         }
-        if way.band + 1 == steps.bands {
+        if way.slice + 1 == steps.slices {
             self.finish(gpu, canvas, way, &mut encoder);
         }
         gpu.queue.submit([encoder.finish()]);
@@ -463,6 +477,18 @@ impl Live {
         let (targets, texture) = (&canvas.targets, &canvas.texture);
         self.presenter
             .present(gpu, targets, texture, outlines, encoder);
+    }
+}
+
+/// Decides what the slices of a picture are. What is chosen at once is drawn shader by shader, and need
+/// not be chosen for every slice; `rounds` that are chosen in turn are drawn in bands of rows.
+fn lay_out(way: &mut UnderWay, rounds: usize, maker: &dyn VertexMaker) {
+    way.banded = rounds > 1 && way.steps.slices > 1;
+    if !way.banded {
+        way.steps.slices = way.steps.slices.min(maker.shaders() as u32);
+    } else if way.shot.frozen.is_some() {
+        // Levels for another camera know no bands of this one.
+        (way.banded, way.steps.slices) = (false, 1);
     }
 }
 

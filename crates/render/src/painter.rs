@@ -5,6 +5,8 @@
 //!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
 //! ```
 
+use std::ops::Range;
+
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use crate::colour::{ColourTable, Rgb, linear};
@@ -43,9 +45,11 @@ impl Finishing {
 }
 
 /// What is drawn in one pass over the targets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Part {
     pub(crate) round: usize,
+    /// Which of the maker's shaders draw.
+    pub(crate) shaders: Range<usize>,
     /// Whether the targets are cleared before.
     pub(crate) first: bool,
     /// Whether nothing more comes, so that samples become sub-pixels.
@@ -58,6 +62,7 @@ impl Part {
     fn round(round: usize, rounds: usize) -> Self {
         Self {
             round,
+            shaders: 0..usize::MAX,
             first: round == 0,
             last: round + 1 == rounds,
             within: None,
@@ -192,7 +197,7 @@ impl Painter {
             let timestamps = self.timer.compute(Pass::Choose);
             maker.choose(round, &mut encoder, timestamps);
             let part = Part::round(round, rounds);
-            self.draw(maker, part, targets, &shade_group, &mut encoder);
+            self.draw(maker, &part, targets, &shade_group, &mut encoder);
         }
         let over = |n: u32| n.div_ceil(8);
         // Nothing to do is still a pass: its times are read.
@@ -241,7 +246,7 @@ impl Painter {
         for round in 0..rounds {
             maker.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
             let part = Part::round(round, rounds);
-            self.draw(maker, part, targets, &shade_group, &mut encoder);
+            self.draw(maker, &part, targets, &shade_group, &mut encoder);
         }
         // Passes that do nothing: their times are read with the others'.
         let idle = [
@@ -310,7 +315,7 @@ impl Painter {
     pub(crate) fn draw(
         &self,
         maker: &dyn VertexMaker,
-        part: Part,
+        part: &Part,
         targets: &Targets,
         group: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,
@@ -365,8 +370,10 @@ impl Painter {
             pass.set_scissor_rect(x, y, width, height);
         }
         for (shader, pipeline) in self.shader.pipelines.iter().enumerate() {
-            pass.set_pipeline(pipeline);
-            maker.draw(part.round, shader, &mut pass);
+            if part.shaders.contains(&shader) {
+                pass.set_pipeline(pipeline);
+                maker.draw(part.round, shader, &mut pass);
+            }
         }
     }
 

@@ -4,7 +4,7 @@ mod pictured;
 use glam::{DQuat, DVec3};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 use neurotess_render::{
-    Adaptive, Camera, Clip, Exploration, Gpu, Image, Instance, Live, Look, Named, OUTLINED,
+    Adaptive, Camera, Choice, Clip, Exploration, Gpu, Image, Instance, Live, Look, Named, OUTLINED,
     Occlusion, Outlines, PictureOptions, Placement, Refining, Scene, Shot, Sketch, Spot, Steps,
     Template, Templates, VertexMaker, WITHOUT_NEURITES, WITHOUT_SOMA, paint,
 };
@@ -135,7 +135,10 @@ fn a_picture_at_rest_is_as_a_saved_one() {
     let shot = shot(&mesh);
     let mut made = maker(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
-    let steps = Steps { steps: 4, bands: 1 };
+    let steps = Steps {
+        steps: 4,
+        slices: 1,
+    };
     let shown = picture(&gpu, &mut live, &mut made, shot, steps);
     let mut saved = Image::default();
     let options = PictureOptions {
@@ -169,17 +172,62 @@ fn a_picture_at_rest_is_as_a_saved_one() {
 }
 
 #[test]
-fn bands_change_nothing() {
+fn slices_change_nothing() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
     let mut made = maker(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
-    let mut with = |bands| {
-        let steps = Steps { steps: 4, bands };
+    let mut with = |slices| {
+        let steps = Steps { steps: 4, slices };
         picture(&gpu, &mut live, &mut made, shot(&mesh), steps)
     };
     let whole = with(1);
     assert_eq!(difference(&whole, &with(7)), 0.0);
+}
+
+#[test]
+fn a_choice_that_is_kept_changes_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let mut anew = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut kept = maker(&gpu, &mesh, &[Placement::default()]);
+    kept.set_keeping(true);
+    let mut live = live(&gpu, &mesh);
+    let steps = Steps {
+        steps: 4,
+        slices: 3,
+    };
+    let mut turned = shot(&mesh);
+    turned.camera = turned.camera.turned(0.7);
+    let coarse = Refining {
+        choice: Choice::Homogeneous(1),
+        ..Refining::default()
+    };
+    let moved = Placement {
+        translation: DVec3::Y * 4.0,
+        ..Placement::default()
+    };
+    // Another view, another way of refining, another scene, ids between: each is noticed.
+    for change in 0..4 {
+        for maker in [&mut anew, &mut kept] {
+            match change {
+                2 => maker.set_refining(coarse),
+                3 => {
+                    let (templates, mut instances) = maker.take_scene().into_parts();
+                    instances[0].placement = moved;
+                    maker.set_scene(Scene::new(templates, instances).expect("a scene"));
+                }
+                _ => {}
+            }
+        }
+        let shot = if change == 0 { shot(&mesh) } else { turned };
+        let wanted = picture(&gpu, &mut live, &mut anew, shot, steps);
+        let first = picture(&gpu, &mut live, &mut kept, shot, steps);
+        assert_eq!(difference(&wanted, &first), 0.0, "change {change}");
+        named(&gpu, &mut live, &mut kept, &shot);
+        let again = picture(&gpu, &mut live, &mut kept, shot, steps);
+        assert_eq!(difference(&wanted, &again), 0.0, "change {change}");
+    }
 }
 
 #[test]
@@ -193,7 +241,10 @@ fn a_draft_shows_the_same_cell() {
         &mut live,
         &mut made,
         shot(&mesh),
-        Steps { steps: 4, bands: 1 },
+        Steps {
+            steps: 4,
+            slices: 1,
+        },
     );
     live.draft(&gpu, &mut made, &shot(&mesh)).expect("drawn");
     assert!(live.shows_draft() && live.progress().is_none());
@@ -266,7 +317,10 @@ fn levels_frozen_for_the_same_camera_change_nothing() {
     let mut made = maker(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
     let shot = shot(&mesh);
-    let steps = Steps { steps: 1, bands: 1 };
+    let steps = Steps {
+        steps: 1,
+        slices: 1,
+    };
     let free = picture(&gpu, &mut live, &mut made, shot, steps);
     let turned = Shot {
         camera: shot.camera.turned(0.5),
@@ -427,7 +481,7 @@ fn nothing_is_drawn_of_an_empty_scene() {
         shot,
         Steps {
             steps: 16,
-            bands: 4,
+            slices: 4,
         },
     );
     assert_eq!(shown.pixels, [255; 4]);

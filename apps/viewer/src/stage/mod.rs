@@ -55,7 +55,7 @@ pub struct Stage {
     moved: Instant,
     rest: Rest,
     coarser: f32,
-    bands: u32,
+    slices: u32,
     frames: VecDeque<f32>,
     picks: Option<Picks>,
     namer: Option<(Namer, Shot)>,
@@ -91,9 +91,10 @@ impl Stage {
     pub fn new(render: RenderState) -> Result<Self, DeviceError> {
         let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
         let live = Live::new(&gpu);
-        let maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
+        let mut maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
         let no_colours = colouring(&[], ColourBy::Type, &paint(&Look::default()));
         let shown = Shown::new(Vec::new(), Vec::new(), no_colours.into());
+        maker.set_keeping(true);
         let software = gpu.adapter.software;
         Ok(Self {
             gpu: Arc::new(gpu),
@@ -114,7 +115,7 @@ impl Stage {
             moved: Instant::now(),
             rest: Rest::Done,
             coarser: if software { 4.0 } else { 1.0 },
-            bands: if software { 2 } else { 1 },
+            slices: if software { 2 } else { 1 },
             frames: VecDeque::new(),
             picks: None,
             namer: None,
@@ -147,6 +148,11 @@ impl Stage {
     /// Whether values are those of the recording's moment, in a draft or a better picture.
     pub fn shows_moment(&self) -> bool {
         !self.values_due && !self.revalued && self.drawn.is_some()
+    }
+
+    /// Whether it is the full picture that shows, its first step at least, and no draft.
+    pub fn is_sharp(&self) -> bool {
+        !self.live.shows_draft()
     }
 
     /// Height (pixels) of the picture.

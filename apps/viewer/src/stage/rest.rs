@@ -13,8 +13,9 @@ use crate::state::{Counters, State};
 pub(super) const REST: Duration = Duration::from_millis(130);
 /// A slice of a picture should take no longer.
 const SLICE_MS: f64 = 120.0;
-/// Most bands of a step.
-const MOST_BANDS: f64 = 3.0;
+/// Most slices of a step: beyond a million patches each is chosen for itself, so many would take longer
+/// together.
+const MOST_SLICES: f64 = 3.0;
 
 impl Stage {
     pub(super) fn refine(
@@ -43,7 +44,7 @@ impl Stage {
                 });
                 let steps = Steps {
                     steps: 4,
-                    bands: self.bands,
+                    slices: self.slices,
                 };
                 self.live.begin(shot, steps);
                 self.rest = Rest::Slices;
@@ -63,10 +64,9 @@ impl Stage {
         if self.live.progress().is_some_and(|share| share > 0.0) {
             let took = self.live.last_ms();
             self.note_frame(took);
-            // For the next picture: slices of this one are laid out. Choosing costs each band the same,
-            // so many bands would take longer together: no more than three.
-            let wanted = f64::from(self.bands) * took / SLICE_MS;
-            self.bands = ((f64::from(self.bands) + wanted) / 2.0).clamp(1.0, MOST_BANDS) as u32;
+            // For the next picture: slices of this one are laid out.
+            let wanted = f64::from(self.slices) * took / SLICE_MS;
+            self.slices = ((f64::from(self.slices) + wanted) / 2.0).clamp(1.0, MOST_SLICES) as u32;
         }
         let whole = self.live.slice(&self.gpu, &mut self.maker)?;
         if whole && self.namer.is_none() && self.picks.is_none() {
