@@ -80,10 +80,16 @@ fn main() {
     let sharp = rest.elapsed();
     settle(&mut window);
     report("input to its draft", times);
+    let counters = &window.state().as_ref().unwrap().state.counters;
+    println!("at rest lowered: {:?}", counters.lowered);
     println!(
         "last input to the first step of the full picture: {:.0} ms, to the last one: {:.0} ms",
         sharp.as_secs_f64() * 1e3,
         rest.elapsed().as_secs_f64() * 1e3
+    );
+    report(
+        "input while the full picture is made, to its draft",
+        interruptions(&mut window),
     );
     report("step of a first ring to its draft", rings(&mut window));
 }
@@ -103,6 +109,28 @@ fn rings(window: &mut Harness<'_, Option<Viewer>>) -> Vec<f64> {
             if state.sources.get(id).unwrap().soma == state.document.soma(id) {
                 break;
             }
+        }
+        window.state().as_ref().unwrap().stage.gpu().wait().unwrap();
+        times.push(clock.elapsed().as_secs_f64() * 1e3);
+    }
+    times
+}
+
+/// Milliseconds of turns at several moments of the making of the full picture.
+fn interruptions(window: &mut Harness<'_, Option<Viewer>>) -> Vec<f64> {
+    let mut times = Vec::new();
+    for moment in 0..20 {
+        let rest = Instant::now();
+        while rest.elapsed() < Duration::from_millis(150 + 50 * moment) {
+            window.step();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let clock = Instant::now();
+        let viewer = window.state_mut().as_mut().unwrap();
+        viewer.state.view = viewer.state.view.orbited(0.02, 0.003, glam::DVec3::Y);
+        let camera = viewer.state.view.camera();
+        while !window.state().as_ref().unwrap().stage.is_from(&camera) {
+            window.step();
         }
         window.state().as_ref().unwrap().stage.gpu().wait().unwrap();
         times.push(clock.elapsed().as_secs_f64() * 1e3);

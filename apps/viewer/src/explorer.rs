@@ -7,7 +7,9 @@ use std::sync::mpsc::{Receiver, channel};
 use eframe::egui;
 use neurotess::colouring::Colouring;
 use neurotess::generate::Generated;
-use neurotess::render::{DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Sketch};
+use neurotess::render::{
+    DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Sketch, SketchNamer, SketchNames,
+};
 
 use crate::scene::{self, Shown, Standing};
 
@@ -18,14 +20,17 @@ const LEAST_BUDGET: u32 = 12_500;
 #[derive(Default)]
 pub(crate) struct Explorer {
     made: Option<Made>,
-    making: Option<(Key, Receiver<Result<Exploration, DeviceError>>)>,
+    making: Option<(Key, Receiver<Sketched>)>,
     /// What could not be sketched is not tried again.
     refused: Option<Key>,
     budget: Option<u32>,
 }
 
+type Sketched = Result<(Exploration, Arc<[SketchNames]>), DeviceError>;
+
 struct Made {
     maker: Exploration,
+    names: Arc<[SketchNames]>,
     key: Key,
     standing: Vec<Standing>,
 }
@@ -70,9 +75,10 @@ impl Explorer {
             let key = key.clone();
             self.making = None;
             match made {
-                Ok(maker) => {
+                Ok((maker, names)) => {
                     self.made = Some(Made {
                         maker,
+                        names,
                         key,
                         standing: Vec::new(),
                     });
@@ -104,7 +110,7 @@ impl Explorer {
                 .collect();
             let made = Exploration::new(&gpu, 1).and_then(|mut maker| {
                 maker.add(&gpu, &sketches)?;
-                Ok(maker)
+                Ok((maker, sketches.iter().map(SketchNames::new).collect()))
             });
             // Nobody waits for it if the window is closed.
             let _ = sender.send(made);
@@ -113,8 +119,13 @@ impl Explorer {
     }
 
     /// The maker of a sketch of just this, with all neurons where they stand.
-    pub(crate) fn maker(&mut self, gpu: &Gpu, shown: &Shown) -> Option<&mut Exploration> {
-        let budget = self.budget.unwrap_or(DEFAULT_BUDGET);
+    /// `budget`: its triangles.
+    pub(crate) fn maker(
+        &mut self,
+        gpu: &Gpu,
+        shown: &Shown,
+        budget: u32,
+    ) -> Option<&mut Exploration> {
         let made = self.made.as_mut().filter(|made| made.key.fits(shown))?;
         if made.standing != shown.instances {
             let instances = scene::instances(&shown.instances);
@@ -123,6 +134,22 @@ impl Explorer {
         }
         made.maker.set_budget(budget);
         Some(&mut made.maker)
+    }
+
+    /// Whether there is a sketch of just this.
+    pub(crate) fn fits(&self, shown: &Shown) -> bool {
+        self.made.as_ref().is_some_and(|made| made.key.fits(shown))
+    }
+
+    /// Whether a sketch will be there soon.
+    pub(crate) fn is_making(&self) -> bool {
+        self.making.is_some()
+    }
+
+    /// Who tells what ids of pictures of the sketch mean.
+    pub(crate) fn namer(&self) -> Option<SketchNamer> {
+        let made = self.made.as_ref()?;
+        Some(made.maker.namer(Arc::clone(&made.names)))
     }
 
     /// Frames have fewer triangles where they take too long, and more where there is time.

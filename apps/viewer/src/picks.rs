@@ -141,6 +141,11 @@ pub(crate) fn seen(named: Named, mesh: &CoarseMesh, placement: &Placement) -> Op
             let vertex = mesh.vertices.get(vertex as usize)?;
             (vertex.position.as_dvec3(), vertex.tracing, false)
         }
+        Spot::Point(point) | Spot::Soma(point) => {
+            let traced = mesh.tracing.get(point as usize)?;
+            let soma = matches!(named.spot, Spot::Soma(_));
+            (traced.center.as_dvec3(), point, soma)
+        }
     };
     let section = mesh.tracing[tracing as usize].section;
     let part = match soma {

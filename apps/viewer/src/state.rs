@@ -60,6 +60,17 @@ pub struct Counters {
     pub frames_ms: Vec<f32>,
     /// How drafts are lowered.
     pub draft: Draft,
+    /// How the picture at rest is lowered, if it is.
+    pub lowered: Option<Lowered>,
+}
+
+/// How the picture at rest is less than what is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lowered {
+    /// By exploration: triangles drawn, and those that half a pixel would take, once they are known.
+    Triangles(Option<[u64; 2]>),
+    /// So many times the error.
+    Error(f32),
 }
 
 /// How what is drawn while something moves is less than the full picture.

@@ -19,7 +19,7 @@ use neurotess_viewer::command::{Ask, Tab};
 use neurotess_viewer::document::{Criterion, Cut, Detail, Look, Method, SomaEdit, SourceId};
 use neurotess_viewer::save::{Fineness, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
-use neurotess_viewer::state::{Part, State};
+use neurotess_viewer::state::{Lowered, Part, State};
 use neurotess_viewer::view::View;
 
 use common::{SIZE, Window, run, settle, snapshot, state, viewer, window, with_samples};
@@ -609,4 +609,64 @@ fn mouse_and_keys_move_the_camera() {
         let backward = view(&mut window).camera().axes()[2];
         assert!(backward[axis] > 0.99, "{key:?}: {backward}");
     }
+}
+
+#[test]
+fn what_is_too_dear_is_explored_says_so_and_comes_back() {
+    let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
+        return;
+    };
+    run(&mut window, Command::Show(Tab::Detail));
+    let one = state(&mut window).counters.patches[1];
+    assert!(one > 0, "counted");
+    // Three are too many, one is not.
+    viewer(&mut window).stage.limit_patches(Some(2 * one));
+    let state_of = state(&mut window);
+    for name in ["b", "c"] {
+        let neuron = neurotess_viewer::document::Neuron::new(SourceId(0), name.into());
+        state_of.document.neurons.push(neuron);
+    }
+    state_of.document.grid = true;
+    run(&mut window, Command::Home);
+    assert!(viewer(&mut window).stage.is_sharp(), "no draft");
+    let Some(Lowered::Triangles(Some([drawn, wanted]))) = state(&mut window).counters.lowered
+    else {
+        panic!("explored: {:?}", state(&mut window).counters.lowered);
+    };
+    assert!(drawn > 0 && drawn <= wanted);
+    window.get_by_label_contains("lowered: ");
+    // What is seen is known there too: somata, and a section by its number.
+    let parts = seen_parts(&mut window);
+    assert!(parts.contains(&(0, Part::Soma)) && parts.contains(&(2, Part::Soma)));
+    let neurites = parts.iter().filter(|(_, p)| matches!(p, Part::Section(_)));
+    assert!(neurites.count() > 10, "{parts:?}");
+    // With wires the explorer cannot: coarser, and said.
+    let mut look = state(&mut window).document.look.clone();
+    look.wires = true;
+    run(&mut window, Command::SetLook(Box::new(look.clone())));
+    assert!(matches!(
+        state(&mut window).counters.lowered,
+        Some(Lowered::Error(_))
+    ));
+    look.wires = false;
+    run(&mut window, Command::SetLook(Box::new(look)));
+    // Alone, it is whole again, and so are the words.
+    run(&mut window, Command::Select(vec![1], false));
+    run(&mut window, Command::Isolate);
+    assert_eq!(state(&mut window).counters.lowered, None);
+    assert!(window.query_by_label_contains("lowered: ").is_none());
+    assert!(
+        seen_parts(&mut window)
+            .iter()
+            .all(|(neuron, _)| *neuron == 1)
+    );
+}
+
+/// What is seen at pixels all over the picture.
+fn seen_parts(window: &mut Window) -> std::collections::HashSet<(usize, Part)> {
+    let stage = &viewer(window).stage;
+    let pixels = (0..700).flat_map(|y| (0..900).map(move |x| (x as f32, y as f32)));
+    let seen = pixels.filter_map(|(x, y)| stage.seen_at(x, y));
+    seen.map(|seen| (seen.picked.neuron, seen.picked.part))
+        .collect()
 }

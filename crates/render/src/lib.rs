@@ -70,7 +70,7 @@ pub use error::{CameraError, DeviceError};
 pub use expand::{ExpandedVertex, Wanted};
 pub use explore::{
     Asked, DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET,
-    ShownPiece, Sketch, asked,
+    ShownPiece, Sketch, SketchNamer, SketchNames, asked,
 };
 pub use frame::{Frame, Tile, shows};
 pub use framing::{Ball, DEFAULT_FOV, Side};

@@ -35,8 +35,8 @@ pub trait VertexMaker {
     /// Defines `surface_vertex` and what it needs, with bind group 0, for one of its shaders.
     fn wgsl(&self, shader: usize) -> String;
 
-    /// Defines `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`, the first less than 8, to
-    /// stand after [`VertexMaker::wgsl`]; nothing where what is drawn cannot be told apart.
+    /// Defines `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`, the first less than 8 where
+    /// a frame has several rounds, to stand after [`VertexMaker::wgsl`]; nothing where what is drawn cannot be told apart.
     fn id_wgsl(&self) -> Option<&'static str> {
         None
     }

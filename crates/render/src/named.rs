@@ -23,6 +23,10 @@ pub enum Spot {
     Patch(u32),
     /// Index of a vertex of the patch, one so small that it is drawn flat.
     Vertex(u32),
+    /// Index of a tracing point.
+    Point(u32),
+    /// A soma, with the index of a tracing point of it.
+    Soma(u32),
 }
 
 /// Knows where everything of a frame stood, also when other frames came after.

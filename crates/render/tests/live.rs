@@ -5,8 +5,8 @@ use glam::{DQuat, DVec3};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 use neurotess_render::{
     Adaptive, Camera, Choice, Clip, Exploration, Gpu, Image, Instance, Live, Look, Named, OUTLINED,
-    Occlusion, Outlines, PictureOptions, Placement, Refining, Scene, Shot, Sketch, Spot, Steps,
-    Template, Templates, VertexMaker, WITHOUT_NEURITES, WITHOUT_SOMA, paint,
+    Occlusion, Outlines, PictureOptions, Placement, Refining, Scene, Shot, Sketch, SketchNames,
+    Spot, Steps, Template, Templates, VertexMaker, WITHOUT_NEURITES, WITHOUT_SOMA, paint,
 };
 use pictured::{CELL, balls, by_type, camera, gpu, mesh};
 
@@ -125,6 +125,8 @@ fn is_soma(mesh: &CoarseMesh, name: &Named) -> bool {
             let tracing = mesh.vertices[vertex as usize].tracing;
             mesh.tracing[tracing as usize].role == Role::Soma
         }
+        Spot::Point(_) => false,
+        Spot::Soma(_) => true,
     }
 }
 
@@ -380,6 +382,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
                 let around = mesh.patches.iter().filter(|p| p.corners.contains(&vertex));
                 around.flat_map(|p| p.corners).collect()
             }
+            Spot::Point(_) | Spot::Soma(_) => panic!("names of exploration"),
         };
         let corners = corners.iter().map(|&v| &mesh.vertices[v as usize]);
         let reach: Vec<[f64; 2]> = corners
@@ -485,4 +488,58 @@ fn nothing_is_drawn_of_an_empty_scene() {
         },
     );
     assert_eq!(shown.pixels, [255; 4]);
+}
+
+#[test]
+fn ids_of_exploration_name_what_those_of_patches_do() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = mesh(CELL);
+    let both = [
+        Placement::default(),
+        Placement {
+            translation: DVec3::X * 14.0,
+            ..Placement::default()
+        },
+    ];
+    let mut refined = maker(&gpu, &mesh, &both);
+    let mut live = live(&gpu, &mesh);
+    let shot = shot(&mesh);
+    let patches = named(&gpu, &mut live, &mut refined, &shot);
+    let sketch = Sketch::new(&mesh, &[]);
+    let names = [SketchNames::default(), SketchNames::new(&sketch)];
+    let mut explored = Exploration::new(&gpu, 1).expect("a maker");
+    // Of another template before it there are runs too.
+    let ids = explored
+        .add(&gpu, &[sketch.clone(), sketch])
+        .expect("added");
+    let instance = |&placement: &Placement| Instance {
+        placement,
+        ..Instance::new(ids[1])
+    };
+    let instances = both.iter().map(instance).collect();
+    explored.set_instances(&gpu, instances).expect("placed");
+    live.identify(&gpu, &mut explored, &shot).expect("drawn");
+    let namer = explored.namer(names.into());
+    gpu.wait().expect("done");
+    let (_, ids) = live.ids().expect("no fault").expect("arrived");
+    let pieces = ids.into_iter().map(|id| namer.name(id));
+    let section = |name: &Named| match name.spot {
+        _ if is_soma(&mesh, name) => 0,
+        Spot::Point(point) | Spot::Soma(point) => mesh.tracing[point as usize].section,
+        Spot::Patch(patch) => {
+            let corner = mesh.patches[patch as usize].corners[2];
+            mesh.tracing[mesh.vertices[corner as usize].tracing as usize].section
+        }
+        Spot::Vertex(vertex) => {
+            mesh.tracing[mesh.vertices[vertex as usize].tracing as usize].section
+        }
+    };
+    let known = patches.iter().filter(|name| name.is_some()).count();
+    let both = patches.iter().zip(pieces);
+    let both: Vec<_> = both.filter_map(|(a, b)| Some(((*a)?, b?))).collect();
+    let same = |(a, b): &&(Named, Named)| a.instance == b.instance && section(a) == section(b);
+    let same = both.iter().filter(same).count();
+    println!("{known} pixels, {} in both, {same} the same", both.len());
+    assert!(known > 1000 && 10 * both.len() > 9 * known);
+    assert!(10 * same > 9 * both.len());
 }

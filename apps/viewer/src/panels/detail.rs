@@ -6,7 +6,7 @@ use super::{figures, grouped, heading};
 use crate::command::Command;
 use crate::document::{Criterion, Detail};
 use crate::files::size;
-use crate::state::{Draft, State};
+use crate::state::{Draft, Lowered, State};
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let mut detail = state.document.detail;
@@ -120,19 +120,24 @@ fn sliders(detail: &mut Detail, ui: &mut Ui) {
 fn counters(state: &State, ui: &mut Ui) {
     let c = &state.counters;
     heading(ui, "At rest");
-    figures(
-        ui,
-        "counters",
-        &[
+    let mut rows = match c.lowered {
+        None => vec![
             ("triangles", grouped(c.triangles)),
             (
                 "patches drawn",
                 format!("{} of {}", grouped(c.patches[0]), grouped(c.patches[1])),
             ),
-            ("memory, cells", size(c.bytes[0])),
-            ("memory, pictures", size(c.bytes[1])),
         ],
-    );
+        Some(Lowered::Triangles(Some([drawn, wanted]))) => vec![
+            ("triangles, lowered", grouped(drawn)),
+            ("wanted", grouped(wanted)),
+        ],
+        Some(Lowered::Triangles(None)) => vec![],
+        Some(Lowered::Error(times)) => vec![("lowered", format!("{times:.0} times as coarse"))],
+    };
+    rows.push(("memory, cells", size(c.bytes[0])));
+    rows.push(("memory, pictures", size(c.bytes[1])));
+    figures(ui, "counters", &rows);
     heading(ui, "Frames");
     graph(&c.frames_ms, ui);
     match c.draft {

@@ -3,8 +3,9 @@
 use eframe::egui::{self, Align, Layout, ProgressBar, RichText, Ui};
 
 use super::cells::count;
+use super::grouped;
 use crate::command::Command;
-use crate::state::State;
+use crate::state::{Lowered, State};
 use crate::worker::Job;
 
 pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f32>, ui: &mut Ui) {
@@ -60,6 +61,9 @@ fn problems(state: &mut State, ui: &mut Ui) {
     }
 }
 
+const LOWERED: &str = "Here, the full picture would hold up the window: what shows most is drawn, as it is while you \
+    move. Fewer neurons in the picture come back in full. What is saved is not lowered.";
+
 /// What does not show as it is, and why.
 fn lowered(state: &State, ui: &mut Ui) {
     let warn = ui.visuals().warn_fg_color;
@@ -70,6 +74,20 @@ fn lowered(state: &State, ui: &mut Ui) {
     if state.document.detail.smallest > 0.0 {
         let text = format!("left out below {:.1} px", state.document.detail.smallest);
         ui.colored_label(warn, text).on_hover_text("Set in Detail");
+    }
+    if let Some(lowered) = state.counters.lowered {
+        let text = match lowered {
+            Lowered::Triangles(Some([drawn, wanted])) if drawn < wanted => {
+                format!(
+                    "lowered: {} of {} triangles",
+                    grouped(drawn),
+                    grouped(wanted)
+                )
+            }
+            Lowered::Triangles(_) => "lowered: tubes as strips".to_owned(),
+            Lowered::Error(times) => format!("lowered: {times:.0} times as coarse"),
+        };
+        ui.colored_label(warn, text).on_hover_text(LOWERED);
     }
     if state.document.look.cut.is_some() {
         ui.colored_label(warn, "cut")

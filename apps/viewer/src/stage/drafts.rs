@@ -7,6 +7,7 @@ use neurotess::render::{
     Choice, DeviceError, OUTLINED, Occlusion, Outlines, Refining, Scene, Shot,
 };
 
+use super::dear::explorable;
 use super::pointing::OUTLINES;
 use super::rest::REST;
 use super::{Drawn, Rest, Stage};
@@ -66,6 +67,15 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(3));
             return Ok(());
         }
+        self.patches = self.patches_in(state, &wanted.shot, &wanted.standing);
+        if self.explorer.is_making()
+            && explorable(&wanted.shot)
+            && self.means.too_many(self.patches)
+        {
+            // Refined, even a draft would take seconds.
+            ctx.request_repaint_after(Duration::from_millis(15));
+            return Ok(());
+        }
         if self.drawn.is_some() && self.live.shows_draft() {
             self.keep_up();
         }
@@ -98,10 +108,10 @@ impl Stage {
     /// By the explorer where it can: it knows neither grids nor another camera.
     pub(super) fn draw_draft(&mut self, wanted: &Drawn) -> Result<(), DeviceError> {
         let mut shot = wanted.shot;
-        let wires = shot.look.wire > 0.0;
-        let explorer = match wires || shot.frozen.is_some() {
-            true => None,
-            false => self.explorer.maker(&self.gpu, &self.shown),
+        let budget = self.explorer.budget();
+        let explorer = match explorable(&shot) {
+            true => self.explorer.maker(&self.gpu, &self.shown, budget),
+            false => None,
         };
         self.explored = explorer.is_some();
         if let Some(maker) = explorer {
@@ -111,7 +121,7 @@ impl Stage {
             // Nothing is left out that would show at rest: holes that come and go look broken.
             choice: coarser(wanted.detail.choice(), self.coarser),
             smallest: wanted.detail.smallest,
-            wires,
+            wires: shot.look.wire > 0.0,
             ..Refining::default()
         });
         if self.coarser > HALF_FROM {
@@ -152,7 +162,7 @@ impl Stage {
 }
 
 /// The same choice, so much coarser.
-fn coarser(choice: Choice, factor: f32) -> Choice {
+pub(super) fn coarser(choice: Choice, factor: f32) -> Choice {
     let level = |level: u32| ((level as f32 / factor).round() as u32).max(1);
     match choice {
         Choice::PixelError(error) => Choice::PixelError(error * factor),

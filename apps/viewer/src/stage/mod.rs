@@ -2,6 +2,7 @@
 //! rest, and what is under the cursor. Nothing is drawn when nothing changes.
 
 mod building;
+mod dear;
 mod drafts;
 mod moments;
 mod pointing;
@@ -16,7 +17,7 @@ use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::colouring::{ColourBy, colouring};
 use neurotess::render::{
-    Adaptive, DeviceError, Gpu, InstanceValues, Legend, Live, Namer, Refining, Scene, Shot,
+    Adaptive, Camera, DeviceError, Gpu, InstanceValues, Legend, Live, Refining, Scene, Shot,
 };
 
 use crate::colours::{ColourKey, paint};
@@ -27,8 +28,9 @@ use crate::reader::Reader;
 use crate::scene::{Shown, Standing};
 use crate::state::{Draft, State};
 use building::Built;
-use pointing::MaskKey;
+use dear::{Full, Means};
 pub(crate) use pointing::OUTLINES;
+use pointing::{MaskKey, Names};
 
 /// All that draws.
 pub struct Stage {
@@ -58,9 +60,17 @@ pub struct Stage {
     slices: u32,
     frames: VecDeque<f32>,
     picks: Option<Picks>,
-    namer: Option<(Namer, Shot)>,
+    namer: Option<Names>,
     mask: Option<MaskKey>,
     counted: bool,
+    means: Means,
+    full: Full,
+    /// Patches of the neurons in the picture.
+    patches: u64,
+    /// Triangles of the explored picture that are drawn, and that are wanted, once they are known.
+    surveyed: Option<[u64; 2]>,
+    /// Whether the last work was a slice, whose time tells something.
+    timed: bool,
 }
 
 /// What a picture depends on.
@@ -79,6 +89,8 @@ enum Rest {
     Waits,
     /// Slices are being made.
     Slices,
+    /// All is drawn by exploration; what it left out is asked for.
+    Surveys,
     /// All is drawn.
     Done,
 }
@@ -121,6 +133,11 @@ impl Stage {
             namer: None,
             mask: None,
             counted: false,
+            means: Means::new(software),
+            full: Full::Refined,
+            patches: 0,
+            surveyed: None,
+            timed: false,
         })
     }
 
@@ -153,6 +170,13 @@ impl Stage {
     /// Whether it is the full picture that shows, its first step at least, and no draft.
     pub fn is_sharp(&self) -> bool {
         !self.live.shows_draft()
+    }
+
+    /// Whether what was drawn last, perhaps a draft, is seen from here.
+    pub fn is_from(&self, camera: &Camera) -> bool {
+        self.drawn
+            .as_ref()
+            .is_some_and(|d| d.shot.camera == *camera)
     }
 
     /// Height (pixels) of the picture.
@@ -201,6 +225,7 @@ impl Stage {
             true => Draft::Budget(self.explorer.budget()),
             false => Draft::Error(self.coarser),
         };
+        state.counters.lowered = self.lowered();
         self.gpu.check()?;
         Ok(self.texture_id())
     }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{DeviceError, Outlines, Shot};
+use neurotess::render::{DeviceError, Id, Named, Namer, Outlines, Shot, SketchNamer};
 
 use super::Stage;
 use crate::picks::{Picks, Seen, seen};
@@ -16,6 +16,21 @@ pub(crate) const OUTLINES: Outlines = Outlines {
     selected: scene::SELECTION,
     hovered: [0, 150, 255],
 };
+
+/// What ids mean.
+pub(super) enum Names {
+    Refined(Namer),
+    Explored(SketchNamer),
+}
+
+impl Names {
+    fn name(&self, id: Id) -> Option<Named> {
+        match self {
+            Self::Refined(namer) => namer.name(id),
+            Self::Explored(namer) => namer.name(id),
+        }
+    }
+}
 
 /// What outlines depend on.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +61,7 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(5));
             return Ok(());
         };
-        let Some((namer, _)) = self.namer.take() else {
+        let Some(namer) = self.namer.take() else {
             return Ok(());
         };
         let shown = &self.shown;

@@ -3,11 +3,15 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{DeviceError, Frame, Refining, Shot, Steps, Tile, VertexMaker};
+use neurotess::render::{Camera, DeviceError, Frame, Refining, Shot, Steps, Tile, VertexMaker};
 
+use super::dear::Full;
+use super::drafts::coarser;
+use super::pointing::Names;
 use super::{Rest, Stage};
 use crate::command::Tab;
-use crate::state::{Counters, State};
+use crate::document::Detail;
+use crate::state::State;
 
 /// How long nothing must have moved before the full picture is made.
 pub(super) const REST: Duration = Duration::from_millis(130);
@@ -31,53 +35,115 @@ impl Stage {
             Rest::Waits if self.moved.elapsed() < REST => {
                 ctx.request_repaint_after(REST.saturating_sub(self.moved.elapsed()));
             }
+            Rest::Done => self.count(state)?,
+            _ if self.live.is_busy(&self.gpu) => {
+                ctx.request_repaint_after(Duration::from_millis(5));
+            }
             Rest::Waits => {
-                if self.live.is_busy(&self.gpu) {
-                    ctx.request_repaint_after(Duration::from_millis(5));
-                    return Ok(());
-                }
-                self.maker.set_refining(Refining {
-                    choice: detail.choice(),
-                    smallest: detail.smallest,
-                    wires: shot.look.wire > 0.0,
-                    ..Refining::default()
-                });
-                let steps = Steps {
-                    steps: 4,
-                    slices: self.slices,
-                };
-                self.live.begin(shot, steps);
-                self.rest = Rest::Slices;
+                self.begin(shot, detail);
                 ctx.request_repaint();
             }
-            Rest::Slices => self.slice(shot, ctx)?,
-            Rest::Done => self.count(state)?,
+            Rest::Slices => {
+                self.slice(shot)?;
+                ctx.request_repaint();
+            }
+            Rest::Surveys => {
+                self.survey()?;
+                ctx.request_repaint();
+            }
         }
         Ok(())
     }
 
-    fn slice(&mut self, shot: Shot, ctx: &egui::Context) -> Result<(), DeviceError> {
-        if self.live.is_busy(&self.gpu) {
-            ctx.request_repaint_after(Duration::from_millis(5));
+    fn begin(&mut self, shot: Shot, detail: Detail) {
+        self.full = self.choose_full(&shot);
+        let choice = match self.full {
+            Full::Coarser => coarser(detail.choice(), self.coarser),
+            Full::Refined | Full::Explored => detail.choice(),
+        };
+        self.maker.set_refining(Refining {
+            choice,
+            smallest: detail.smallest,
+            wires: shot.look.wire > 0.0,
+            ..Refining::default()
+        });
+        let steps = Steps {
+            steps: 4,
+            slices: self.slices,
+        };
+        self.live.begin(shot, steps);
+        self.means.begin();
+        self.timed = false;
+        self.rest = Rest::Slices;
+    }
+
+    fn slice(&mut self, shot: Shot) -> Result<(), DeviceError> {
+        if self.timed {
+            self.learn();
+            if self.full == Full::Refined && self.choose_full(&shot) != Full::Refined {
+                // It would go on like this: begun anew, it is drawn otherwise.
+                self.live.stop();
+                self.rest = Rest::Waits;
+                return Ok(());
+            }
+        }
+        // As soon as the first step shows, the cursor may ask.
+        let asks = !self.live.shows_draft() && self.namer.is_none() && self.picks.is_none();
+        self.timed = !asks;
+        let budget = self.means.budget;
+        let maker: &mut dyn VertexMaker = match self.full {
+            Full::Refined | Full::Coarser => &mut self.maker,
+            Full::Explored => match self.explorer.maker(&self.gpu, &self.shown, budget) {
+                Some(maker) => maker,
+                None => {
+                    self.rest = Rest::Waits;
+                    return Ok(());
+                }
+            },
+        };
+        if asks {
+            self.live.identify(&self.gpu, maker, &shot)?;
+            self.namer = match self.full {
+                Full::Refined | Full::Coarser => Some(Names::Refined(self.maker.namer())),
+                Full::Explored => self.explorer.namer().map(Names::Explored),
+            };
             return Ok(());
         }
-        if self.live.progress().is_some_and(|share| share > 0.0) {
-            let took = self.live.last_ms();
-            self.note_frame(took);
+        self.live.slice(&self.gpu, maker)?;
+        if self.live.progress().is_none() {
+            self.rest = match self.full {
+                Full::Explored => Rest::Surveys,
+                Full::Refined | Full::Coarser => Rest::Done,
+            };
+        }
+        Ok(())
+    }
+
+    /// From the slice that is done.
+    fn learn(&mut self) {
+        let took = self.live.last_ms();
+        self.note_frame(took);
+        self.note_slice(took);
+        if self.full == Full::Refined {
             // For the next picture: slices of this one are laid out.
             let wanted = f64::from(self.slices) * took / SLICE_MS;
             self.slices = ((f64::from(self.slices) + wanted) / 2.0).clamp(1.0, MOST_SLICES) as u32;
         }
-        let whole = self.live.slice(&self.gpu, &mut self.maker)?;
-        if whole && self.namer.is_none() && self.picks.is_none() {
-            // As soon as the first step shows, the cursor may ask.
-            self.live.identify(&self.gpu, &mut self.maker, &shot)?;
-            self.namer = Some((self.maker.namer(), shot));
+    }
+
+    /// What the explored picture left out; where there is time for more, it is drawn once more.
+    fn survey(&mut self) -> Result<(), DeviceError> {
+        self.learn();
+        self.rest = Rest::Done;
+        let budget = self.means.budget;
+        let Some(maker) = self.explorer.maker(&self.gpu, &self.shown, budget) else {
+            return Ok(());
+        };
+        let stats = maker.stats(&self.gpu)?;
+        self.surveyed = Some([stats.triangles, stats.wanted]);
+        if self.means.adapt(stats.wanted) {
+            self.rest = Rest::Waits;
         }
-        if self.live.progress().is_none() {
-            self.rest = Rest::Done;
-        }
-        ctx.request_repaint();
         Ok(())
     }
 
@@ -91,27 +157,33 @@ impl Stage {
         }
         self.counted = true;
         let shot = drawn.shot;
+        let cells: u64 = self.maker.bytes().iter().map(|(_, bytes)| bytes).sum();
+        state.counters.bytes = [cells, self.live.bytes()];
+        if self.full != Full::Refined {
+            // Counting would take as long as drawing.
+            return Ok(());
+        }
         let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
-        let frame = Frame {
-            camera,
-            near,
-            size: shot.size,
-            tile: Tile {
-                x: 0,
-                y: 0,
-                width: shot.size[0],
-                height: shot.size[1],
-            },
-        };
+        let frame = whole(camera, near, shot.size);
         self.maker.prepare(&self.gpu, &frame)?;
         let stats = self.maker.stats(&self.gpu)?;
-        let cells: u64 = self.maker.bytes().iter().map(|(_, bytes)| bytes).sum();
-        state.counters = Counters {
-            triangles: stats.triangles,
-            patches: [stats.patches_drawn, stats.patches],
-            bytes: [cells, self.live.bytes()],
-            ..std::mem::take(&mut state.counters)
-        };
+        state.counters.triangles = stats.triangles;
+        state.counters.patches = [stats.patches_drawn, stats.patches];
         Ok(())
+    }
+}
+
+/// A frame without tiles.
+pub(super) fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
+    Frame {
+        camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
     }
 }

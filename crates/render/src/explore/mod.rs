@@ -25,6 +25,7 @@
 
 mod choice;
 mod layout;
+mod names;
 mod nested;
 mod passes;
 mod paths;
@@ -52,6 +53,7 @@ use residents::Known;
 use store::Store;
 
 pub use choice::{Asked, asked};
+pub use names::{SketchNamer, SketchNames};
 pub use residents::ExplorationError;
 pub use sketch::Sketch;
 pub use stats::{ExplorationStats, ShownPiece};
@@ -117,8 +119,11 @@ impl Exploration {
 
     /// Most triangles of a frame, at most [`MOST_BUDGET`], from the next frame on.
     pub fn set_budget(&mut self, triangles: u32) {
-        self.budget = triangles.min(MOST_BUDGET);
-        self.changed(false);
+        let triangles = triangles.min(MOST_BUDGET);
+        if self.budget != triangles {
+            self.budget = triangles;
+            self.changed(false);
+        }
     }
 
     /// Most triangles of a frame.
@@ -217,6 +222,10 @@ impl VertexMaker for Exploration {
 
     fn wgsl(&self, _shader: usize) -> String {
         pieces_wgsl()
+    }
+
+    fn id_wgsl(&self) -> Option<&'static str> {
+        Some(names::ID_WGSL)
     }
 
     fn layout(&self) -> &wgpu::BindGroupLayout {

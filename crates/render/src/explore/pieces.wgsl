@@ -9,19 +9,22 @@
 @group(0) @binding(4) var<storage, read> quads: array<u32>;
 @group(0) @binding(6) var<storage, read> words: array<u32>;
 
-fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
-    // The rest after the full blocks has indices of its own.
-    let count = quads[0];
+// Which quad a vertex is of. The rest after the full blocks has indices of its own.
+fn quad_place(vertex_index: u32, instance_index: u32) -> u32 {
     let rest = vertex_index >= 4u * BLOCK;
     let local = vertex_index % (4u * BLOCK);
-    let place = select(instance_index, count / BLOCK, rest) * BLOCK + local / 4u;
-    if (place >= count) {
+    return select(instance_index, quads[0] / BLOCK, rest) * BLOCK + local / 4u;
+}
+
+fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
+    let place = quad_place(vertex_index, instance_index);
+    if (place >= quads[0]) {
         let nowhere = vec3<f32>(0.0);
         return SurfaceVertex(nowhere, nowhere, nowhere, 0.0, 0u, 0u, vec2<f32>(0.0));
     }
     let piece = pieces[quads[place + 1u]];
     let index = place - piece.first;
-    let corner = local & 3u;
+    let corner = vertex_index & 3u;
     let what = piece.form & 7u;
     if (what == WHAT_TUBE) {
         return tube_vertex(piece, index, corner);

@@ -29,7 +29,7 @@ pub struct Sketch {
     pub(crate) heap: Vec<u32>,
     pub(crate) words: Vec<u32>,
     /// By run: tracing points that its words are of.
-    colours: Vec<Vec<u32>>,
+    pub(super) colours: Vec<Vec<u32>>,
     pub(crate) center: Vec3,
     pub(crate) reach: f32,
     points: usize,
