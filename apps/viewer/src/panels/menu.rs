@@ -24,7 +24,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                     };
                     let mut button = Button::new(title);
                     if let Some(keys) = item.keys {
-                        button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
+                        button = button.shortcut_text(super::keys_text(ui, &keys));
                     }
                     if ui.add_enabled(enabled, button).clicked() {
                         state.asked.push(item.command);

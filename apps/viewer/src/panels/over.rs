@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
+use super::keys_text;
 use crate::command::{Command, Listed, listed};
 use crate::state::{Over, State};
 
@@ -107,10 +108,9 @@ fn keys(state: &State, ctx: &Context) -> Over {
 }
 
 fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
-    let format = |keys: &egui::KeyboardShortcut| ui.ctx().format_shortcut(keys);
     let found: Vec<(String, &'static str)> = items
         .into_iter()
-        .filter_map(|item| Some((format(&item.keys?), item.title)))
+        .filter_map(|item| Some((keys_text(ui, &item.keys?), item.title)))
         .collect();
     if !found.is_empty() {
         ui.add_space(6.0);
@@ -203,7 +203,7 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
                     for (index, (menu, item)) in items.iter().enumerate() {
                         let mut text = format!("{menu}:  {}", item.title);
                         if let Some(keys) = &item.keys {
-                            text.push_str(&format!("    {}", ui.ctx().format_shortcut(keys)));
+                            text.push_str(&format!("    {}", keys_text(ui, keys)));
                         }
                         let response = ui.selectable_label(index == chosen, text);
                         if index == chosen && (up || down) {
