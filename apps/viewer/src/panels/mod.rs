@@ -195,6 +195,13 @@ fn measured(value: f64, unit: &str) -> String {
     }
 }
 
+/// Keys as they stand on the keyboard: `?`, not "Questionmark".
+fn keys_text(ui: &egui::Ui, keys: &egui::KeyboardShortcut) -> String {
+    let key = keys.logical_key;
+    let text = ui.ctx().format_shortcut(keys);
+    text.replace(key.name(), key.symbol_or_name())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -207,11 +214,4 @@ mod tests {
         assert_eq!(measured(31.5159, "µm"), "31.5 µm");
         assert_eq!(measured(12345.6, "µm²"), "12\u{a0}346 µm²");
     }
-}
-
-/// Keys as they stand on the keyboard: `?`, not "Questionmark".
-fn keys_text(ui: &egui::Ui, keys: &egui::KeyboardShortcut) -> String {
-    let key = keys.logical_key;
-    let text = ui.ctx().format_shortcut(keys);
-    text.replace(key.name(), key.symbol_or_name())
 }
