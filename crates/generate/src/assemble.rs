@@ -4,8 +4,6 @@
 //! are joined by four lateral patches. Who owns a ring's vertices: a soma those of its insertions,
 //! a joint its poles and crotches, the path everything else.
 
-use std::rc::Rc;
-
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
 
@@ -22,7 +20,7 @@ type Ring = [u32; 4];
 /// nodes of their insertions in order.
 pub(crate) struct Assembly<'a> {
     skeleton: &'a Skeleton,
-    children: Rc<Children>,
+    children: &'a Children,
     orientations: &'a [DVec3],
     mesh: CoarseMesh,
     /// Ring of each insertion node.
@@ -63,7 +61,7 @@ impl PlacedJoint {
 impl<'a> Assembly<'a> {
     pub(crate) fn new(skeleton: &'a Skeleton, orientations: &'a [DVec3]) -> Self {
         // A ring and four patches a node, and something for somata.
-        let (nodes, soma) = (skeleton.nodes.len(), 1024);
+        let (nodes, soma) = (skeleton.nodes().len(), 1024);
         let mesh = CoarseMesh {
             vertices: Vec::with_capacity(4 * nodes + soma),
             patches: Vec::with_capacity(4 * nodes + soma),
@@ -76,7 +74,7 @@ impl<'a> Assembly<'a> {
             orientations,
             mesh,
             insertion_rings: Vec::new(),
-            joints: (0..skeleton.nodes.len()).map(|_| None).collect(),
+            joints: (0..skeleton.nodes().len()).map(|_| None).collect(),
         }
     }
 
@@ -128,13 +126,13 @@ impl<'a> Assembly<'a> {
 
     /// Adds joints and paths, and returns the mesh.
     pub(crate) fn finish(mut self) -> CoarseMesh {
-        for node in 0..self.skeleton.nodes.len() as u32 {
+        for node in 0..self.skeleton.nodes().len() as u32 {
             if self.children.of(node).len() > 1 {
                 self.place_joint(node);
             }
         }
         self.insertion_rings.sort_unstable_by_key(|&(node, _)| node);
-        for node in 0..self.skeleton.nodes.len() as u32 {
+        for node in 0..self.skeleton.nodes().len() as u32 {
             let starts =
                 self.skeleton.node(node).parent == NONE || self.joints[node as usize].is_some();
             if starts {
@@ -149,8 +147,8 @@ impl<'a> Assembly<'a> {
 
     fn place_joint(&mut self, fork: u32) {
         let node = *self.skeleton.node(fork);
-        let neighbours = fork::neighbours(&self.children, self.skeleton, fork);
-        let tubes = fork::tubes(self.skeleton, &self.children, fork, &neighbours);
+        let neighbours = fork::neighbours(self.children, self.skeleton, fork);
+        let tubes = fork::tubes(self.skeleton, self.children, fork, &neighbours);
         let joint = Joint::new(node.radius, &tubes);
         let tracing = self.tracing(fork, Role::Joint);
         let poles = joint.poles.map(|p| self.vertex(node.center, p, tracing));

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod assemble;
+mod crowd;
 mod fork;
 mod frame;
 mod joint;
@@ -11,6 +12,7 @@ mod rings;
 mod skeleton;
 mod soma;
 mod somata;
+mod stems;
 mod thin;
 mod uncross;
 mod warning;
@@ -83,6 +85,7 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     prepare::merge_coincident(&mut skeleton, &mut warnings);
     let mut balls = somata::balls(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &balls, &mut warnings);
+    stems::gather(&mut skeleton, &balls, &mut warnings);
     let clock = Instant::now();
     let wishes = Wishes::new(morphology, options);
     let built = somata::build(&mut skeleton, &mut balls, &wishes, options, &mut warnings);
@@ -93,7 +96,7 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     skeleton.start_free_trees_at_an_end();
     prepare::lengthen_single_points(&mut skeleton, &mut warnings);
     thin::space_points(&mut skeleton, &mut warnings);
-    fork::split_crowded(&mut skeleton, &mut warnings);
+    crowd::split_crowded_forks(&mut skeleton, &mut warnings);
     fork::clear_the_way(&mut skeleton, &mut warnings);
     let orientations = uncross::uncross_rings(&mut skeleton, &balls, &mut warnings);
 

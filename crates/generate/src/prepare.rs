@@ -15,39 +15,39 @@ const COINCIDENT: f64 = 1e-3;
 /// Replaces radii that are no radii by what the path around them says.
 pub(crate) fn mend_radii(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let good = |r: f64| r.is_finite() && r > 0.0;
-    if skeleton.nodes.iter().all(|n| good(n.radius)) {
+    if skeleton.nodes().iter().all(|n| good(n.radius)) {
         return;
     }
     let fallback = median(
         skeleton
-            .nodes
+            .nodes()
             .iter()
             .map(|n| n.radius)
             .filter(|&r| good(r))
             .collect(),
     )
     .unwrap_or(FALLBACK_RADIUS);
-    let count = skeleton.nodes.len();
+    let count = skeleton.nodes().len();
     // Nearest good radius and its distance: towards the root, and towards the ends.
     let mut up: Vec<Option<(f64, f64)>> = vec![None; count];
     let mut down: Vec<Option<(f64, f64)>> = vec![None; count];
-    let length = |s: &Skeleton, i: usize| {
-        s.nodes[i]
-            .center
-            .distance(s.nodes[s.nodes[i].parent as usize].center)
+    let nodes = skeleton.nodes();
+    let length = |i: usize| {
+        let parent = nodes[i].parent as usize;
+        nodes[i].center.distance(nodes[parent].center)
     };
     for i in 0..count {
-        let node = skeleton.nodes[i];
+        let node = nodes[i];
         up[i] = if good(node.radius) {
             Some((node.radius, 0.0))
         } else if node.parent == NONE {
             None
         } else {
-            up[node.parent as usize].map(|(r, d)| (r, d + length(skeleton, i)))
+            up[node.parent as usize].map(|(r, d)| (r, d + length(i)))
         };
     }
     for i in (0..count).rev() {
-        let node = skeleton.nodes[i];
+        let node = nodes[i];
         if good(node.radius) {
             down[i] = Some((node.radius, 0.0));
         }
@@ -55,25 +55,28 @@ pub(crate) fn mend_radii(skeleton: &mut Skeleton, warnings: &mut Warnings) {
             continue;
         }
         if let Some((r, d)) = down[i] {
-            let d = d + length(skeleton, i);
+            let d = d + length(i);
             let parent = &mut down[node.parent as usize];
             if parent.is_none_or(|(_, other)| d < other) {
                 *parent = Some((r, d));
             }
         }
     }
+    let (mut shapes, _) = skeleton.shapes();
     for i in 0..count {
-        if good(skeleton.nodes[i].radius) {
+        let node = *shapes.node(i as u32);
+        if good(node.radius) {
             continue;
         }
-        skeleton.nodes[i].radius = match (up[i], down[i]) {
+        let radius = match (up[i], down[i]) {
             (Some((a, da)), Some((b, db))) if da + db > 0.0 => (a * db + b * da) / (da + db),
             (Some((r, _)), _) | (None, Some((r, _))) => r,
             (None, None) => fallback,
         };
+        shapes.set_radius(i as u32, radius);
         warnings.add(
             "radius_mended",
-            Some(skeleton.nodes[i].sample),
+            Some(node.sample),
             "radius was zero, negative or no number: taken from its neighbours",
         );
     }
@@ -87,16 +90,17 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 /// Merges points that coincide with their parent. The larger radius stays, except at a fork, whose
 /// repetition in a child carries the child's own radius.
 pub(crate) fn merge_coincident(skeleton: &mut Skeleton, warnings: &mut Warnings) {
-    let children = skeleton.children();
-    let mut keep = vec![true; skeleton.nodes.len()];
-    let mut stands_for: Vec<u32> = (0..skeleton.nodes.len() as u32).collect();
-    for i in 0..skeleton.nodes.len() {
-        let node = skeleton.nodes[i];
+    let count = skeleton.nodes().len();
+    let (mut shapes, children) = skeleton.shapes();
+    let mut keep = vec![true; count];
+    let mut stands_for: Vec<u32> = (0..count as u32).collect();
+    for i in 0..count {
+        let node = *shapes.node(i as u32);
         if node.parent == NONE {
             continue;
         }
         let parent = stands_for[node.parent as usize];
-        let before = *skeleton.node(parent);
+        let before = *shapes.node(parent);
         let larger = before.radius.max(node.radius);
         if node.center.distance(before.center) >= COINCIDENT * larger {
             continue;
@@ -104,7 +108,7 @@ pub(crate) fn merge_coincident(skeleton: &mut Skeleton, warnings: &mut Warnings)
         keep[i] = false;
         stands_for[i] = parent;
         if children.of(node.parent).len() == 1 {
-            skeleton.nodes[parent as usize].radius = larger;
+            shapes.set_radius(parent, larger);
         }
         warnings.add(
             "coincident_points",
@@ -132,13 +136,13 @@ pub(crate) fn leave_out_inside(
     warnings: &mut Warnings,
 ) {
     let children = skeleton.children();
-    let count = skeleton.nodes.len();
+    let count = skeleton.nodes().len();
     let mut keep = vec![true; count];
     // The soma that a node may still be inside of: all nodes before it were.
     let mut leading: Vec<Option<u32>> = vec![None; count];
     let mut dropped_roots = 0;
     for i in 0..count {
-        let node = skeleton.nodes[i];
+        let node = skeleton.nodes()[i];
         let soma = match node.root {
             Root::Soma(soma) if node.parent == NONE => Some(soma),
             _ if node.parent != NONE => leading[node.parent as usize],
@@ -178,22 +182,28 @@ pub(crate) fn leave_out_inside(
 /// Gives a free tree of one point a second one, so that it becomes a short rod.
 pub(crate) fn lengthen_single_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
-    for i in 0..skeleton.nodes.len() {
-        let node = skeleton.nodes[i];
-        if node.parent == NONE && node.root == Root::Free && children.of(i as u32).is_empty() {
-            let half = DVec3::Y * (0.5 * node.radius);
-            skeleton.nodes[i].center -= half;
-            skeleton.nodes.push(Node {
-                center: node.center + half,
-                parent: i as u32,
-                ..node
-            });
-            skeleton.links_changed();
-            warnings.add(
-                "one_point_tree",
-                Some(node.sample),
-                "tree of a single point: drawn as a rod of its radius",
-            );
-        }
+    let single = |i: &u32| {
+        let node = skeleton.node(*i);
+        node.parent == NONE && node.root == Root::Free && children.of(*i).is_empty()
+    };
+    let singles: Vec<u32> = (0..skeleton.nodes().len() as u32).filter(single).collect();
+    if singles.is_empty() {
+        return;
+    }
+    let nodes = skeleton.links();
+    for i in singles {
+        let node = nodes[i as usize];
+        let half = DVec3::Y * (0.5 * node.radius);
+        nodes[i as usize].center -= half;
+        nodes.push(Node {
+            center: node.center + half,
+            parent: i,
+            ..node
+        });
+        warnings.add(
+            "one_point_tree",
+            Some(node.sample),
+            "tree of a single point: drawn as a rod of its radius",
+        );
     }
 }

@@ -8,7 +8,7 @@
 //! A position that is not asked for is the first point where that is near and plain, else a point of
 //! our own on the ray to it at the soma's reach.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 use neurotess_morphology::{Morphology, shape};
@@ -57,12 +57,9 @@ impl<'a> Wishes<'a> {
 
     /// Number of wishes that no ring has heard.
     pub(crate) fn unused(&self, given: &[Given]) -> usize {
-        let heard = |neurite: u32| {
-            given
-                .iter()
-                .any(|g| g.neurite == neurite && g.asked.is_some())
-        };
-        self.positions.keys().filter(|&&n| !heard(n)).count()
+        let heard = given.iter().filter(|g| g.asked.is_some());
+        let heard: BTreeSet<u32> = heard.map(|g| g.neurite).collect();
+        self.positions.keys().filter(|n| !heard.contains(n)).count()
     }
 }
 
@@ -87,26 +84,26 @@ impl Given {
     }
 }
 
-/// Gives every neurite of a soma its first ring. `farthest`, by soma: radii from its centre beyond which
-/// no wish is heard.
+/// Gives every neurite of a soma its first ring: the skeleton with them. `farthest`, by soma: radii from
+/// its centre beyond which no wish is heard.
 pub(crate) fn insert(
-    skeleton: &mut Skeleton,
+    skeleton: &Skeleton,
     balls: &[Option<Ball>],
     wishes: &Wishes<'_>,
     farthest: &[f64],
     warnings: &mut Warnings,
-) -> Vec<Given> {
+) -> (Skeleton, Vec<Given>) {
     let children = skeleton.children();
     let mut sites: BTreeMap<u32, Site> = BTreeMap::new();
-    let mut passed = vec![false; skeleton.nodes.len()];
-    for (i, node) in skeleton.nodes.iter().enumerate() {
+    let mut passed = vec![false; skeleton.nodes().len()];
+    for (i, node) in skeleton.nodes().iter().enumerate() {
         let Root::Soma(soma) = node.root else {
             continue;
         };
         let Some(ball) = balls[soma as usize].filter(|_| node.parent == NONE) else {
             continue;
         };
-        let stem = Stem::new(skeleton, &children, i as u32, ball);
+        let stem = Stem::new(skeleton, children, i as u32, ball);
         let site = stem.site(wishes.of(node), farthest[soma as usize] * ball.radius);
         let mut here = i as u32;
         while here != site.next {
@@ -287,18 +284,18 @@ fn until(from: DVec3, step: DVec3, far: f64) -> f64 {
 }
 
 fn place(
-    skeleton: &mut Skeleton,
+    skeleton: &Skeleton,
     balls: &[Option<Ball>],
     wishes: &Wishes<'_>,
     sites: &BTreeMap<u32, Site>,
     passed: &[bool],
     warnings: &mut Warnings,
-) -> Vec<Given> {
+) -> (Skeleton, Vec<Given>) {
     let children = skeleton.children();
-    let mut nodes: Vec<Node> = Vec::with_capacity(skeleton.nodes.len() + sites.len());
-    let mut new_index = vec![NONE; skeleton.nodes.len()];
+    let mut nodes: Vec<Node> = Vec::with_capacity(skeleton.nodes().len() + sites.len());
+    let mut new_index = vec![NONE; skeleton.nodes().len()];
     let mut given = Vec::with_capacity(sites.len());
-    for (i, node) in skeleton.nodes.iter().enumerate() {
+    for (i, node) in skeleton.nodes().iter().enumerate() {
         if passed[i] {
             continue;
         }
@@ -347,9 +344,7 @@ fn place(
         new_index[i] = nodes.len() as u32;
         nodes.push(node);
     }
-    skeleton.nodes = nodes;
-    skeleton.links_changed();
-    given
+    (Skeleton::from_nodes(nodes), given)
 }
 
 /// The way from a ring of our own to the first traced point.

@@ -4,7 +4,6 @@
 //! and no tree is too deep.
 
 use std::cell::OnceCell;
-use std::rc::Rc;
 
 use glam::DVec3;
 use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
@@ -41,12 +40,15 @@ pub(crate) enum Root {
 }
 
 /// All nodes.
-#[derive(Clone, Debug, Default)]
+///
+/// Lists of children are borrowed from the skeleton, and whatever changes nodes borrows all of it: the
+/// compiler refuses a list that is used after what it lists has changed. What changes no link, a center
+/// or a radius, may change under the lists through [`shapes`](Skeleton::shapes).
+#[derive(Debug, Default)]
 pub(crate) struct Skeleton {
-    pub(crate) nodes: Vec<Node>,
-    /// Made when first asked for; whoever changes links or nodes calls
-    /// [`links_changed`](Skeleton::links_changed).
-    children: OnceCell<Rc<Children>>,
+    nodes: Vec<Node>,
+    /// Made when first asked for.
+    children: OnceCell<Children>,
 }
 
 /// Children of every node, in order.
@@ -57,9 +59,52 @@ pub(crate) struct Children {
 }
 
 impl Children {
+    fn list(nodes: &[Node]) -> Self {
+        let mut start = vec![0_u32; nodes.len() + 1];
+        for node in nodes.iter().filter(|n| n.parent != NONE) {
+            start[node.parent as usize + 1] += 1;
+        }
+        for i in 1..start.len() {
+            start[i] += start[i - 1];
+        }
+        let mut list = vec![0; *start.last().unwrap_or(&0) as usize];
+        // Each start moves to its end as the list is filled: the next node's start.
+        for (index, node) in nodes.iter().enumerate() {
+            if node.parent != NONE {
+                let slot = &mut start[node.parent as usize];
+                list[*slot as usize] = index as u32;
+                *slot += 1;
+            }
+        }
+        start.rotate_right(1);
+        start[0] = 0;
+        Self { start, list }
+    }
+
     pub(crate) fn of(&self, node: u32) -> &[u32] {
         let node = node as usize;
         &self.list[self.start[node] as usize..self.start[node + 1] as usize]
+    }
+}
+
+/// Nodes whose links stay as they are.
+pub(crate) struct Shapes<'a>(&'a mut [Node]);
+
+impl Shapes<'_> {
+    pub(crate) fn node(&self, index: u32) -> &Node {
+        &self.0[index as usize]
+    }
+
+    pub(crate) fn set_radius(&mut self, index: u32, radius: f64) {
+        self.0[index as usize].radius = radius;
+    }
+
+    pub(crate) fn set_center(&mut self, index: u32, center: DVec3) {
+        self.0[index as usize].center = center;
+    }
+
+    pub(crate) fn set_root(&mut self, index: u32, root: Root) {
+        self.0[index as usize].root = root;
     }
 }
 
@@ -96,48 +141,48 @@ impl Skeleton {
                 parent = new_index[point];
             }
         }
+        Self::from_nodes(nodes)
+    }
+
+    /// A skeleton of nodes whose parents stand before them.
+    pub(crate) fn from_nodes(nodes: Vec<Node>) -> Self {
         Self {
             nodes,
             children: OnceCell::new(),
         }
     }
 
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
     pub(crate) fn node(&self, index: u32) -> &Node {
         &self.nodes[index as usize]
     }
 
-    /// Children of every node, as the links are now.
-    pub(crate) fn children(&self) -> Rc<Children> {
-        let children = self.children.get_or_init(|| Rc::new(self.list_children()));
-        debug_assert_eq!(**children, self.list_children(), "links changed in silence");
-        Rc::clone(children)
+    /// Children of every node.
+    pub(crate) fn children(&self) -> &Children {
+        self.children.get_or_init(|| Children::list(&self.nodes))
     }
 
-    /// To be called after nodes were added or links changed.
-    pub(crate) fn links_changed(&mut self) {
+    /// The nodes, of which all but the links may change, beside the lists of children.
+    pub(crate) fn shapes(&mut self) -> (Shapes<'_>, &Children) {
+        let children = self.children.get_or_init(|| Children::list(&self.nodes));
+        (Shapes(&mut self.nodes), children)
+    }
+
+    /// Nodes to add to and to link anew; lists of children are made again afterwards.
+    pub(crate) fn links(&mut self) -> &mut Vec<Node> {
         self.children.take();
+        &mut self.nodes
     }
 
-    fn list_children(&self) -> Children {
-        let mut start = vec![0_u32; self.nodes.len() + 1];
-        for node in self.nodes.iter().filter(|n| n.parent != NONE) {
-            start[node.parent as usize + 1] += 1;
-        }
-        for i in 1..start.len() {
-            start[i] += start[i - 1];
-        }
-        let mut list = vec![0; *start.last().unwrap_or(&0) as usize];
-        // Each start moves to its end as the list is filled: the next node's start.
-        for (index, node) in self.nodes.iter().enumerate() {
-            if node.parent != NONE {
-                let slot = &mut start[node.parent as usize];
-                list[*slot as usize] = index as u32;
-                *slot += 1;
-            }
-        }
-        start.rotate_right(1);
-        start[0] = 0;
-        Children { start, list }
+    /// Nodes and lists of children, for whoever changes both together.
+    pub(crate) fn take_apart(&mut self) -> (Vec<Node>, Children) {
+        let nodes = std::mem::take(&mut self.nodes);
+        let children = self.children.take();
+        let children = children.unwrap_or_else(|| Children::list(&nodes));
+        (nodes, children)
     }
 
     /// How far the path moves if an ordinary node is left out (µm).
@@ -184,19 +229,17 @@ impl Skeleton {
                 stands_for.push((parent, root));
             }
         }
-        self.nodes.truncate(kept);
-        self.links_changed();
+        self.links().truncate(kept);
     }
 
     /// Brings parents before children again after links were changed, depth first.
     pub(crate) fn reorder(&mut self) {
         // Lists of children do not depend on the order of nodes.
-        self.links_changed();
         let children = self.children();
         let mut order = Vec::with_capacity(self.nodes.len());
         let mut stack: Vec<u32> = (0..self.nodes.len() as u32)
             .rev()
-            .filter(|&i| self.nodes[i as usize].parent == NONE)
+            .filter(|&i| self.node(i).parent == NONE)
             .collect();
         while let Some(node) = stack.pop() {
             order.push(node);
@@ -206,49 +249,54 @@ impl Skeleton {
         for (new, &old) in order.iter().enumerate() {
             new_index[old as usize] = new as u32;
         }
-        self.nodes = order
-            .iter()
-            .map(|&old| {
-                let node = self.nodes[old as usize];
-                let parent = if node.parent == NONE {
-                    NONE
-                } else {
-                    new_index[node.parent as usize]
-                };
-                Node { parent, ..node }
-            })
-            .collect();
-        self.links_changed();
+        let moved = |&old: &u32| {
+            let node = *self.node(old);
+            let parent = match node.parent {
+                NONE => NONE,
+                parent => new_index[parent as usize],
+            };
+            Node { parent, ..node }
+        };
+        let nodes = order.iter().map(moved).collect();
+        *self = Self::from_nodes(nodes);
     }
 
     /// Turns free trees whose root has two children round, so that they start at an end.
     pub(crate) fn start_free_trees_at_an_end(&mut self) {
-        let children = self.children();
-        let mut changed = false;
-        for root in 0..self.nodes.len() as u32 {
-            let node = *self.node(root);
-            if node.parent != NONE || node.root != Root::Free || children.of(root).len() != 2 {
-                continue;
-            }
-            let mut path = vec![root];
-            let mut here = children.of(root)[0];
-            loop {
-                path.push(here);
-                match children.of(here) {
-                    [] => break,
-                    [first, ..] => here = *first,
-                }
-            }
+        let paths = self.paths_to_turn();
+        if paths.is_empty() {
+            return;
+        }
+        let nodes = self.links();
+        for path in paths {
             // A fork on the way becomes a fork of the turned tree: nothing is lost.
             for link in path.windows(2) {
-                self.nodes[link[0] as usize].parent = link[1];
+                nodes[link[0] as usize].parent = link[1];
             }
-            self.nodes[here as usize].parent = NONE;
-            changed = true;
+            nodes[path[path.len() - 1] as usize].parent = NONE;
         }
-        if changed {
-            self.reorder();
-        }
+        self.reorder();
+    }
+
+    /// From each free root with two children to an end.
+    fn paths_to_turn(&self) -> Vec<Vec<u32>> {
+        let children = self.children();
+        let turns = |root: &u32| {
+            let node = self.node(*root);
+            let free = node.parent == NONE && node.root == Root::Free;
+            free && children.of(*root).len() == 2
+        };
+        let path = |root: u32| {
+            let mut path = vec![root];
+            let mut here = root;
+            while let [first, ..] = children.of(here) {
+                here = *first;
+                path.push(here);
+            }
+            path
+        };
+        let roots = (0..self.nodes.len() as u32).filter(turns);
+        roots.map(path).collect()
     }
 }
 

@@ -1,5 +1,7 @@
 //! The somata of a cell: how far each reaches, its surface, and where its rings ended up.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use neurotess_morphology::{Morphology, Soma};
 
@@ -18,6 +20,7 @@ pub(crate) fn balls(
     options: &GenerateOptions,
     warnings: &mut Warnings,
 ) -> Vec<Option<Ball>> {
+    let starts = starts(skeleton, morphology.somata.len());
     let reach = match options.soma {
         SomaMethod::Fem => FEM_REACH,
         SomaMethod::Sphere => 1.0,
@@ -27,7 +30,7 @@ pub(crate) fn balls(
     let ball = |(index, soma): (usize, &Soma)| {
         let mut radius = f64::from(soma.radius);
         if !(radius.is_finite() && radius > 0.0) {
-            radius = radius_from_neurites(skeleton, index as u32, soma.center.as_dvec3());
+            radius = radius_from_neurites(skeleton, &starts[index], soma.center.as_dvec3());
             warnings.add(
                 "soma_radius_mended",
                 soma.samples.first().map(|s| s.id),
@@ -49,12 +52,23 @@ const FEM_REACH: f64 = 1.35;
 /// LiveMesh's: the tube has its own radius from 1.5 R on.
 const PROFILE_REACH: f64 = 1.5;
 
+/// First nodes of each soma's neurites.
+fn starts(skeleton: &Skeleton, somata: usize) -> Vec<Vec<u32>> {
+    let mut starts = vec![Vec::new(); somata];
+    for (index, node) in skeleton.nodes().iter().enumerate() {
+        if let Root::Soma(soma) = node.root {
+            starts[soma as usize].push(index as u32);
+        }
+    }
+    starts
+}
+
 /// A radius for a soma that has none: half-way to the nearest start of a neurite, and no thinner
 /// than the thickest of them.
-fn radius_from_neurites(skeleton: &Skeleton, soma: u32, center: DVec3) -> f64 {
-    let starts = skeleton.nodes.iter().filter(|n| n.root == Root::Soma(soma));
+fn radius_from_neurites(skeleton: &Skeleton, starts: &[u32], center: DVec3) -> f64 {
     let (mut nearest, mut thickest) = (f64::INFINITY, 0.0_f64);
-    for start in starts {
+    for &start in starts {
+        let start = skeleton.node(start);
         nearest = nearest.min(start.center.distance(center));
         thickest = thickest.max(start.radius);
     }
@@ -109,11 +123,11 @@ pub(crate) fn build(
     let farthest: Vec<f64> = balls.iter().map(|b| b.map_or(1.0, |b| b.reach)).collect();
     let mut trials = vec![Trial::new(); balls.len()];
     loop {
-        let mut tried = skeleton.clone();
         let mut said = warnings.clone();
         let limits: Vec<f64> = trials.iter().map(|t| t.farthest).collect();
-        let given = rings::insert(&mut tried, balls, wishes, &limits, &mut said);
+        let (mut tried, given) = rings::insert(skeleton, balls, wishes, &limits, &mut said);
         let nodes = ring_nodes(&tried, balls.len());
+        let wished = farthest_wishes(&given, balls.len());
         let somata: Vec<Option<BuiltSoma>> = (balls.iter().zip(nodes).zip(&trials))
             .map(|((ball, nodes), trial)| {
                 Some(build_one(&mut tried, (*ball)?, &nodes, options, trial))
@@ -124,11 +138,7 @@ pub(crate) fn build(
             let (Some(ball), Some(soma)) = (&mut balls[index], soma) else {
                 continue;
             };
-            let wished = given
-                .iter()
-                .filter(|g| g.soma as usize == index && g.farther);
-            let wished = wished.map(|g| g.reach).reduce(f64::max);
-            if trials[index].go_on(soma.surface.sound(), wished, farthest[index]) {
+            if trials[index].go_on(soma.surface.sound(), wished[index], farthest[index]) {
                 ball.reach = 1.0 + (farthest[index] - 1.0) * REACHES[trials[index].reach];
                 again = true;
             }
@@ -143,6 +153,16 @@ pub(crate) fn build(
         (*skeleton, *warnings) = (tried, said);
         return Built { somata, rings };
     }
+}
+
+/// Per soma: radii of the farthest ring that is there by wish alone.
+fn farthest_wishes(given: &[Given], somata: usize) -> Vec<Option<f64>> {
+    let mut farthest: Vec<Option<f64>> = vec![None; somata];
+    for ring in given.iter().filter(|g| g.farther) {
+        let most = &mut farthest[ring.soma as usize];
+        *most = Some(most.map_or(ring.reach, |most| most.max(ring.reach)));
+    }
+    farthest
 }
 
 impl Trial {
@@ -231,7 +251,7 @@ fn warn_of_rings(given: &[Given], trials: &[Trial], wishes: &Wishes<'_>, warning
 /// Nodes of each soma's rings, in order.
 pub(crate) fn ring_nodes(skeleton: &Skeleton, somata: usize) -> Vec<Vec<u32>> {
     let mut rings: Vec<Vec<u32>> = vec![Vec::new(); somata];
-    for (index, node) in skeleton.nodes.iter().enumerate() {
+    for (index, node) in skeleton.nodes().iter().enumerate() {
         if let Root::Insertion(soma) = node.root {
             rings[soma as usize].push(index as u32);
         }
@@ -281,16 +301,18 @@ fn insertion(node: &Node, ball: &Ball) -> Insertion {
 
 /// Puts the rings' nodes where the soma has them. Neurites without a seat become free.
 fn keep_seated(skeleton: &mut Skeleton, surface: &mut SomaSurface, nodes: &[u32], ball: &Ball) {
+    let (mut shapes, _) = skeleton.shapes();
+    let dropped: BTreeSet<usize> = surface.dropped.iter().copied().collect();
     let (mut rings, mut insertions) = (Vec::new(), Vec::new());
     for (slot, &node) in nodes.iter().enumerate() {
         let insertion = surface.insertions[slot];
-        let target = &mut skeleton.nodes[node as usize];
-        if surface.dropped.contains(&slot) {
-            target.root = Root::Free;
+        if dropped.contains(&slot) {
+            shapes.set_root(node, Root::Free);
             continue;
         }
-        target.center = ball.center + insertion.direction * insertion.distance;
-        target.radius = insertion.radius;
+        let center = ball.center + insertion.direction * insertion.distance;
+        shapes.set_center(node, center);
+        shapes.set_radius(node, insertion.radius);
         rings.push(surface.rings[slot]);
         insertions.push(insertion);
     }

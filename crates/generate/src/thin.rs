@@ -15,23 +15,24 @@ const FORK_SPACING: f64 = 1.0;
 pub(crate) fn drop_buried_twigs(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     for _ in 0..3 {
         let children = skeleton.children();
-        let mut keep = vec![true; skeleton.nodes.len()];
+        let mut keep = vec![true; skeleton.nodes().len()];
         let mut dropped = false;
-        for fork in 0..skeleton.nodes.len() as u32 {
+        for fork in 0..skeleton.nodes().len() as u32 {
             let branches = children.of(fork);
             if branches.len() < 2 {
                 continue;
             }
             let mut left = branches.len();
+            let thickest = thickest(skeleton, branches);
             for &branch in branches {
-                let tip = run_end(&children, branch);
+                let tip = run_end(children, branch);
                 if left == 1 || !children.of(tip).is_empty() {
                     continue;
                 }
-                if buried(skeleton, &children, fork, branch, tip) {
+                if buried(skeleton, fork, branch, tip, &thickest) {
                     left -= 1;
                     dropped = true;
-                    mark_run(&children, branch, &mut keep);
+                    mark_run(children, branch, &mut keep);
                     warnings.add(
                         "buried_twig",
                         Some(skeleton.node(tip).sample),
@@ -63,7 +64,24 @@ fn mark_run(children: &Children, mut node: u32, keep: &mut [bool]) {
     }
 }
 
-fn buried(skeleton: &Skeleton, children: &Children, fork: u32, branch: u32, tip: u32) -> bool {
+/// A twig is looked for inside this many of its siblings, the thickest ones: what is buried lies inside a
+/// thick neurite, and a fork of thousands costs no square of them.
+const MOST_SIBLINGS: usize = 16;
+
+fn thickest(skeleton: &Skeleton, branches: &[u32]) -> Vec<u32> {
+    let mut thickest = branches.to_vec();
+    if thickest.len() > MOST_SIBLINGS {
+        let thinner = |a: &u32, b: &u32| {
+            let radius = |n: u32| skeleton.node(n).radius;
+            radius(*b).total_cmp(&radius(*a)).then(a.cmp(b))
+        };
+        thickest.select_nth_unstable_by(MOST_SIBLINGS, thinner);
+        thickest.truncate(MOST_SIBLINGS);
+    }
+    thickest
+}
+
+fn buried(skeleton: &Skeleton, fork: u32, branch: u32, tip: u32, siblings: &[u32]) -> bool {
     let (at, end) = (skeleton.node(fork), skeleton.node(tip));
     let reach = end.center.distance(at.center);
     if reach <= at.radius {
@@ -79,7 +97,7 @@ fn buried(skeleton: &Skeleton, children: &Children, fork: u32, branch: u32, tip:
         let radius = at.radius + t * (other.radius - at.radius);
         t.is_finite() && end.center.distance(at.center + axis * t) < 0.9 * radius
     };
-    let siblings = children.of(fork).iter().copied().filter(|&c| c != branch);
+    let siblings = siblings.iter().copied().filter(|&c| c != branch);
     let parent = Some(at.parent).filter(|&p| p != NONE);
     siblings.chain(parent).any(inside)
 }
@@ -87,10 +105,10 @@ fn buried(skeleton: &Skeleton, children: &Children, fork: u32, branch: u32, tip:
 /// Joins a fork that lies on top of the one before it to that one.
 pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
-    let mut keep = vec![true; skeleton.nodes.len()];
+    let mut keep = vec![true; skeleton.nodes().len()];
     // Nearest fork above each node, if the run down to the node may all be left out.
-    let mut fork_above: Vec<u32> = vec![NONE; skeleton.nodes.len()];
-    for i in 0..skeleton.nodes.len() as u32 {
+    let mut fork_above: Vec<u32> = vec![NONE; skeleton.nodes().len()];
+    for i in 0..skeleton.nodes().len() as u32 {
         let node = *skeleton.node(i);
         let above = match node.parent {
             NONE => NONE,
@@ -107,7 +125,8 @@ pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings
             continue;
         }
         let mut here = i;
-        while here != above && here != NONE {
+        // What is left out already was so up to the same fork.
+        while here != above && here != NONE && keep[here as usize] {
             keep[here as usize] = false;
             here = skeleton.node(here).parent;
         }
@@ -123,10 +142,10 @@ pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings
 /// Leaves out ordinary points that are closer to a neighbour than their radius allows.
 pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
-    let mut keep = vec![true; skeleton.nodes.len()];
+    let mut keep = vec![true; skeleton.nodes().len()];
     // Nearest kept node above each node.
-    let mut above: Vec<u32> = vec![NONE; skeleton.nodes.len()];
-    for i in 0..skeleton.nodes.len() as u32 {
+    let mut above: Vec<u32> = vec![NONE; skeleton.nodes().len()];
+    for i in 0..skeleton.nodes().len() as u32 {
         let node = *skeleton.node(i);
         let Some(parent) = Some(node.parent).filter(|&p| p != NONE) else {
             continue;
@@ -149,7 +168,7 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         let near = |a: u32| skeleton.node(a).center.distance(node.center) < least(a, i);
         if hub {
             // A fork or end stays: what is too near before it goes.
-            while ordinary(skeleton, &children, last) && near(last) {
+            while ordinary(skeleton, children, last) && near(last) {
                 keep[last as usize] = false;
                 last = above[last as usize];
             }

@@ -26,7 +26,7 @@ pub(crate) fn uncross_rings(
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
     let children = skeleton.children();
-    let mut work = Work::new(skeleton, &children, balls);
+    let mut work = Work::new(skeleton, children, balls);
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -93,7 +93,7 @@ struct Work<'a> {
 
 impl<'a> Work<'a> {
     fn new(skeleton: &'a Skeleton, children: &'a Children, balls: &'a [Option<Ball>]) -> Self {
-        let count = skeleton.nodes.len();
+        let count = skeleton.nodes().len();
         let only = |i: u32| match children.of(i) {
             [only] => *only,
             _ => NONE,
@@ -103,7 +103,7 @@ impl<'a> Work<'a> {
             children,
             balls,
             keep: vec![true; count],
-            parent: skeleton.nodes.iter().map(|n| n.parent).collect(),
+            parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
             child: (0..count as u32).map(only).collect(),
             orientations: Vec::new(),
             turns: vec![0; count],

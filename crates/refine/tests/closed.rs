@@ -3,7 +3,7 @@ mod common;
 
 use common::{Twig, assert_closed, grow};
 use neurotess_generate::{GenerateOptions, SomaMethod, generate};
-use neurotess_mesh::{Surface, SurfaceMesh};
+use neurotess_mesh::{PatchKind, Surface, SurfaceMesh};
 use neurotess_refine::{Caps, CoarseSurface, Levels, Path, RefineOptions, Refinement};
 use proptest::prelude::*;
 
@@ -85,6 +85,79 @@ proptest! {
             .collect();
         refined(mesh, &Levels::PerPoint(&mixed), &options, "mixed levels");
         refined(mesh, &Levels::MaxError(0.05), &options, "by error");
+    }
+}
+
+/// Sections of one or two points that branch wherever they like: forks of any number of branches, many
+/// of them crowded, beside one another.
+fn bush() -> impl Strategy<Value = Vec<Twig>> {
+    let shoot = (
+        0..60_usize,
+        any::<u64>(),
+        1..3_usize,
+        0.3_f32..6.0,
+        0.05_f32..2.0,
+    );
+    let shoot = shoot.prop_map(|(parent, seed, points, step, radius)| Twig {
+        parent,
+        seed,
+        points,
+        step,
+        wild: 0.5,
+        radius,
+    });
+    prop::collection::vec(shoot, 10..60)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn bushy_trees_are_closed(twigs in bush(), soma in prop::option::of(0.5_f32..6.0)) {
+        let mesh = generate(&grow(&twigs, soma), &GenerateOptions::default()).mesh;
+        assert_closed(&SurfaceMesh::collect(&CoarseSurface::new(&mesh, true)), "coarse");
+    }
+}
+
+/// As many branches, or stems, as nobody has: one closed piece all the same, with nothing left behind.
+#[test]
+fn a_crowd_of_branches_is_one_closed_piece() {
+    for (count, soma) in [
+        (7, None),
+        (25, None),
+        (800, None),
+        (60, Some(5.0)),
+        (800, Some(5.0)),
+    ] {
+        let root = usize::from(soma.is_none());
+        let twig = |i: usize| Twig {
+            // A free tree's branches leave its first section, a soma's stems leave the soma.
+            parent: if soma.is_none() { 0 } else { i },
+            seed: i as u64,
+            points: 3,
+            step: 12.0,
+            wild: 0.8,
+            radius: 0.5,
+        };
+        let twigs: Vec<Twig> = (0..count + root).map(twig).collect();
+        let generated = generate(&grow(&twigs, soma), &GenerateOptions::default());
+        let surface = SurfaceMesh::collect(&CoarseSurface::new(&generated.mesh, true));
+        assert_closed(&surface, "a crowd");
+        let euler = surface.vertices.len() as i64 - surface.faces.quads.len() as i64;
+        assert_eq!(
+            euler, 2,
+            "{count} branches, soma {soma:?}: one piece, as quads have half their edges"
+        );
+        let ends = generated.mesh.patches.iter();
+        let ends = ends.filter(|p| p.kind == PatchKind::Cap).count();
+        let inside = generated.warnings.iter();
+        let inside = inside.filter(|w| w.code == "neurite_inside_soma");
+        let inside: usize = inside.map(|w| w.count).sum();
+        assert_eq!(
+            ends + inside,
+            count + root,
+            "{count} branches, soma {soma:?}"
+        );
     }
 }
 

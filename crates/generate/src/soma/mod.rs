@@ -17,7 +17,7 @@ pub(crate) mod sphere;
 mod warp;
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{DMat3, DVec3};
 
@@ -66,10 +66,18 @@ pub(crate) struct SomaRequest {
     pub(crate) attempts: u32,
 }
 
-/// A sphere with its factored stiffness.
+/// A sphere with its factored stiffness, which is made when first asked for.
 struct Reference {
     sphere: Sphere,
-    elasticity: Option<Elasticity>,
+    poisson: f64,
+    elasticity: OnceLock<Option<Elasticity>>,
+}
+
+impl Reference {
+    fn elasticity(&self) -> Option<&Elasticity> {
+        let make = || Elasticity::new(&self.sphere, self.poisson);
+        self.elasticity.get_or_init(make).as_ref()
+    }
 }
 
 /// Rebuilds a soma: rings of the neurites at the given insertions, joined by a smooth surface.
@@ -77,6 +85,9 @@ struct Reference {
 /// Remedies against folds, in turn: a finer sphere with the rings farther apart, smaller rings. A
 /// nearer ring is the caller's to try.
 pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurface {
+    if wanted.is_empty() {
+        return lone(request);
+    }
     let finest = finest_fitting(request.kind);
     let mut level = request
         .level
@@ -106,6 +117,35 @@ pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurfac
     }
     without_thinnest(request, wanted)
 }
+
+/// A soma that no neurite leaves: the sphere itself.
+fn lone(request: &SomaRequest) -> SomaSurface {
+    let level = request.level.unwrap_or(match request.kind {
+        SphereKind::Octahedron => 3,
+        SphereKind::Cube => LONE_LEVEL,
+    });
+    let reference = reference(request.kind, level, request.poisson);
+    let sphere = &reference.sphere;
+    let nodes = sphere.nodes[..sphere.surface].iter();
+    SomaSurface {
+        vertices: nodes
+            .map(|&x| request.center + x * request.radius)
+            .collect(),
+        quads: sphere.quads.clone(),
+        rings: Vec::new(),
+        insertions: Vec::new(),
+        shrunk: 0,
+        turned: 0,
+        misfits: 0,
+        inverted: 0,
+        folded: 0,
+        dropped: Vec::new(),
+    }
+}
+
+/// Quads along an edge of the cube of a soma without neurites. Refined, 96 quads are the sphere to some
+/// 0.01 % of its volume, and files with tens of thousands of lone soma samples exist.
+const LONE_LEVEL: u32 = 4;
 
 /// Tries before a surface with folds is handed back.
 pub(crate) const ATTEMPTS: u32 = 3;
@@ -181,9 +221,11 @@ fn reference(kind: SphereKind, level: u32, poisson: f64) -> Arc<Reference> {
         kept.clear();
     }
     let make = || {
-        let sphere = Sphere::new(kind, level);
-        let elasticity = Elasticity::new(&sphere, poisson.clamp(0.0, 0.49));
-        Arc::new(Reference { sphere, elasticity })
+        Arc::new(Reference {
+            sphere: Sphere::new(kind, level),
+            poisson: poisson.clamp(0.0, 0.49),
+            elasticity: OnceLock::new(),
+        })
     };
     Arc::clone(
         kept.entry((kind, level, poisson.to_bits()))
@@ -280,10 +322,7 @@ fn pull(
             prescribed.push((vertex, sphere.nodes[vertex as usize] * (reach - 1.0)));
         }
     }
-    let solved = reference
-        .elasticity
-        .as_ref()
-        .and_then(|e| e.solve(&prescribed));
+    let solved = reference.elasticity().and_then(|e| e.solve(&prescribed));
     let Some(displacement) = solved else {
         return sphere.nodes.clone();
     };

@@ -1,0 +1,214 @@
+//! What many points, branches, stems or somata cost: no stage takes the square of them.
+//!
+//! Asserted is growth, the cost of four times as many over the cost of as many, and never a time.
+//! n log n gives little more than 4 and a square 16.
+
+use std::time::Instant;
+
+use glam::{Vec3, vec3};
+use neurotess_generate::{GenerateOptions, generate};
+use neurotess_morphology::{
+    Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
+};
+
+/// Directions spread evenly over the sphere (Fibonacci's lattice).
+fn direction(i: usize, count: usize) -> Vec3 {
+    let z = 1.0 - 2.0 * (i as f32 + 0.5) / count as f32;
+    let around = 2.399_963 * i as f32;
+    let across = (1.0 - z * z).sqrt();
+    vec3(across * around.cos(), across * around.sin(), z)
+}
+
+fn add_soma(m: &mut Morphology, center: Vec3, radius: f32) {
+    let sample = SomaSample {
+        id: 1,
+        position: center,
+        radius,
+        parent: None,
+    };
+    m.somata.push(Soma {
+        kind: SomaKind::Point,
+        samples: vec![sample],
+        center,
+        radius,
+    });
+}
+
+fn add_section(m: &mut Morphology, attachment: Attachment, points: &[Vec3], radius: f32) {
+    let first = m.points.len() as u32;
+    for &position in points {
+        m.sample_ids.push(m.points.len() as i64 + 2);
+        m.points.push(Point { position, radius });
+    }
+    let end = m.points.len() as u32;
+    m.sections.push(Section {
+        kind: NeuriteKind(3),
+        attachment,
+        first,
+        end,
+    });
+}
+
+fn stem(m: &mut Morphology, direction: Vec3) {
+    let points = [6.0, 9.0, 12.0].map(|d| direction * d);
+    add_section(m, Attachment::Soma { soma: 0, sample: 0 }, &points, 0.3);
+}
+
+fn stems_all_around(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    add_soma(&mut m, Vec3::ZERO, 5.0);
+    (0..count).for_each(|i| stem(&mut m, direction(i, count)));
+    m
+}
+
+fn stems_in_one_direction(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    add_soma(&mut m, Vec3::ZERO, 5.0);
+    (0..count).for_each(|i| stem(&mut m, vec3(1.0, 1e-4 * (i as f32).sin(), 0.0)));
+    m
+}
+
+fn fork(count: usize, spread: fn(usize, usize) -> Vec3) -> Morphology {
+    let mut m = Morphology::default();
+    let trunk = [Vec3::ZERO, Vec3::Y * 5.0, Vec3::Y * 10.0];
+    add_section(&mut m, Attachment::Free, &trunk, 1.0);
+    for i in 0..count {
+        let away = spread(i, count);
+        let points = [3.0, 6.0].map(|d| Vec3::Y * 10.0 + away * d);
+        add_section(&mut m, Attachment::Section(SectionId(0)), &points, 0.5);
+    }
+    m
+}
+
+fn branches_all_around(count: usize) -> Morphology {
+    fork(count, direction)
+}
+
+fn branches_in_one_direction(count: usize) -> Morphology {
+    fork(count, |i, _| vec3(1.0, 1e-4 * (i as f32).sin(), 0.0))
+}
+
+/// Twigs that end near the fork, each perhaps buried in another.
+fn short_branches(count: usize) -> Morphology {
+    let mut m = fork(0, direction);
+    for i in 0..count {
+        let tip = Vec3::Y * 10.0 + direction(i, count) * 1.5;
+        add_section(&mut m, Attachment::Section(SectionId(0)), &[tip], 0.2);
+    }
+    m
+}
+
+/// A fork at every point of a path.
+fn forks_in_a_row(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    let mut attachment = Attachment::Free;
+    for i in 0..count as u32 / 2 {
+        let at = Vec3::Y * i as f32;
+        add_section(&mut m, attachment, &[at], 0.4);
+        let trunk = Attachment::Section(SectionId(2 * i));
+        let side = direction(i as usize, count) + at;
+        add_section(&mut m, trunk, &[side, side + Vec3::X], 0.2);
+        attachment = trunk;
+    }
+    m
+}
+
+/// Forks that all lie within each other.
+fn forks_in_one_place(count: usize) -> Morphology {
+    let mut m = forks_in_a_row(count);
+    for point in &mut m.points {
+        point.position *= vec3(1.0, 1e-2, 1.0);
+        point.position.y = (point.position.y * 40.0).sin() * 0.1;
+    }
+    m
+}
+
+fn lone_somata(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    (0..count).for_each(|i| add_soma(&mut m, vec3(i as f32, 0.0, 0.0), 0.4));
+    m
+}
+
+/// As many somata without a radius, each with a stem.
+fn somata_with_a_stem(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    for i in 0..count as u32 / 2 {
+        let at = vec3(30.0 * i as f32, 0.0, 0.0);
+        add_soma(&mut m, at, 0.0);
+        let points = [5.0, 9.0].map(|d| at + Vec3::Y * d);
+        let soma = Attachment::Soma { soma: i, sample: 0 };
+        add_section(&mut m, soma, &points, 0.3);
+    }
+    m
+}
+
+fn free_trees(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    for i in 0..count {
+        let at = vec3(i as f32, 0.0, 0.0);
+        add_section(
+            &mut m,
+            Attachment::Free,
+            &[at, at + Vec3::Y, at + Vec3::Y * 2.0],
+            0.2,
+        );
+    }
+    m
+}
+
+fn long_path(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    let points: Vec<Vec3> = (0..count)
+        .map(|i| direction(i, count) * 0.8 + Vec3::Y * 0.3 * i as f32)
+        .collect();
+    add_section(&mut m, Attachment::Free, &points, 0.6);
+    m
+}
+
+/// Seconds of the fastest of three runs: what else the machine does only adds.
+fn cost(morphology: &Morphology) -> f64 {
+    let run = || {
+        let clock = Instant::now();
+        let made = generate(morphology, &GenerateOptions::default());
+        assert!(!made.mesh.patches.is_empty());
+        clock.elapsed().as_secs_f64()
+    };
+    (0..3).map(|_| run()).fold(f64::INFINITY, f64::min)
+}
+
+/// Four times as many must not cost more than this often as much.
+const MOST: f64 = 9.0;
+
+#[test]
+fn no_stage_takes_the_square_of_what_it_is_given() {
+    let kinds: [(&str, fn(usize) -> Morphology, usize); 11] = [
+        ("stems all around", stems_all_around, 4_000),
+        ("stems in one direction", stems_in_one_direction, 4_000),
+        ("branches all around", branches_all_around, 4_000),
+        (
+            "branches in one direction",
+            branches_in_one_direction,
+            4_000,
+        ),
+        ("short branches", short_branches, 4_000),
+        ("forks in a row", forks_in_a_row, 4_000),
+        ("forks in one place", forks_in_one_place, 4_000),
+        ("lone somata", lone_somata, 1_000),
+        ("somata with a stem", somata_with_a_stem, 200),
+        ("free trees", free_trees, 4_000),
+        ("a long path", long_path, 8_000),
+    ];
+    let mut failed = Vec::new();
+    for (name, make, count) in kinds {
+        let (few, many) = (make(count), make(4 * count));
+        cost(&few); // spheres are factored once
+        // A busy machine may slow one of the two down: three tries.
+        let ratio = |_| cost(&many) / cost(&few);
+        let growth = (0..3).map(ratio).fold(f64::INFINITY, f64::min);
+        println!("{name}: {growth:.1} times for 4 times as many");
+        if growth > MOST {
+            failed.push(format!("{name}: {growth:.1}"));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
+}
