@@ -15,6 +15,7 @@ mod metadata;
 mod pictures;
 mod python;
 mod setup;
+mod soak;
 mod steps;
 mod tests;
 
@@ -24,6 +25,7 @@ const USAGE: &str = "cargo xtask COMMAND
 
   demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
   test      set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   setup     a software Vulkan driver where there is none, and the Python environment in which other
             readers check our files (where Python 3 is)
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
+        Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
         Some("setup") => setup::run().map(|said| println!("{said}")),
         Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use anyhow::bail;
+
 use crate::steps::{self, Steps, cargo, run_listening};
 use crate::{architecture, licences, metadata, setup};
 
@@ -10,8 +12,15 @@ pub(crate) fn run() -> anyhow::Result<()> {
     let mut steps = Steps::default();
     let counts = all(&mut steps)?;
     steps.summary();
-    println!("\nall checks passed: {counts}");
-    Ok(())
+    if counts.failures.is_empty() {
+        println!("\nall checks passed: {counts}");
+        return Ok(());
+    }
+    println!("\n{counts}; these failed:");
+    for failure in &counts.failures {
+        println!("   {failure}");
+    }
+    bail!("{} failed", counts.failures.len());
 }
 
 /// Runs all steps, the cheap ones first.
@@ -33,26 +42,36 @@ fn all(steps: &mut Steps) -> anyhow::Result<Counts> {
         steps::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| "no warning".into())
     })?;
     steps.step("test", || {
-        run_listening(&mut cargo("test --workspace --locked"), |line| {
-            counts.hear(line);
-        })?;
-        Ok(counts.to_string())
+        let mut tests = cargo("test --workspace --locked --no-fail-fast");
+        let ended = run_listening(&mut tests, |line| counts.hear(line));
+        match ended {
+            // What failed stands at the end of everything.
+            Err(_) if !counts.failures.is_empty() => Ok(counts.to_string()),
+            ended => ended.map(|()| counts.to_string()),
+        }
     })?;
     Ok(counts)
 }
 
 /// What the test programs said of themselves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     programs: u64,
     passed: u64,
     failed: u64,
     ignored: u64,
+    /// Names of the tests that failed, in order.
+    failures: Vec<String>,
 }
 
 impl Counts {
-    /// Counts a line such as `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
+    /// Counts a line such as `test result: ok. 3 passed; 0 failed; 1 ignored; …`, and remembers one such
+    /// as `test name ... FAILED`.
     fn hear(&mut self, line: &str) {
+        let test = line.strip_prefix("test ");
+        if let Some(name) = test.and_then(|test| test.strip_suffix(" ... FAILED")) {
+            self.failures.push(name.to_owned());
+        }
         let Some((_, numbers)) = line
             .strip_prefix("test result: ")
             .and_then(|rest| rest.split_once(". "))
@@ -80,6 +99,7 @@ impl fmt::Display for Counts {
             passed,
             failed,
             ignored,
+            ..
         } = self;
         write!(
             f,
@@ -98,6 +118,8 @@ mod unit {
         counts.hear("test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out");
         counts.hear("test result: ok. 2 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out");
         counts.hear("test nonsense ... ok");
+        counts.hear("test sense ... FAILED");
+        assert_eq!(counts.failures, ["sense"]);
         assert_eq!(
             counts.to_string(),
             "5 tests passed, 0 failed, 1 ignored in 2 programs"

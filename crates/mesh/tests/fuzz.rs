@@ -1,5 +1,6 @@
 //! Deterministic mutations of valid files: whatever comes, no panic, and no mesh that is larger
-//! than its file allows. `NEUROTESS_FUZZ_SECONDS` sets how long (default 5).
+//! than its file allows. A run tries the same files everywhere; `NEUROTESS_FUZZ_SECONDS` tries others for
+//! so long, from `NEUROTESS_FUZZ_SEED`, as `cargo xtask soak` does.
 
 mod shapes;
 
@@ -66,10 +67,8 @@ fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
 
 #[test]
 fn mutated_files_neither_panic_nor_explode() {
-    let seconds = std::env::var("NEUROTESS_FUZZ_SECONDS")
-        .ok()
-        .and_then(|s| s.parse().ok());
-    let stop = Instant::now() + Duration::from_secs(seconds.unwrap_or(5));
+    let number = |name: &str| std::env::var(name).ok().and_then(|s| s.parse::<u64>().ok());
+    let seconds = number("NEUROTESS_FUZZ_SECONDS").map(Duration::from_secs);
     let text_ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
         property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
@@ -88,9 +87,11 @@ fn mutated_files_neither_panic_nor_explode() {
     seeds.push((Format::Ply, text_ply.to_vec()));
     seeds.push((Format::Stl, text_stl.to_vec()));
 
-    let mut dice = Dice(0x9e37_79b9_7f4a_7c15);
+    let mut dice = Dice(number("NEUROTESS_FUZZ_SEED").unwrap_or(0x9e37_79b9_7f4a_7c15) | 1);
+    let (clock, mut rounds) = (Instant::now(), 0);
     let (mut tried, mut read) = (0, 0);
-    while Instant::now() < stop {
+    while seconds.map_or(rounds < 5000, |seconds| clock.elapsed() < seconds) {
+        rounds += 1;
         for (format, seed) in &seeds {
             let mut bytes = seed.clone();
             mutate(&mut bytes, &mut dice);

@@ -109,8 +109,14 @@ fn bush() -> impl Strategy<Value = Vec<Twig>> {
     prop::collection::vec(shoot, 10..60)
 }
 
+/// Trees to try: as many as are usual, or as `NEUROTESS_TREES` says.
+fn trees(usual: u32) -> u32 {
+    let asked = std::env::var("NEUROTESS_TREES").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(usual)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: trees(400), ..ProptestConfig::default() })]
 
     #[test]
     fn bushy_trees_are_closed(twigs in bush(), soma in prop::option::of(0.5_f32..6.0)) {
