@@ -57,7 +57,9 @@ fn read(circuit: &Path, report: &Path) {
             .unwrap()
             .morphology
             .clone();
-        let mesh = generate(&morphology, &GenerateOptions::default()).mesh;
+        let mesh = generate(&morphology, &GenerateOptions::default())
+            .expect("meshed")
+            .mesh;
         (morphology, mesh)
     };
     let read: Vec<_> = templates.iter().map(read).collect();

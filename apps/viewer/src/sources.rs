@@ -293,14 +293,7 @@ pub fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
     if let Some(kind) = name.strip_prefix(SAMPLE) {
         let kind: Kind = kind.parse().map_err(|e| format!("{e}"))?;
         let morphology = synth::grow(&synth::Options::sample(kind));
-        return Ok(source(
-            file,
-            kind.to_string(),
-            morphology,
-            soma,
-            Vec::new(),
-            None,
-        ));
+        return source(file, kind.to_string(), morphology, soma, Vec::new(), None);
     }
     let written = fs::metadata(file).and_then(|m| m.modified()).ok();
     let read = formats::read(file, &ReadOptions::default()).map_err(|e| reason(&name, &e))?;
@@ -319,7 +312,7 @@ pub fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
         soma,
         warnings,
         written,
-    );
+    )?;
     if made.generated.mesh.patches.is_empty() {
         return Err("nothing in it to mesh: check the file".into());
     }
@@ -340,11 +333,11 @@ fn source(
     soma: SomaEdit,
     mut warnings: Vec<String>,
     written: Option<SystemTime>,
-) -> Source {
-    let generated = generate(&morphology, &soma.options());
+) -> Result<Source, String> {
+    let generated = generate(&morphology, &soma.options()).map_err(|e| e.to_string())?;
     warnings.extend(generated.warnings.iter().map(ToString::to_string));
     let (all, few_balls) = balls(&generated.mesh);
-    Source {
+    Ok(Source {
         file: file.to_path_buf(),
         name,
         measures: Arc::new(Measures::of(&morphology)),
@@ -357,7 +350,7 @@ fn source(
         warnings,
         written,
         stale: None,
-    }
+    })
 }
 
 fn section_facts(morphology: &Morphology) -> Vec<SectionFacts> {

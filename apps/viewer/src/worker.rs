@@ -195,7 +195,8 @@ impl Worker {
     pub fn soma(&mut self, id: SourceId, morphology: Arc<Morphology>, edit: SomaEdit) {
         self.somata += 1;
         self.start(move |send| {
-            let made = guarded(|| Ok(generate(&morphology, &edit.options())));
+            let made =
+                guarded(|| generate(&morphology, &edit.options()).map_err(|e| e.to_string()));
             send(Message::Soma(id, edit, Box::new(made.unwrap_or_default())));
         });
     }

@@ -3,6 +3,7 @@
 
 mod assemble;
 mod crowd;
+mod error;
 mod fork;
 mod frame;
 mod joint;
@@ -17,13 +18,14 @@ mod thin;
 mod uncross;
 mod warning;
 
+pub use error::GenerateError;
 pub use options::{GenerateOptions, SomaMethod, SphereKind};
 pub use warning::Warning;
 
 use std::time::Instant;
 
 use glam::DVec3;
-use neurotess_mesh::CoarseMesh;
+use neurotess_mesh::{CoarseMesh, Vertex};
 use neurotess_morphology::Morphology;
 
 use assemble::Assembly;
@@ -76,12 +78,19 @@ pub struct FirstRing {
     pub radius: f64,
 }
 
-/// Builds the closed coarse mesh of a cell. Never fails: what cannot be meshed as traced is mended
-/// or left out, and reported.
-pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated {
+/// Builds the closed coarse mesh of a cell. What cannot be meshed as traced is mended or left out, and
+/// reported.
+///
+/// # Errors
+/// Where coordinates or radii are so large that 32-bit coordinates do not hold the surface.
+pub fn generate(
+    morphology: &Morphology,
+    options: &GenerateOptions,
+) -> Result<Generated, GenerateError> {
     let mut warnings = Warnings::default();
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
     prepare::mend_radii(&mut skeleton, &mut warnings);
+    error::check_coordinates(morphology, &skeleton, &mut warnings)?;
     prepare::merge_coincident(&mut skeleton, &mut warnings);
     let mut balls = somata::balls(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &balls, &mut warnings);
@@ -115,11 +124,16 @@ pub fn generate(morphology: &Morphology, options: &GenerateOptions) -> Generated
     }
     let mut mesh = assembly.finish();
     mesh.origin = morphology.origin;
-    Generated {
+    let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
+    if let Some(vertex) = mesh.vertices.iter().find(lost) {
+        let sample = i64::from(mesh.tracing[vertex.tracing as usize].sample);
+        return Err(GenerateError::NotFinite { sample });
+    }
+    Ok(Generated {
         mesh,
         somata,
         rings: built.rings,
         warnings: warnings.into_vec(),
         soma_seconds,
-    }
+    })
 }

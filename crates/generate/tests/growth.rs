@@ -169,7 +169,7 @@ fn long_path(count: usize) -> Morphology {
 fn cost(morphology: &Morphology) -> f64 {
     let run = || {
         let clock = Instant::now();
-        let made = generate(morphology, &GenerateOptions::default());
+        let made = generate(morphology, &GenerateOptions::default()).expect("meshed");
         assert!(!made.mesh.patches.is_empty());
         clock.elapsed().as_secs_f64()
     };
@@ -181,7 +181,8 @@ const MOST: f64 = 9.0;
 
 #[test]
 fn no_stage_takes_the_square_of_what_it_is_given() {
-    let kinds: [(&str, fn(usize) -> Morphology, usize); 11] = [
+    type Kind = (&'static str, fn(usize) -> Morphology, usize);
+    let kinds: [Kind; 11] = [
         ("stems all around", stems_all_around, 4_000),
         ("stems in one direction", stems_in_one_direction, 4_000),
         ("branches all around", branches_all_around, 4_000),

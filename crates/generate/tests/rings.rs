@@ -67,7 +67,7 @@ fn with(morphology: &Morphology, rings: &[(u32, f64)]) -> Generated {
         rings: rings.iter().copied().collect(),
         ..GenerateOptions::default()
     };
-    generate(morphology, &options)
+    generate(morphology, &options).expect("meshed")
 }
 
 fn ring(generated: &Generated, neurite: u32) -> FirstRing {
@@ -215,7 +215,7 @@ fn wishes_that_nobody_hears_are_told() {
         rings: BTreeMap::from([(0, 1.5)]),
         ..GenerateOptions::default()
     };
-    let made = generate(&star, &sphere);
+    let made = generate(&star, &sphere).expect("meshed");
     assert_eq!(count(&made, "ring_unused"), 1);
     assert!((distance(&ring(&made, 0)) - 5.0).abs() < 1e-6);
     assert_eq!(ring(&with(&star, &[(0, 7.0)]), 0).position, 2.0);
@@ -229,7 +229,7 @@ fn the_profile_has_positions_too() {
             rings: (0..5).map(|n| (n, position)).collect(),
             ..GenerateOptions::default()
         };
-        let made = generate(&star(), &options);
+        let made = generate(&star(), &options).expect("meshed");
         assert_sound(&made, &format!("profile at {position}"));
         assert!((ring(&made, 2).position - position).abs() < 1e-6);
     }

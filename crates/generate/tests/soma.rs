@@ -63,7 +63,9 @@ fn paper_soma_has_502_triangles_with_five_neurites() {
         sphere_level: Some(3),
         ..GenerateOptions::default()
     };
-    let mesh = generate(&cell(&five(), 6.5, 0.5), &options).mesh;
+    let mesh = generate(&cell(&five(), 6.5, 0.5), &options)
+        .expect("meshed")
+        .mesh;
     let quads = mesh
         .patches
         .iter()
@@ -85,7 +87,7 @@ fn volume_falls_as_poissons_ratio_rises() {
                 sphere,
                 ..GenerateOptions::default()
             };
-            let generated = generate(&cell(&five(), 6.5, 0.5), &options);
+            let generated = generate(&cell(&five(), 6.5, 0.5), &options).expect("meshed");
             assert_eq!(codes(&generated), [""; 0]);
             let report = generated.somata[0];
             let share = report.volume / report.sphere_volume;
@@ -99,7 +101,9 @@ fn volume_falls_as_poissons_ratio_rises() {
 
 #[test]
 fn rings_have_the_neurites_radius_and_plane() {
-    let mesh = generate(&cell(&five(), 6.5, 0.7), &GenerateOptions::default()).mesh;
+    let mesh = generate(&cell(&five(), 6.5, 0.7), &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
     let rings: Vec<_> = mesh
         .tracing
         .iter()
@@ -131,7 +135,10 @@ fn soma_scale_scales_the_soma() {
             soma_scale,
             ..GenerateOptions::default()
         };
-        generate(&cell(&five(), 6.5, 0.5), &options).somata[0].sphere_volume
+        generate(&cell(&five(), 6.5, 0.5), &options)
+            .expect("meshed")
+            .somata[0]
+            .sphere_volume
     };
     assert!((volume(0.5) / volume(1.0) - 0.125).abs() < 1e-9);
 }
@@ -144,6 +151,7 @@ fn alternatives_differ_as_they_should() {
             ..GenerateOptions::default()
         };
         let report = generate(&cell(&five(), 7.5, 0.5), &options)
+            .expect("meshed")
             .somata
             .first()
             .copied();
@@ -164,7 +172,8 @@ fn crowded_and_thick_neurites_fold_nothing() {
         .map(|i| vec3((i % 5) as f32 * 0.1, 1.0, (i / 5) as f32 * 0.1))
         .collect();
     for radius in [0.3, 1.0, 4.0] {
-        let generated = generate(&cell(&crowd, 6.0, radius), &GenerateOptions::default());
+        let generated =
+            generate(&cell(&crowd, 6.0, radius), &GenerateOptions::default()).expect("meshed");
         let codes = codes(&generated);
         assert!(
             !codes.contains(&"soma_folded"),
@@ -176,9 +185,9 @@ fn crowded_and_thick_neurites_fold_nothing() {
 
 #[test]
 fn far_first_points_are_bridged_and_inner_ones_left_out() {
-    let far = generate(&cell(&five(), 40.0, 0.5), &GenerateOptions::default());
+    let far = generate(&cell(&five(), 40.0, 0.5), &GenerateOptions::default()).expect("meshed");
     assert!(codes(&far).contains(&"far_from_soma"));
-    let inside = generate(&cell(&five(), 1.0, 0.5), &GenerateOptions::default());
+    let inside = generate(&cell(&five(), 1.0, 0.5), &GenerateOptions::default()).expect("meshed");
     let warning = inside
         .warnings
         .iter()
@@ -189,6 +198,6 @@ fn far_first_points_are_bridged_and_inner_ones_left_out() {
 
 #[test]
 fn empty_morphology_gives_an_empty_mesh() {
-    let generated = generate(&Morphology::default(), &GenerateOptions::default());
+    let generated = generate(&Morphology::default(), &GenerateOptions::default()).expect("meshed");
     assert!(generated.mesh.patches.is_empty());
 }

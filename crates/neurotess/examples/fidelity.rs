@@ -37,7 +37,7 @@ fn main() {
 
 fn row(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let morphology = read(file, &ReadOptions::default())?.morphology;
-    let generated = generate(&morphology, &GenerateOptions::default());
+    let generated = generate(&morphology, &GenerateOptions::default()).expect("meshed");
     let refinement = Refinement::new(
         &generated.mesh,
         &Levels::Homogeneous(4),

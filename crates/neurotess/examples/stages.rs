@@ -40,11 +40,11 @@ fn stages(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let read_ms = best(7, || read(file, &options));
     let generate_options = GenerateOptions::default();
     let clock = Instant::now();
-    let generated = generate(&morphology, &generate_options);
+    let generated = generate(&morphology, &generate_options).expect("meshed");
     let first_ms = clock.elapsed().as_secs_f64() * 1e3;
     let mut soma_ms = f64::INFINITY;
     let coarse_ms = best(7, || {
-        let again = generate(&morphology, &generate_options);
+        let again = generate(&morphology, &generate_options).expect("meshed");
         soma_ms = soma_ms.min(again.soma_seconds * 1e3);
     });
     let levels = Levels::Homogeneous(4);

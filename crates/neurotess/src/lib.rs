@@ -27,7 +27,7 @@
 //!
 //! // The coarse mesh: quads around the tracing, closed by their indices.
 //! use neurotess::generate::{GenerateOptions, generate};
-//! let generated = generate(&read.morphology, &GenerateOptions::default());
+//! let generated = generate(&read.morphology, &GenerateOptions::default())?;
 //! let shape = generated.mesh.topology();
 //! assert!(shape.closed && shape.oriented && shape.euler == 2);
 //!

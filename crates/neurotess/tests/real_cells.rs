@@ -60,7 +60,7 @@ fn every_tracing_gives_a_closed_surface_without_folds_in_the_soma() {
             .to_string_lossy()
             .into_owned();
         let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
-        let generated = generate(&morphology, &GenerateOptions::default());
+        let generated = generate(&morphology, &GenerateOptions::default()).expect("meshed");
         for warning in &generated.warnings {
             assert!(
                 !["soma_folded", "soma_inverted"].contains(&warning.code),
@@ -100,7 +100,7 @@ fn the_papers_sphere_serves_every_tracing_too() {
             sphere_level: Some(3),
             ..GenerateOptions::default()
         };
-        let generated = generate(&morphology, &options);
+        let generated = generate(&morphology, &options).expect("meshed");
         assert_closed(&generated.mesh, &Levels::Homogeneous(2), &name);
     }
 }
@@ -119,7 +119,7 @@ fn first_rings_anywhere_fold_nothing() {
         if morphology.points.len() > 50_000 {
             continue;
         }
-        let usual = generate(&morphology, &GenerateOptions::default());
+        let usual = generate(&morphology, &GenerateOptions::default()).expect("meshed");
         let mut neurites: Vec<u32> = usual.rings.iter().map(|r| r.neurite).collect();
         neurites.dedup();
         let sample = file.parent().is_some_and(|f| f.ends_with("samples"));
@@ -130,7 +130,7 @@ fn first_rings_anywhere_fold_nothing() {
                     rings: set.iter().map(|&n| (n, position)).collect(),
                     ..GenerateOptions::default()
                 };
-                let made = generate(&morphology, &options);
+                let made = generate(&morphology, &options).expect("meshed");
                 for warning in &made.warnings {
                     assert!(
                         !["soma_folded", "soma_inverted", "ring_unused"].contains(&warning.code),

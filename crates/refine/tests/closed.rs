@@ -69,7 +69,7 @@ proptest! {
         let morphology = grow(&twigs, soma);
         let soma =
             [SomaMethod::Fem, SomaMethod::Sphere, SomaMethod::Profile, SomaMethod::None][method];
-        let generated = generate(&morphology, &GenerateOptions { soma, ..Default::default() });
+        let generated = generate(&morphology, &GenerateOptions { soma, ..Default::default() }).expect("meshed");
         let mesh = &generated.mesh;
         assert_closed(&SurfaceMesh::collect(&CoarseSurface::new(mesh, true)), "coarse");
         let options = RefineOptions {
@@ -120,7 +120,7 @@ proptest! {
 
     #[test]
     fn bushy_trees_are_closed(twigs in bush(), soma in prop::option::of(0.5_f32..6.0)) {
-        let mesh = generate(&grow(&twigs, soma), &GenerateOptions::default()).mesh;
+        let mesh = generate(&grow(&twigs, soma), &GenerateOptions::default()).expect("meshed").mesh;
         assert_closed(&SurfaceMesh::collect(&CoarseSurface::new(&mesh, true)), "coarse");
     }
 }
@@ -146,7 +146,7 @@ fn a_crowd_of_branches_is_one_closed_piece() {
             radius: 0.5,
         };
         let twigs: Vec<Twig> = (0..count + root).map(twig).collect();
-        let generated = generate(&grow(&twigs, soma), &GenerateOptions::default());
+        let generated = generate(&grow(&twigs, soma), &GenerateOptions::default()).expect("meshed");
         let surface = SurfaceMesh::collect(&CoarseSurface::new(&generated.mesh, true));
         assert_closed(&surface, "a crowd");
         let euler = surface.vertices.len() as i64 - surface.faces.quads.len() as i64;
@@ -179,7 +179,9 @@ fn levels_1_and_64_side_by_side_are_closed() {
             radius: 1.0,
         })
         .collect();
-    let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default()).mesh;
+    let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
     let levels: Vec<u8> = (0..mesh.tracing.len())
         .map(|i| if i % 2 == 0 { 1 } else { 64 })
         .collect();

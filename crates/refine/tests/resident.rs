@@ -22,7 +22,9 @@ fn tree(twigs: u64, points: usize, radius: f32) -> CoarseMesh {
             radius,
         })
         .collect();
-    generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default()).mesh
+    generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default())
+        .expect("meshed")
+        .mesh
 }
 
 fn assert_complete(mesh: &CoarseMesh, parts: &[Part]) {
@@ -206,7 +208,7 @@ proptest! {
             .into_iter()
             .map(|(parent, seed, points)| Twig { parent, seed, points, step, wild, radius })
             .collect();
-        let mesh = generate(&grow(&twigs, soma), &GenerateOptions::default()).mesh;
+        let mesh = generate(&grow(&twigs, soma), &GenerateOptions::default()).expect("meshed").mesh;
         let parts = pack(&mesh, &[], &[], 4096);
         assert_complete(&mesh, &parts);
         let apart = largest_move(&mesh, &dequantized(&mesh, &parts));

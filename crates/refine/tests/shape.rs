@@ -20,7 +20,9 @@ fn cell(seed: u64) -> CoarseMesh {
             radius: 0.6,
         })
         .collect();
-    generate(&grow(&twigs, Some(4.0)), &GenerateOptions::default()).mesh
+    generate(&grow(&twigs, Some(4.0)), &GenerateOptions::default())
+        .expect("meshed")
+        .mesh
 }
 
 fn surface(mesh: &CoarseMesh, levels: Levels<'_>, path: Path) -> SurfaceMesh {
@@ -174,7 +176,9 @@ fn smooth_neurite_has_the_area_of_its_frusta() {
         radius: 0.5,
     };
     let morphology = grow(&[twig], None);
-    let mesh = generate(&morphology, &GenerateOptions::default()).mesh;
+    let mesh = generate(&morphology, &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
     let options = RefineOptions {
         path: Path::Linear,
         ..RefineOptions::default()

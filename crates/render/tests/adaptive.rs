@@ -142,7 +142,9 @@ fn a_soma_alone_is_a_disk_and_a_point_alone_a_short_tube() {
     ] {
         let read = swc::read_bytes(text.as_bytes(), "point", &ReadOptions::default());
         let morphology = read.expect("a point").morphology;
-        let mesh = generate(&morphology, &GenerateOptions::default()).mesh;
+        let mesh = generate(&morphology, &GenerateOptions::default())
+            .expect("meshed")
+            .mesh;
         let size = 200;
         let camera = before(&mesh, 4.0);
         let meshes = std::slice::from_ref(&mesh);

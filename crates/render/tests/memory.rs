@@ -47,7 +47,9 @@ fn real_cells_take_24_bytes_a_point() {
         let Ok(read) = swc::read_bytes(&bytes, "cell", &ReadOptions::default()) else {
             continue;
         };
-        let mesh = generate(&read.morphology, &GenerateOptions::default()).mesh;
+        let mesh = generate(&read.morphology, &GenerateOptions::default())
+            .expect("meshed")
+            .mesh;
         let (each, points) = bytes_per_point(&gpu, &mesh);
         if points >= 2000 {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -71,7 +73,9 @@ fn a_cell_of_live_mesh_s_size_takes_less() {
             radius: 0.5,
         })
         .collect();
-    let mesh = generate(&grow(&twigs, Some(7.0)), &GenerateOptions::default()).mesh;
+    let mesh = generate(&grow(&twigs, Some(7.0)), &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
     let (each, points) = bytes_per_point(&gpu, &mesh);
     let whole = each * points as f64;
     println!("{points} points, {each:.2} bytes each, {whole:.0} in all; LiveMesh: 160400");

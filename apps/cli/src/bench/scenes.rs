@@ -33,7 +33,9 @@ pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
             options.points = Some(points as usize);
             let morphology = grow(&options);
             let soma = morphology.soma().map(|soma| soma.center.as_dvec3());
-            let mesh = generate(&morphology, &GenerateOptions::default()).mesh;
+            let mesh = generate(&morphology, &GenerateOptions::default())
+                .expect("meshed")
+                .mesh;
             Neuron {
                 words: words(&mesh),
                 balls: bounds(&mesh),

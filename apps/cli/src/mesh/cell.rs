@@ -117,7 +117,8 @@ pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let generated = generate::generate(&read.morphology, &recipe.generate);
+    let generated = generate::generate(&read.morphology, &recipe.generate)
+        .map_err(|e| Failure(format!("{file}: {e}")))?;
     seconds.soma = generated.soma_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
     if generated.mesh.patches.is_empty() {

@@ -48,10 +48,12 @@ pub(crate) fn read(
 
 fn cell(input: &Input, read: ReadOptions, options: &GenerateOptions) -> Result<Cell, Failure> {
     let read = formats::read(&input.path, &read).map_err(|e| Failure(e.to_string()))?;
-    let generated = generate::generate(&read.morphology, options);
+    let file = input.path.display().to_string();
+    let generated = generate::generate(&read.morphology, options)
+        .map_err(|e| Failure(format!("{file}: {e}")))?;
     let mended = generated.warnings.iter();
     Ok(Cell {
-        file: input.path.display().to_string(),
+        file,
         mended: mended.map(|w| format!("{w} ({})", w.code)).collect(),
         morphology: read.morphology,
         mesh: generated.mesh,

@@ -93,7 +93,9 @@ mod tests {
             .collect();
         let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
         let morphology = read.expect("a cell").morphology;
-        let mesh = crate::generate::generate(&morphology, &Default::default()).mesh;
+        let mesh = crate::generate::generate(&morphology, &Default::default())
+            .expect("meshed")
+            .mesh;
         let cell = Cell {
             name: "",
             morphology: &morphology,

@@ -64,7 +64,9 @@ pub(crate) fn cell(seed: u64, twigs: usize) -> CoarseMesh {
             radius: random.real(0.3, 1.2) as f32,
         })
         .collect();
-    let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default()).mesh;
+    let mesh = generate(&grow(&twigs, Some(6.0)), &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
     for kind in [PatchKind::Lateral, PatchKind::Cap, PatchKind::Soma] {
         assert!(mesh.patches.iter().any(|p| p.kind == kind), "{kind:?}");
     }
@@ -112,7 +114,9 @@ pub(crate) fn smooth_cell(seed: u64) -> CoarseMesh {
             grow_section(&mut cell, root, start, heading, side * -0.06 * turn, 0.7);
         }
     }
-    generate(&cell, &GenerateOptions::default()).mesh
+    generate(&cell, &GenerateOptions::default())
+        .expect("meshed")
+        .mesh
 }
 
 fn grow_section(

@@ -40,7 +40,9 @@ pub(crate) fn gpu() -> Option<Gpu> {
 pub(crate) fn mesh(swc_text: &str) -> CoarseMesh {
     let read = swc::read_bytes(swc_text.as_bytes(), "cell.swc", &ReadOptions::default());
     let morphology = read.expect("a cell").morphology;
-    generate(&morphology, &GenerateOptions::default()).mesh
+    generate(&morphology, &GenerateOptions::default())
+        .expect("meshed")
+        .mesh
 }
 
 /// Balls around a mesh.
