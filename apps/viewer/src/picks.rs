@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, PatchKind};
-use neurotess::render::{HOVERED, Id, Named, Placement, SELECTED, Spot};
+use neurotess::render::{HOVERED, Id, Named, PICKED, Placement, SELECTED, Spot};
 
 use crate::document::Document;
 use crate::sources::SectionFacts;
@@ -85,14 +85,18 @@ impl Picks {
         self.seen.get(index.checked_sub(1)? as usize).copied()
     }
 
-    /// Bits of the outlines by pixel: around selected neurons, and around what is hovered.
+    /// Bits of the outlines by pixel: around selected neurons, around what is hovered, and around the
+    /// piece that was clicked.
     pub fn mask(
         &self,
         document: &Document,
         hovered: Option<Picked>,
+        picked: Option<Picked>,
         sections: impl Fn(usize, u32) -> Option<SectionFacts>,
     ) -> Vec<u8> {
-        let under = |seen: &Seen| hovered.is_some_and(|h| covers(h, seen.picked, &sections));
+        let within = |part: Option<Picked>, seen: &Seen| {
+            part.is_some_and(|part| covers(part, seen.picked, &sections))
+        };
         let mut bits = vec![0];
         bits.extend(self.seen.iter().map(|seen| {
             let neuron = document.neurons.get(seen.picked.neuron);
@@ -101,7 +105,10 @@ impl Picks {
             } else {
                 0
             };
-            selected | if under(seen) { HOVERED } else { 0 }
+            let hovered = if within(hovered, seen) { HOVERED } else { 0 };
+            // Of a neuron that is no longer selected nothing stays marked.
+            let picked = selected != 0 && within(picked, seen);
+            selected | hovered | if picked { PICKED } else { 0 }
         }));
         self.index
             .iter()
@@ -207,9 +214,15 @@ mod tests {
             })
         };
         let hovered = |part| Some(Picked { neuron: 0, part });
-        let mask = picks().mask(&document, hovered(Part::Neurite(1)), facts);
+        let mask = picks().mask(&document, hovered(Part::Neurite(1)), None, facts);
         assert_eq!(mask, [0, 0, 0, 3, 1, 1, 0, 0, 0, 0]);
-        let mask = picks().mask(&document, hovered(Part::Soma), facts);
+        let mask = picks().mask(&document, hovered(Part::Soma), None, facts);
         assert_eq!(mask, [0, 0, 0, 1, 3, 3, 0, 0, 0, 0]);
+        // What was clicked stays marked while the neuron is selected.
+        let mask = picks().mask(&document, None, hovered(Part::Soma), facts);
+        assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
+        document.neurons[0].selected = false;
+        let mask = picks().mask(&document, None, hovered(Part::Soma), facts);
+        assert_eq!(mask, [0; 10]);
     }
 }

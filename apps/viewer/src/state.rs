@@ -269,7 +269,7 @@ impl State {
             Command::Cancel => self.effects.push(Effect::Cancel),
             Command::Quit => self.effects.push(Effect::Quit),
             Command::Look(side) => {
-                let balls = self.balls(|_| true);
+                let balls = self.outline(|_| true);
                 let view = self
                     .view
                     .fitted(side, self.settings.y_down, self.aspect, &balls);
@@ -278,7 +278,7 @@ impl State {
             Command::Home => self.run(Command::Look(neurotess::render::Side::Front)),
             Command::Focus => {
                 let any = self.document.selected().next().is_some();
-                let balls = self.balls(|n| n.selected || !any);
+                let balls = self.outline(|n| n.selected || !any);
                 let (low, high) = extent(&balls);
                 if !balls.is_empty() {
                     let ball = ((low + high) / 2.0, (high - low).length() / 2.0);
@@ -374,6 +374,26 @@ impl State {
             .filter(|(n, _)| !n.hidden && wanted(n))
             .flat_map(|(n, placement)| self.balls_of(n.source, placement))
             .collect()
+    }
+
+    /// Balls (µm) at the tracing points of what shows and is wanted: tighter than [`State::balls`], to
+    /// frame it. Of many neurons a few balls each.
+    pub fn outline(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<Ball> {
+        let neurons = self.document.neurons.iter().zip(self.placements());
+        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && wanted(n)).collect();
+        if shown.len() >= MANY {
+            return self.balls(wanted);
+        }
+        let balls = |(neuron, placement): (&document::Neuron, Placement)| {
+            let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
+            let points = mesh.into_iter().flat_map(|mesh| {
+                let points = mesh.tracing.iter();
+                points.map(|p| (mesh.origin + p.center.as_dvec3(), f64::from(p.radius)))
+            });
+            let placed = points.map(|(c, r)| (placement.world_from_cell(c), r * placement.scale));
+            placed.collect::<Vec<_>>()
+        };
+        shown.into_iter().flat_map(balls).collect()
     }
 
     /// The source of a neuron.

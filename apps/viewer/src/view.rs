@@ -4,6 +4,9 @@ use glam::{DMat3, DQuat, DVec3};
 use neurotess::render::{Ball, Camera, DEFAULT_FOV, Side};
 use serde::{Deserialize, Serialize};
 
+/// Free on each side of what is fitted, of the picture's width and height: as `neurotess render` has it.
+const MARGIN: f64 = 0.04;
+
 /// An eye and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -124,7 +127,7 @@ impl View {
     pub fn fitted(&self, side: Side, y_down: bool, aspect: f64, balls: &[Ball]) -> Self {
         let fov = self.camera().fov();
         let side = if y_down { below(side) } else { side };
-        let Ok(camera) = Camera::fit(side, fov, aspect.max(1e-3), 0.06, balls) else {
+        let Ok(camera) = Camera::fit(side, fov, aspect.max(1e-3), MARGIN, balls) else {
             return *self;
         };
         let up = camera.axes()[1] * if y_down { -1.0 } else { 1.0 };

@@ -240,12 +240,12 @@ impl Palette {
     /// Undefined, soma, axon, basal and apical dendrites.
     ///
     /// Pure primaries leave light no room to shade; so blue, red and purple are those of print, and
-    /// black is the darkest grey that still shows a shape.
+    /// black is the darkest gray on which light still shows a shape.
     fn types(self) -> [Rgb; 5] {
         match self {
             Self::NeuroM => [
                 [120, 120, 120],
-                [34, 34, 36],
+                [70, 71, 76],
                 [32, 84, 214],
                 [214, 40, 40],
                 [134, 46, 168],
@@ -259,7 +259,7 @@ impl Palette {
             ],
             Self::OkabeIto => [
                 [110, 110, 110],
-                [26, 26, 26],
+                [62, 62, 64],
                 [0, 114, 178],
                 [213, 94, 0],
                 [204, 121, 167],

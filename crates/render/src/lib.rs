@@ -84,7 +84,7 @@ pub use named::{Named, Namer, Spot};
 pub use overlay::{Overlay, OverlayOptions};
 pub use picture::{Cost, LARGEST, Occlusion, PictureError, PictureOptions, SAMPLES, Studio, paint};
 pub use prerefined::{Painted, Place, Prerefined, Resident};
-pub use present::{HOVERED, Outlines, SELECTED};
+pub use present::{HOVERED, Outlines, PICKED, SELECTED};
 pub use readback::{Chosen, FrameStats};
 pub use refiner::{Batch, FramePlan, Refiner};
 pub use refining::{Choice, Refining, Sight};

@@ -1,7 +1,7 @@
 //! Pictures for a window: they stay on the device, and get better slice by slice.
 //!
 //! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
-//! camera moves a **draft** is drawn at once: one sample, no occlusion. At rest the picture is made in
+//! camera moves a **draft** is drawn at once: four samples, no occlusion. At rest the picture is made in
 //! **steps** of one sub-pixel each, moved so that they add up to the samples of a saved picture
 //! (`picture.rs`), and each step in **slices**, so that each ends soon whatever the
 //! scene: a window can show what there is, and stop.
@@ -115,7 +115,7 @@ impl Live {
             painters: Vec::new(),
             finishers: Vec::new(),
             identifier: None,
-            presenter: Presenter::new(gpu),
+            presenter: Presenter::new(gpu, samples_in_sub_pixel(gpu, 4)),
             finish: make(
                 gpu,
                 "finish",
@@ -171,8 +171,10 @@ impl Live {
         shot: &Shot,
     ) -> Result<(), DeviceError> {
         self.under_way = None;
-        let painter = self.painter(gpu, maker, 1, shot)?;
-        self.make_canvas(gpu, true, shot.size, 1)?;
+        // As many samples as the first step at rest has: with one, lines thinner than a pixel are dots.
+        let samples = samples_in_sub_pixel(gpu, 4);
+        let painter = self.painter(gpu, maker, samples, shot)?;
+        self.make_canvas(gpu, true, shot.size, samples)?;
         let way = UnderWay {
             shot: Shot {
                 occlusion: Occlusion::Off,

@@ -4,7 +4,7 @@ use crate::assert_layout;
 use crate::finish::{Finish, Last, finish_text};
 use crate::ids::ids_text;
 use crate::prerefined::{Placement, StoredVertex, WGSL};
-use crate::present::{MaskKind, Present, present_text};
+use crate::present::{Present, mask_text};
 use crate::refiner::Refiner;
 use crate::shade::{Shade, Way, shader_text};
 use crate::shader_tests::languages;
@@ -99,8 +99,10 @@ fn window_shaders_are_valid_in_every_language_and_have_our_layouts() {
     for shader in 0..Refiner::SHADERS {
         languages::check("ids", &ids_text(&Refiner::vertex_wgsl(shader), id));
     }
-    languages::check("present a draft", &present_text(MaskKind::Drawn));
-    let module = languages::check("present", &present_text(MaskKind::Bytes));
+    for samples in [1, 4] {
+        languages::check("mask of a draft", &mask_text(samples));
+    }
+    let module = languages::check("present", include_str!("present.wgsl"));
     assert_layout!(
         &module,
         "Present",

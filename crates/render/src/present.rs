@@ -1,5 +1,7 @@
 //! The pass that puts a picture into a texture, with outlines. Twin of the uniform in `present.wgsl`.
 
+use std::cell::RefCell;
+
 use bytemuck::{Pod, Zeroable};
 
 use crate::colour::Rgb;
@@ -13,6 +15,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const SELECTED: u8 = 1;
 /// Bit of a mask: under the cursor.
 pub const HOVERED: u8 = 2;
+/// Bit of a mask: the piece that was clicked.
+pub const PICKED: u8 = 4;
 
 /// How outlines look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +34,7 @@ impl Default for Outlines {
         Self {
             width: 2,
             selected: [255, 140, 0],
-            hovered: [0, 150, 255],
+            hovered: [0, 190, 170],
         }
     }
 }
@@ -60,30 +64,18 @@ impl Present {
     }
 }
 
-/// What tells what has outlines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum MaskKind {
-    /// Bytes by pixel, from the host.
-    Bytes,
-    /// The normals that a draft of one sample has drawn: see `shade.wgsl`.
-    Drawn,
-}
-
-/// The text for a kind of mask.
-pub(crate) fn present_text(kind: MaskKind) -> String {
-    let (texture, bits) = match kind {
-        MaskKind::Bytes => ("texture_2d<u32>", "textureLoad(mask, p, 0).r"),
-        MaskKind::Drawn => (
-            "texture_2d<f32>",
-            "u32(textureLoad(mask, p, 0).a * 255.0 + 0.5)",
-        ),
+/// The text that makes a mask of the normals that a draft has drawn, of so many samples.
+pub(crate) fn mask_text(samples: u32) -> String {
+    let texture = match samples {
+        1 => "texture_2d<f32>",
+        _ => "texture_multisampled_2d<f32>",
     };
-    let text = include_str!("present.wgsl");
-    text.replace("MASK_TEXTURE", texture)
-        .replace("MASK_BITS", bits)
+    let text = include_str!("mask.wgsl");
+    text.replace("NORMALS", texture)
+        .replace("SAMPLES", &samples.to_string())
 }
 
-/// The pass for a kind of mask.
+/// A pass over all pixels.
 struct Way {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
@@ -91,15 +83,18 @@ struct Way {
 
 /// The pass, with the mask that it looks at.
 pub(crate) struct Presenter {
-    bytes: Way,
-    drawn: Way,
+    show: Way,
+    gather: Way,
     uniform: wgpu::Buffer,
     mask: wgpu::Texture,
     mask_size: Option<[u32; 2]>,
+    /// Of the draft.
+    drawn: RefCell<wgpu::Texture>,
 }
 
 impl Presenter {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
+    /// `samples`: of a draft's pixels.
+    pub(crate) fn new(gpu: &Gpu, samples: u32) -> Self {
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("present"),
             size: size_of::<Present>() as u64,
@@ -107,11 +102,24 @@ impl Presenter {
             mapped_at_creation: false,
         });
         Self {
-            bytes: Way::new(gpu, MaskKind::Bytes),
-            drawn: Way::new(gpu, MaskKind::Drawn),
+            show: Way::new(
+                gpu,
+                include_str!("present.wgsl"),
+                "show",
+                FORMAT,
+                &show_layout(),
+            ),
+            gather: Way::new(
+                gpu,
+                &mask_text(samples),
+                "gather",
+                MASK_FORMAT,
+                &gather_layout(samples),
+            ),
             uniform,
             mask: mask_texture(gpu, [1, 1]),
             mask_size: None,
+            drawn: RefCell::new(mask_texture(gpu, [1, 1])),
         }
     }
 
@@ -156,53 +164,68 @@ impl Presenter {
         let words = Present::new(size, outlines);
         gpu.queue
             .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&words));
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let bytes = self.mask.create_view(&Default::default());
-        let (way, mask) = match drawn {
-            true => (&self.drawn, &targets.normal),
-            false => (&self.bytes, &bytes),
-        };
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("present"),
-            layout: &way.layout,
-            entries: &[
-                entry(0, self.uniform.as_entire_binding()),
-                entry(1, targets.pixels.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(mask)),
-            ],
-        });
-        let view = to.create_view(&Default::default());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("present"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations::default(),
-            })],
-            ..Default::default()
-        });
-        pass.set_pipeline(&way.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
+        if drawn && outlines.is_some_and(|o| o.width > 0) {
+            self.gather(gpu, targets, size, encoder);
+        }
+        let drawn_mask = self.drawn.borrow();
+        let mask = if drawn { &*drawn_mask } else { &self.mask };
+        let mask = mask.create_view(&Default::default());
+        let resources = [
+            self.uniform.as_entire_binding(),
+            targets.pixels.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&mask),
+        ];
+        self.show.run(gpu, &resources, to, encoder);
+    }
+
+    /// Makes the mask of what a draft has drawn.
+    fn gather(
+        &self,
+        gpu: &Gpu,
+        targets: &Targets,
+        size: [u32; 2],
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let mut mask = self.drawn.borrow_mut();
+        if [mask.width(), mask.height()] != size {
+            *mask = mask_texture(gpu, size);
+        }
+        let normals = wgpu::BindingResource::TextureView(&targets.normal);
+        self.gather.run(gpu, &[normals], &mask, encoder);
     }
 }
 
 impl Way {
-    fn new(gpu: &Gpu, kind: MaskKind) -> Self {
+    fn new(
+        gpu: &Gpu,
+        text: &str,
+        fragment: &str,
+        format: wgpu::TextureFormat,
+        bindings: &[wgpu::BindingType],
+    ) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("present"),
-            source: wgpu::ShaderSource::Wgsl(present_text(kind).into()),
+            label: Some(fragment),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         });
-        let layout = layout(device, kind);
+        let entry = |(binding, ty): (u32, &wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: *ty,
+            count: None,
+        };
+        let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(fragment),
+            entries: &entries,
+        });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("present"),
+            label: Some(fragment),
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("present"),
+            label: Some(fragment),
             layout: Some(&pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &module,
@@ -215,20 +238,64 @@ impl Way {
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some("show"),
+                entry_point: Some(fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(FORMAT.into())],
+                targets: &[Some(format.into())],
             }),
             multiview_mask: None,
             cache: None,
         });
         Self { pipeline, layout }
     }
+
+    /// Encodes the pass.
+    fn run(
+        &self,
+        gpu: &Gpu,
+        resources: &[wgpu::BindingResource<'_>],
+        to: &wgpu::Texture,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry {
+                binding,
+                resource: resource.clone(),
+            })
+            .collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layout,
+            entries: &entries,
+        });
+        let view = to.create_view(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: None,
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
 }
 
+/// What masks are made of: bits by pixel.
+const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
+
 fn mask_texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    texture(gpu, size, wgpu::TextureFormat::R8Uint, usage)
+    let written = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::RENDER_ATTACHMENT;
+    texture(
+        gpu,
+        size,
+        MASK_FORMAT,
+        wgpu::TextureUsages::TEXTURE_BINDING | written,
+    )
 }
 
 /// A plain texture.
@@ -254,33 +321,28 @@ pub(crate) fn texture(
     })
 }
 
-fn layout(device: &wgpu::Device, kind: MaskKind) -> wgpu::BindGroupLayout {
-    let binding = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
+fn texture_binding(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled,
+    }
+}
+
+fn show_layout() -> [wgpu::BindingType; 3] {
     let buffer = |ty| wgpu::BindingType::Buffer {
         ty,
         has_dynamic_offset: false,
         min_binding_size: None,
     };
-    let mask = wgpu::BindingType::Texture {
-        sample_type: match kind {
-            MaskKind::Bytes => wgpu::TextureSampleType::Uint,
-            MaskKind::Drawn => wgpu::TextureSampleType::Float { filterable: false },
-        },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let pixels = wgpu::BufferBindingType::Storage { read_only: true };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("present"),
-        entries: &[
-            binding(0, buffer(wgpu::BufferBindingType::Uniform)),
-            binding(1, buffer(pixels)),
-            binding(2, mask),
-        ],
-    })
+    [
+        buffer(wgpu::BufferBindingType::Uniform),
+        buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+        texture_binding(wgpu::TextureSampleType::Uint, false),
+    ]
+}
+
+fn gather_layout(samples: u32) -> [wgpu::BindingType; 1] {
+    let float = wgpu::TextureSampleType::Float { filterable: false };
+    [texture_binding(float, samples > 1)]
 }

@@ -1,5 +1,7 @@
-// From the bytes of a picture to a texture, with outlines round what a mask says. Called by present.rs, which
-// says what the mask is: bytes, or what a draft has drawn.
+// From the bytes of a picture to a texture, with outlines around what a mask says. Called by present.rs.
+//
+// Between what is selected and its outline one pixel stays free. Neurites of a pixel's width would be seen as
+// their outlines' color if these touched them.
 
 struct Present {
     size: vec2<u32>,
@@ -14,7 +16,8 @@ struct Present {
 @group(0) @binding(0) var<uniform> present: Present;
 @group(0) @binding(1) var<storage, read> pixels: array<u32>;
 // 1: selected, 2: under the cursor.
-@group(0) @binding(2) var mask: MASK_TEXTURE;
+// 1: selected, 2: under the cursor, 4: the piece that was clicked.
+@group(0) @binding(2) var mask: texture_2d<u32>;
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
@@ -26,17 +29,23 @@ fn mask_at(p: vec2<i32>) -> u32 {
     if any(p < vec2(0)) || any(p >= vec2<i32>(textureDimensions(mask))) {
         return 0u;
     }
-    return MASK_BITS;
+    return textureLoad(mask, p, 0).r;
 }
 
-// Bits of the mask within the outline's width of a pixel.
-fn bits_near(p: vec2<i32>) -> u32 {
-    var bits = 0u;
-    let width = i32(present.width);
-    for (var y = -width; y <= width; y++) {
-        for (var x = -width; x <= width; x++) {
-            if x * x + y * y <= width * width + 1 {
-                bits |= mask_at(p + vec2(x, y));
+// Bits of the mask at a pixel, within a pixel of it, and as far as outlines reach.
+fn bits_near(p: vec2<i32>) -> vec3<u32> {
+    var bits = vec3(mask_at(p));
+    let reach = i32(present.width) + 1;
+    for (var y = -reach; y <= reach; y++) {
+        for (var x = -reach; x <= reach; x++) {
+            let square = x * x + y * y;
+            if square > reach * reach + 1 {
+                continue;
+            }
+            let here = mask_at(p + vec2(x, y));
+            bits.z |= here;
+            if square <= 2 {
+                bits.y |= here;
             }
         }
     }
@@ -47,17 +56,17 @@ fn bits_near(p: vec2<i32>) -> u32 {
 fn show(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let p = vec2<u32>(position.xy);
     var colour = unpack4x8unorm(pixels[p.y * present.size.x + p.x]);
-    if present.width > 0u {
-        let inside = mask_at(vec2<i32>(p));
-        let outline = bits_near(vec2<i32>(p)) & ~inside;
-        if (outline & 1u) != 0u {
-            colour = vec4(mix(colour.rgb, present.selected.rgb, present.selected.a), 1.0);
-        }
-        if (outline & 2u) != 0u {
-            colour = vec4(mix(colour.rgb, present.hovered.rgb, present.hovered.a), 1.0);
-        } else if (inside & 2u) != 0u {
-            colour = vec4(mix(colour.rgb, present.hovered.rgb, 0.18), 1.0);
-        }
+    if present.width == 0u {
+        return colour;
+    }
+    let bits = bits_near(vec2<i32>(p));
+    // Whole neurons have a free pixel between them and their outline, pieces have none.
+    let around = (bits.z & ~bits.y & 3u) | (bits.y & ~bits.x & 6u);
+    if (around & 5u) != 0u {
+        colour = vec4(mix(colour.rgb, present.selected.rgb, present.selected.a), 1.0);
+    }
+    if (around & 2u) != 0u {
+        colour = vec4(mix(colour.rgb, present.hovered.rgb, present.hovered.a), 1.0);
     }
     return colour;
 }

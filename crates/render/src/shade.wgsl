@@ -215,7 +215,10 @@ fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     // A broad sheen, so that black things have a shape.
     let half = normalize(shade.key + to_eye);
     let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
-    return albedo * diffuse + sheen;
+    // Light from behind along the outline, that parts a thing from what lies behind it.
+    let grazing = 1.0 - max(dot(n, to_eye), 0.0);
+    let rim = 0.16 * grazing * grazing * grazing * mix(0.4, 1.0, sky);
+    return albedo * diffuse + sheen + rim * (0.25 + albedo);
 }
 
 // How much of a wire is here: lines run where x, y or x + y is a whole number.

@@ -4,6 +4,10 @@ use neurotess::colouring;
 use neurotess::render::{ColourMap, Light, Palette, Rgb};
 use serde::{Deserialize, Serialize};
 
+/// Background unless another one is chosen: a light gray, before which neither pale lines nor dark somata
+/// are as hard as before white.
+pub const PAPER: Rgb = [238, 240, 243];
+
 /// Colours, light, what is shown of cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -182,7 +186,7 @@ impl Default for Look {
             decay: colouring::DECAY,
             palette: Palette::default(),
             colour_map: ColourMap::default(),
-            background: [255; 3],
+            background: PAPER,
             light: Lighting::Soft,
             occlusion: true,
             wires: false,

@@ -16,7 +16,7 @@ use crate::circuits::CircuitId;
 use crate::session::NeuronEntry;
 
 pub use detail::{Criterion, Detail};
-pub use look::{ColourBy, Cut, Lighting, Look, Parts};
+pub use look::{ColourBy, Cut, Lighting, Look, PAPER, Parts};
 pub(crate) use place::PlaceFile;
 pub use soma::{Method, SomaEdit};
 

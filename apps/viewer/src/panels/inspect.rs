@@ -72,7 +72,7 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
     };
     let morphology = &source.morphology;
     match picked.part {
-        Part::Soma => {}
+        Part::Soma => soma(source, ui),
         Part::Section(section) => {
             let Some(facts) = source.sections.get(section as usize) else {
                 return;
@@ -117,6 +117,39 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
             );
         }
     }
+}
+
+/// The soma as it was rebuilt; as it was traced stands below, with the cell's figures.
+fn soma(source: &Source, ui: &mut egui::Ui) {
+    heading(ui, "Soma");
+    let generated = &source.generated;
+    let stems = generated.rings.len();
+    let Some(first) = generated.somata.first() else {
+        ui.weak("Not meshed: the method is \"none\", see Soma.");
+        return;
+    };
+    let somata = || generated.somata.iter();
+    let volume: f64 = somata().map(|s| s.volume).sum();
+    let mut rows = vec![
+        ("neurites that leave it", stems.to_string()),
+        ("volume of the mesh", measured(volume, "µm³")),
+        (
+            "area of the mesh",
+            measured(somata().map(|s| s.area).sum(), "µm²"),
+        ),
+        ("sphere's volume", measured(first.sphere_volume, "µm³")),
+        ("samples", samples(source).to_string()),
+    ];
+    if generated.somata.len() > 1 {
+        rows.insert(0, ("somata", generated.somata.len().to_string()));
+    }
+    figures(ui, "rebuilt soma", &rows);
+}
+
+/// Traced samples of all somata.
+fn samples(source: &Source) -> usize {
+    let somata = source.morphology.somata.iter();
+    somata.map(|soma| soma.samples.len()).sum()
 }
 
 fn cell(source: &Source, ui: &mut egui::Ui) {

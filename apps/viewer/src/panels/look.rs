@@ -5,7 +5,7 @@ use neurotess::render::{ColourMap, Legend, Palette};
 
 use super::heading;
 use crate::command::{Ask, Command};
-use crate::document::{ColourBy, Cut, Lighting, Look, Parts};
+use crate::document::{ColourBy, Cut, Lighting, Look, PAPER, Parts};
 use crate::state::State;
 
 pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
@@ -110,8 +110,9 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.color_edit_button_srgb(&mut look.background);
             for (name, colour) in [
+                ("paper", PAPER),
                 ("white", [255; 3]),
-                ("grey", [58, 60, 64]),
+                ("slate", [40, 44, 50]),
                 ("black", [0; 3]),
             ] {
                 ui.selectable_value(&mut look.background, colour, name);

@@ -14,7 +14,8 @@ use crate::state::{Picked, State};
 pub(crate) const OUTLINES: Outlines = Outlines {
     width: 1,
     selected: scene::SELECTION,
-    hovered: [0, 150, 255],
+    // No palette has it: types of neurites are blue, red, purple, green and gray.
+    hovered: [0, 190, 170],
 };
 
 /// What ids mean.
@@ -36,6 +37,7 @@ impl Names {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MaskKey {
     hovered: Option<Picked>,
+    picked: Option<Picked>,
     selected: Vec<usize>,
     shot: Shot,
 }
@@ -82,6 +84,7 @@ impl Stage {
         };
         let key = MaskKey {
             hovered: state.hovered,
+            picked: state.picked,
             selected: state.document.selected().collect(),
             shot: drawn.shot,
         };
@@ -92,7 +95,7 @@ impl Stage {
             let source = state.source_of(neuron)?;
             source.sections.get(section as usize).copied()
         };
-        let mask = picks.mask(&state.document, state.hovered, facts);
+        let mask = picks.mask(&state.document, state.hovered, state.picked, facts);
         self.live
             .set_outlines(&self.gpu, OUTLINES, Some((picks.size(), &mask)));
         self.live.show(&self.gpu);
