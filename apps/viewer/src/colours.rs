@@ -36,6 +36,7 @@ pub(crate) struct Matter {
 pub(crate) struct Tints {
     palette: Palette,
     map: ColourMap,
+    trim: bool,
     background: Rgb,
     range: Option<[f32; 2]>,
 }
@@ -60,6 +61,7 @@ impl ColourKey {
             tints: Tints {
                 palette: look.palette,
                 map: look.colour_map,
+                trim: look.trim_map,
                 background: look.background,
                 range: look.range.filter(|_| by.has_range()),
             },
@@ -73,7 +75,10 @@ pub(crate) fn paint(look: &Look) -> Paint {
     Paint {
         palette: look.palette,
         background,
-        scale: look.colour_map.scale(background),
+        scale: match look.trim_map {
+            true => look.colour_map.scale_before(look.background),
+            false => look.colour_map.scale(),
+        },
         range: look.range.filter(|[low, high]| low < high),
     }
 }

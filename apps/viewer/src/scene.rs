@@ -187,6 +187,7 @@ pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
         clip: None,
         marked: (SELECTION, 0.75),
         faint: look.faint.clamp(0.0, 1.0),
+        contrast: Some(look.background),
     }
 }
 

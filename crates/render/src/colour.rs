@@ -132,8 +132,13 @@ pub fn linear(rgb: Rgb) -> [f32; 3] {
 
 /// Whether light things are seen better before this colour than dark ones.
 pub fn is_dark(rgb: Rgb) -> bool {
+    luminance(rgb) < 0.2
+}
+
+/// Relative luminance, 0 to 1 (IEC 61966-2-1).
+pub(crate) fn luminance(rgb: Rgb) -> f32 {
     let [r, g, b] = linear(rgb);
-    0.2126 * r + 0.7152 * g + 0.0722 * b < 0.2
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// Entries of a scale: neighbours differ by less than a step of 8 bits.
@@ -188,13 +193,21 @@ impl ColourMap {
         map.eval_continuous(fraction.clamp(0.0, 1.0)).as_array()
     }
 
-    /// Its scale before this background, evenly spaced: the end that would not be seen before it
-    /// is left out, and the rest stays uniform.
-    pub fn scale(self, background: Option<Rgb>) -> Vec<Rgb> {
-        let (low, high) = match background {
-            Some(rgb) if is_dark(rgb) => (0.15, 1.0),
-            _ => (0.0, 0.93),
-        };
+    /// All of it, evenly spaced: the colors that everyone knows. What would not be seen before a background
+    /// has edges in pictures, see [`Look::contrast`](crate::Look::contrast).
+    pub fn scale(self) -> Vec<Rgb> {
+        self.spaced(0.0, 1.0)
+    }
+
+    /// Without the end that would not be seen before this background; the rest stays uniform.
+    pub fn scale_before(self, background: Rgb) -> Vec<Rgb> {
+        match is_dark(background) {
+            true => self.spaced(0.15, 1.0),
+            false => self.spaced(0.0, 0.93),
+        }
+    }
+
+    fn spaced(self, low: f64, high: f64) -> Vec<Rgb> {
         let last = (SCALE_ENTRIES - 1) as f64;
         (0..SCALE_ENTRIES)
             .map(|i| self.at(low + (high - low) * i as f64 / last))
@@ -395,8 +408,11 @@ mod tests {
             (viridis.at(0.0), viridis.at(1.0)),
             ([68, 1, 84], [253, 231, 37])
         );
-        assert_eq!(viridis.scale(None)[0], [68, 1, 84]);
-        assert_eq!(viridis.scale(Some([0; 3]))[255], [253, 231, 37]);
+        // All of the map, whatever the background; without an end only where that is asked for.
+        let scale = viridis.scale();
+        assert_eq!((scale[0], scale[255]), ([68, 1, 84], [253, 231, 37]));
+        assert_ne!(viridis.scale_before([255; 3])[255], [253, 231, 37]);
+        assert_ne!(viridis.scale_before([0; 3])[0], [68, 1, 84]);
     }
 
     #[test]

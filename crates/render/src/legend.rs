@@ -257,7 +257,7 @@ mod tests {
         let bar = Legend::bar(
             "depth",
             "µm",
-            ColourMap::Viridis.scale(None),
+            ColourMap::Viridis.scale(),
             [0.0, 70.0],
             false,
         );

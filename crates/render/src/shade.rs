@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::colour::{CATEGORY_BIT, Rgb, linear};
+use crate::colour::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
 use crate::device::Gpu;
 use crate::frame::Frame;
 use crate::maker::{SURFACE_VERTEX_WGSL, VertexMaker};
@@ -30,6 +30,9 @@ pub struct Look {
     pub marked: (Rgb, f32),
     /// Share of the samples that instances which are [`FAINT`] cover, 0 to 1.
     pub faint: f32,
+    /// The background that colors of the scale must be told from: those that are as light as it have
+    /// edges, darker before a light background and lighter before a dark one. None: no edges.
+    pub contrast: Option<Rgb>,
 }
 
 /// A plane: what lies behind it is cut away.
@@ -73,6 +76,7 @@ impl Default for Look {
             clip: None,
             marked: ([255, 160, 0], 0.0),
             faint: 0.25,
+            contrast: None,
         }
     }
 }
@@ -108,6 +112,7 @@ pub(crate) struct Shade {
     pub(crate) jitter: [f32; 2],
     pub(crate) batch: u32,
     pub(crate) pad: u32,
+    pub(crate) edge: [f32; 4],
 }
 
 /// What shaders must know of a colour table.
@@ -160,6 +165,7 @@ impl Shade {
             jitter: [0.0; 2],
             batch: 0,
             pad: 0,
+            edge: edge(look.contrast),
         }
     }
 
@@ -169,6 +175,15 @@ impl Shade {
         self.tile_origin = [0, 1].map(|k| self.tile_origin[k] + turn[k]);
         self
     }
+}
+
+/// Color of edges before a background, and the background's luminance; beyond 1 there are no edges.
+fn edge(background: Option<Rgb>) -> [f32; 4] {
+    let Some(background) = background else {
+        return [0.0, 0.0, 0.0, 100.0];
+    };
+    let ink = if is_dark(background) { 0.6 } else { 0.05 };
+    [ink, ink, ink, luminance(background)]
 }
 
 /// Sub-pixels by which the viewport reaches beyond the tile on each side. Software rasterisers clip at

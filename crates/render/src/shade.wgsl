@@ -41,6 +41,9 @@ struct Shade {
     jitter: vec2<f32>,
     // Which batch is drawn: for ids.
     batch: u32,
+    pad: u32,
+    // Linear color of edges, and the luminance that they set colors of the scale off from.
+    edge: vec4<f32>,
 }
 
 const MARKED: u32 = 1u;
@@ -66,6 +69,8 @@ struct Varying {
     @location(5) thin: f32,
     // 1: has an outline.
     @location(6) @interpolate(flat) outline: u32,
+    // Share of the edge's color at edges.
+    @location(7) edge: f32,
 }
 
 fn category_entry(category: u32) -> u32 {
@@ -82,8 +87,8 @@ fn value_of_instance(word: u32, instance: u32) -> f32 {
 }
 
 // A category counts from the end of the scale; anything else is a fraction of the scale, or a place
-// among the instance's values.
-fn colour_of(word: u32, instance: u32) -> vec3<f32> {
+// among the instance's values. The last component is 1 for colors of the scale.
+fn colour_of(word: u32, instance: u32) -> vec4<f32> {
     var share = f32(word) / f32(CATEGORY_BIT);
     var category = (word & CATEGORY_BIT) != 0u;
     var named = word & ~CATEGORY_BIT;
@@ -96,7 +101,20 @@ fn colour_of(word: u32, instance: u32) -> vec3<f32> {
     let place = select(share * f32(last), 0.0, category);
     let low = select(u32(place), category_entry(named), category);
     let high = select(min(u32(place) + 1u, last), low, category);
-    return mix(table[low].rgb, table[high].rgb, fract(place));
+    let colour = mix(table[low].rgb, table[high].rgb, fract(place));
+    return vec4(colour, select(1.0, 0.0, category));
+}
+
+fn luminance(colour: vec3<f32>) -> f32 {
+    return dot(colour, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// How little a color is told from the background: 1 up to a contrast of 1.25, as the light end of viridis has
+// before white, 0 from 1.8 on. Contrast as WCAG 2.2 defines it.
+fn lack_of_contrast(colour: vec3<f32>) -> f32 {
+    let own = luminance(colour) + 0.05;
+    let other = shade.edge.w + 0.05;
+    return 1.0 - smoothstep(1.25, 1.8, max(own, other) / min(own, other));
 }
 
 // Rasterisers keep 1/256 of a pixel. Here it is rounded in the whole picture's coordinates, so that
@@ -146,13 +164,16 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     v.position += shade.shift;
     v.axis += shade.shift;
     let state = state_of(v.instance);
+    let colour = colour_of(v.word, v.instance);
+    let edge = colour.a * lack_of_contrast(colour.rgb);
     var relative = v.position;
     var coverage = 1.0;
     var thin = 0.0;
     if v.radius > 0.0 {
         // What is thinner than a pixel is widened to one and made fainter.
         let depth = max(-dot(v.axis, shade.backward), shade.near);
-        let narrowest = shade.half_width * shade.slope * depth;
+        // Edges need room beside the color.
+        let narrowest = shade.half_width * shade.slope * depth * (1.0 + 0.8 * edge);
         thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
         if v.radius < narrowest {
             let offset = v.position - v.axis;
@@ -173,7 +194,8 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     }
     coverage = shown_part(state, v.radius, coverage);
     out.normal = v.normal;
-    out.colour = colour_of(v.word, v.instance);
+    out.colour = colour.rgb;
+    out.edge = edge;
     if (state & MARKED) != 0u {
         out.colour = mix(out.colour, shade.marked.rgb, shade.marked.a);
     }
@@ -263,13 +285,15 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     let n = normalize(mix(world * axes, to_eye, in.thin));
     var colour = in.colour;
     if shade.wire > 0.0 {
-        let luminance = dot(colour, vec3(0.2126, 0.7152, 0.0722));
-        let line = select(vec3(0.22), colour * 0.06, luminance > 0.06);
+        let line = select(vec3(0.22), colour * 0.06, luminance(colour) > 0.06);
         colour = mix(colour, line, wires(in.grid) * (1.0 - in.thin));
     }
     if shade.lit > 0.0 {
         colour = light(colour, n, to_eye);
     }
+    let facing = dot(world * axes, to_eye);
+    let across = sqrt(max(1.0 - facing * facing, 0.0));
+    colour = mix(colour, shade.edge.rgb, 0.7 * in.edge * smoothstep(0.5, 0.85, across));
     var out: Sample;
     out.colour = vec4(colour, 1.0);
     out.normal = vec4(n * 0.5 + 0.5, f32(in.outline) / 255.0);

@@ -121,7 +121,7 @@ fn a_scale_with_its_legend_on_nothing() {
         .iter()
         .map(|t| fraction(t.center.length() / reach))
         .collect();
-    let scale = ColourMap::Viridis.scale(None);
+    let scale = ColourMap::Viridis.scale();
     let camera = Camera::fit(Side::Iso, 0.4, 200.0 / 150.0, 0.04, &balls(&cell)).expect("fits");
     let options = PictureOptions {
         background: None,

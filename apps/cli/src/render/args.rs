@@ -98,6 +98,10 @@ pub(crate) struct RenderArgs {
         help_heading = "Colours"
     )]
     pub(crate) colormap: ColourMap,
+    /// Leave out the end of the color map that is as light or as dark as the background. Without it that
+    /// end has edges
+    #[arg(long, help_heading = "Colours")]
+    pub(crate) trim_colormap: bool,
     /// Draw no legend
     #[arg(long, help_heading = "Colours")]
     pub(crate) no_legend: bool,

@@ -59,7 +59,10 @@ pub(crate) fn coloured(
     let paint = Paint {
         palette: args.palette,
         background,
-        scale: args.colormap.scale(background),
+        scale: match background.filter(|_| args.trim_colormap) {
+            Some(background) => args.colormap.scale_before(background),
+            None => args.colormap.scale(),
+        },
         range: args.range,
     };
     let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();

@@ -268,6 +268,7 @@ fn picture_options(args: &RenderArgs) -> PictureOptions {
         look: Look {
             light: args.light.0,
             wire: if args.wireframe { WIRE } else { 0.0 },
+            contrast: (!args.transparent).then_some(args.background.0),
             ..Look::default()
         },
         occlusion: match args.ao {

@@ -26,6 +26,8 @@ pub struct Look {
     /// Colours of numbers.
     #[serde(with = "colour_map")]
     pub colour_map: ColourMap,
+    /// Whether the end of the color map that is as light or dark as the background is left out.
+    pub trim_map: bool,
     /// Behind everything.
     pub background: Rgb,
     /// What surfaces are lit by.
@@ -186,6 +188,7 @@ impl Default for Look {
             decay: colouring::DECAY,
             palette: Palette::default(),
             colour_map: ColourMap::default(),
+            trim_map: false,
             background: PAPER,
             light: Lighting::Soft,
             occlusion: true,

@@ -95,6 +95,13 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
                         ui.selectable_value(&mut look.colour_map, map, map.name());
                     }
                 });
+            ui.end_row();
+            ui.label("");
+            ui.checkbox(&mut look.trim_map, "without its faint end")
+                .on_hover_text(
+                    "Leaves out the end of the map that is as light or as dark as the background. \
+                 Otherwise those colors have edges.",
+                );
         } else {
             ui.label("palette");
             ComboBox::from_id_salt("palette")
