@@ -26,8 +26,8 @@ struct Kept {
     background: Option<Rgb>,
     /// Corner of the legend, and whether it covers something.
     legend: Option<(usize, bool)>,
-    /// Corner of the scale bar and its length (µm), 0: what fits.
-    bar: Option<(usize, f64)>,
+    /// Corner of the scale bar, its length (µm), 0: what fits, and whether it covers something.
+    bar: Option<(usize, f64, bool)>,
 }
 
 /// What to write into the corners.
@@ -86,8 +86,8 @@ impl Overlay {
             let taken = kept.legend.map(|(corner, _)| corner);
             let image = bar(camera, length, size, line, ink);
             let corners: Vec<usize> = [3, 2].into_iter().filter(|&c| Some(c) != taken).collect();
-            let (corner, _) = seen.emptiest(&image, line, &corners);
-            kept.bar = Some((corner, length));
+            let (corner, count) = seen.emptiest(&image, line, &corners);
+            kept.bar = Some((corner, length, count > 0));
         }
         overlay.kept = Some(kept);
         let camera = cameras.first();
@@ -130,9 +130,12 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
         }
         pieces.push((x, y, image));
     }
-    if let (Some((corner, length)), Some(camera)) = (kept.bar, camera) {
+    if let (Some((corner, length, covers)), Some(camera)) = (kept.bar, camera) {
         let image = bar(camera, length, size, line, ink);
         let [x, y] = place(corner, size, &image, line);
+        if let Some(background) = background.filter(|_| covers) {
+            pieces.push((x, y, panel(&image, background)));
+        }
         pieces.push((x, y, image));
     }
     pieces

@@ -292,12 +292,17 @@ fn legend(legend: Legend, viewer: &Viewer, rect: Rect, ui: &Ui) {
         return;
     }
     let place = Rect::from_min_size(rect.left_top() + vec2(14.0, 14.0), size);
-    let [r, g, b] = background;
-    let behind = Color32::from_rgba_unmultiplied(r, g, b, 190);
-    ui.painter().rect_filled(place.expand(7.0), 5.0, behind);
+    set_off(&viewer.state, place.expand(7.0), ui);
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
     ui.painter()
         .image(texture.id(), place, whole, Color32::WHITE);
+}
+
+/// Sets off what stands in a corner from what lies behind it.
+fn set_off(state: &State, rect: Rect, ui: &Ui) {
+    let [r, g, b] = state.document.look.background;
+    let behind = Color32::from_rgba_unmultiplied(r, g, b, 190);
+    ui.painter().rect_filled(rect, 5.0, behind);
 }
 
 fn scale_bar(state: &State, rect: Rect, ui: &Ui) {
@@ -311,6 +316,8 @@ fn scale_bar(state: &State, rect: Rect, ui: &Ui) {
     let end = rect.right_bottom() - vec2(20.0, 22.0);
     let (painter, ink) = (ui.painter(), ink(state));
     let start = end - vec2(width, 0.0);
+    let shown = Rect::from_min_max(start - vec2(0.0, 24.0), end).expand(8.0);
+    set_off(state, shown, ui);
     painter.line_segment([start, end], Stroke::new(3.0, ink));
     let text = match length {
         l if l >= 1000.0 => format!("{} mm", l / 1000.0),
@@ -335,6 +342,7 @@ fn axes(state: &State, rect: Rect, ui: &Ui) {
         (DVec3::Y, "y", Color32::from_rgb(70, 160, 70)),
         (DVec3::Z, "z", Color32::from_rgb(60, 110, 220)),
     ];
+    set_off(state, Rect::from_center_size(center, vec2(84.0, 84.0)), ui);
     // The farthest first.
     arms.sort_by(|a, b| a.0.dot(backward).total_cmp(&b.0.dot(backward)));
     for (axis, name, colour) in arms {
