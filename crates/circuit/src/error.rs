@@ -130,6 +130,17 @@ pub enum Fault {
         /// What it should be.
         expected: String,
     },
+    /// A dataset declares more than there is.
+    #[error(
+        "declares {declared} bytes, but the file can hold {possible} at most: fetch or export the \
+         file again"
+    )]
+    Declared {
+        /// What its header says.
+        declared: u64,
+        /// What the file has room for.
+        possible: u64,
+    },
     /// A number that points beyond an array.
     #[error("row {row} is {value}, but only {limit} are there: export the file again")]
     Range {

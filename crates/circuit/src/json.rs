@@ -1,8 +1,8 @@
 //! JSON with the file and the key at hand, so that every error names both.
 
-use std::fs;
 use std::path::Path;
 
+use neurotess_formats::read_regular;
 use serde_json::Value;
 
 use crate::{CircuitError, Fault};
@@ -16,7 +16,7 @@ pub(crate) struct Document {
 impl Document {
     /// Reads and parses a file.
     pub(crate) fn open(path: &Path) -> Result<Self, CircuitError> {
-        let bytes = fs::read(path).map_err(|e| CircuitError::io(path, e))?;
+        let bytes = read_regular(path).map_err(|e| CircuitError::io(path, e))?;
         Self::parse(&path.display().to_string(), &bytes)
     }
 

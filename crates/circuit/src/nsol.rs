@@ -15,9 +15,9 @@
 //! first wins, as in nsol. Morphologies are not moved before they are placed.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use neurotess_formats::read_regular;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
@@ -27,7 +27,7 @@ use crate::{Circuit, CircuitError, Fault, Warning, transform};
 
 /// Opens a scene.
 pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
-    let bytes = fs::read(path).map_err(|e| CircuitError::io(path, e))?;
+    let bytes = read_regular(path).map_err(|e| CircuitError::io(path, e))?;
     let text = String::from_utf8_lossy(&bytes);
     read(path, &text)
 }

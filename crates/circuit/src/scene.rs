@@ -16,10 +16,10 @@
 //! position, too), `scale`, `recenter` (false by default).
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
+use neurotess_formats::read_regular;
 use serde::Deserialize;
 
 use crate::listed::{self, Cell};
@@ -67,7 +67,9 @@ pub(crate) fn is_named_so(path: &Path) -> bool {
 
 /// Opens a scene. What is wrong with one cell does not keep the others from showing.
 pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
-    let text = fs::read_to_string(path).map_err(|e| CircuitError::io(path, e))?;
+    let text = read_regular(path)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
+        .map_err(|e| CircuitError::io(path, e))?;
     read(path, &text)
 }
 

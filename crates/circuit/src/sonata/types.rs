@@ -1,8 +1,9 @@
 //! Tables of node types: blanks between fields, quotes around fields with blanks, `NULL` for none.
 
 use std::collections::HashMap;
-use std::fs;
 use std::path::Path;
+
+use neurotess_formats::read_regular;
 
 use crate::{CircuitError, Fault};
 
@@ -17,7 +18,7 @@ pub(crate) struct Types {
 impl Types {
     /// Reads the types of a population.
     pub(crate) fn open(path: &Path, population: &str) -> Result<Self, CircuitError> {
-        let bytes = fs::read(path).map_err(|e| CircuitError::io(path, e))?;
+        let bytes = read_regular(path).map_err(|e| CircuitError::io(path, e))?;
         let text = String::from_utf8_lossy(&bytes);
         Self::parse(&path.display().to_string(), &text, population)
     }
