@@ -79,7 +79,7 @@ fn a_good_circuit_opens() {
 #[test]
 fn configurations_are_refused_with_file_and_key() {
     let cases = [
-        ("{", "circuit_config.json: not JSON ("),
+        ("{", "circuit_config.json:1: not JSON ("),
         (
             "[1]",
             "circuit_config.json: neither 'networks' nor 'network'",
@@ -174,7 +174,7 @@ fn one_bad_part_leaves_the_others() {
     let failures: Vec<String> = circuit.failures.iter().map(ToString::to_string).collect();
     assert_eq!(failures.len(), 3, "{failures:?}");
     assert!(failures[1].contains("'edges': is missing"), "{failures:?}");
-    assert!(failures[2].contains("cell.swc: not JSON"), "{failures:?}");
+    assert!(failures[2].contains("cell.swc:1: not JSON"), "{failures:?}");
 }
 
 #[test]
