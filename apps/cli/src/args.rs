@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use neurotess::formats;
 use neurotess::generate::SomaMethod;
 use neurotess::mesh::Format;
 use neurotess::morphology::NeuriteKind;
@@ -53,7 +54,8 @@ pub(crate) struct Common {
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
     /// Threads to use [default: all cores]
-    #[arg(long, global = true, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, global = true, value_name = "N", value_parser = at_least_one,
+          allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
     /// Show no progress bar, not even on a terminal
     #[arg(long, global = true)]
@@ -98,15 +100,23 @@ pub(crate) enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
+    /// Print a manual page, as in: neurotess man mesh > neurotess-mesh.1
+    Man {
+        /// The command [default: the program]
+        command: Option<String>,
+    },
 }
 
 /// `neurotess info`
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// Morphology files, folders (searched recursively) or globs; circuits (a SONATA configuration or
-    /// the folder of one, a scene)
+    /// Morphology files, folders (searched recursively) or globs, - for standard input; circuits (a
+    /// SONATA configuration or the folder of one, a scene)
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
+    /// Format of standard input (-), where its content does not tell: swc, asc, h5 or nml
+    #[arg(long, value_name = "FORMAT", value_parser = morphology_format)]
+    pub(crate) format: Option<formats::Format>,
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
@@ -119,9 +129,13 @@ pub(crate) struct InfoArgs {
 A mesh that is not closed is a verdict, not a failure: the exit code is 0 if all could be read."
 )]
 pub(crate) struct CheckArgs {
-    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs
+    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs; - for standard
+    /// input, with --format
     #[arg(required = true, value_name = "MESH")]
     pub(crate) inputs: Vec<PathBuf>,
+    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
     /// Merge vertices of identical position first
     #[arg(long)]
     pub(crate) merge: bool,
@@ -130,7 +144,7 @@ pub(crate) struct CheckArgs {
 /// `neurotess convert`
 #[derive(Args, Debug)]
 pub(crate) struct ConvertArgs {
-    /// Morphology files, folders (searched recursively) or globs
+    /// Morphology files, folders (searched recursively) or globs; - for standard input
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -146,7 +160,19 @@ pub(crate) struct ConvertArgs {
 /// Where results go.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct OutArgs {
-    /// A file for one input; a folder for several, or for a folder, whose structure it repeats
+    /// A file for one input, - for standard output; a folder for several, or for a folder, whose
+    /// structure it repeats
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+/// Where what is grown goes.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct GrownArgs {
+    /// A file OUT.swc for one cell, - for standard output; a folder for several cells and for a circuit
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Replace files that exist
@@ -166,7 +192,7 @@ pub(crate) struct SynthArgs {
     #[arg(value_parser = crate::synth::what)]
     pub(crate) kind: What,
     #[command(flatten)]
-    pub(crate) out: OutArgs,
+    pub(crate) out: GrownArgs,
     /// Seed of the first cell; the next ones count up
     #[arg(long, default_value_t = 1, value_name = "S")]
     pub(crate) seed: u64,
@@ -213,19 +239,19 @@ pub(crate) enum What {
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
 and radius (µm).")]
 pub(crate) struct MeshArgs {
-    /// Morphology files, folders (searched recursively) or globs; or one circuit, whose cells are
-    /// written in its coordinates
+    /// Morphology files, folders (searched recursively) or globs, - for standard input; or one circuit,
+    /// whose cells are written in its coordinates
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) out: OutArgs,
     /// Subdivisions per coarse edge, 1 to 64; 0 writes the coarse quads themselves
     #[arg(long, default_value_t = 4, value_name = "N", help_heading = "Refinement",
-          value_parser = clap::value_parser!(u32).range(0..=64))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=64))]
     pub(crate) level: u32,
     /// As fine as keeps the surface within E µm of the level-64 one, instead of --level
     #[arg(long, value_name = "E", conflicts_with = "level", value_parser = positive,
-          help_heading = "Refinement")]
+          allow_negative_numbers = true, help_heading = "Refinement")]
     pub(crate) max_error: Option<f64>,
     /// Course between traced points
     #[arg(long, value_enum, default_value_t = PathArg::Hermite, value_name = "COURSE",
@@ -241,17 +267,22 @@ pub(crate) struct MeshArgs {
     pub(crate) soma: SomaArg,
     /// Poisson's ratio ν of the soma's material, 0 ≤ ν < 0.5
     #[arg(long, default_value_t = 0.3, value_name = "NU", value_parser = poisson,
-          help_heading = "Soma")]
+          allow_negative_numbers = true, help_heading = "Soma")]
     pub(crate) poisson: f64,
     /// Factor on the soma's radius
     #[arg(long, default_value_t = 1.0, value_name = "S", value_parser = positive,
-          help_heading = "Soma")]
+          allow_negative_numbers = true, help_heading = "Soma")]
     pub(crate) soma_scale: f64,
     /// Reference sphere [default: cube]
     #[arg(long, value_enum, value_name = "SPHERE", help_heading = "Soma")]
     pub(crate) soma_sphere: Option<SphereArg>,
     /// Resolution of the sphere: octahedron 1 to 5, cube 2 to 32 [default: what fits the neurites]
-    #[arg(long, value_name = "N", help_heading = "Soma")]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        help_heading = "Soma"
+    )]
     pub(crate) soma_level: Option<u32>,
     #[command(flatten)]
     pub(crate) rings: RingArgs,
@@ -267,7 +298,8 @@ pub(crate) struct MeshArgs {
     /// Do every N-th input only, from the I-th on, 1 ≤ I ≤ N
     #[arg(long, value_name = "I/N", help_heading = "Many inputs")]
     pub(crate) shard: Option<Shard>,
-    /// Skip inputs whose output exists and is newer
+    /// Skip inputs whose output is there, newer than they are and made with the same options; outputs of
+    /// other options are made again. Several runs may share a folder
     #[arg(long, help_heading = "Many inputs")]
     pub(crate) resume: bool,
     /// Append one JSON line per cell to this file as it finishes
@@ -390,6 +422,14 @@ impl FromStr for Shard {
             _ => Err("two numbers I/N with 1 ≤ I ≤ N are needed, as in 3/8".into()),
         }
     }
+}
+
+/// A format of morphologies, by its name or an extension.
+fn morphology_format(name: &str) -> Result<formats::Format, String> {
+    let named = formats::Format::ALL.into_iter().find(|f| f.name() == name);
+    named
+        .or_else(|| formats::Format::of_extension(name))
+        .ok_or_else(|| "use swc, asc, h5 or nml".into())
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

@@ -5,8 +5,9 @@ use serde::Serialize;
 
 use crate::args::CheckArgs;
 use crate::info::{Entry, each};
-use crate::inputs::{Input, Inputs};
-use crate::report::{Failure, Reporter};
+use crate::inputs::{Input, Inputs, standard_input};
+use crate::output::is_standard;
+use crate::report::{Failure, Reporter, place};
 
 /// One object of the JSON list.
 #[derive(Serialize)]
@@ -21,19 +22,32 @@ pub(crate) fn run(args: &CheckArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let mut extensions = Format::ALL.map(Format::extension).to_vec();
     extensions.push("gltf");
     let inputs = Inputs::find(&args.inputs, &extensions);
-    let verdicts = each(&inputs, reporter, |input| judge(input, args.merge))?;
+    let verdicts = each(&inputs, reporter, |input| judge(input, args))?;
     for entry in &verdicts {
         if let Entry::Done(verdict) = entry {
-            reporter.result(&text(verdict));
+            reporter.answer(&text(verdict));
         }
     }
     reporter.document(&verdicts)
 }
 
-fn judge(input: &Input, merge: bool) -> Result<Verdict, Failure> {
+fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
     let file = input.path.display().to_string();
-    let mut surface = mesh::read(&input.path).map_err(|e| Failure(named(&file, &e)))?;
-    if merge {
+    let read = match (is_standard(&input.path), args.format) {
+        (true, None) => {
+            let what =
+                "standard input has no extension: say --format ply, obj, stl, glb, off or vtu";
+            return Err(Failure(format!("{file}: {what}")));
+        }
+        (true, Some(format)) => {
+            let nothing = |head: &[u8]| head.len() > 1 << 15 && head.iter().all(|&byte| byte == 0);
+            mesh::read_bytes(&standard_input(nothing)?, format)
+        }
+        (false, Some(format)) => mesh::read_as(&input.path, format),
+        (false, None) => mesh::read(&input.path),
+    };
+    let mut surface = read.map_err(|e| Failure(named(&file, &e)))?;
+    if args.merge {
         mesh::merge_identical(&mut surface);
     }
     Ok(Verdict {
@@ -50,13 +64,16 @@ fn named(file: &str, error: &ReadError) -> String {
             let what = text
                 .strip_prefix(&format!("line {line}: "))
                 .unwrap_or(&text);
-            format!("{file}:{line}: {what}")
+            format!("{} {what}", place(&file, Some(line as u64)))
         }
         Place::Byte(_) | Place::File => match error {
             ReadError::Io(e) => {
                 format!("{file}: cannot be read ({e}): check the path and its permissions")
             }
-            other => format!("{file}: {other}"),
+            other => {
+                let text = other.to_string();
+                format!("{file}: {}", text.strip_prefix("file: ").unwrap_or(&text))
+            }
         },
     }
 }
@@ -71,7 +88,7 @@ fn text(verdict: &Verdict) -> String {
          closed {} · manifold at edges {}, at vertices {} · oriented {}\n  \
          components {} · Euler characteristic {} · genus {genus}\n  \
          volume {:.3} µm³ · area {:.3} µm²\n  \
-         self-intersecting pairs of faces: {}",
+         self-intersecting pairs of faces: {}{}",
         verdict.file,
         r.vertices,
         r.triangles,
@@ -85,6 +102,11 @@ fn text(verdict: &Verdict) -> String {
         r.euler,
         r.volume,
         r.area,
+        if r.self_intersections_complete {
+            ""
+        } else {
+            "at least "
+        },
         r.self_intersections,
     )
 }

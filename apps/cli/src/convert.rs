@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use crate::args::ConvertArgs;
 use crate::info::{Entry, MORPHOLOGIES, ReaderWarning, each};
-use crate::inputs::{Input, Inputs};
-use crate::output::{Output, OutputError, existing};
+use crate::inputs::{Input, Inputs, morphology, readable};
+use crate::output::{self, OutputError};
 use crate::report::{Failure, Reporter, usage};
 use crate::targets;
 
@@ -28,8 +28,10 @@ struct Converted {
 
 /// Runs the command.
 pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    output::occupy(&args.out.out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let format = format(args, &inputs)?;
+    warn_of_name(args, format, reporter);
     let extension = format.extensions()[0];
     let jobs = targets::plan(&inputs, &args.out.out, extension)?;
     let outs: BTreeMap<&PathBuf, &Path> = jobs
@@ -43,8 +45,9 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
         let out = outs[&input.path];
         let file = input.path.display().to_string();
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
-        existing(args.out.force).check(out).map_err(failed)?;
-        let read = formats::read(&input.path, &options).map_err(|e| Failure(e.to_string()))?;
+        readable(&input.path)?;
+        output::check(out, args.out.force).map_err(failed)?;
+        let read = morphology(&input.path, None, &options)?;
         let lost = write(&read.morphology, format, out, args.out.force).map_err(failed)?;
         Ok(Converted {
             out: out.display().to_string(),
@@ -61,6 +64,16 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
         }
     }
     reporter.document(&converted)
+}
+
+/// Warns where OUT's name says another format than the one that is written.
+fn warn_of_name(args: &ConvertArgs, format: Format, reporter: &Reporter) {
+    let out = &args.out.out;
+    let named = Format::of_extension(&out.extension().unwrap_or_default().to_string_lossy());
+    if named.is_some_and(|named| named != format) && !out.is_dir() {
+        let (out, format) = (out.display(), format.name());
+        reporter.warning(&format!("{out} will hold {format}, as --format says"));
+    }
 }
 
 /// What OUT lacks: all of it for one file or where much is to be told, else that there is something.
@@ -90,7 +103,7 @@ pub(crate) fn write(
     out: &Path,
     force: bool,
 ) -> Result<Vec<formats::Warning>, OutputError> {
-    let mut output = Output::create(out, existing(force))?;
+    let mut output = output::begin(out, force)?;
     let writer = BufWriter::new(output.file());
     let lost =
         formats::write(morphology, format, writer).map_err(|e| OutputError::broken(out, e))?;

@@ -1,15 +1,15 @@
 //! `neurotess info`: what is in a morphology; circuits go to `circuit::info`.
 
-use neurotess::formats::{self, ReadOptions};
+use neurotess::formats::{self, Format, ReadOptions};
 use neurotess::morphology::Measures;
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
 use crate::args::InfoArgs;
 use crate::circuit;
-use crate::inputs::{Input, Inputs};
+use crate::inputs::{Input, Inputs, morphology};
 use crate::progress::Progress;
-use crate::report::{Failure, Reporter, count};
+use crate::report::{Failure, Reporter, count, place};
 use crate::workers;
 
 /// Extensions of morphologies that are looked for in folders.
@@ -88,14 +88,16 @@ pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let options = ReadOptions {
         strict: args.strict,
     };
-    let results = each(&inputs, reporter, |input| measure(input, options))?;
+    let results = each(&inputs, reporter, |input| {
+        measure(input, args.format, options)
+    })?;
     let several = results.len() > 1;
     if several {
-        reporter.result(&header());
+        reporter.answer(&header());
     }
     for entry in &results {
         if let Entry::Done(info) = entry {
-            reporter.result(&if several { row(info) } else { table(info) });
+            reporter.answer(&if several { row(info) } else { table(info) });
             warn(info, several, reporter);
         }
     }
@@ -125,9 +127,7 @@ pub(crate) fn each<T: Send>(
     reporter: &Reporter,
     work: impl Fn(&Input) -> Result<T, Failure> + Sync,
 ) -> anyhow::Result<Vec<Entry<T>>> {
-    for failure in &inputs.failures {
-        reporter.failure(failure);
-    }
+    inputs.tell(reporter);
     let progress = Progress::new(reporter, inputs.files.len(), "files");
     let order: Vec<usize> = (0..inputs.files.len()).collect();
     let results = workers::run(&inputs.files, &order, reporter.threads(), |input| {
@@ -160,8 +160,8 @@ pub(crate) fn bug(file: &str, panic: &str) -> Failure {
     ))
 }
 
-fn measure(input: &Input, options: ReadOptions) -> Result<Info, Failure> {
-    let read = formats::read(&input.path, &options).map_err(|e| Failure(e.to_string()))?;
+fn measure(input: &Input, format: Option<Format>, options: ReadOptions) -> Result<Info, Failure> {
+    let read = morphology(&input.path, format, &options)?;
     Ok(Info {
         file: input.path.display().to_string(),
         format: read.format,
@@ -181,8 +181,8 @@ fn warn(info: &Info, several: bool, reporter: &Reporter) {
         ..
     } in &info.warnings
     {
-        let line = line.map_or(String::new(), |line| format!("{line}:"));
-        reporter.warning(&format!("{}:{line} {message} ({code})", info.file));
+        let place = place(&info.file, *line);
+        reporter.warning(&format!("{place} {message} ({code})"));
     }
 }
 

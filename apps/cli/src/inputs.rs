@@ -1,12 +1,16 @@
-//! Which files are meant: files, folders searched recursively, globs.
+//! Which files are meant: files, folders searched recursively, globs, standard input (`-`).
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
+use neurotess::formats::{self, Format, ReadOptions};
+use rayon::prelude::*;
 use walkdir::WalkDir;
 
-use crate::report::Failure;
+use crate::output::is_standard;
+use crate::report::{Failure, Reporter, count};
 
 /// A file to read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +31,8 @@ pub(crate) struct Inputs {
     pub(crate) failures: Vec<Failure>,
     /// Whether one file, and no folder or glob, was named.
     pub(crate) one_file: bool,
+    /// HDF5 files in folders that hold something else than a morphology.
+    pub(crate) others: usize,
 }
 
 impl Inputs {
@@ -47,6 +53,72 @@ impl Inputs {
         };
         search.found
     }
+
+    /// Tells of what was not found, and of what was left out.
+    pub(crate) fn tell(&self, reporter: &Reporter) {
+        for failure in &self.failures {
+            reporter.failure(failure);
+        }
+        if self.others > 0 {
+            reporter.note(&format!(
+                "{} without a morphology (reports, nodes, …): skipped",
+                count(self.others, "HDF5 file")
+            ));
+        }
+    }
+}
+
+/// Reads the morphology of an input.
+pub(crate) fn morphology(
+    path: &Path,
+    format: Option<Format>,
+    options: &ReadOptions,
+) -> Result<formats::Read, Failure> {
+    let read = match is_standard(path) {
+        true => {
+            let no_text = |head: &[u8]| head.contains(&0) && !head.starts_with(b"\x89HDF");
+            formats::read_bytes(standard_input(no_text)?, "-", format, options)
+        }
+        false => formats::read(path, options),
+    };
+    read.map_err(|e| Failure(e.to_string()))
+}
+
+/// An error if an input cannot be read at all, told before anything is said of its output.
+pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) {
+        return Ok(());
+    }
+    formats::regular(formats::member(path).0).map_err(|e| {
+        let file = path.display();
+        Failure(format!(
+            "{file}: cannot be read ({e}): check the path and its permissions"
+        ))
+    })
+}
+
+/// Bytes by which it is seen whether the rest can be of use.
+const HEAD: u64 = 1 << 16;
+/// Most bytes of standard input.
+const MOST: u64 = 1 << 32;
+
+/// All of standard input, or its beginning if `useless` says that no more is needed to tell what is wrong.
+pub(crate) fn standard_input(useless: impl Fn(&[u8]) -> bool) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let mut input = io::stdin().lock();
+    let mut read = input.by_ref().take(HEAD).read_to_end(&mut bytes);
+    if read.is_ok() && !useless(&bytes) {
+        read = input.take(MOST).read_to_end(&mut bytes);
+    }
+    match read {
+        Ok(_) if (bytes.len() as u64) < MOST => Ok(bytes),
+        Ok(_) => Err(Failure(
+            "-: standard input has no end, or more than 4 GB: give a file".into(),
+        )),
+        Err(e) => Err(Failure(format!(
+            "-: standard input cannot be read ({e}): check where it comes from"
+        ))),
+    }
 }
 
 struct Search<'a> {
@@ -57,7 +129,9 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn argument(&mut self, argument: &Path) {
-        if argument.is_dir() {
+        if is_standard(argument) {
+            self.add(argument.to_path_buf(), PathBuf::from("stdin"));
+        } else if argument.is_dir() {
             if self.folder(argument, argument) == 0 {
                 let known = self.extensions.join(", .");
                 self.fail(
@@ -65,6 +139,12 @@ impl Search<'_> {
                     &format!("no file to read in this folder: it needs files named .{known}"),
                 );
             }
+        } else if let (_, Some(member)) = formats::member(argument) {
+            let member = member.trim_matches('/').replace('/', "_");
+            self.add(
+                argument.to_path_buf(),
+                PathBuf::from(format!("{member}.h5")),
+            );
         } else if argument.exists() || !is_pattern(argument) {
             let name = argument.file_name().unwrap_or(argument.as_os_str());
             // A missing file is told of by whoever reads it, in the words of the system.
@@ -79,16 +159,21 @@ impl Search<'_> {
         let mut paths = Vec::new();
         for entry in WalkDir::new(folder).follow_links(true) {
             match entry {
-                Ok(entry) if entry.file_type().is_file() && self.is_readable(entry.path()) => {
-                    paths.push(entry.into_path());
-                }
-                Ok(_) => {}
+                Ok(entry) if entry.file_type().is_dir() || !self.is_readable(entry.path()) => {}
+                // What is no file, say a link to a device, is refused by whoever reads it.
+                Ok(entry) => paths.push(entry.into_path()),
                 Err(e) => {
                     let at = e.path().unwrap_or(folder).to_path_buf();
                     self.fail(&at, "cannot be searched: check links and permissions");
                 }
             }
         }
+        let all = paths.len();
+        paths = paths
+            .into_par_iter()
+            .filter(|path| !is_other(path))
+            .collect();
+        self.found.others += all - paths.len();
         paths.sort();
         let count = paths.len();
         for path in paths {
@@ -144,6 +229,14 @@ impl Search<'_> {
         let failure = Failure(format!("{}: {what}", path.display()));
         self.found.failures.push(failure);
     }
+}
+
+/// Whether a file of a folder is HDF5, but no morphology.
+fn is_other(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    Format::of_extension(&extension) == Some(Format::H5)
+        && formats::regular(path).is_ok()
+        && formats::h5::is_other(path)
 }
 
 fn is_pattern(path: &Path) -> bool {

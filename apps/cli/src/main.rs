@@ -6,9 +6,11 @@ mod bench;
 mod check;
 mod circuit;
 mod convert;
+mod headless;
 mod info;
 mod inputs;
 mod interrupt;
+mod man;
 mod mesh;
 mod output;
 mod progress;
@@ -29,19 +31,32 @@ use args::{Cli, Command};
 use report::{Reporter, Usage};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => return ExitCode::from(report::told_by_parser(&e)),
+    };
     let reporter = Reporter::new(cli.common);
-    match run(&cli, &reporter) {
-        Ok(()) if reporter.failures() == 0 => ExitCode::SUCCESS,
-        Ok(()) => ExitCode::from(1),
-        Err(e) => {
-            reporter.error(&format!("{e:#}"));
-            ExitCode::from(if e.is::<Usage>() { 2 } else { 1 })
+    let mut code = 1;
+    if let Err(e) = run(&cli, &reporter) {
+        if e.is::<Usage>() {
+            code = 2;
         }
+        reporter.error(&format!("{e:#}"));
+    }
+    if let Err(e) = reporter.close() {
+        reporter.error(&format!("{e:#}"));
+    }
+    match reporter.failures() {
+        0 => ExitCode::SUCCESS,
+        _ => ExitCode::from(code),
     }
 }
 
 fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
+    let draws = matches!(cli.command, Some(Command::Render(_) | Command::Bench(_)));
+    if draws || cli.version {
+        headless::stay_away_from_windows();
+    }
     interrupt::watch()?;
     if cli.version {
         return version::run(reporter);
@@ -58,8 +73,14 @@ fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
         Some(Command::Completions { shell }) => {
             let mut text = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "neurotess", &mut text);
-            reporter.result(String::from_utf8_lossy(&text).trim_end());
-            Ok(())
+            let text = String::from_utf8_lossy(&text);
+            reporter.answer(text.trim_end());
+            reporter.document(&serde_json::json!({ "completions": text }))
+        }
+        Some(Command::Man { command }) => {
+            let text = man::page(command.as_deref())?;
+            reporter.answer(text.trim_end());
+            reporter.document(&serde_json::json!({ "man": text }))
         }
         None => report::usage("no command: neurotess --help lists them"),
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::args::{SynthArgs, What};
 use crate::info::{Entry, Failed, bug};
-use crate::output::existing;
+use crate::output;
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use crate::workers;
@@ -29,6 +29,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
         What::Cells(kind) => kind,
         What::Circuit => return circuit::synth::run(args, reporter),
     };
+    output::occupy(&args.out.out, reporter)?;
     let cells = plan(args, kind)?;
     let progress = Progress::new(reporter, cells.len(), "cells");
     let order: Vec<usize> = (0..cells.len()).collect();
@@ -59,7 +60,11 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
 fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>> {
     let out = &args.out.out;
     let extension = out.extension().unwrap_or_default();
-    let folder = args.count > 1 || out.is_dir() || extension.is_empty();
+    let standard = output::is_standard(out);
+    if standard && args.count > 1 {
+        return usage("standard output takes one cell: leave out --count, or give a folder");
+    }
+    let folder = !standard && (args.count > 1 || out.is_dir() || extension.is_empty());
     if folder && (out.is_file() || !extension.is_empty() && !out.is_dir()) {
         return usage(format!(
             "{} is a file's name, but {} cells need a folder: give another OUT",
@@ -67,7 +72,7 @@ fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>>
             args.count
         ));
     }
-    if !folder && !extension.eq_ignore_ascii_case("swc") {
+    if !folder && !standard && !extension.eq_ignore_ascii_case("swc") {
         return usage(format!(
             "{}: synthetic cells are written as swc: give OUT that extension",
             out.display()
@@ -94,8 +99,8 @@ fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>>
 
 fn grow(options: &Options, out: &Path, force: bool) -> Result<Grown, Failure> {
     // The message names the file already.
-    let failed = |e: crate::output::OutputError| Failure(e.to_string());
-    existing(force).check(out).map_err(failed)?;
+    let failed = |e: output::OutputError| Failure(e.to_string());
+    output::check(out, force).map_err(failed)?;
     let morphology = synth::grow(options);
     convert::write(&morphology, Format::Swc, out, force).map_err(failed)?;
     Ok(Grown {

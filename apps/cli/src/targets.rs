@@ -7,7 +7,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use neurotess::formats;
+
 use crate::inputs::{Input, Inputs};
+use crate::output::is_standard;
 use crate::report::usage;
 
 /// A file and what it becomes.
@@ -17,11 +20,13 @@ pub(crate) struct Job {
     pub(crate) input: PathBuf,
     /// The file to write.
     pub(crate) out: PathBuf,
+    /// Of a circuit: where the cell stands, as text; else empty.
+    pub(crate) stands: String,
 }
 
 /// Whether OUT is a folder: for anything but one file, and where it is one already.
 pub(crate) fn is_folder(out: &Path, inputs: &Inputs) -> bool {
-    !inputs.one_file || out.is_dir() || ends_in_separator(out)
+    !inputs.one_file || !is_standard(out) && (out.is_dir() || ends_in_separator(out))
 }
 
 /// One job per input; `extension` is that of files in a folder.
@@ -30,6 +35,11 @@ pub(crate) fn is_folder(out: &Path, inputs: &Inputs) -> bool {
 /// Wrong usage: two inputs would become one file.
 pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Result<Vec<Job>> {
     let folder = is_folder(out, inputs);
+    if folder && is_standard(out) {
+        return usage(
+            "standard output takes one file, but there are several inputs: give a folder",
+        );
+    }
     if folder && out.is_file() {
         return usage(format!(
             "{} is a file, but several inputs need a folder: give another OUT",
@@ -55,6 +65,7 @@ pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Resu
         jobs.push(Job {
             input: path.clone(),
             out: target,
+            stands: String::new(),
         });
     }
     Ok(jobs)
@@ -74,7 +85,8 @@ fn ends_in_separator(path: &Path) -> bool {
 /// Positions of the jobs, those with the largest files first, so that a great one does not come
 /// last and keep one core busy while the others wait.
 pub(crate) fn largest_first(jobs: &[Job]) -> Vec<usize> {
-    let size = |job: &Job| std::fs::metadata(&job.input).map_or(0, |data| data.len());
+    let size =
+        |job: &Job| std::fs::metadata(formats::member(&job.input).0).map_or(0, |data| data.len());
     let mut order: Vec<(u64, usize)> = jobs.iter().map(size).zip(0..).collect();
     order.sort_by_key(|&(size, index)| (std::cmp::Reverse(size), index));
     order.into_iter().map(|(_, index)| index).collect()
@@ -93,6 +105,7 @@ mod tests {
             files: relatives.iter().map(input).collect(),
             failures: vec![],
             one_file,
+            others: 0,
         }
     }
 

@@ -17,17 +17,17 @@ fn adapter() -> Result<AdapterName, DeviceError> {
 pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
     let version = env!("CARGO_PKG_VERSION");
     let meshes = Format::ALL.map(Format::extension);
-    reporter.result(&format!("neurotess {version}"));
+    reporter.answer(&format!("neurotess {version}"));
     if reporter.verbose() {
-        reporter.result(&match adapter() {
+        reporter.answer(&match adapter() {
             Ok(adapter) => format!("adapter: {adapter}"),
             Err(e) => format!("adapter: none: {e}"),
         });
-        reporter.result(&format!("reads: {}", MORPHOLOGIES.join(" ")));
-        reporter.result(&format!("writes: {}", convert::written().join(" ")));
-        reporter.result(&format!("meshes: {}", meshes.join(" ")));
+        reporter.answer(&format!("reads: {}", MORPHOLOGIES.join(" ")));
+        reporter.answer(&format!("writes: {}", convert::written().join(" ")));
+        reporter.answer(&format!("meshes: {}", meshes.join(" ")));
         let system = (std::env::consts::OS, std::env::consts::ARCH);
-        reporter.result(&format!("system: {} {}", system.0, system.1));
+        reporter.answer(&format!("system: {} {}", system.0, system.1));
     }
     if !reporter.json() {
         return Ok(());

@@ -6,13 +6,16 @@ use std::path::Path;
 
 use thiserror::Error;
 
-/// A file of a circuit that cannot be read. Displays as `FILE: 'KEY': what: what to do`.
+/// A file of a circuit that cannot be read. Displays as `FILE:LINE: 'KEY': what: what to do`, line and key where
+/// there are such.
 #[derive(Debug, Error)]
 pub struct CircuitError {
     /// The file as it was named.
     pub file: String,
-    /// Key within a JSON file (`networks.nodes[0].nodes_file`), path of an HDF5 dataset, line of a
-    /// text; `None` if it is about the whole file.
+    /// Line of a text, from 1 on.
+    pub line: Option<u64>,
+    /// Key within a JSON file (`networks.nodes[0].nodes_file`), path of an HDF5 dataset, element or column
+    /// of a text; `None` if it is about the whole file or line.
     pub key: Option<String>,
     /// What is wrong.
     #[source]
@@ -23,6 +26,7 @@ impl CircuitError {
     pub(crate) fn new(file: &str, key: impl Into<String>, fault: Fault) -> Self {
         Self {
             file: file.into(),
+            line: None,
             key: Some(key.into()),
             fault,
         }
@@ -31,7 +35,18 @@ impl CircuitError {
     pub(crate) fn of_file(file: &str, fault: Fault) -> Self {
         Self {
             file: file.into(),
+            line: None,
             key: None,
+            fault,
+        }
+    }
+
+    /// `key`: what of the line it is about; empty: all of it.
+    pub(crate) fn at_line(file: &str, line: u64, key: &str, fault: Fault) -> Self {
+        Self {
+            file: file.into(),
+            line: Some(line),
+            key: (!key.is_empty()).then(|| key.into()),
             fault,
         }
     }
@@ -43,10 +58,14 @@ impl CircuitError {
 
 impl fmt::Display for CircuitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.key {
-            Some(key) => write!(f, "{}: '{key}': {}", self.file, self.fault),
-            None => write!(f, "{}: {}", self.file, self.fault),
+        write!(f, "{}:", self.file)?;
+        if let Some(line) = self.line {
+            write!(f, "{line}:")?;
         }
+        if let Some(key) = &self.key {
+            write!(f, " '{key}':")?;
+        }
+        write!(f, " {}", self.fault)
     }
 }
 
@@ -78,7 +97,7 @@ pub enum Fault {
     /// Text that is no JSON.
     #[error("not JSON ({reason}): correct it there")]
     Json {
-        /// What the library says, with line and column.
+        /// What the library says.
         reason: String,
     },
     /// Text that is no scene.
@@ -129,6 +148,17 @@ pub enum Fault {
         found: Vec<u64>,
         /// What it should be.
         expected: String,
+    },
+    /// A dataset declares more than there is.
+    #[error(
+        "declares {declared} bytes, but the file can hold {possible} at most: fetch or export the \
+         file again"
+    )]
+    Declared {
+        /// What its header says.
+        declared: u64,
+        /// What the file has room for.
+        possible: u64,
     },
     /// A number that points beyond an array.
     #[error("row {row} is {value}, but only {limit} are there: export the file again")]

@@ -7,12 +7,17 @@ use std::path::Path;
 
 use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOptions};
 
+use neurotess_formats::capacity::{self, Excess};
+use neurotess_formats::regular;
+
 use crate::{CircuitError, Fault};
 
 /// A file, open for reading.
 pub(crate) struct Store {
     file: File,
     name: String,
+    /// Bytes of the file.
+    size: u64,
 }
 
 /// A dataset of one value per row.
@@ -51,12 +56,13 @@ impl Store {
         open: impl FnOnce(&'a Path) -> Result<File, hdf5_pure::Error>,
     ) -> Result<Self, CircuitError> {
         let name = path.display().to_string();
-        if !path.is_file() {
-            let fault = Fault::Io(std::io::ErrorKind::NotFound.into());
-            return Err(CircuitError::of_file(&name, fault));
-        }
+        regular(path).map_err(|e| CircuitError::io(path, e))?;
         match open(path) {
-            Ok(file) => Ok(Self { file, name }),
+            Ok(file) => Ok(Self {
+                size: file.file_size(),
+                file,
+                name,
+            }),
             Err(e) => Err(CircuitError::of_file(&name, hdf5(&e))),
         }
     }
@@ -114,10 +120,26 @@ impl Store {
         shape.map_err(|e| self.fault(path, hdf5(&e)))
     }
 
-    /// Rows of a dataset that must have one dimension.
+    /// Bytes of the file.
+    pub(crate) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// An error if the file cannot hold what a dataset declares.
+    pub(crate) fn believe(&self, path: &str) -> Result<(), CircuitError> {
+        match capacity::excess(&self.dataset(path)?, self.size) {
+            Ok(None) => Ok(()),
+            Ok(Some(Excess { declared, possible })) => {
+                Err(self.fault(path, Fault::Declared { declared, possible }))
+            }
+            Err(e) => Err(self.fault(path, hdf5(&e))),
+        }
+    }
+
+    /// Rows of a dataset that must have one dimension, and no more than the file can hold.
     pub(crate) fn rows(&self, path: &str) -> Result<u64, CircuitError> {
         match self.shape(path)?[..] {
-            [rows] if rows <= MAX_ROWS => Ok(rows),
+            [rows] if rows <= MAX_ROWS => self.believe(path).map(|()| rows),
             [count] => Err(self.fault(path, Fault::TooMany { count })),
             ref other => {
                 let (found, expected) = (other.to_vec(), "one dimension".into());
@@ -197,8 +219,7 @@ impl Store {
         let rows = self.rows(path)?;
         let dataset = self.dataset(path)?;
         let mut distinct = Distinct::default();
-        let visited = dataset
-            .visit_vlen_strings(VlenStringReadOptions::default(), |word| distinct.push(word));
+        let visited = dataset.visit_vlen_strings(self.payload(), |word| distinct.push(word));
         if visited.is_err() {
             // Strings of a fixed length; or whatever is wrong, told again.
             distinct = Distinct::default();
@@ -217,7 +238,17 @@ impl Store {
     }
 
     fn strings(&self, path: &str) -> Result<Vec<String>, CircuitError> {
-        self.read(path, Dataset::read_string)
+        self.read(path, |dataset| match dataset.datatype()? {
+            Datatype::VariableLength { .. } => dataset.read_vlen_strings(self.payload()),
+            _ => dataset.read_string(),
+        })
+    }
+
+    /// References may all name one long string: what they give together is bounded by the file.
+    fn payload(&self) -> VlenStringReadOptions {
+        let most = self.size.saturating_mul(8).saturating_add(1 << 20);
+        let most = usize::try_from(most).unwrap_or(usize::MAX);
+        VlenStringReadOptions::new().with_max_payload_bytes(most)
     }
 
     /// Words by their numbers; a number without a word stands for itself.

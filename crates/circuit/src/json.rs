@@ -1,8 +1,8 @@
 //! JSON with the file and the key at hand, so that every error names both.
 
-use std::fs;
 use std::path::Path;
 
+use neurotess_formats::read_regular;
 use serde_json::Value;
 
 use crate::{CircuitError, Fault};
@@ -16,7 +16,7 @@ pub(crate) struct Document {
 impl Document {
     /// Reads and parses a file.
     pub(crate) fn open(path: &Path) -> Result<Self, CircuitError> {
-        let bytes = fs::read(path).map_err(|e| CircuitError::io(path, e))?;
+        let bytes = read_regular(path).map_err(|e| CircuitError::io(path, e))?;
         Self::parse(&path.display().to_string(), &bytes)
     }
 
@@ -24,8 +24,8 @@ impl Document {
     pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Self, CircuitError> {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let root = serde_json::from_slice(bytes).map_err(|e| {
-            let reason = e.to_string();
-            CircuitError::of_file(file, Fault::Json { reason })
+            let (line, reason) = place_and_reason(&e);
+            CircuitError::at_line(file, line, "", Fault::Json { reason })
         })?;
         let file = file.into();
         Ok(Self { file, root })
@@ -39,6 +39,14 @@ impl Document {
             value: &self.root,
         }
     }
+}
+
+/// The line of an error, and what it says without that.
+pub(crate) fn place_and_reason(error: &serde_json::Error) -> (u64, String) {
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let text = error.to_string();
+    let reason = text.strip_suffix(&place).unwrap_or(&text);
+    (error.line().max(1) as u64, reason.into())
 }
 
 /// A value and where it stands.
@@ -98,6 +106,7 @@ impl<'a> Json<'a> {
         let key = (!self.key.is_empty()).then(|| self.key.clone());
         CircuitError {
             file: self.file.into(),
+            line: None,
             key,
             fault,
         }

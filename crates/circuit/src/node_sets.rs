@@ -123,6 +123,7 @@ impl NodeSets {
             };
             return Err(CircuitError {
                 file: file.into(),
+                line: None,
                 key: way.last().map(|&last| last.into()),
                 fault,
             });

@@ -15,9 +15,9 @@
 //! first wins, as in nsol. Morphologies are not moved before they are placed.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use neurotess_formats::read_regular;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
@@ -27,7 +27,7 @@ use crate::{Circuit, CircuitError, Fault, Warning, transform};
 
 /// Opens a scene.
 pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
-    let bytes = fs::read(path).map_err(|e| CircuitError::io(path, e))?;
+    let bytes = read_regular(path).map_err(|e| CircuitError::io(path, e))?;
     let text = String::from_utf8_lossy(&bytes);
     read(path, &text)
 }
@@ -55,11 +55,16 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Circuit, CircuitError> {
     let mut reader = Reader::from_str(text);
     loop {
         let at = reader.buffer_position();
-        let line = || format!("line {}", 1 + lines(text, at));
+        let line = || 1 + lines(text, at) as u64;
         match reader.read_event() {
             Err(e) => {
                 let reason = e.to_string();
-                return Err(CircuitError::new(&file, line(), Fault::Xml { reason }));
+                return Err(CircuitError::at_line(
+                    &file,
+                    line(),
+                    "",
+                    Fault::Xml { reason },
+                ));
             }
             Ok(Event::Start(element)) => scan.element(&element, &line, false)?,
             Ok(Event::Empty(element)) => scan.element(&element, &line, true)?,
@@ -130,7 +135,7 @@ impl Scan<'_> {
     fn element(
         &mut self,
         element: &BytesStart,
-        line: &dyn Fn() -> String,
+        line: &dyn Fn() -> u64,
         empty: bool,
     ) -> Result<(), CircuitError> {
         let name = element.local_name();
@@ -174,11 +179,11 @@ impl Scan<'_> {
     fn morphology(
         &mut self,
         element: &BytesStart,
-        line: &dyn Fn() -> String,
+        line: &dyn Fn() -> u64,
     ) -> Result<(), CircuitError> {
         let missing = |key| {
-            let key = format!("{}, neuronmorphology {key}", line());
-            CircuitError::new(self.file, key, Fault::Missing)
+            let key = format!("neuronmorphology {key}");
+            CircuitError::at_line(self.file, line(), &key, Fault::Missing)
         };
         let swc = attribute(element, "swc").ok_or_else(|| missing("swc"))?;
         let neurons = attribute(element, "neurons").ok_or_else(|| missing("neurons"))?;
@@ -196,9 +201,9 @@ impl Scan<'_> {
     }
 
     /// Ends a transform.
-    fn transform(&mut self, line: &dyn Fn() -> String) -> Result<(), CircuitError> {
+    fn transform(&mut self, line: &dyn Fn() -> u64) -> Result<(), CircuitError> {
         let text = self.numbers.take().unwrap_or_default();
-        let key = || format!("{}, transform", line());
+        let wrong = |fault| CircuitError::at_line(self.file, line(), "transform", fault);
         let mut numbers = Vec::with_capacity(16);
         for field in text.split(|c: char| c == ',' || c.is_whitespace()) {
             if field.is_empty() {
@@ -206,28 +211,27 @@ impl Scan<'_> {
             }
             let number = field.parse::<f64>().map_err(|_| {
                 let (expected, text) = ("a number", field.into());
-                CircuitError::new(self.file, key(), Fault::NotANumber { expected, text })
+                wrong(Fault::NotANumber { expected, text })
             });
             numbers.push(number?);
         }
         let found = numbers.len();
         let rows: [f64; 16] = numbers.try_into().map_err(|_| {
             let expected = 16;
-            CircuitError::new(self.file, key(), Fault::Fields { found, expected })
+            wrong(Fault::Fields { found, expected })
         })?;
-        let placement = transform::rigid(rows)
-            .ok_or_else(|| CircuitError::new(self.file, key(), Fault::Transform))?;
+        let placement = transform::rigid(rows).ok_or_else(|| wrong(Fault::Transform))?;
         if let Some(cell) = self.cells.last_mut().filter(|_| !self.skipping) {
             cell.placement = placement;
         }
         Ok(())
     }
 
-    fn whole(&self, text: &str, key: &str, line: &dyn Fn() -> String) -> Result<u64, CircuitError> {
+    fn whole(&self, text: &str, key: &str, line: &dyn Fn() -> u64) -> Result<u64, CircuitError> {
         text.trim().parse().map_err(|_| {
             let (expected, text) = ("a whole number from 0 on", text.into());
-            let key = format!("{}, {key}", line());
-            CircuitError::new(self.file, key, Fault::NotANumber { expected, text })
+            let fault = Fault::NotANumber { expected, text };
+            CircuitError::at_line(self.file, line(), key, fault)
         })
     }
 }
@@ -274,11 +278,11 @@ mod tests {
         };
         assert_eq!(
             message("0,40", "0,forty"),
-            "s.xml: 'line 5, transform': is not a number but \"forty\": correct it"
+            "s.xml:5: 'transform': is not a number but \"forty\": correct it"
         );
         assert!(message("0,40", "40").contains("15 fields instead of 16"));
-        assert!(message("0,40", "0,NaN").contains("'line 5, transform': is no rotation"));
-        assert!(message("gid=\"0\"", "gid=\"x\"").contains("'line 3, gid'"));
+        assert!(message("0,40", "0,NaN").contains("5: 'transform': is no rotation"));
+        assert!(message("gid=\"0\"", "gid=\"x\"").contains("3: 'gid'"));
         assert!(message("swc=", "asc=").contains("neuronmorphology swc': is missing"));
         assert!(message("</minicolumn>", "").contains("XML is broken"));
     }

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use neurotess_formats::regular;
+
 use crate::{Circuit, CircuitError, nsol, scene, sonata};
 
 impl Circuit {
@@ -40,7 +42,8 @@ pub fn is_circuit(path: &Path) -> bool {
     }
     if has_extension(path, "xml") {
         let mut begin = Vec::new();
-        let read = File::open(path).and_then(|file| file.take(4096).read_to_end(&mut begin));
+        let read = regular(path).and_then(|()| File::open(path));
+        let read = read.and_then(|file| file.take(4096).read_to_end(&mut begin));
         return read.is_ok() && nsol::looks_like(&begin);
     }
     has_extension(path, "json")

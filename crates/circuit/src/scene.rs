@@ -16,12 +16,13 @@
 //! position, too), `scale`, `recenter` (false by default).
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
+use neurotess_formats::read_regular;
 use serde::Deserialize;
 
+use crate::json::place_and_reason;
 use crate::listed::{self, Cell};
 use crate::sonata::{folder_of, orientation};
 use crate::{Circuit, CircuitError, Fault, transform};
@@ -67,7 +68,9 @@ pub(crate) fn is_named_so(path: &Path) -> bool {
 
 /// Opens a scene. What is wrong with one cell does not keep the others from showing.
 pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
-    let text = fs::read_to_string(path).map_err(|e| CircuitError::io(path, e))?;
+    let text = read_regular(path)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
+        .map_err(|e| CircuitError::io(path, e))?;
     read(path, &text)
 }
 
@@ -79,8 +82,8 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Circuit, CircuitError> {
         .is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let scene: Scene = if json {
         serde_json::from_str(text).map_err(|e| {
-            let reason = e.to_string();
-            CircuitError::of_file(&file, Fault::Scene { reason })
+            let (line, reason) = place_and_reason(&e);
+            CircuitError::at_line(&file, line, "", Fault::Scene { reason })
         })?
     } else {
         toml::from_str(text).map_err(|e| {
@@ -88,7 +91,8 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Circuit, CircuitError> {
             let line = e.span().map(|span| 1 + newlines(text, span.start));
             CircuitError {
                 file: file.clone(),
-                key: line.map(|line| format!("line {line}")),
+                line: line.map(|line| line as u64),
+                key: None,
                 fault: Fault::Scene { reason },
             }
         })?
@@ -247,7 +251,7 @@ scale = 2
 
     #[test]
     fn faults_name_key_or_line() {
-        assert!(message("[[cells]]\nfiel = \"a\"").contains("'line 2': not a scene"));
+        assert!(message("[[cells]]\nfiel = \"a\"").contains(".toml:2: not a scene"));
         assert!(message("cells = []").contains("'cells': is missing"));
         let zero = message("[[cells]]\nfile = \"a\"\nquaternion = [0, 0, 0, 0]");
         assert!(

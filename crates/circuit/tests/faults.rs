@@ -79,7 +79,7 @@ fn a_good_circuit_opens() {
 #[test]
 fn configurations_are_refused_with_file_and_key() {
     let cases = [
-        ("{", "circuit_config.json: not JSON ("),
+        ("{", "circuit_config.json:1: not JSON ("),
         (
             "[1]",
             "circuit_config.json: neither 'networks' nor 'network'",
@@ -174,7 +174,7 @@ fn one_bad_part_leaves_the_others() {
     let failures: Vec<String> = circuit.failures.iter().map(ToString::to_string).collect();
     assert_eq!(failures.len(), 3, "{failures:?}");
     assert!(failures[1].contains("'edges': is missing"), "{failures:?}");
-    assert!(failures[2].contains("cell.swc: not JSON"), "{failures:?}");
+    assert!(failures[2].contains("cell.swc:1: not JSON"), "{failures:?}");
 }
 
 #[test]
@@ -476,5 +476,65 @@ fn reports_of_other_circuits_are_told() {
     assert!(
         error.contains("spikes.h5: 'spikes/") && error.contains("the first is 7"),
         "{error}"
+    );
+}
+
+#[test]
+fn a_folder_as_bmtk_leaves_it_is_its_circuit() {
+    let pairs = [
+        ("config.network.json", "config.simulation.json"),
+        ("circuit_config.json", "simulation_config.json"),
+        ("network.json", "run.json"),
+    ];
+    for (network, simulation) in pairs {
+        let (folder, path) = circuit(CONFIG, &Columns::good());
+        fs::rename(path, folder.path().join(network)).expect("renamed");
+        let reports = r#""reports": {"v": {"file_name": "v.h5"}}, "output": {"output_dir": "."}"#;
+        let text = format!(r#"{{"network": "./{network}", "run": {{"dt": 0.1}}, {reports}}}"#);
+        fs::write(folder.path().join(simulation), text).expect("written");
+        // A simulation of something else is none of its.
+        let other = r#"{"network": "elsewhere.json", "reports": {"w": {}}}"#;
+        fs::write(folder.path().join("other.json"), other).expect("written");
+        report(folder.path(), &[0, 1, 2], &[0, 1], &[0.0, 1.0, 0.1], false);
+        fs::rename(folder.path().join("report.h5"), folder.path().join("v.h5")).expect("renamed");
+        assert!(neurotess_circuit::is_circuit(folder.path()), "{network}");
+        let circuit = Circuit::open(folder.path()).expect("a circuit");
+        assert_eq!(circuit.n_shown(), 2);
+        assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
+        assert_eq!(
+            circuit.reports.keys().collect::<Vec<_>>(),
+            ["v"],
+            "{network}"
+        );
+    }
+}
+
+/// Files of a few KB that declare forty million rows (made with h5py, which writes none of them).
+#[test]
+fn headers_are_not_believed() {
+    let declared = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/declared");
+    let (folder, path) = circuit(CONFIG, &Columns::good());
+    for (name, dataset) in [
+        ("nodes.h5", "nodes/p/node_type_id"),
+        ("attribute.h5", "nodes/p/0/x"),
+    ] {
+        fs::copy(declared.join(name), folder.path().join("nodes.h5")).expect("copied");
+        let error = Circuit::open(&path).expect_err(name).to_string();
+        assert!(error.contains("but the file can hold"), "{name}: {error}");
+        assert!(error.contains(dataset), "{name}: {error}");
+    }
+    let report = Report::open(declared.join("report.h5"))
+        .expect_err("a report")
+        .to_string();
+    assert!(
+        report.contains("'report/p/mapping/element_ids': declares"),
+        "{report}"
+    );
+    let spikes = Spikes::open(declared.join("spikes.h5"))
+        .expect_err("spikes")
+        .to_string();
+    assert!(
+        spikes.contains("'spikes/p/timestamps': declares"),
+        "{spikes}"
     );
 }

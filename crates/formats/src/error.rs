@@ -235,6 +235,19 @@ pub enum Fault {
         /// How many columns there should be.
         columns: usize,
     },
+    /// A dataset declares more than there is.
+    #[error(
+        "dataset '{dataset}' declares {declared} bytes, but the file can hold {possible} at most: \
+         fetch or export the file again"
+    )]
+    Declared {
+        /// Its path.
+        dataset: String,
+        /// What its header says.
+        declared: u64,
+        /// What the file has room for.
+        possible: u64,
+    },
     /// A row of a dataset is wrong.
     #[error("dataset '{dataset}', row {row}: {fault}")]
     Row {
@@ -253,13 +266,26 @@ pub enum Fault {
     },
     /// Many morphologies in one file.
     #[error(
-        "the file is a container of {count} morphologies, the first is '{first}': \
-         extract the one that is wanted"
+        "the file is a container of {count} morphologies: name one after the file's name and a #, \
+         as in FILE#{first}"
     )]
     Container {
         /// How many.
         count: usize,
         /// Path of the first.
+        first: String,
+    },
+    /// A container without the morphology that is asked for.
+    #[error(
+        "no morphology '{member}' is in the file, which has {count}: name another one, as in \
+         FILE#{first}"
+    )]
+    NoMember {
+        /// What was asked for.
+        member: String,
+        /// How many there are.
+        count: usize,
+        /// Path of the first; empty if there is none.
         first: String,
     },
     /// Blood vessels.

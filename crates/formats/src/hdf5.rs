@@ -1,11 +1,15 @@
 //! HDF5 behind a small window: what our readers ask of a file, and nothing of the library that
 //! answers.
 
-use crate::Fault;
+use std::path::Path;
+
+use crate::{Fault, capacity};
 
 /// A file, open for reading.
 pub(crate) struct Store {
     file: hdf5_pure::File,
+    /// Bytes of the file.
+    size: u64,
 }
 
 /// A table of numbers.
@@ -25,8 +29,16 @@ impl Store {
     /// # Errors
     /// [`Fault::Hdf5`] if the bytes are no HDF5 file.
     pub(crate) fn from_bytes(bytes: Vec<u8>) -> Result<Self, Fault> {
+        let size = bytes.len() as u64;
         let file = hdf5_pure::File::from_bytes(bytes).map_err(|e| hdf5("the file", &e))?;
-        Ok(Self { file })
+        Ok(Self { file, size })
+    }
+
+    /// Opens a file that is read where its parts lie.
+    pub(crate) fn open(path: &Path) -> Result<Self, Fault> {
+        let file = hdf5_pure::File::open_streaming(path).map_err(|e| hdf5("the file", &e))?;
+        let size = file.file_size();
+        Ok(Self { file, size })
     }
 
     /// Whether there is a dataset of this path.
@@ -100,6 +112,14 @@ impl Store {
                 });
             }
         };
+        let excess = capacity::excess(&dataset, self.size).map_err(|e| hdf5(path, &e))?;
+        if let Some(capacity::Excess { declared, possible }) = excess {
+            return Err(Fault::Declared {
+                dataset: path.into(),
+                declared,
+                possible,
+            });
+        }
         let values = read(&dataset).map_err(|e| hdf5(path, &e))?;
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
         if rows.checked_mul(columns) != Some(values.len()) {

@@ -20,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 pub mod asc;
+pub mod capacity;
 mod error;
 mod format;
 pub mod h5;
@@ -27,18 +28,19 @@ mod hdf5;
 mod losses;
 pub mod neuroml;
 mod number;
+mod regular;
 pub mod swc;
 mod text;
 mod traced;
 mod warning;
 
-use std::fs;
 use std::path::Path;
 
 use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
 pub use format::{EXTENSIONS, Format, write};
+pub use regular::{read_regular, regular};
 use text::Located;
 pub use warning::Warning;
 use warning::Warnings;
@@ -61,30 +63,59 @@ pub struct Read {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads a morphology; the format is told by the name's extension, else by the content.
+/// Reads a morphology; the format is told by the name's extension, else by the content. Of an H5 file
+/// that holds many, `FILE#PATH` is one.
 ///
 /// # Errors
 /// [`ReadError`] with file and line.
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadError> {
     let path = path.as_ref();
     let name = path.display().to_string();
-    let bytes = match fs::read(path) {
+    let (file, member) = member(path);
+    let bytes = match read_regular(file) {
         Ok(bytes) => bytes,
-        Err(e) => {
-            return Err(ReadError {
-                file: name,
-                line: None,
-                fault: Fault::Io(e),
-            });
-        }
+        Err(e) => return Err(ReadError::of_file(&name, Fault::Io(e))),
     };
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    match Format::of_extension(&extension).or_else(|| Format::of_content(&bytes)) {
-        Some(Format::Swc) => swc::read_bytes(&bytes, &name, options),
-        Some(Format::Asc) => asc::read_bytes(&bytes, &name, options),
-        Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, &name, options),
-        Some(Format::H5) => h5::read_bytes(bytes, &name, options),
-        None => Err(ReadError::of_file(&name, Fault::UnknownFormat)),
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    match (Format::of_extension(&extension), member) {
+        (_, Some(member)) => h5::read_member(bytes, &name, member, options),
+        (format, None) => read_bytes(bytes, &name, format, options),
+    }
+}
+
+/// Reads a morphology that is in memory. `name` is what errors call it; `format`: where it is known, else
+/// the content tells.
+///
+/// # Errors
+/// [`ReadError`] with `name` and line.
+pub fn read_bytes(
+    bytes: Vec<u8>,
+    name: &str,
+    format: Option<Format>,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
+    match format.or_else(|| Format::of_content(&bytes)) {
+        Some(Format::Swc) => swc::read_bytes(&bytes, name, options),
+        Some(Format::Asc) => asc::read_bytes(&bytes, name, options),
+        Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, name, options),
+        Some(Format::H5) => h5::read_bytes(bytes, name, options),
+        None if bytes.is_empty() => Err(ReadError::of_file(name, Fault::Empty)),
+        None => Err(ReadError::of_file(name, Fault::UnknownFormat)),
+    }
+}
+
+/// The file, and the morphology within it that a path names as in `merged.h5#cells/a`.
+pub fn member(path: &Path) -> (&Path, Option<&str>) {
+    let parts = path.to_str().and_then(|text| text.split_once('#'));
+    match parts {
+        Some((file, member)) if !member.is_empty() && !path.exists() => {
+            let file = Path::new(file);
+            match file.is_file() {
+                true => (file, Some(member)),
+                false => (path, None),
+            }
+        }
+        _ => (path, None),
     }
 }
 

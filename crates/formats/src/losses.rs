@@ -95,6 +95,10 @@ fn soma_outlines(soma: &Soma) -> Vec<Vec<(Vec3, f32)>> {
             outline.push((sample.position, sample.radius));
         }
     }
+    // Samples of no thickness that hang together in another way are one outline.
+    if outlines.iter().all(|outline| outline.len() < 3) {
+        return vec![outlines.concat()];
+    }
     outlines
 }
 

@@ -9,6 +9,8 @@
 
 use glam::DVec3;
 use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 
 use crate::Fault;
 use crate::text::Located;
@@ -54,12 +56,13 @@ impl Tracing {
             return Err((1, Fault::TooMany));
         }
         let (mut nodes, mut lines) = (Vec::new(), Vec::new());
+        let mut starts: Vec<u32> = Vec::with_capacity(self.outlines.len());
         for (outline, hung_on) in self.outlines.iter().zip(slices(&self.outlines)) {
             let first = nodes.len() as u32;
-            let start_of = |k: usize| self.outlines[..k].iter().map(Vec::len).sum::<usize>() as u32;
+            starts.push(first);
             for (i, sample) in (0..).zip(outline) {
                 let parent = match i {
-                    0 => hung_on.map(start_of),
+                    0 => hung_on.map(|earlier| starts[earlier]),
                     _ => Some(first + i - 1),
                 };
                 nodes.push(node(sample, NeuriteKind::SOMA, parent, nodes.len()));
@@ -87,7 +90,7 @@ impl Tracing {
 
     /// Appends the neurites' nodes without copies.
     fn neurites(&self, nodes: &mut Vec<Node>, lines: &mut Vec<u64>) -> Located<()> {
-        let soma: Vec<DVec3> = nodes.iter().map(|n| n.position).collect();
+        let soma = SomaPoints::new(nodes.iter().map(|n| n.position));
         let copies = self.copies();
         let kept_before: Vec<u32> = copies
             .iter()
@@ -97,20 +100,29 @@ impl Tracing {
                 Some(own)
             })
             .collect();
+        // Where a chain of copies ends, so that no chain is walked twice.
+        let mut ends: Vec<Option<Option<u32>>> = vec![None; self.points.len()];
         for (point, _) in self.points.iter().zip(&copies).filter(|(_, copy)| !**copy) {
             // Copies may hang on copies; more steps than points is a ring of them.
             let mut parent = point.parent;
-            let mut steps = 0;
+            let mut walked = Vec::new();
             while let Some(p) = parent.filter(|&p| copies[p as usize]) {
+                if let Some(end) = ends[p as usize] {
+                    parent = end;
+                    break;
+                }
+                walked.push(p as usize);
                 parent = self.points[p as usize].parent;
-                steps += 1;
-                if steps > self.points.len() {
+                if walked.len() > self.points.len() {
                     return Err((point.sample.line, Fault::OwnAncestor));
                 }
             }
+            for copy in walked {
+                ends[copy] = Some(parent);
+            }
             let parent = match parent {
                 Some(p) => Some(kept_before[p as usize]),
-                None => nearest(&soma, point.sample.position),
+                None => soma.nearest(point.sample.position),
             };
             nodes.push(node(&point.sample, point.kind, parent, nodes.len()));
             lines.push(point.sample.line);
@@ -146,32 +158,60 @@ fn node(sample: &Sample, kind: NeuriteKind, parent: Option<u32>, before: usize) 
     }
 }
 
-/// For each outline the earlier one that it is a slice beside, if any.
+/// For each outline an earlier one that it is a slice beside, if any: the latest that is found by way of
+/// its box, so that many outlines take no longer than they must.
 fn slices(outlines: &[Vec<Sample>]) -> Vec<Option<usize>> {
-    let spheres: Vec<(DVec3, f64)> = outlines
-        .iter()
-        .map(|outline| {
-            let center = outline.iter().map(|s| s.position).sum::<DVec3>() / outline.len() as f64;
-            let reach = outline
-                .iter()
-                .map(|s| s.position.distance(center).max(s.radius));
-            (center, reach.fold(0.0, f64::max))
-        })
-        .collect();
-    (0..spheres.len())
-        .map(|i| {
-            let (center, reach) = spheres[i];
-            spheres[..i]
-                .iter()
-                .position(|s| s.0.distance(center) <= s.1 + reach)
-        })
-        .collect()
+    let sphere = |outline: &Vec<Sample>| {
+        let center = outline.iter().map(|s| s.position).sum::<DVec3>() / outline.len() as f64;
+        let reach = outline
+            .iter()
+            .map(|s| s.position.distance(center).max(s.radius));
+        (center, reach.fold(0.0, f64::max))
+    };
+    let mut earlier: RTree<GeomWithData<Rectangle<[f64; 3]>, (usize, DVec3, f64)>> = RTree::new();
+    let one = |(i, outline): (usize, &Vec<Sample>)| {
+        let (center, reach) = sphere(outline);
+        // What is out of range is refused when the nodes are built.
+        if !is_place(center) || reach.is_nan() || reach > Morphology::MAX_COORDINATE {
+            return None;
+        }
+        let (low, high) = ((center - reach).to_array(), (center + reach).to_array());
+        let beside = earlier
+            .locate_in_envelope_intersecting(AABB::from_corners(low, high))
+            .map(|found| found.data)
+            .find(|&(_, other, far)| other.distance(center) <= far + reach);
+        // Of slices of one soma its first stands for all that are within its reach.
+        let inside = |&(_, other, far): &(usize, DVec3, f64)| other.distance(center) + reach <= far;
+        if beside.as_ref().is_none_or(|found| !inside(found)) {
+            let bounds = Rectangle::from_corners(low, high);
+            earlier.insert(GeomWithData::new(bounds, (i, center, reach)));
+        }
+        beside.map(|(k, ..)| k)
+    };
+    outlines.iter().enumerate().map(one).collect()
 }
 
-fn nearest(soma: &[DVec3], position: DVec3) -> Option<u32> {
-    let distance = |s: &DVec3| s.distance_squared(position);
-    (0..)
-        .zip(soma)
-        .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))
-        .map(|(i, _)| i)
+/// Whether a tree of places takes it.
+fn is_place(position: DVec3) -> bool {
+    position.is_finite() && position.abs().max_element() <= Morphology::MAX_COORDINATE
+}
+
+/// The points of somata, to find the nearest to a place.
+struct SomaPoints(RTree<GeomWithData<[f64; 3], u32>>);
+
+impl SomaPoints {
+    fn new(positions: impl Iterator<Item = DVec3>) -> Self {
+        let points = positions.zip(0..).filter(|(p, _)| is_place(*p));
+        let points = points.map(|(p, i)| GeomWithData::new(p.to_array(), i));
+        Self(RTree::bulk_load(points.collect()))
+    }
+
+    /// The first of those that are nearest.
+    fn nearest(&self, position: DVec3) -> Option<u32> {
+        if !is_place(position) {
+            return None;
+        }
+        let nearest = self.0.nearest_neighbors(&position.to_array());
+        nearest.into_iter().map(|point| point.data).min()
+    }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::SurfaceMesh;
+use crate::{SurfaceMesh, search_self_intersections};
 
 /// What a mesh is and what is wrong with it. Serialized under these names.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,13 +35,16 @@ pub struct Report {
     pub degenerate_faces: usize,
     /// Pairs of faces that cross, adjacent faces aside.
     pub self_intersections: usize,
+    /// Whether these are all: among thousands of pieces in one place not every pair is looked at.
+    pub self_intersections_complete: bool,
 }
 
 /// Judges a mesh: [`topology`](crate::topology), [`measure`](crate::measure) and
-/// [`self_intersections`](crate::self_intersections).
+/// [`search_self_intersections`](crate::search_self_intersections).
 pub fn check(mesh: &SurfaceMesh) -> Report {
     let topology = mesh.topology();
     let measure = mesh.measure();
+    let crossings = search_self_intersections(&mesh.positions(), &mesh.faces);
     Report {
         vertices: topology.vertices,
         triangles: mesh.faces.triangles.len(),
@@ -56,6 +59,7 @@ pub fn check(mesh: &SurfaceMesh) -> Report {
         volume: measure.volume,
         area: measure.area,
         degenerate_faces: topology.degenerate_faces,
-        self_intersections: mesh.self_intersections().len(),
+        self_intersections: crossings.pairs.len(),
+        self_intersections_complete: crossings.complete,
     }
 }

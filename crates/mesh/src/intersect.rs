@@ -13,6 +13,13 @@
 //! | three | always: they are the same triangle |
 //!
 //! Triangles without an area have no part in it; they are degenerate already.
+//!
+//! **What it costs.** Time grows with the faces and with the pairs of boxes that overlap. Of a real mesh
+//! those are some tens for each face; but thousands of pieces in one place are all within one another, and
+//! 300,000 of them would take hours. So a [`Search`] stops when it has found more pairs than there are faces
+//! (and than a million), or has looked at 256 pairs of boxes for each triangle; then what it has is "at
+//! least". Batches of the tree's leaves are searched in order, and their size depends on what was found
+//! before and on nothing else: an unfinished search is the same on every machine.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -35,30 +42,104 @@ impl SurfaceMesh {
 /// Time grows with the faces and with the pairs found: a million triangles take about a second.
 /// Panics if a face names a vertex that is not there.
 pub fn self_intersections(positions: &[Vec3], faces: &Faces) -> Vec<[u32; 2]> {
+    search(positions, faces, Limits::NONE).pairs
+}
+
+/// Like [`self_intersections`], in a time that grows with the faces whatever their places.
+pub fn search_self_intersections(positions: &[Vec3], faces: &Faces) -> Search {
+    let count = faces.triangles.len() + 2 * faces.quads.len();
+    search(positions, faces, Limits::of(count))
+}
+
+/// What a search has found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// Pairs of faces that cross, as [`self_intersections`] gives them.
+    pub pairs: Vec<[u32; 2]>,
+    /// Whether these are all.
+    pub complete: bool,
+    /// How many pairs of overlapping boxes were looked at.
+    pub looked_at: u64,
+}
+
+/// When a search stops.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
+    pairs: usize,
+    looked_at: u64,
+}
+
+impl Limits {
+    const NONE: Self = Self {
+        pairs: usize::MAX,
+        looked_at: u64::MAX,
+    };
+    /// Fewest pairs, and fewest looks: some tenths of a second.
+    const LEAST: Self = Self {
+        pairs: 1_000_000,
+        looked_at: 10_000_000,
+    };
+    /// Looks for each triangle. Real meshes need about 20, needles in a tangle some hundred.
+    const LOOKS: u64 = 256;
+
+    fn of(triangles: usize) -> Self {
+        let looks = Self::LOOKS * triangles as u64;
+        Self {
+            pairs: triangles.max(Self::LEAST.pairs),
+            looked_at: looks.max(Self::LEAST.looked_at),
+        }
+    }
+}
+
+/// Leaves in the first batch, and in any.
+const FIRST_BATCH: usize = 64;
+const MOST_BATCH: u64 = 256;
+
+fn search(positions: &[Vec3], faces: &Faces, limits: Limits) -> Search {
     let triangles = triangles(positions, faces);
     let boxes: Vec<Bounds> = triangles
         .par_iter()
         .map(|triangle| Bounds::of(triangle.corners.map(|corner| positions[corner as usize])))
         .collect();
     let tree = Bvh::new(&boxes);
-    let mut pairs = (0..tree.leaf_count())
-        .into_par_iter()
-        .fold(Vec::new, |mut pairs, leaf| {
-            tree.overlaps_of_leaf(leaf, |a, b| {
-                let (a, b) = (&triangles[a as usize], &triangles[b as usize]);
-                if a.face != b.face && a.crosses(b, positions) {
-                    pairs.push([a.face.min(b.face), a.face.max(b.face)]);
-                }
-            });
-            pairs
-        })
-        .reduce(Vec::new, |mut pairs, more| {
-            pairs.extend(more);
-            pairs
+    let of_leaf = |leaf: usize| {
+        let (mut pairs, mut looked_at) = (Vec::new(), 0);
+        tree.overlaps_of_leaf(leaf, |a, b| {
+            looked_at += 1;
+            let (a, b) = (&triangles[a as usize], &triangles[b as usize]);
+            if a.face != b.face && a.crosses(b, positions) {
+                pairs.push([a.face.min(b.face), a.face.max(b.face)]);
+            }
         });
+        (pairs, looked_at)
+    };
+    let joined = |mut a: (Vec<[u32; 2]>, u64), b: (Vec<[u32; 2]>, u64)| {
+        a.0.extend(b.0);
+        (a.0, a.1 + b.1)
+    };
+    let (mut pairs, mut looked_at) = (Vec::new(), 0);
+    let leaves = tree.leaf_count();
+    let (mut next, mut batch) = (0, FIRST_BATCH);
+    while next < leaves && pairs.len() < limits.pairs && looked_at < limits.looked_at {
+        let end = leaves.min(next + batch);
+        let found = (next..end)
+            .into_par_iter()
+            .map(of_leaf)
+            .reduce(Default::default, joined);
+        (pairs, looked_at) = joined((pairs, looked_at), found);
+        next = end;
+        // As many as what is left allows, if they are like those before.
+        let each = looked_at / next as u64 + 1;
+        batch = ((limits.looked_at - looked_at.min(limits.looked_at)) / each).clamp(1, MOST_BATCH)
+            as usize;
+    }
     pairs.par_sort_unstable();
     pairs.dedup();
-    pairs
+    Search {
+        pairs,
+        complete: next == leaves,
+        looked_at,
+    }
 }
 
 /// A triangle of a face.
@@ -125,4 +206,75 @@ fn shared_first(a: &mut [u32; 3], b: &mut [u32; 3]) -> usize {
         }
     }
     shared
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tetrahedra whose first corners are at these places.
+    fn pieces(places: impl Iterator<Item = (Vec3, f32)>) -> (Vec<Vec3>, Faces) {
+        let (mut positions, mut faces) = (Vec::new(), Faces::default());
+        for (place, size) in places {
+            let b = positions.len() as u32;
+            let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+            positions.extend(corners.map(|corner| place + size * corner));
+            let sides = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+            faces
+                .triangles
+                .extend(sides.map(|side| side.map(|c| b + c)));
+        }
+        (positions, faces)
+    }
+
+    fn looks(pieces: (Vec<Vec3>, Faces), least: u64) -> (u64, bool) {
+        let triangles = pieces.1.triangles.len();
+        let limits = Limits {
+            pairs: triangles,
+            looked_at: (Limits::LOOKS * triangles as u64).max(least),
+        };
+        let found = search(&pieces.0, &pieces.1, limits);
+        (found.looked_at, found.complete)
+    }
+
+    #[test]
+    fn work_grows_with_the_pieces_wherever_they_are() {
+        let in_a_row = |n: u32| pieces((0..n).map(|i| (i as f32 * Vec3::X, 0.4)));
+        // All within one another: none crosses another, and all boxes overlap.
+        let nested = |n: u32| {
+            let size = |i: u32| 1.0 + i as f32;
+            pieces((0..n).map(move |i| (-0.2 * size(i) * Vec3::ONE, size(i))))
+        };
+        let in_one_place = |n: u32| pieces((0..n).map(|_| (Vec3::ZERO, 1.0)));
+        let scenes: [&dyn Fn(u32) -> (Vec<Vec3>, Faces); 3] = [&in_a_row, &nested, &in_one_place];
+        for (number, scene) in scenes.into_iter().enumerate() {
+            let ((one, complete), (two, _)) = (looks(scene(2000), 0), looks(scene(4000), 0));
+            assert!(
+                two as f64 <= 2.5 * one as f64,
+                "scene {number}: {one} then {two}"
+            );
+            assert_eq!(complete, number == 0, "scene {number}");
+        }
+    }
+
+    #[test]
+    fn a_search_that_ends_early_is_a_part_of_the_whole_one() {
+        let (positions, faces) = pieces((0..60).map(|i| (i as f32 * 0.01 * Vec3::X, 1.0)));
+        let all = self_intersections(&positions, &faces);
+        let some = search(
+            &positions,
+            &faces,
+            Limits {
+                pairs: 10,
+                looked_at: u64::MAX,
+            },
+        );
+        let whole = search_self_intersections(&positions, &faces);
+        assert!(whole.complete && whole.pairs == all);
+        assert!(
+            some.pairs
+                .iter()
+                .all(|pair| all.binary_search(pair).is_ok())
+        );
+    }
 }

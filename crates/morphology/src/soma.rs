@@ -2,6 +2,16 @@
 //!
 //! The rules follow what readers do with files of NeuroMorpho.Org, Allen and Blue Brain; see
 //! `docs/conventions.md` for how they differ from MorphIO's and NeuroM's.
+//!
+//! **The sphere of an outline.** An outline of area A and perimeter P (its ends joined) that goes once
+//! around something has the radius of equal area, √(A/π), about its centroid. One that is a needle, open or
+//! crosses itself encloses next to nothing, and a sphere of that would be far too small: where
+//! 4πA < P²/4 (a circle has 4πA = P², an ellipse of ten to one P²/4), and where it is not nearly flat, the
+//! sphere is the mean of the samples with their mean distance from it, as in NeuroM. Outlines of some
+//! width have about the same radius by either rule.
+//!
+//! Samples without any thickness, two or more, are an outline in whatever order they hang: cylinders of no
+//! radius are none.
 
 use std::f64::consts::PI;
 
@@ -13,6 +23,9 @@ use crate::{Soma, SomaKind, SomaSample};
 const THREE_POINT_TOLERANCE: f64 = 0.01;
 /// Greatest gap between a contour's ends, as a part of its length. By eye: 0.02 in C210401C.
 const CONTOUR_GAP: f64 = 0.2;
+/// An outline whose area is less than this part of that of a circle of its perimeter has no area worth the
+/// name. By eye, between the held outlines of real cells (0.4 and more) and needles.
+const CONTOUR_ROUNDNESS: f64 = 0.25;
 /// Greatest distance of a contour from its plane, as a part of its radius. By eye.
 const CONTOUR_BULGE: f64 = 0.25;
 /// A contour's constant radius is thinner than this part of its own radius. By eye.
@@ -36,6 +49,8 @@ impl Soma {
             )
         } else if let Some((centroid, radius)) = contour(&samples, &positions) {
             (SomaKind::Contour, centroid, radius)
+        } else if let Some((center, radius)) = without_thickness(&samples, &positions) {
+            (SomaKind::Contour, center, radius)
         } else {
             (
                 SomaKind::Cylinders,
@@ -54,9 +69,8 @@ impl Soma {
     /// The soma that one outline or several, stacked, trace.
     ///
     /// An outline begins at the first sample and at each that does not hang on the one before.
-    /// The sphere is that of the outline with the greatest area: its centroid, and the radius of
-    /// equal area. Where none is nearly flat and of some area, it is the mean of the samples with
-    /// their mean distance from it. A single sample is a sphere.
+    /// The sphere is that of the outline with the greatest one. Where none is nearly flat, it is the mean
+    /// of the samples with their mean distance from it. A single sample is a sphere.
     ///
     /// # Panics
     /// If there is no sample.
@@ -75,11 +89,7 @@ impl Soma {
             .zip(ends)
             .filter_map(|(&start, end)| flat_outline(&positions[start..end]))
             .reduce(|best, other| if other.1 > best.1 { other } else { best });
-        let (center, radius) = largest.unwrap_or_else(|| {
-            let center = mean(&positions);
-            let distances = positions.iter().map(|p| p.distance(center));
-            (center, distances.sum::<f64>() / positions.len() as f64)
-        });
+        let (center, radius) = largest.unwrap_or_else(|| spread(&positions));
         Self {
             kind: SomaKind::Contour,
             samples,
@@ -111,6 +121,13 @@ pub fn soma_area_volume(soma: &Soma) -> (f64, f64) {
 
 fn mean(positions: &[DVec3]) -> DVec3 {
     positions.iter().copied().sum::<DVec3>() / positions.len() as f64
+}
+
+/// The mean of the positions and their mean distance from it.
+fn spread(positions: &[DVec3]) -> (DVec3, f64) {
+    let center = mean(positions);
+    let distances = positions.iter().map(|p| p.distance(center));
+    (center, distances.sum::<f64>() / positions.len() as f64)
 }
 
 fn child_counts(samples: &[SomaSample]) -> Vec<u32> {
@@ -158,7 +175,20 @@ fn contour(samples: &[SomaSample], positions: &[DVec3]) -> Option<(DVec3, f64)> 
     flat_outline(&outline).filter(|&(_, radius)| thin(samples, radius))
 }
 
-/// Centroid and radius of equal area of an outline that is nearly flat and has an area.
+/// The sphere of samples that have no thickness at all: their outline if they are in a row, else what
+/// they spread over. None if they are in one place.
+fn without_thickness(samples: &[SomaSample], positions: &[DVec3]) -> Option<(DVec3, f64)> {
+    if samples.iter().any(|sample| sample.radius > 0.0) {
+        return None;
+    }
+    let outline = chain(samples).map(|order| order.into_iter().map(|i| positions[i]).collect());
+    let outline: Option<Vec<DVec3>> = outline;
+    let sphere = outline.and_then(|outline| flat_outline(&outline));
+    let sphere = sphere.unwrap_or_else(|| spread(positions));
+    (sphere.1 > 0.0).then_some(sphere)
+}
+
+/// The sphere of an outline that is nearly flat: see the head of the file.
 fn flat_outline(outline: &[DVec3]) -> Option<(DVec3, f64)> {
     let middle = mean(outline);
     let corners = || outline.iter().zip(outline.iter().cycle().skip(1));
@@ -171,6 +201,11 @@ fn flat_outline(outline: &[DVec3]) -> Option<(DVec3, f64)> {
         .iter()
         .map(|&p| (p - middle).dot(normal).abs())
         .fold(0.0, f64::max);
+    let perimeter: f64 = corners().map(|(&a, &b)| a.distance(b)).sum();
+    let round = 2.0 * PI * radius / perimeter;
+    if round * round < CONTOUR_ROUNDNESS {
+        return Some(spread(outline));
+    }
     if bulge > CONTOUR_BULGE * radius {
         return None;
     }
@@ -348,6 +383,67 @@ mod tests {
         assert_eq!(
             (soma.kind, soma.center, soma.radius),
             (SomaKind::Contour, Vec3::new(2., 0., 0.), 2.0)
+        );
+    }
+
+    fn outline(points: &[(f32, f32)]) -> Soma {
+        let sample = |(i, &(x, y)): (usize, &(f32, f32))| SomaSample {
+            id: i as i64 + 1,
+            position: Vec3::new(x, y, 0.0),
+            radius: 0.0,
+            parent: i.checked_sub(1).map(|p| p as u32),
+        };
+        Soma::from_outlines(points.iter().enumerate().map(sample).collect())
+    }
+
+    fn mean_distance(points: &[(f32, f32)]) -> f32 {
+        let points: Vec<DVec3> = points
+            .iter()
+            .map(|&(x, y)| Vec3::new(x, y, 0.0).as_dvec3())
+            .collect();
+        spread(&points).1 as f32
+    }
+
+    #[test]
+    fn outlines_that_enclose_next_to_nothing_have_their_mean_distance() {
+        let needle = [(0., 0.), (10., 0.2), (20., 0.), (10., -0.2)];
+        let open = [(0., 0.), (5., 0.4), (10., 0.6), (15., 0.4), (20., 0.1)];
+        let eight = [(0., 0.), (8., 5.), (8., 0.), (0., 5.)];
+        for points in [&needle[..], &open, &eight] {
+            let soma = outline(points);
+            assert_eq!(soma.kind, SomaKind::Contour);
+            assert_eq!(soma.radius, mean_distance(points), "{points:?}");
+        }
+        // One that goes around something keeps the radius of equal area.
+        let round = outline(&[(0., 0.), (4., 0.), (4., 2.), (0., 2.)]);
+        assert!((round.radius - (8.0 / PI as f32).sqrt()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn samples_without_thickness_are_an_outline_however_they_hang() {
+        let ring = |parent: fn(u32) -> Option<u32>| {
+            let sample = |i: u32| {
+                let angle = f64::from(i) / 12.0 * 2.0 * PI * 0.7;
+                SomaSample {
+                    id: i64::from(i) + 1,
+                    position: (4.4 * DVec3::new(angle.cos(), angle.sin(), 0.0)).as_vec3(),
+                    radius: 0.0,
+                    parent: parent(i),
+                }
+            };
+            Soma::from_samples((0..12).map(sample).collect())
+        };
+        // A ring with a gap, and one whose samples all hang on the first.
+        let in_a_row = ring(|i| i.checked_sub(1));
+        let on_the_first = ring(|i| (i > 0).then_some(0));
+        for soma in [in_a_row, on_the_first] {
+            assert_eq!(soma.kind, SomaKind::Contour);
+            assert!((3.5..5.0).contains(&soma.radius), "{}", soma.radius);
+        }
+        let in_one_place = soma(&[(1., 0., 0., 0., None), (1., 0., 0., 0., Some(0))]);
+        assert_eq!(
+            (in_one_place.kind, in_one_place.radius),
+            (SomaKind::Cylinders, 0.0)
         );
     }
 

@@ -5,11 +5,13 @@
 //! ([`Replay`]).
 
 mod by_node;
+mod cut;
 mod elements;
 mod moment;
 mod replay;
 
 pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
+pub use cut::{cuts, with_middles};
 pub use moment::Moment;
 pub use replay::{DECAY, Replay, ReplayError};
 

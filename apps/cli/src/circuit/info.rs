@@ -96,7 +96,7 @@ pub(crate) fn describe_all(
         entries.push(match super::open(path, reporter) {
             Ok(circuit) => {
                 let description = describe(&circuit, reporter);
-                reporter.result(&table(&description));
+                reporter.answer(&table(&description));
                 Entry::Done(description)
             }
             Err(failure) => {

@@ -18,7 +18,7 @@ use serde_json::Value;
 use crate::args::SynthArgs;
 use crate::convert;
 use crate::info::bug;
-use crate::output::{Output, OutputError, existing};
+use crate::output::{Output, OutputError, existing, is_standard};
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use crate::workers;
@@ -39,6 +39,9 @@ struct Made {
 pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let clock = Instant::now();
     let folder = &args.out.out;
+    if is_standard(folder) {
+        return usage("a circuit is a folder, which standard output cannot take: give another OUT");
+    }
     if folder.is_file() {
         return usage(format!(
             "{} is a file, but a circuit is a folder: give another OUT",

@@ -13,9 +13,11 @@ use serde::Serialize;
 
 use super::observed::Observed;
 use super::options::{Fineness, Recipe};
-use crate::output::{Output, OutputError, existing};
+use super::size;
+use crate::inputs::morphology;
+use crate::output::{Output, OutputError};
 use crate::progress::Progress;
-use crate::report::Failure;
+use crate::report::{Failure, Reporter};
 use crate::targets::Job;
 
 /// One object of the JSON list, and one line of the log.
@@ -92,17 +94,23 @@ impl Prepared {
     }
 }
 
-/// Makes the mesh of one cell and writes it.
-pub(crate) fn mesh(
+/// Makes the mesh of one cell and writes it, into a file that has no name yet.
+pub(super) fn mesh(
     job: &Job,
     recipe: &Recipe,
-    progress: Option<&Progress<'_>>,
-) -> Result<Cell, Failure> {
-    let file = job.input.display();
-    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
-    existing(recipe.force).check(&job.out).map_err(failed)?;
+    output: Output,
+    told: Told<'_>,
+) -> Result<(Cell, Output), Failure> {
     let prepared = prepare(&job.input, recipe)?;
-    finish(&prepared, recipe, &job.out, None, progress)
+    finish(&prepared, recipe, &job.out, output, None, told)
+}
+
+/// Who hears of the work.
+#[derive(Clone, Copy)]
+pub(super) struct Told<'t> {
+    pub(super) reporter: &'t Reporter,
+    /// Counts blocks of the surface.
+    pub(super) progress: Option<&'t Progress<'t>>,
 }
 
 /// Reads a cell and generates its coarse mesh.
@@ -113,7 +121,7 @@ pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure
     let options = ReadOptions {
         strict: recipe.strict,
     };
-    let read = formats::read(input, &options).map_err(|e| Failure(e.to_string()))?;
+    let read = morphology(input, None, &options)?;
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
@@ -136,28 +144,29 @@ pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure
 }
 
 /// Refines a cell and writes it, perhaps somewhere else than it was traced.
-pub(crate) fn finish(
+pub(super) fn finish(
     prepared: &Prepared,
     recipe: &Recipe,
     out: &Path,
+    mut output: Output,
     world_from_cell: Option<DAffine3>,
-    progress: Option<&Progress<'_>>,
-) -> Result<Cell, Failure> {
+    told: Told<'_>,
+) -> Result<(Cell, Output), Failure> {
     let Prepared {
         file, generated, ..
     } = prepared;
     let mut seconds = prepared.seconds;
-    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
     let mesh = &generated.mesh;
-    let written = write(mesh, recipe, out, world_from_cell, progress, &mut seconds);
-    let written = written.map_err(failed)?;
+    let to = (out, &mut output);
+    let written = write(mesh, recipe, to, world_from_cell, told, &mut seconds);
+    let written = written.map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
     let clock = Instant::now();
     let topology = mesh.topology();
     let growth = world_from_cell.map_or(1.0, |placed| placed.matrix3.determinant());
     let measured = recipe.measure.then(|| measure(mesh, recipe));
     let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
     seconds.measure = clock.elapsed().as_secs_f64();
-    Ok(Cell {
+    let cell = Cell {
         file: file.clone(),
         out: out.display().to_string(),
         node: None,
@@ -174,7 +183,8 @@ pub(crate) fn finish(
         soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
         seconds,
         warnings: warnings(&prepared.read, generated),
-    })
+    };
+    Ok((cell, output))
 }
 
 /// What a file holds.
@@ -187,11 +197,11 @@ struct Written {
 fn write(
     mesh: &CoarseMesh,
     recipe: &Recipe,
-    out: &Path,
+    (out, output): (&Path, &mut Output),
     world_from_cell: Option<DAffine3>,
-    progress: Option<&Progress<'_>>,
+    told: Told<'_>,
     seconds: &mut Seconds,
-) -> Result<Written, OutputError> {
+) -> Result<Written, Failure> {
     let clock = Instant::now();
     let refinement;
     let coarse;
@@ -210,13 +220,15 @@ fn write(
     let planned = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let observed = Observed::new(surface, progress);
-    let mut output = Output::create(out, existing(recipe.force))?;
-    surfaces::write(&observed, recipe.format, output.file()).map_err(|e| match e {
-        surfaces::WriteError::Io(e) => OutputError::broken(out, e),
-        other => OutputError::broken(out, std::io::Error::other(other)),
+    size::tell(surface, recipe.format, out, told.reporter)?;
+    let observed = Observed::new(surface, told.progress);
+    surfaces::write(&observed, recipe.format, output.file()).map_err(|e| {
+        let broken = match e {
+            surfaces::WriteError::Io(e) => OutputError::broken(out, e),
+            other => OutputError::broken(out, std::io::Error::other(other)),
+        };
+        Failure(broken.to_string())
     })?;
-    output.finish()?;
     let pass = clock.elapsed().as_secs_f64();
     let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
     seconds.refine = planned + blocks;

@@ -1,25 +1,41 @@
 //! `--log`: one JSON line per cell as it finishes.
 
-use std::fs::{File, OpenOptions};
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::Context;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::report::Failure;
 
-/// A file that lines are appended to. Each line is one write, so that it is whole even if several
+/// A file that lines are appended to, each before its mesh gets its name: a run that is killed between the
+/// two leaves a line too many, never one too few. Each line is one write, so that it is whole even if several
 /// runs share the file or one is killed.
 pub(crate) struct Log {
     path: PathBuf,
     file: Mutex<File>,
+    /// Outputs that had a line when the log was opened.
+    known: BTreeSet<String>,
+}
+
+/// What is looked at of a line.
+#[derive(Deserialize)]
+struct Line {
+    out: String,
 }
 
 impl Log {
     /// Opens the file, or makes it.
     pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
+        let before = match fs::metadata(path) {
+            Ok(data) if data.is_file() => fs::read(path).unwrap_or_default(),
+            _ => Vec::new(),
+        };
+        let lines = before.split(|&byte| byte == b'\n');
+        let known = lines.filter_map(|line| serde_json::from_slice::<Line>(line).ok());
         let file = OpenOptions::new().create(true).append(true).open(path);
         let file = file.with_context(|| {
             format!(
@@ -30,7 +46,13 @@ impl Log {
         Ok(Self {
             path: path.to_path_buf(),
             file: Mutex::new(file),
+            known: known.map(|line| line.out).collect(),
         })
+    }
+
+    /// Whether an output had a line when the log was opened.
+    pub(crate) fn knows(&self, out: &str) -> bool {
+        self.known.contains(out)
     }
 
     /// Appends one line.

@@ -6,14 +6,17 @@
 //! ```
 
 mod cell;
+mod claim;
 mod log;
+mod made;
 mod observed;
 mod options;
 mod placed;
 mod scene;
+mod size;
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
@@ -21,13 +24,16 @@ use serde::Serialize;
 use crate::args::MeshArgs;
 use crate::circuit;
 use crate::info::{Failed, MORPHOLOGIES, bug};
-use crate::inputs::Inputs;
+use crate::inputs::{Inputs, readable};
+use crate::output::{Output, OutputError, occupy};
 use crate::progress::Progress;
-use crate::report::{Failure, Reporter, count, usage};
+use crate::report::{Failure, Reporter, count, place, usage};
 use crate::targets::{self, Job};
 use crate::workers;
-use cell::Cell;
+use cell::{Cell, Told};
+use claim::{Claim, claim};
 use log::Log;
+use made::{Made, Standing};
 use options::Recipe;
 
 /// What stands in the JSON list for an input.
@@ -59,41 +65,162 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if args.cells.any() {
         return usage("no input is a circuit: leave out what chooses cells of one");
     }
+    let out = &args.out.out;
+    occupy(out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
     let recipe = Recipe::new(args, &inputs, measure)?;
-    let mut jobs = targets::plan(&inputs, &args.out.out, recipe.format.extension())?;
+    recipe.warn_of_name(args, reporter);
+    let mut jobs = targets::plan(&inputs, out, recipe.format.extension())?;
     if let Some(shard) = args.shard {
         jobs = shard.of(jobs);
     }
-    for failure in &inputs.failures {
-        reporter.failure(failure);
-    }
-    let (skipped, to_do): (Vec<Job>, Vec<Job>) = jobs
-        .iter()
-        .cloned()
-        .partition(|job| args.resume && is_newer(job));
-    let log = args.log.as_deref().map(Log::open).transpose()?;
-    let entries = mesh_all(&to_do, &recipe, reporter, log.as_ref())?;
+    inputs.tell(reporter);
+    let made = Made::open(&record_folder(out, &inputs), &recipe.matters());
+    let context = Context {
+        recipe: &recipe,
+        reporter,
+        log: args.log.as_deref().map(Log::open).transpose()?,
+        resume: args.resume,
+        // One file with a name of its own leaves nothing beside it unless it is to be resumed.
+        records: args.resume || targets::is_folder(out, &inputs),
+    };
+    let (skipped, to_do) = context.sort_out(jobs.clone(), &made, |job| job);
+    let entries = mesh_all(&to_do, &made, &context)?;
     summarize(&entries, skipped.len(), clock, reporter);
     reporter.document(&in_order(&jobs, entries, &skipped))
 }
 
-/// Whether the output is there and not older than the input.
-fn is_newer(job: &Job) -> bool {
-    let time = |path| fs::metadata(path).and_then(|data| data.modified()).ok();
-    match (time(&job.input), time(&job.out)) {
-        (Some(input), Some(out)) => out >= input,
-        _ => false,
+/// Where it is written down what files were made of.
+fn record_folder(out: &Path, inputs: &Inputs) -> PathBuf {
+    match targets::is_folder(out, inputs) {
+        true => out.to_path_buf(),
+        false => out.parent().unwrap_or(Path::new("")).to_path_buf(),
     }
 }
 
-fn mesh_all(
-    jobs: &[Job],
-    recipe: &Recipe,
-    reporter: &Reporter,
-    log: Option<&Log>,
-) -> anyhow::Result<Vec<Entry>> {
+/// What all cells of a run have in common.
+struct Context<'a> {
+    recipe: &'a Recipe,
+    reporter: &'a Reporter,
+    log: Option<Log>,
+    resume: bool,
+    /// Whether it is written down what files were made of.
+    records: bool,
+}
+
+impl Context<'_> {
+    fn log(&self, entry: &Entry) {
+        if let Some(log) = &self.log
+            && let Err(failure) = log.line(entry)
+        {
+            self.reporter.failure(&failure);
+        }
+    }
+
+    /// What stays and what is to be made; tells why.
+    fn sort_out<T>(&self, all: Vec<T>, made: &Made, job: impl Fn(&T) -> &Job) -> (Vec<T>, Vec<T>) {
+        if !self.resume {
+            return (Vec::new(), all);
+        }
+        let mut standings = Vec::with_capacity(all.len());
+        let (skipped, to_do) = all.into_iter().partition(|item| {
+            let standing = made.standing(job(item));
+            standings.push(standing);
+            if standing.stays() {
+                self.left(job(item));
+            }
+            standing.stays()
+        });
+        tell_standings(&standings, self.reporter);
+        (skipped, to_do)
+    }
+
+    /// An output that stays. A line that the log lacks, say since it is a new one, is added.
+    fn left(&self, job: &Job) {
+        let known = |log: &Log| log.knows(&job.out.display().to_string());
+        if self.log.as_ref().is_some_and(|log| !known(log)) {
+            self.log(&skipped(job));
+        }
+    }
+
+    /// Claims a cell's file, makes it, writes down what it is and gives it its name.
+    fn cell(
+        &self,
+        job: &Job,
+        made: &Made,
+        make: impl FnOnce(Output) -> Result<(Cell, Output), Failure>,
+    ) -> Entry {
+        let file = job.input.display();
+        let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+        let resume = self.resume.then_some(made);
+        let claimed = readable(&job.input)
+            .and_then(|()| claim(job, self.recipe.force, resume, self.reporter).map_err(failed));
+        let result = match claimed {
+            Ok(Claim::Done) => return skipped(job),
+            Ok(Claim::Ours(output)) => make(output),
+            Err(failure) => Err(failure),
+        };
+        let entry = match result {
+            Ok((cell, output)) => {
+                let cell = Box::new(cell);
+                if self.records
+                    && let Err(e) = made.add(job, output.part())
+                {
+                    let name = made::NAME;
+                    self.reporter.warning(&format!(
+                        "{name} beside {} cannot be written ({e}): --resume will know less",
+                        job.out.display()
+                    ));
+                }
+                let entry = Entry::Done(cell);
+                self.log(&entry);
+                match output.finish().map_err(failed) {
+                    Ok(()) => return entry,
+                    Err(failure) => failure,
+                }
+            }
+            Err(failure) => failure,
+        };
+        let entry = Entry::Failed(Failed {
+            file: job.input.display().to_string(),
+            error: entry.0,
+        });
+        self.log(&entry);
+        entry
+    }
+}
+
+fn skipped(job: &Job) -> Entry {
+    Entry::Skipped {
+        file: job.input.display().to_string(),
+        out: job.out.display().to_string(),
+        skipped: true,
+    }
+}
+
+/// What is made again although it is there, and what stays although little is known of it.
+fn tell_standings(standings: &[Standing], reporter: &Reporter) {
+    let number = |wanted: Standing| standings.iter().filter(|&&s| s == wanted).count();
+    let told = |standing, what: &str| {
+        let n = number(standing);
+        if n > 0 {
+            reporter.note(&format!("{} {what}", count(n, "output")));
+        }
+    };
+    told(
+        Standing::OtherOptions,
+        "made with other options: made again",
+    );
+    told(Standing::OtherInput, "made of another input: made again");
+    told(
+        Standing::Newer,
+        "kept, though it is not written down with which options they were made: --force makes them again",
+    );
+}
+
+fn mesh_all(jobs: &[Job], made: &Made, context: &Context<'_>) -> anyhow::Result<Vec<Entry>> {
+    let reporter = context.reporter;
     let one = jobs.len() == 1;
     let (total, unit) = if one {
         (0, "blocks")
@@ -103,13 +230,14 @@ fn mesh_all(
     let progress = Progress::new(reporter, total, unit);
     let order = targets::largest_first(jobs);
     let results = workers::run(jobs, &order, reporter.threads(), |job| {
-        let result = cell::mesh(job, recipe, one.then_some(&progress));
-        let entry = entry(job, result, one, reporter);
-        if let Some(log) = log
-            && let Err(failure) = log.line(&entry)
-        {
-            reporter.failure(&failure);
-        }
+        let told = Told {
+            reporter,
+            progress: one.then_some(&progress),
+        };
+        let entry = context.cell(job, made, |output| {
+            cell::mesh(job, context.recipe, output, told)
+        });
+        tell(&entry, one, reporter);
         if !one {
             progress.done();
         }
@@ -119,30 +247,30 @@ fn mesh_all(
     let named = jobs.iter().zip(results);
     let entries = named.map(|(job, result)| {
         result.unwrap_or_else(|panic| {
-            let failure = bug(&job.input.display().to_string(), &panic);
-            entry(job, Err(failure), one, reporter)
+            let file = job.input.display().to_string();
+            let entry = Entry::Failed(Failed {
+                error: bug(&file, &panic).0,
+                file,
+            });
+            context.log(&entry);
+            tell(&entry, one, reporter);
+            entry
         })
     });
     Ok(entries.collect())
 }
 
 /// Tells of a cell as it finishes.
-fn entry(job: &Job, result: Result<Cell, Failure>, one: bool, reporter: &Reporter) -> Entry {
-    match result {
-        Ok(cell) => {
-            reporter.result(&line(&cell));
+fn tell(entry: &Entry, one: bool, reporter: &Reporter) {
+    match entry {
+        Entry::Done(cell) => {
+            reporter.result(&line(cell));
             if one || reporter.verbose() {
-                warn(&cell, reporter);
+                warn(cell, reporter);
             }
-            Entry::Done(Box::new(cell))
         }
-        Err(failure) => {
-            reporter.failure(&failure);
-            Entry::Failed(Failed {
-                file: job.input.display().to_string(),
-                error: failure.0,
-            })
-        }
+        Entry::Failed(failed) => reporter.error(&failed.error),
+        Entry::Skipped { .. } => {}
     }
 }
 
@@ -163,11 +291,9 @@ fn line(cell: &Cell) -> String {
 
 fn warn(cell: &Cell, reporter: &Reporter) {
     for warning in &cell.warnings {
-        let line = warning
-            .line
-            .map_or(String::new(), |line| format!("{line}:"));
+        let place = place(&cell.file, warning.line);
         let (message, code) = (&warning.message, warning.code);
-        reporter.warning(&format!("{}:{line} {message} ({code})", cell.file));
+        reporter.warning(&format!("{place} {message} ({code})"));
     }
 }
 
@@ -175,6 +301,11 @@ fn warn(cell: &Cell, reporter: &Reporter) {
 fn summarize(entries: &[Entry], skipped: usize, clock: Instant, reporter: &Reporter) {
     let mut done = 0;
     let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
+    let skipped = skipped
+        + entries
+            .iter()
+            .filter(|e| matches!(e, Entry::Skipped { .. }))
+            .count();
     for entry in entries {
         if let Entry::Done(cell) = entry {
             done += 1;
@@ -195,7 +326,7 @@ fn summarize(entries: &[Entry], skipped: usize, clock: Instant, reporter: &Repor
         };
         reporter.warning(&format!("cells concerned: {}{hint}", causes.join(", ")));
     }
-    if entries.len() + skipped != 1 {
+    if entries.len() != 1 || skipped > 0 {
         reporter.note(&format!(
             "{} meshed, {skipped} skipped, {} failed in {:.2} s",
             count(done, "cell"),
@@ -210,11 +341,7 @@ fn in_order(jobs: &[Job], entries: Vec<Entry>, skipped: &[Job]) -> Vec<Entry> {
     let mut entries = entries.into_iter();
     let mut skipped = skipped.iter().peekable();
     let next = |job| match skipped.next_if(|&next| next == job) {
-        Some(Job { input, out }) => Some(Entry::Skipped {
-            file: input.display().to_string(),
-            out: out.display().to_string(),
-            skipped: true,
-        }),
+        Some(job) => Some(self::skipped(job)),
         None => entries.next(),
     };
     jobs.iter().filter_map(next).collect()

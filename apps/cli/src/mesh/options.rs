@@ -6,7 +6,8 @@ use neurotess::refine::{Caps, Path, RefineOptions};
 
 use crate::args::{CapsArg, MeshArgs, PathArg, SphereArg};
 use crate::inputs::Inputs;
-use crate::report::usage;
+use crate::output::is_standard;
+use crate::report::{Reporter, usage};
 use crate::targets;
 
 /// How finely.
@@ -34,6 +35,34 @@ pub(crate) struct Recipe {
 }
 
 impl Recipe {
+    /// All options that a file depends on, as text.
+    pub(crate) fn matters(&self) -> String {
+        let Self {
+            generate,
+            fineness,
+            refine,
+            format,
+            strict: _,
+            force: _,
+            measure: _,
+        } = self;
+        format!("{fineness:?} {generate:?} {refine:?} {format:?}")
+    }
+
+    /// Warns where OUT's name says another format than the one that is written.
+    pub(crate) fn warn_of_name(&self, args: &MeshArgs, reporter: &Reporter) {
+        let out = &args.out.out;
+        if let (Some(asked), Ok(named)) = (args.format, Format::from_extension(out))
+            && asked != named
+            && !out.is_dir()
+        {
+            let out = out.display();
+            reporter.warning(&format!(
+                "{out} will hold {asked}, as --format says, not {named}"
+            ));
+        }
+    }
+
     /// Checks what the options mean together.
     pub(crate) fn new(args: &MeshArgs, inputs: &Inputs, measure: bool) -> anyhow::Result<Self> {
         let format = format(args, inputs)?;
@@ -82,6 +111,11 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
             ));
         }
         return Ok(args.format.unwrap_or(Format::Ply));
+    }
+    if is_standard(out) && args.format.is_none() {
+        return usage(
+            "standard output has no extension: say --format ply, obj, stl, glb, off or vtu",
+        );
     }
     match (args.format, from_name) {
         (Some(format), _) | (None, Ok(format)) => Ok(format),

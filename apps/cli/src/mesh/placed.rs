@@ -11,13 +11,14 @@ use std::time::Instant;
 
 use neurotess::circuit::{Circuit, Instance};
 
-use super::cell::{self, Node};
+use super::cell::{self, Node, Told};
 use super::log::Log;
+use super::made::Made;
 use super::options::Recipe;
-use super::{Entry, is_newer, scene, summarize};
+use super::{Context, Entry, scene, summarize};
 use crate::args::MeshArgs;
 use crate::circuit;
-use crate::info::bug;
+use crate::info::{Failed, bug};
 use crate::inputs::Inputs;
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, usage};
@@ -50,7 +51,11 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
         Ok(opened) => opened,
         Err(failure) => {
             reporter.failure(&failure);
-            return reporter.document(&[(); 0]);
+            let failed = Entry::Failed(Failed {
+                file: path.display().to_string(),
+                error: failure.0,
+            });
+            return reporter.document(&[failed]);
         }
     };
     let instances = circuit.instances(&nodes, None);
@@ -72,17 +77,18 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
     if let Some(shard) = args.shard {
         placings = shard.of(placings);
     }
-    let (skipped, to_do): (Vec<Placing>, Vec<Placing>) = placings
-        .into_iter()
-        .partition(|placing| args.resume && is_newer(&placing.job));
-    let log = args.log.as_deref().map(Log::open).transpose()?;
-    let mut entries = mesh_all(&circuit, to_do, &recipe, reporter, log.as_ref())?;
+    let made = Made::open(folder, &recipe.matters());
+    let context = Context {
+        recipe: &recipe,
+        reporter,
+        log: args.log.as_deref().map(Log::open).transpose()?,
+        resume: args.resume,
+        records: true,
+    };
+    let (skipped, to_do) = context.sort_out(placings, &made, |placing| &placing.job);
+    let mut entries = mesh_all(&circuit, to_do, &made, &context)?;
     summarize(&entries, skipped.len(), clock, reporter);
-    entries.extend(skipped.into_iter().map(|placing| Entry::Skipped {
-        file: placing.job.input.display().to_string(),
-        out: placing.job.out.display().to_string(),
-        skipped: true,
-    }));
+    entries.extend(skipped.iter().map(|placing| super::skipped(&placing.job)));
     reporter.document(&entries)
 }
 
@@ -113,7 +119,11 @@ fn plan(circuit: &Circuit, instances: &[Instance], folder: &Path, extension: &st
         let input = circuit.templates[instance.template.index()].path.clone();
         Placing {
             instance: *instance,
-            job: Job { input, out },
+            job: Job {
+                input,
+                out,
+                stands: format!("{instance:?}"),
+            },
             node: Node {
                 population: population.clone(),
                 node_id: id,
@@ -128,10 +138,12 @@ fn plan(circuit: &Circuit, instances: &[Instance], folder: &Path, extension: &st
 fn mesh_all(
     circuit: &Circuit,
     placings: Vec<Placing>,
-    recipe: &Recipe,
-    reporter: &Reporter,
-    log: Option<&Log>,
+    made: &Made,
+    context: &Context<'_>,
 ) -> anyhow::Result<Vec<Entry>> {
+    let Context {
+        recipe, reporter, ..
+    } = *context;
     let progress = Progress::new(reporter, placings.len(), "cells");
     let mut of_template: BTreeMap<u32, Vec<(usize, Placing)>> = BTreeMap::new();
     for (index, placing) in placings.into_iter().enumerate() {
@@ -148,27 +160,27 @@ fn mesh_all(
     let results = workers::run(&groups, &order, reporter.threads(), |(template, cells)| {
         let input = &circuit.templates[*template as usize].path;
         let prepared = cell::prepare(input, recipe);
+        let told = Told {
+            reporter,
+            progress: None,
+        };
         let one = |(index, placing): &(usize, Placing)| {
-            let result = match &prepared {
+            let entry = context.cell(&placing.job, made, |output| match &prepared {
                 Ok(prepared) => {
                     let placed = placing.instance.world_from_cell(prepared.soma_center);
                     let out = &placing.job.out;
-                    cell::finish(prepared, recipe, out, Some(placed), None).map(|mut cell| {
+                    let made = cell::finish(prepared, recipe, out, output, Some(placed), told);
+                    made.map(|(mut cell, output)| {
                         cell.node = Some(placing.node.clone());
-                        cell
+                        (cell, output)
                     })
                 }
                 Err(failure) => Err(Failure(format!(
                     "{} (cell {} of {})",
                     failure.0, placing.node.node_id, placing.node.population
                 ))),
-            };
-            let entry = super::entry(&placing.job, result, false, reporter);
-            if let Some(log) = log
-                && let Err(failure) = log.line(&entry)
-            {
-                reporter.failure(&failure);
-            }
+            });
+            super::tell(&entry, false, reporter);
             progress.done();
             (*index, entry)
         };
@@ -180,11 +192,13 @@ fn mesh_all(
         match result {
             Ok(done) => entries.extend(done),
             Err(panic) => entries.extend(cells.iter().map(|(index, placing)| {
-                let failure = bug(&placing.job.input.display().to_string(), &panic);
-                (
-                    *index,
-                    super::entry(&placing.job, Err(failure), false, reporter),
-                )
+                let file = placing.job.input.display().to_string();
+                let entry = Entry::Failed(Failed {
+                    error: bug(&file, &panic).0,
+                    file,
+                });
+                super::tell(&entry, false, reporter);
+                (*index, entry)
             })),
         }
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{DVec3, Vec3};
 use neurotess::render::{ColourMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
@@ -30,7 +31,7 @@ pub(crate) struct RenderArgs {
     /// one session of neurotess view, in its own view and look
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The picture; of a series NAME_0000.png and so on
+    /// The picture, - for standard output; of a series NAME_0000.png and so on
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     /// Replace files that exist
@@ -46,9 +47,9 @@ pub(crate) struct RenderArgs {
     pub(crate) size: Size,
     /// Samples of a pixel, 1 to 64: smoother edges; 1, 4, 16, 36 and 64 are there
     #[arg(long, default_value_t = 16, value_name = "N", help_heading = "Picture",
-          value_parser = clap::value_parser!(u32).range(1..=64))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) samples: u32,
-    /// Colour behind everything: a name (white, black, grey) or RRGGBB
+    /// Colour behind everything: a name (white, black, grey), RRGGBB or RGB
     #[arg(
         long,
         default_value = "white",
@@ -82,19 +83,21 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = range,
           allow_hyphen_values = true, help_heading = "Colours")]
     pub(crate) range: Option<[f32; 2]>,
-    /// Colours of types and of things told apart: neurom, neuromorpho, okabe-ito
+    /// Colours of types and of things told apart
     #[arg(
         long,
         default_value = "neurom",
         value_name = "NAME",
+        value_parser = palettes(),
         help_heading = "Colours"
     )]
     pub(crate) palette: Palette,
-    /// Colours of numbers: viridis, magma, inferno, plasma, cividis
+    /// Colours of numbers
     #[arg(
         long,
         default_value = "viridis",
         value_name = "NAME",
+        value_parser = colour_maps(),
         help_heading = "Colours"
     )]
     pub(crate) colormap: ColourMap,
@@ -114,12 +117,12 @@ pub(crate) struct RenderArgs {
     pub(crate) lod: Option<LodArg>,
     /// Subdivisions per coarse edge everywhere, 1 to 64, instead of --pixels
     #[arg(long, value_name = "N", help_heading = "Refinement", conflicts_with = "pixels",
-          value_parser = clap::value_parser!(u32).range(1..=64))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) level: Option<u32>,
     /// Farthest that the surface may be from the level-64 one (pixels) [default: 0.25, with
     /// --wireframe 1]
     #[arg(long, value_name = "P", value_parser = crate::args::positive,
-          help_heading = "Refinement")]
+          allow_negative_numbers = true, help_heading = "Refinement")]
     pub(crate) pixels: Option<f64>,
     /// Most triangles of --lod exploration, for those that show most [default: 100000]
     #[arg(long, value_name = "N", help_heading = "Refinement",
@@ -241,6 +244,18 @@ impl RenderArgs {
     }
 }
 
+/// Palettes by name; shells complete them.
+fn palettes() -> impl TypedValueParser<Value = Palette> {
+    PossibleValuesParser::new(Palette::ALL.map(Palette::name))
+        .try_map(|name| name.parse::<Palette>())
+}
+
+/// Colour maps by name, likewise.
+fn colour_maps() -> impl TypedValueParser<Value = ColourMap> {
+    let names = ColourMap::ALL.map(ColourMap::name);
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<ColourMap>())
+}
+
 fn range(text: &str) -> Result<[f32; 2], String> {
     let ends: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match ends.as_deref() {
@@ -353,10 +368,15 @@ impl FromStr for Colour {
             "grey" | "gray" => [128; 3],
             other => {
                 let digits = other.strip_prefix('#').unwrap_or(other);
-                let number = u32::from_str_radix(digits, 16).ok();
-                let number = number.filter(|_| digits.len() == 6 && !digits.starts_with('+'));
-                let [_, r, g, b] = number
-                    .ok_or("white, black, grey or RRGGBB is needed, as in 102030")?
+                let hexadecimal = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+                let digits: String = match digits.len() {
+                    6 if hexadecimal => digits.into(),
+                    // #fff is #ffffff.
+                    3 if hexadecimal => digits.chars().flat_map(|digit| [digit, digit]).collect(),
+                    _ => String::new(),
+                };
+                let [_, r, g, b] = u32::from_str_radix(&digits, 16)
+                    .map_err(|_| "white, black, grey, RRGGBB or RGB is needed, as in 102030")?
                     .to_be_bytes();
                 [r, g, b]
             }
@@ -418,8 +438,9 @@ mod tests {
             assert!(wrong.parse::<Size>().is_err(), "{wrong}");
         }
         assert_eq!("#102030".parse(), Ok(Colour([16, 32, 48])));
+        assert_eq!("#fA0".parse(), Ok(Colour([255, 170, 0])));
         assert_eq!("White".parse(), Ok(Colour([255; 3])));
-        for wrong in ["12345", "reddish", "#ééé", "+12345"] {
+        for wrong in ["12345", "reddish", "#ééé", "+12345", "+12", "#ff"] {
             assert!(wrong.parse::<Colour>().is_err(), "{wrong}");
         }
         assert_eq!("1,-2,3e1".parse(), Ok(Triple(DVec3::new(1.0, -2.0, 30.0))));

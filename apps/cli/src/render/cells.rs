@@ -1,6 +1,11 @@
 //! Inputs to coarse meshes.
 
-use neurotess::formats::{self, ReadOptions, Warning};
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use neurotess::circuit::Compartment;
+use neurotess::colouring::with_middles;
+use neurotess::formats::{ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions};
 use neurotess::mesh::{CoarseMesh, TracingPoint};
 use neurotess::morphology::Morphology;
@@ -8,8 +13,8 @@ use neurotess::render::Ball;
 
 use super::args::RenderArgs;
 use crate::info::{Entry, each};
-use crate::inputs::{Input, Inputs};
-use crate::report::{Failure, Reporter};
+use crate::inputs::{Input, Inputs, morphology};
+use crate::report::{Failure, Reporter, place};
 
 /// A cell that can be drawn.
 pub(crate) struct Cell {
@@ -20,9 +25,11 @@ pub(crate) struct Cell {
     mended: Vec<String>,
 }
 
-/// Reads and meshes all inputs on all cores; tells of those that fail.
+/// Reads and meshes all inputs on all cores; tells of those that fail. `cuts`: the elements of those that
+/// show values of a report.
 pub(crate) fn read(
     inputs: &Inputs,
+    cuts: &HashMap<PathBuf, Vec<Compartment>>,
     args: &RenderArgs,
     reporter: &Reporter,
 ) -> anyhow::Result<Vec<Entry<Cell>>> {
@@ -36,7 +43,10 @@ pub(crate) fn read(
     let read = ReadOptions {
         strict: args.strict,
     };
-    let entries = each(inputs, reporter, |input| cell(input, read, &options))?;
+    let entries = each(inputs, reporter, |input| {
+        let cut = cuts.get(&input.path).map_or(&[][..], Vec::as_slice);
+        cell(input, cut, read, &options)
+    })?;
     let one = entries.len() == 1;
     for entry in &entries {
         if let Entry::Done(cell) = entry {
@@ -46,8 +56,16 @@ pub(crate) fn read(
     Ok(entries)
 }
 
-fn cell(input: &Input, read: ReadOptions, options: &GenerateOptions) -> Result<Cell, Failure> {
-    let read = formats::read(&input.path, &read).map_err(|e| Failure(e.to_string()))?;
+fn cell(
+    input: &Input,
+    cut: &[Compartment],
+    read: ReadOptions,
+    options: &GenerateOptions,
+) -> Result<Cell, Failure> {
+    let mut read = morphology(&input.path, None, &read)?;
+    if !cut.is_empty() {
+        read.morphology = with_middles(&read.morphology, cut);
+    }
     let file = input.path.display().to_string();
     let generated = generate::generate(&read.morphology, options)
         .map_err(|e| Failure(format!("{file}: {e}")))?;
@@ -78,8 +96,8 @@ fn warn(cell: &Cell, all: bool, reporter: &Reporter) {
         ..
     } in &cell.warnings
     {
-        let line = line.map_or(String::new(), |line| format!("{line}:"));
-        reporter.warning(&format!("{file}:{line} {message} ({code})"));
+        let place = place(file, *line);
+        reporter.warning(&format!("{place} {message} ({code})"));
     }
     for mended in &cell.mended {
         reporter.warning(&format!("{file}: {mended}"));

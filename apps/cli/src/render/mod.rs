@@ -24,7 +24,7 @@ use neurotess::render::{
 };
 
 use crate::info::Entry;
-use crate::output::{Output, OutputError, existing};
+use crate::output::{self, OutputError};
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use args::{ColorBy, Fit, RenderArgs};
@@ -39,10 +39,11 @@ const WIRE: f32 = 1.0;
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    output::occupy(&args.out, reporter)?;
     let files = files(args)?;
     maker::mode(args)?;
     for file in files.iter().chain(&args.stats) {
-        existing(args.force).check(file)?;
+        output::check(file, args.force)?;
     }
     if let [session] = &args.inputs[..]
         && neurotess_viewer::session::is_session(session)
@@ -93,7 +94,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     stages.end(Stage::Draw);
     stats.took(stages);
     if let Some(path) = &args.stats {
-        let mut output = Output::create(path, existing(args.force))?;
+        let mut output = output::begin(path, args.force)?;
         serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
         output.finish()?;
     }
@@ -154,6 +155,12 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
     let png = out
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    if output::is_standard(out) {
+        return match args.series()? {
+            None => Ok(vec![out.clone()]),
+            Some(_) => usage("standard output takes one picture: name a series OUT.png"),
+        };
+    }
     let Some(stem) = out.file_stem().filter(|_| png) else {
         return usage(format!(
             "{}: pictures are PNG files: name it OUT.png",
@@ -286,7 +293,7 @@ fn write(
     args: &RenderArgs,
     paint: impl FnOnce(&mut dyn FnMut(&Image) -> Result<(), OutputError>) -> anyhow::Result<Cost>,
 ) -> anyhow::Result<Cost> {
-    let mut output = Output::create(path, existing(args.force))?;
+    let mut output = output::begin(path, args.force)?;
     let file = output
         .file()
         .try_clone()

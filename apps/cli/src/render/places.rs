@@ -1,9 +1,10 @@
 //! Where cells stand: files in their own coordinates, cells of a circuit where it puts them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use neurotess::circuit::soma_center;
+use neurotess::circuit::{Compartment, Instance, soma_center};
+use neurotess::colouring::cuts;
 use neurotess::render::{Ball, Placement, bounds, merged};
 use rayon::prelude::*;
 
@@ -11,7 +12,7 @@ use super::args::RenderArgs;
 use super::cells::{self, Cell};
 use super::shown::Shown;
 use crate::circuit;
-use crate::info::Entry;
+use crate::info::{Entry, Failed};
 use crate::inputs::{Input, Inputs};
 use crate::report::{Failure, Reporter, usage};
 
@@ -52,7 +53,7 @@ pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cas
         }
         [] => {
             let inputs = Inputs::find(&args.inputs, &crate::info::MORPHOLOGIES);
-            let entries = cells::read(&inputs, args, reporter)?;
+            let entries = cells::read(&inputs, &HashMap::new(), args, reporter)?;
             let done = entries.iter().filter(|e| matches!(e, Entry::Done(_)));
             let places = (0..done.count()).map(|cell| (cell, Placement::default()));
             Ok(Cast {
@@ -74,8 +75,12 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
         Ok(opened) => opened,
         Err(failure) => {
             reporter.failure(&failure);
+            let failed = Failed {
+                file: path.display().to_string(),
+                error: failure.0,
+            };
             return Ok(Cast {
-                entries: Vec::new(),
+                entries: vec![Entry::Failed(failed)],
                 places: Vec::new(),
                 shown: None,
             });
@@ -107,7 +112,20 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
         files: of_template.keys().map(input).collect(),
         ..Inputs::default()
     };
-    let entries = cells::read(&inputs, args, reporter)?;
+    let cuts = match &args.report {
+        Some(report) => {
+            let cell = |i: &Instance| (i.template.index(), i.node);
+            let stand: Vec<_> = instances.iter().map(cell).collect();
+            // The whole message is the error's own: its source would be told twice.
+            cuts(report, &circuit, &stand).map_err(|e| anyhow::anyhow!("{e}"))?
+        }
+        None => HashMap::new(),
+    };
+    let of_path = |(template, cut): (usize, Vec<Compartment>)| {
+        (circuit.templates[template].path.clone(), cut)
+    };
+    let cuts = cuts.into_iter().map(of_path).collect();
+    let entries = cells::read(&inputs, &cuts, args, reporter)?;
     // Cells that did not fail keep their order; those that did are marked.
     let mut centers = Vec::new();
     for (entry, place) in entries.iter().zip(of_template.values_mut()) {

@@ -1,5 +1,6 @@
 //! The command line as scripts see it: one test for each row of its contract.
 
+mod attacks;
 mod bench;
 mod check;
 mod circuit;
@@ -10,6 +11,8 @@ mod inputs;
 mod kill;
 mod mesh;
 mod render;
+mod resume;
+mod streams;
 mod synth;
 mod values;
 mod view;

@@ -60,7 +60,7 @@ impl Work {
         Run(self.command(arguments).output().expect("it runs"))
     }
 
-    /// All files below a folder with their content.
+    /// All files below a folder with their content, without the record of what they were made of.
     pub(crate) fn files(&self, folder: &str) -> BTreeMap<PathBuf, Vec<u8>> {
         let mut files = BTreeMap::new();
         collect(&self.path(folder), &mut files);
@@ -82,7 +82,10 @@ fn collect(folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
         let path = entry.path();
         if path.is_dir() {
             collect(&path, files);
-        } else {
+        } else if path
+            .file_name()
+            .is_none_or(|name| name != ".neurotess-made")
+        {
             files.insert(path.clone(), fs::read(&path).expect("readable"));
         }
     }

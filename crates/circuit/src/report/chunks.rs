@@ -12,6 +12,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hdf5_pure::{ChunkIndex, Dataset, Datatype, DatatypeByteOrder, Layout};
+use neurotess_formats::capacity;
 use rayon::prelude::*;
 
 use crate::hdf5::{Store, hdf5};
@@ -85,6 +86,12 @@ impl Table {
                 return Err(store.fault(path, Fault::Shape { found, expected }));
             }
         };
+        let chunk = dataset.chunk_shape();
+        let chunk = chunk.map_err(|e| store.fault(path, hdf5(&e)))?;
+        if chunk.is_some_and(|chunk| !capacity::listable(&[rows, columns], &chunk, store.size())) {
+            let reason = "it declares more chunks than the file can hold".into();
+            return Err(store.fault(path, Fault::Hdf5 { reason }));
+        }
         let datatype = dataset.datatype();
         let datatype = datatype.map_err(|e| store.fault(path, hdf5(&e)))?;
         let number = number(&datatype);

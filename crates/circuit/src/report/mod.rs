@@ -168,6 +168,8 @@ impl ReportPopulation {
                 let expected = format!("[{}], one per element", table.columns);
                 return Err(store.fault(mapped, Fault::Shape { found, expected }));
             }
+            // A row of the table has as many numbers.
+            store.believe(mapped)?;
         }
         let time = time_axis(&store, &find(&["time"])?, table.rows)?;
         let rows = nodes.iter().copied().zip(0..).collect();

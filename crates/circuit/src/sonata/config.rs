@@ -8,7 +8,9 @@
 //! | node sets | named by the simulation | `node_sets_file` |
 //!
 //! A simulation's configuration names the circuit (`network`), node sets, reports and spikes. Given a
-//! circuit's configuration alone, simulations beside it whose `network` is that file are taken too.
+//! circuit's configuration alone, simulations beside it whose `network` is that file are taken too,
+//! whatever their names: `simulation_config.json`, bmtk's `config.simulation.json`. Of a folder that has
+//! configurations of one circuit and of its simulations, the circuit's is meant.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -198,7 +200,8 @@ impl Config {
         let paths = entries.into_iter().flatten().flatten().map(|e| e.path());
         let is_simulation = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with("simulation") && name.ends_with(".json")
+            let named_so = || name.starts_with("simulation") || names(path) == Named::Simulation;
+            name.ends_with(".json") && named_so()
         };
         let mut simulations: Vec<PathBuf> = paths.filter(is_simulation).collect();
         simulations.sort();
@@ -277,18 +280,33 @@ fn populations(
 pub(crate) fn find(folder: &Path) -> Result<PathBuf, CircuitError> {
     for usual in ["circuit_sonata.json", "circuit_config.json", "config.json"] {
         let path = folder.join(usual);
-        if path.is_file() && (usual != "config.json" || names_circuit(&path)) {
+        if path.is_file() && (usual != "config.json" || names(&path) != Named::Nothing) {
             return Ok(path);
         }
     }
     let entries = fs::read_dir(folder).map_err(|e| CircuitError::io(folder, e))?;
     let paths = entries.flatten().map(|e| e.path());
     let is_json = |path: &PathBuf| path.extension().is_some_and(|e| e == "json");
-    let mut circuits: Vec<PathBuf> = paths.filter(|p| is_json(p) && names_circuit(p)).collect();
-    circuits.sort();
-    match &circuits[..] {
-        [one] => Ok(one.clone()),
-        several => {
+    let all: Vec<(PathBuf, Named)> = paths
+        .filter(is_json)
+        .map(|path| {
+            let named = names(&path);
+            (path, named)
+        })
+        .collect();
+    let of_kind = |kind: Named| {
+        let wanted = all.iter().filter(|(_, named)| *named == kind);
+        let mut paths: Vec<PathBuf> = wanted.map(|(path, _)| path.clone()).collect();
+        paths.sort();
+        paths
+    };
+    let circuits = of_kind(Named::Circuit);
+    let simulations = of_kind(Named::Simulation);
+    match (&circuits[..], &simulations[..]) {
+        ([one], _) | ([], [one]) => Ok(one.clone()),
+        _ => {
+            let mut several = [circuits, simulations].concat();
+            several.sort();
             let names: Vec<String> = several.iter().map(|p| name(p)).collect();
             let found = if names.is_empty() {
                 "none".into()
@@ -303,14 +321,29 @@ pub(crate) fn find(folder: &Path) -> Result<PathBuf, CircuitError> {
     }
 }
 
-/// Whether a JSON file is the configuration of a circuit or of a simulation.
-fn names_circuit(path: &Path) -> bool {
-    Document::open(path).is_ok_and(|document| {
-        let root = document.root();
-        let networks = root.get("networks").and_then(|n| n.get("nodes"));
-        let network = root.get("network").filter(|n| n.value.is_string());
-        networks.is_some() || network.is_some()
-    })
+/// What a JSON file is the configuration of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Named {
+    Circuit,
+    Simulation,
+    Nothing,
+}
+
+fn names(path: &Path) -> Named {
+    let Ok(document) = Document::open(path) else {
+        return Named::Nothing;
+    };
+    let root = document.root();
+    if root
+        .get("networks")
+        .is_some_and(|n| n.get("nodes").is_some())
+    {
+        return Named::Circuit;
+    }
+    match root.get("network").filter(|n| n.value.is_string()) {
+        Some(_) => Named::Simulation,
+        None => Named::Nothing,
+    }
 }
 
 fn name(path: &Path) -> String {

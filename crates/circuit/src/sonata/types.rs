@@ -1,8 +1,9 @@
 //! Tables of node types: blanks between fields, quotes around fields with blanks, `NULL` for none.
 
 use std::collections::HashMap;
-use std::fs;
 use std::path::Path;
+
+use neurotess_formats::read_regular;
 
 use crate::{CircuitError, Fault};
 
@@ -17,7 +18,7 @@ pub(crate) struct Types {
 impl Types {
     /// Reads the types of a population.
     pub(crate) fn open(path: &Path, population: &str) -> Result<Self, CircuitError> {
-        let bytes = fs::read(path).map_err(|e| CircuitError::io(path, e))?;
+        let bytes = read_regular(path).map_err(|e| CircuitError::io(path, e))?;
         let text = String::from_utf8_lossy(&bytes);
         Self::parse(&path.display().to_string(), &text, population)
     }
@@ -25,24 +26,27 @@ impl Types {
     /// Reads a table. Rows of other populations are left out; where two have one id, the last wins.
     pub(crate) fn parse(file: &str, text: &str, population: &str) -> Result<Self, CircuitError> {
         let text = text.trim_start_matches('\u{feff}');
-        let lines = text.lines().zip(1..).filter(|(l, _)| !l.trim().is_empty());
+        let lines = text
+            .lines()
+            .zip(1u64..)
+            .filter(|(l, _)| !l.trim().is_empty());
         let mut lines = lines.map(|(line, number)| (fields(line), number));
-        let fault = |key: String, fault| CircuitError::new(file, key, fault);
+        let fault = |line, key: &str, fault| CircuitError::at_line(file, line, key, fault);
+        let id_key = "column node_type_id";
         let Some((header, first)) = lines.next() else {
             return Ok(Self::default());
         };
         let columns: Vec<String> = header.into_iter().map(Option::unwrap_or_default).collect();
         let place = |name: &str| columns.iter().position(|column| column == name);
         let id_column = place("node_type_id");
-        let key = format!("line {first}, column node_type_id");
-        let id_column = id_column.ok_or_else(|| fault(key, Fault::Missing))?;
+        let id_column = id_column.ok_or_else(|| fault(first, id_key, Fault::Missing))?;
         let of_population = place("population");
         let mut rows = HashMap::new();
         for (row, line) in lines {
             if row.len() != columns.len() {
                 let (found, expected) = (row.len(), columns.len());
                 let wrong = Fault::Fields { found, expected };
-                return Err(fault(format!("line {line}"), wrong));
+                return Err(fault(line, "", wrong));
             }
             let other = of_population.and_then(|p| row[p].as_deref());
             if other.is_some_and(|other| other != population) {
@@ -52,7 +56,7 @@ impl Types {
             let Ok(id) = text.parse() else {
                 let expected = "a whole number";
                 let wrong = Fault::NotANumber { expected, text };
-                return Err(fault(format!("line {line}, column node_type_id"), wrong));
+                return Err(fault(line, id_key, wrong));
             };
             rows.insert(id, row);
         }
@@ -155,9 +159,9 @@ mod tests {
                 .map(|e| e.to_string())
         };
         let short = message("node_type_id a\n1\n").expect("too few");
-        assert_eq!(short, "t.csv: 'line 2': 1 fields instead of 2: correct it");
+        assert_eq!(short, "t.csv:2: 1 fields instead of 2: correct it");
         let id = message("node_type_id a\nx 1\n").expect("no number");
-        assert!(id.contains("line 2, column node_type_id"), "{id}");
+        assert!(id.contains("t.csv:2: 'column node_type_id'"), "{id}");
         assert!(message("a b\n1 2\n").is_some(), "no id column");
         assert!(message("").is_none() && message("node_type_id\n").is_none());
     }

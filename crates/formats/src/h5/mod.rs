@@ -3,10 +3,15 @@
 //! Version 1 has two tables: `points` (x, y, z, **diameter**) and `structure` (first point, type,
 //! parent section), whose row 0 is the soma's outline if its type is 1; a section's points end where
 //! the next one's begin, and its first repeats its parent's last. Version 2 has the same in
-//! `NAME/raw/points`, `NAME/structure/raw` and `NAME/structure/sectiontype`. Perimeters and
-//! organelles are left out with a warning. HDF5 itself is read by a library in pure Rust.
+//! `NAME/STAGE/points`, `NAME/structure/STAGE` and `NAME/structure/sectiontype`, where NAME is usually
+//! `neuron1` and STAGE is `repaired`, `unraveled` or `raw`, the best that is there (Brion and NeuroM
+//! choose so too); `unraveled` may have the structure of `raw`. Perimeters and organelles are left out
+//! with a warning. A **container** has many morphologies of version 1, each in a group, of which one is
+//! named by its path: `merged.h5#cells/a`. HDF5 itself is read by a library in pure Rust.
 
 mod write;
+
+use std::path::Path;
 
 use neurotess_morphology::{Morphology, NeuriteKind};
 
@@ -23,6 +28,9 @@ pub const EXTENSIONS: [&str; 2] = ["h5", "hdf5"];
 /// First bytes of every HDF5 file without a user block.
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 
+/// Stages of version 2, the best first.
+const STAGES: [&str; 3] = ["repaired", "unraveled", "raw"];
+
 /// Type of the soma's row in `structure`.
 const SOMA: i64 = 1;
 
@@ -31,8 +39,25 @@ const SOMA: i64 = 1;
 /// # Errors
 /// [`ReadError`] with `name` and the dataset.
 pub fn read_bytes(bytes: Vec<u8>, name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
+    read_member(bytes, name, "", options)
+}
+
+/// Reads one morphology of a container. `member`: path of its group; empty: the file is no container.
+///
+/// # Errors
+/// [`ReadError`] with `name` and the dataset.
+pub fn read_member(
+    bytes: Vec<u8>,
+    name: &str,
+    member: &str,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
     let mut warnings = Warnings::default();
-    let morphology = interpret(bytes, stem(name, &EXTENSIONS), &mut warnings)
+    let own = match member.rsplit('/').next().unwrap_or_default() {
+        "" => stem(name, &EXTENSIONS),
+        last => last,
+    };
+    let morphology = interpret(bytes, own, member, &mut warnings)
         .map_err(|fault| ReadError::of_file(name, fault))?;
     let mut warnings = warnings.finish(name, options)?;
     // Rows of tables are no lines.
@@ -49,12 +74,29 @@ pub(crate) fn looks_like(bytes: &[u8]) -> bool {
     bytes.starts_with(SIGNATURE)
 }
 
-fn interpret(bytes: Vec<u8>, name: &str, warnings: &mut Warnings) -> Result<Morphology, Fault> {
+/// Whether a file is sound HDF5 that holds something else: a report, nodes of a circuit. Only its
+/// beginning and the names in it are read.
+pub fn is_other(path: impl AsRef<Path>) -> bool {
+    let Ok(store) = Store::open(path.as_ref()) else {
+        return false;
+    };
+    !store.has("connectivity") && Layout::of(&store).is_none() && morphologies(&store).0 == 0
+}
+
+fn interpret(
+    bytes: Vec<u8>,
+    name: &str,
+    member: &str,
+    warnings: &mut Warnings,
+) -> Result<Morphology, Fault> {
     if bytes.is_empty() {
         return Err(Fault::Empty);
     }
     let store = Store::from_bytes(bytes)?;
-    let tables = Tables::find(&store)?;
+    let tables = match member {
+        "" => Tables::find(&store, warnings)?,
+        member => Tables::of_member(&store, member)?,
+    };
     tell_what_is_left_out(&store, warnings);
     tables
         .tracing(warnings)?
@@ -78,39 +120,86 @@ struct Tables {
     sections: Vec<[i64; 3]>,
 }
 
+/// Where the tables of a file's only morphology are.
+enum Layout {
+    /// Version 1: `points`, `structure`.
+    One,
+    /// Version 2: the group, and stages from the best on.
+    Two(String, Vec<&'static str>),
+}
+
+impl Layout {
+    fn of(store: &Store) -> Option<Self> {
+        if store.has("points") && store.has("structure") {
+            return Some(Self::One);
+        }
+        store.groups("").into_iter().find_map(|group| {
+            let has = |stage: &&str| store.has(&format!("{group}/{stage}/points"));
+            let stages: Vec<&str> = STAGES.into_iter().filter(has).collect();
+            let types = store.has(&format!("{group}/structure/sectiontype"));
+            (types && !stages.is_empty()).then_some(Self::Two(group, stages))
+        })
+    }
+}
+
 impl Tables {
-    fn find(store: &Store) -> Result<Self, Fault> {
+    fn find(store: &Store, warnings: &mut Warnings) -> Result<Self, Fault> {
         if store.has("connectivity") {
             return Err(Fault::Vasculature);
         }
-        if store.has("points") && store.has("structure") {
-            let structure = store.wholes("structure", 3)?;
-            let row = |r: usize| {
-                let row = structure.row(r);
-                [row[0], row[1], row[2]]
-            };
-            return Ok(Self {
-                points: store.reals("points", 4)?,
-                sections: (0..structure.rows).map(row).collect(),
-                points_path: "points".into(),
-                structure_path: "structure".into(),
-            });
+        match Layout::of(store) {
+            Some(Layout::One) => Self::version_1(store, ""),
+            Some(Layout::Two(group, stages)) => {
+                if stages.len() > 1 {
+                    let message = format!("stages {}: the first is read", stages.join(", "));
+                    warnings.add(1, "stages", &message);
+                }
+                Self::version_2(store, &group, stages[0])
+            }
+            None => match morphologies(store) {
+                (0, _) => Err(Fault::NoTables),
+                (count, first) => Err(Fault::Container { count, first }),
+            },
         }
-        let groups = store.groups("");
-        let version_2 = |g: &&String| store.has(&format!("{g}/structure/raw"));
-        if let Some(group) = groups.iter().find(version_2) {
-            return Self::version_2(store, group);
-        }
-        let (count, first) = morphologies(store);
-        if count > 0 {
-            return Err(Fault::Container { count, first });
-        }
-        Err(Fault::NoTables)
     }
 
-    fn version_2(store: &Store, group: &str) -> Result<Self, Fault> {
-        let points_path = format!("{group}/raw/points");
-        let structure_path = format!("{group}/structure/raw");
+    fn of_member(store: &Store, member: &str) -> Result<Self, Fault> {
+        let path = format!("{}/", member.trim_matches('/'));
+        if store.has(&format!("{path}points")) && store.has(&format!("{path}structure")) {
+            return Self::version_1(store, &path);
+        }
+        let (count, first) = morphologies(store);
+        let member = member.to_owned();
+        Err(Fault::NoMember {
+            member,
+            count,
+            first,
+        })
+    }
+
+    /// `path`: of the group with a slash at its end; empty for the root.
+    fn version_1(store: &Store, path: &str) -> Result<Self, Fault> {
+        let points_path = format!("{path}points");
+        let structure_path = format!("{path}structure");
+        let structure = store.wholes(&structure_path, 3)?;
+        let row = |r: usize| {
+            let row = structure.row(r);
+            [row[0], row[1], row[2]]
+        };
+        Ok(Self {
+            points: store.reals(&points_path, 4)?,
+            sections: (0..structure.rows).map(row).collect(),
+            points_path,
+            structure_path,
+        })
+    }
+
+    fn version_2(store: &Store, group: &str, stage: &str) -> Result<Self, Fault> {
+        let points_path = format!("{group}/{stage}/points");
+        let mut structure_path = format!("{group}/structure/{stage}");
+        if stage == "unraveled" && !store.has(&structure_path) {
+            structure_path = format!("{group}/structure/raw");
+        }
         let types_path = format!("{group}/structure/sectiontype");
         let structure = store.wholes(&structure_path, 2)?;
         let types = store.wholes(&types_path, 1)?;

@@ -114,7 +114,16 @@ impl fmt::Display for Place {
 /// The origin is zero if all coordinates are numbers of 32 bits, else near the centre of the
 /// bounds.
 pub fn read(path: &Path) -> Result<SurfaceMesh, ReadError> {
-    let format = Format::from_extension(path)?;
+    read_as(path, Format::from_extension(path)?)
+}
+
+/// Reads a mesh of a known format, whatever its name; see [`read`].
+pub fn read_as(path: &Path, format: Format) -> Result<SurfaceMesh, ReadError> {
+    // A device has no end, and a pipe that nobody writes to keeps whoever opens it waiting.
+    if !std::fs::metadata(path)?.is_file() {
+        let what = "it is a folder, a device or a pipe, not a regular file";
+        return Err(io::Error::other(what).into());
+    }
     read_bytes(&std::fs::read(path)?, format)
 }
 

@@ -1,0 +1,145 @@
+//! What is no file, what is no folder of cells, names that give orders to a terminal.
+
+use crate::work::{SMALL, Work};
+
+#[cfg(unix)]
+#[test]
+fn devices_and_pipes_are_refused_at_once() {
+    use std::os::unix::fs::symlink;
+    let work = Work::new();
+    work.file("cells/a.swc", SMALL);
+    symlink("/dev/zero", work.path("cells/zero.swc")).expect("linked");
+    let made = std::process::Command::new("mkfifo")
+        .arg(work.path("cells/pipe.swc"))
+        .status();
+    assert!(made.expect("mkfifo runs").success());
+    symlink("/dev/zero", work.path("zero.ply")).expect("linked");
+    symlink("/dev/zero", work.path("zero.json")).expect("linked");
+    for attack in [
+        "info /dev/zero",
+        "info zero.json",
+        "check zero.ply",
+        "mesh cells/zero.swc -o x.ply",
+        "convert cells/pipe.swc -o x.swc",
+    ] {
+        let run = work.run(attack).exits(1);
+        assert_eq!(run.errors().len(), 1, "{attack}: {}", run.stderr());
+        assert!(
+            run.stderr().contains("not a regular file"),
+            "{}",
+            run.stderr()
+        );
+    }
+    let run = work.run("info cells --json").exits(1);
+    assert_eq!(run.errors().len(), 2, "{}", run.stderr());
+    assert_eq!(run.json()[0]["n_points"], 6);
+}
+
+#[cfg(unix)]
+#[test]
+fn force_replaces_files_and_nothing_else() {
+    use std::os::unix::fs::symlink;
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    work.file("real.ply", "old");
+    symlink("real.ply", work.path("link.ply")).expect("linked");
+    symlink("/dev/null", work.path("null.ply")).expect("linked");
+    work.run("mesh cell.swc -o link.ply --level 1").exits(1);
+    work.run("mesh cell.swc -o link.ply --level 1 --force")
+        .exits(0);
+    assert!(work.path("link.ply").is_symlink());
+    let real = std::fs::read(work.path("real.ply")).expect("there");
+    assert!(real.starts_with(b"ply\n"));
+    let run = work.run("mesh cell.swc -o null.ply --force").exits(1);
+    assert!(
+        run.stderr().contains("a device or a pipe, not a file"),
+        "{}",
+        run.stderr()
+    );
+    assert!(work.path("null.ply").is_symlink());
+}
+
+#[test]
+fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
+    let work = Work::new();
+    work.run("synth circuit -o circuit --neurons 5 --morphologies 2")
+        .exits(0);
+    std::fs::create_dir(work.path("cells")).expect("made");
+    for (name, from) in [("nodes", "nodes.h5"), ("edges", "reports/voltage.h5")] {
+        let to = work.path("cells").join(format!("{name}.h5"));
+        std::fs::copy(work.path("circuit").join(from), to).expect("copied");
+    }
+    work.file("cells/a.swc", SMALL);
+    let run = work.run("info cells --json").exits(0);
+    assert_eq!(run.json().as_array().map(Vec::len), Some(1));
+    assert!(
+        run.stderr().contains("2 HDF5 files without a morphology"),
+        "{}",
+        run.stderr()
+    );
+    // Named itself, such a file is a failure.
+    work.run("info cells/nodes.h5").exits(1);
+}
+
+#[cfg(unix)]
+#[test]
+fn names_give_no_orders_to_a_terminal() {
+    let work = Work::new();
+    work.file("\x1b[31mred\x1b[0m.swc", SMALL);
+    for run in [work.run("info ."), work.run("mesh . -o out --level 1")] {
+        let said = run.exits(0);
+        assert!(!said.stdout().contains('\x1b') && !said.stderr().contains('\x1b'));
+        assert!(said.stdout().contains("[31mred"), "{}", said.stdout());
+    }
+}
+
+#[test]
+fn a_missing_input_is_told_before_its_output() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    work.file("out.ply", "old");
+    for command in [
+        "mesh missing.swc -o out.ply",
+        "convert missing.swc -o cell.swc",
+    ] {
+        let run = work.run(command).exits(1);
+        let error = run.errors().concat();
+        assert!(error.contains("missing.swc: cannot be read"), "{error}");
+        assert!(!error.contains("--force"), "{error}");
+    }
+}
+
+#[test]
+fn odd_options_are_told_for_what_they_are() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let run = work.run("mesh cell.swc -o a.ply --level -1").exits(2);
+    assert!(
+        run.stderr().contains("-1 is not in 0..=64"),
+        "{}",
+        run.stderr()
+    );
+    let run = work
+        .run("mesh cell.swc -o a.ply --format glb --level 1")
+        .exits(0);
+    assert!(
+        run.stderr().contains("a.ply will hold glb"),
+        "{}",
+        run.stderr()
+    );
+    let run = work.run("--threads 20000 info cell.swc").exits(0);
+    assert!(run.stderr().contains("--threads 20000"), "{}", run.stderr());
+    // Quiet or not, what was asked for is told.
+    assert!(
+        work.run("info cell.swc -q")
+            .exits(0)
+            .stdout()
+            .contains("points")
+    );
+    assert!(
+        work.run("mesh cell.swc -o b.ply -q")
+            .exits(0)
+            .stdout()
+            .is_empty()
+    );
+}
