@@ -17,11 +17,12 @@ const DRIVERS: &[&str] = &[
 /// Debian's packages: Mesa's drivers, lavapipe among them, and the loader.
 const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 
-/// A virtual display, what moves the mouse on it, what takes pictures of it, and the libraries that a
-/// window loads on X11.
-const DISPLAY_PACKAGES: [&str; 7] = [
+/// A virtual display, what moves the mouse on it, who gives a window the keyboard, what takes pictures of
+/// it, and the libraries that a window loads on X11.
+const DISPLAY_PACKAGES: [&str; 8] = [
     "xvfb",
     "xdotool",
+    "openbox",
     "imagemagick",
     "libxkbcommon-x11-0",
     "libxcursor1",
@@ -41,7 +42,8 @@ fn display() -> String {
     if !cfg!(target_os = "linux") {
         return "the window's test runs on Linux only".into();
     }
-    let is_there = || ["Xvfb", "xdotool"].into_iter().all(is_installed);
+    let programs = ["Xvfb", "xdotool", "openbox"];
+    let is_there = || programs.into_iter().all(is_installed);
     if is_there() {
         return "a virtual display is there".into();
     }

@@ -1,4 +1,4 @@
-//! Interrupted: no half-written file, exit code 130, at once.
+//! Interrupted: no half-written file, the window's settings kept, exit code 130, at once.
 
 use neurotess::output;
 
@@ -8,6 +8,8 @@ const INTERRUPTED: i32 = 130;
 /// From now on, Ctrl-C and requests to end remove what is half written and leave.
 pub(crate) fn watch() -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(|| {
+        // First: afterwards nothing is written any more.
+        drop(neurotess_viewer::settings::write_noted());
         let _ended = output::remove_unfinished();
         std::process::exit(INTERRUPTED);
     })

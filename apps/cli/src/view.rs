@@ -1,8 +1,10 @@
 //! `neurotess view`: the window.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use neurotess_viewer::Hears;
 use neurotess_viewer::document::SomaEdit;
 
 use crate::info::MORPHOLOGIES;
@@ -49,7 +51,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         }
         inputs.extend(found.files.into_iter().map(|file| file.path));
     }
-    neurotess_viewer::run(neurotess_viewer::Options {
+    let options = neurotess_viewer::Options {
         inputs,
         soma: SomaEdit {
             rings: args.rings.positions(),
@@ -57,6 +59,13 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         },
         report: args.report.clone(),
         adapter: args.adapter.clone(),
-    })?;
+    };
+    let hears = reporter.verbose().then(|| Box::new(tell) as Hears);
+    neurotess_viewer::run(options, hears)?;
     Ok(())
+}
+
+/// `--verbose`: every command that runs, on standard error.
+fn tell(command: &neurotess_viewer::Command) {
+    drop(writeln!(io::stderr(), "command: {command:?}"));
 }

@@ -4,9 +4,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{self, Key, RichText, ScrollArea, TextEdit};
+use eframe::egui::{self, Key, RichText, ScrollArea};
 
 use crate::command::{Ask, Command};
+use crate::paths::{self, Name, completed, goes_on, parted};
 use crate::session;
 use crate::sources;
 
@@ -17,6 +18,8 @@ pub struct FilePanel {
     folder: PathBuf,
     entries: Vec<Entry>,
     typed: String,
+    /// The name that is being typed: others are not listed.
+    begun: String,
     chosen: Vec<PathBuf>,
     said: String,
     fresh: bool,
@@ -46,6 +49,7 @@ impl FilePanel {
             folder: PathBuf::new(),
             entries: Vec::new(),
             typed,
+            begun: String::new(),
             chosen: Vec::new(),
             said: String::new(),
             fresh: true,
@@ -61,6 +65,7 @@ impl FilePanel {
             folder
         };
         self.chosen.clear();
+        self.begun.clear();
         match fs::read_dir(folder) {
             Ok(entries) => {
                 let mut found: Vec<Entry> = entries
@@ -90,7 +95,7 @@ impl FilePanel {
             Ask::Report => is_folder || sources::is_hdf5(path),
             Ask::SaveSession => is_folder || session::is_session(path),
         };
-        (wanted && !name.starts_with('.')).then(|| Entry {
+        wanted.then(|| Entry {
             path: path.to_path_buf(),
             name,
             is_folder,
@@ -145,15 +150,55 @@ impl FilePanel {
         });
         if let Some(folder) = go {
             self.enter(&folder);
+            self.type_here();
         }
+    }
+
+    /// The line goes along to another folder: a session keeps its name.
+    fn type_here(&mut self) {
+        match (self.ask, Path::new(&self.typed).file_name()) {
+            (Ask::SaveSession, Some(name)) => {
+                self.typed = self.folder.join(name).display().to_string();
+            }
+            _ => self.typed.clear(),
+        }
+    }
+
+    /// The list goes along with what is typed: its folder, and names that begin so. Whether that made the
+    /// text another one.
+    fn follow(&mut self) -> bool {
+        let (before, begun) = parted(&self.typed);
+        let begun = begun.to_owned();
+        let folder = paths::whole(Path::new(before), &self.folder);
+        let other = fs::canonicalize(&folder).is_ok_and(|folder| folder != self.folder);
+        let mut rewritten = false;
+        if other && folder.is_dir() {
+            if !Path::new(before).is_absolute() && !before.starts_with('~') {
+                // From the folder of before, which no longer shows.
+                self.typed = folder.join(&begun).display().to_string();
+                rewritten = true;
+            }
+            self.enter(&folder);
+        }
+        self.chosen.clear();
+        self.begun = begun;
+        rewritten
     }
 
     fn list(&mut self, ui: &mut egui::Ui, done: &mut Option<Command>) {
         let mut enter = None;
         let height = (ui.available_height() - 78.0).max(120.0);
-        if self.entries.is_empty() {
+        let entries = self.entries.iter();
+        let entries = entries.filter(|entry| goes_on(&entry.name, &self.begun));
+        let entries: Vec<Entry> = entries.cloned().collect();
+        if entries.is_empty() {
+            let says = match (self.begun.is_empty(), self.ask) {
+                (false, _) => "No name here begins like that",
+                (true, Ask::SaveSession) => "No folder and no session here yet",
+                (true, Ask::Open | Ask::Report) => "No folder and no file to open here",
+            };
             ui.allocate_ui([ui.available_width(), height].into(), |ui| {
-                ui.centered_and_justified(|ui| ui.weak("No folder and no file to open here"));
+                ui.centered_and_justified(|ui| ui.weak(says));
             });
             return;
         }
@@ -161,8 +206,8 @@ impl FilePanel {
         ScrollArea::vertical()
             .max_height(height)
             .auto_shrink(false)
-            .show_rows(ui, row, self.entries.len(), |ui, rows| {
-                for entry in &self.entries[rows] {
+            .show_rows(ui, row, entries.len(), |ui, rows| {
+                for entry in &entries[rows] {
                     let slash = if entry.is_folder { "/" } else { "" };
                     let chosen = self.chosen.contains(&entry.path);
                     let text = format!("{}{slash}", entry.name);
@@ -181,6 +226,7 @@ impl FilePanel {
                             let adds = ui.input(|i| i.modifiers.command || i.modifiers.shift);
                             choose(&mut self.chosen, &entry.path, adds);
                             self.typed = entry.path.display().to_string();
+                            self.begun.clear();
                         }
                     });
                 }
@@ -188,9 +234,7 @@ impl FilePanel {
         match enter {
             Some(entry) if entry.is_folder => {
                 self.enter(&entry.path);
-                if self.ask == Ask::Open {
-                    self.typed.clear();
-                }
+                self.type_here();
             }
             Some(entry) => *done = Some(self.command(vec![entry.path])),
             None => {}
@@ -198,12 +242,19 @@ impl FilePanel {
     }
 
     fn typed_line(&mut self, ui: &mut egui::Ui, done: &mut Option<Command>) {
-        let hint = "A path: type or paste it, or drop files on the window";
-        let line = ui.add(
-            TextEdit::singleline(&mut self.typed)
-                .hint_text(hint)
-                .desired_width(f32::INFINITY),
-        );
+        let hint = "Type or paste a path (Tab completes it), or drop files on the window";
+        let names: Vec<Name> = self
+            .entries
+            .iter()
+            .map(|entry| Name {
+                name: entry.name.clone(),
+                is_folder: entry.is_folder,
+            })
+            .collect();
+        let line = paths::line(&mut self.typed, hint, |typed| completed(typed, &names), ui);
+        if line.changed() && self.follow() {
+            paths::to_end(line.id, &self.typed, ui);
+        }
         if std::mem::take(&mut self.fresh) {
             line.request_focus();
         }
@@ -222,11 +273,11 @@ impl FilePanel {
                 let paths = if many > 1 {
                     self.chosen.clone()
                 } else {
-                    vec![self.whole(&typed)]
+                    vec![paths::whole(&typed, &self.folder)]
                 };
                 let saves = self.ask == Ask::SaveSession;
                 match paths.iter().find(|p| !saves && !p.exists()) {
-                    Some(missing) => self.said = format!("{} is not there", missing.display()),
+                    Some(missing) => self.said = format!("There is no {}", missing.display()),
                     None => *done = Some(self.command(paths)),
                 }
             }
@@ -235,14 +286,6 @@ impl FilePanel {
             }
             ui.colored_label(ui.visuals().warn_fg_color, &self.said);
         });
-    }
-
-    /// A typed path: from the folder that shows if it is relative.
-    fn whole(&self, typed: &Path) -> PathBuf {
-        match (typed.strip_prefix("~"), directories::UserDirs::new()) {
-            (Ok(rest), Some(dirs)) => dirs.home_dir().join(rest),
-            _ => self.folder.join(typed),
-        }
     }
 
     fn command(&self, mut paths: Vec<PathBuf>) -> Command {

@@ -78,7 +78,12 @@ pub fn draw_session(
         view: session.view,
         time: Some(session.playback.time),
     };
-    save::pictures(&scenery, &[still], picture, &Job::new("drawing", 1))?;
+    save::pictures(
+        &scenery,
+        &[still],
+        picture,
+        &Job::new("drawing", "tiles", 0),
+    )?;
     Ok(drawn)
 }
 
@@ -90,6 +95,7 @@ fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
     let shown = Shown::new(sources, standing, coloured);
     Scenery {
         gpu,
+        shared: false,
         shown,
         look: state.document.look.clone(),
         states: scene::states(&state.document),

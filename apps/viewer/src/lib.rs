@@ -20,7 +20,9 @@ mod explorer;
 pub mod files;
 mod headless;
 pub mod history;
+mod input;
 mod panels;
+mod paths;
 pub mod picks;
 pub mod playback;
 mod reader;
@@ -35,7 +37,7 @@ pub mod view;
 mod window;
 pub mod worker;
 
-pub use app::Viewer;
+pub use app::{Hears, Viewer};
 pub use command::Command;
 pub use headless::{Drawn, draw_session};
 pub use window::{Options, ViewError, run, wgpu_setup};

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use directories::ProjectDirs;
 use neurotess::output::{Existing, write_whole};
@@ -12,6 +13,9 @@ use crate::document::{ColourBy, Detail, Look};
 
 /// Most files in the recent list.
 const RECENT: usize = 12;
+/// What is to be remembered and is not yet written.
+static UNWRITTEN: Mutex<Option<Settings>> = Mutex::new(None);
+
 /// Environment variable that names another folder for it.
 pub const FOLDER_VARIABLE: &str = "NEUROTESS_CONFIG";
 
@@ -98,6 +102,11 @@ impl Settings {
             .map_err(|e| e.to_string())
     }
 
+    /// Notes them for whoever ends the program before the window closes.
+    pub(crate) fn note(&self) {
+        *UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.clone());
+    }
+
     /// Puts files on top of the recent list.
     pub fn remember_files(&mut self, paths: &[PathBuf]) {
         for path in paths {
@@ -110,6 +119,18 @@ impl Settings {
         }
         self.recent.truncate(RECENT);
     }
+}
+
+/// Writes what is not yet written: for a program that is asked to end, from any thread.
+///
+/// # Errors
+/// Why that did not work.
+pub fn write_noted() -> Result<(), String> {
+    let noted = UNWRITTEN
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take();
+    noted.map_or(Ok(()), |settings| settings.save())
 }
 
 /// The folder of what is remembered.

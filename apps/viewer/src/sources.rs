@@ -40,7 +40,7 @@ pub struct Source {
     /// Morphometrics.
     pub measures: Arc<Measures>,
     /// What was odd in the file, and what was mended in the mesh.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// When the file was written last; none: a sample.
     pub written: Option<SystemTime>,
     /// Balls around the mesh (µm).
@@ -52,6 +52,48 @@ pub struct Source {
     /// By section: length (µm) and branch order.
     pub sections: Arc<Vec<SectionFacts>>,
 }
+
+/// Something that was odd or was mended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// For people, with its line if it has one.
+    pub text: String,
+    /// Whether somebody should look into it: something is missing or was guessed.
+    pub concerns: bool,
+}
+
+impl Remark {
+    fn new(code: &str, text: String) -> Self {
+        let concerns = CONCERNS.contains(&code);
+        Self { text, concerns }
+    }
+}
+
+/// Names of what somebody should look into. What else readers and the generator tell of is the daily work of
+/// making a mesh: points closer together than they are thick, say, of which nearly every tracing has some.
+const CONCERNS: [&str; 21] = [
+    "disconnected",
+    "far_from_soma",
+    "negative_radius",
+    "no_seat",
+    "no_soma",
+    "one_point_tree",
+    "other_cells_left_out",
+    "radius_mended",
+    "ring_unused",
+    "rings_cross",
+    "several_somata",
+    "soma_branches",
+    "soma_folded",
+    "soma_inside_neurite",
+    "soma_not_root",
+    "soma_of_one_point",
+    "soma_radius_mended",
+    "soma_zero_radius",
+    "unknown_expression",
+    "untyped_tree",
+    "zero_radius",
+];
 
 /// What a file has become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -302,7 +344,7 @@ pub fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
         let line = w
             .line
             .map_or(String::new(), |line| format!("line {line}: "));
-        format!("{line}{}", w.message)
+        Remark::new(w.code, format!("{line}{}", w.message))
     });
     let warnings = warnings.collect();
     let made = source(
@@ -331,11 +373,12 @@ fn source(
     name: String,
     morphology: Morphology,
     soma: SomaEdit,
-    mut warnings: Vec<String>,
+    mut warnings: Vec<Remark>,
     written: Option<SystemTime>,
 ) -> Result<Source, String> {
     let generated = generate(&morphology, &soma.options()).map_err(|e| e.to_string())?;
-    warnings.extend(generated.warnings.iter().map(ToString::to_string));
+    let made = generated.warnings.iter();
+    warnings.extend(made.map(|w| Remark::new(w.code, w.to_string())));
     let (all, few_balls) = balls(&generated.mesh);
     Ok(Source {
         file: file.to_path_buf(),

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use neurotess::render::{Ball, Placement};
+use neurotess::render::{Ball, Placement, Side};
 
 use crate::circuits::Circuits;
 use crate::command::{Ask, Command, Tab, Toggles};
 use crate::document::{self, Document, SourceId};
 use crate::files::FilePanel;
 use crate::history::History;
+use crate::input::Open;
 use crate::playback::Playback;
 use crate::save::SaveForm;
 use crate::settings::Settings;
@@ -102,6 +103,8 @@ pub struct State {
     pub playback: Playback,
     /// From where one looks.
     pub view: View,
+    /// The side from which the view shows everything, until it is moved by hand.
+    pub fitted: Option<Side>,
     /// Views of a film.
     pub key_views: Vec<View>,
     /// The view that levels are frozen for.
@@ -162,6 +165,18 @@ pub enum Over {
     Replace(PathBuf, Box<Command>),
 }
 
+impl Over {
+    /// What that means for the keys.
+    pub(crate) fn open(&self) -> Open {
+        match self {
+            Self::Nothing => Open::Nothing,
+            Self::Keys | Self::Problems => Open::Sheet,
+            Self::Palette(..) => Open::Palette,
+            Self::Files(_) | Self::Replace(..) => Open::Question,
+        }
+    }
+}
+
 /// What a command asks of the program around.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
@@ -193,6 +208,7 @@ impl State {
             circuits: Circuits::default(),
             playback: Playback::default(),
             view: View::default(),
+            fitted: None,
             key_views: Vec::new(),
             frozen: None,
             hovered: None,
@@ -251,8 +267,8 @@ impl State {
             }
             Command::Redo => {
                 self.said = match self.history.redo(&mut self.document) {
-                    Some(name) => format!("Done again: {}", name.to_lowercase()),
-                    None => "Nothing to do again".into(),
+                    Some(name) => format!("Redone: {}", name.to_lowercase()),
+                    None => "Nothing to redo".into(),
                 };
                 self.forget_what_is_gone();
             }
@@ -269,23 +285,23 @@ impl State {
             Command::Cancel => self.effects.push(Effect::Cancel),
             Command::Quit => self.effects.push(Effect::Quit),
             Command::Look(side) => {
-                let balls = self.outline(|_| true);
-                let view = self
-                    .view
-                    .fitted(side, self.settings.y_down, self.aspect, &balls);
-                self.effects.push(Effect::Go(view));
+                self.effects.push(Effect::Go(self.fit(side)));
+                self.fitted = Some(side);
             }
-            Command::Home => self.run(Command::Look(neurotess::render::Side::Front)),
+            Command::Home => self.run(Command::Look(Side::Front)),
             Command::Focus => {
                 let any = self.document.selected().next().is_some();
                 let balls = self.outline(|n| n.selected || !any);
                 let (low, high) = extent(&balls);
                 if !balls.is_empty() {
                     let ball = ((low + high) / 2.0, (high - low).length() / 2.0);
-                    self.effects.push(Effect::Go(self.view.focused(ball)));
+                    self.run(Command::Go(self.view.focused(ball)));
                 }
             }
-            Command::Go(view) => self.effects.push(Effect::Go(view)),
+            Command::Go(view) => {
+                self.effects.push(Effect::Go(view));
+                self.fitted = None;
+            }
             Command::SetYDown(y_down) => {
                 self.settings.y_down = y_down;
                 self.run(Command::Home);
@@ -314,6 +330,25 @@ impl State {
             }
             save => self.effects.push(Effect::Save(save)),
         }
+    }
+
+    /// Everything, from a side.
+    fn fit(&self, side: Side) -> View {
+        let balls = self.outline(|_| true);
+        self.view
+            .fitted(side, self.settings.y_down, self.aspect, &balls)
+    }
+
+    /// The picture has another form: what was seen is still seen. Gives the view, if it is another one.
+    pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
+        let before = std::mem::replace(&mut self.aspect, aspect);
+        if before == aspect || self.document.neurons.is_empty() {
+            return None;
+        }
+        Some(match self.fitted {
+            Some(side) => self.fit(side),
+            None => self.view.reshaped(before, aspect),
+        })
     }
 
     fn toggle(&mut self, over: Over) {

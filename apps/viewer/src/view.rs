@@ -134,6 +134,13 @@ impl View {
         self.with(camera.eye(), middle(&camera, balls), up)
     }
 
+    /// In a picture of another form (width by height), as much along its shorter side.
+    #[must_use]
+    pub fn reshaped(&self, before: f64, after: f64) -> Self {
+        let factor = before.min(1.0) / after.min(1.0);
+        self.zoomed(factor, self.camera().target())
+    }
+
     /// The point at the target's depth that is seen at a place of the picture (pixels).
     pub fn under(&self, [x, y]: [f64; 2], size: [f64; 2]) -> DVec3 {
         let camera = self.camera();
@@ -228,6 +235,17 @@ mod tests {
         assert!((x - 100.0).abs() < 1e-6 && (y - 80.0).abs() < 1e-6);
         let [x, y] = seen(&view.zoomed(0.3, place));
         assert!((x - 100.0).abs() < 1e-6 && (y - 80.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_picture_of_another_form_keeps_its_shorter_side() {
+        let view = View::default().orbited(0.4, 0.2, DVec3::Y);
+        let away = |view: View| view.camera().eye().distance(view.camera().target());
+        assert!((away(view.reshaped(2.0, 1.5)) - 300.0).abs() < 1e-9);
+        // Half as wide as high: twice as far.
+        let narrow = view.reshaped(2.0, 0.5);
+        assert!((away(narrow) - 600.0).abs() < 1e-9);
+        assert!((away(narrow.reshaped(0.5, 1.0)) - 300.0).abs() < 1e-9);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use neurotess::render::{DeviceError, choose_adapter, device_descriptor};
 use thiserror::Error;
 
-use crate::app::{Viewer, lost};
+use crate::app::{Hears, Viewer, lost};
 use crate::command::Command;
 use crate::document::SomaEdit;
 use crate::settings::Settings;
@@ -44,11 +44,11 @@ pub enum ViewError {
     Lost(String),
 }
 
-/// Opens the window and stays until it is closed.
+/// Opens the window and stays until it is closed. `hears` is told of every command before it runs.
 ///
 /// # Errors
 /// Why it cannot be opened, or why it had to close.
-pub fn run(options: Options) -> Result<(), ViewError> {
+pub fn run(options: Options, hears: Option<Hears>) -> Result<(), ViewError> {
     if !has_display() {
         let why = "neither DISPLAY nor WAYLAND_DISPLAY is set";
         return Err(ViewError::NoDisplay(why.into()));
@@ -76,7 +76,7 @@ pub fn run(options: Options) -> Result<(), ViewError> {
         eframe::run_native(
             "neurotess",
             native,
-            Box::new(move |context| Ok(Box::new(Window::new(context, options, out)?))),
+            Box::new(move |context| Ok(Box::new(Window::new(context, options, hears, out)?))),
         )
     }));
     drop(take_hook());
@@ -146,6 +146,7 @@ impl Window {
     fn new(
         context: &eframe::CreationContext<'_>,
         options: Options,
+        hears: Option<Hears>,
         fatal: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
         let render = context
@@ -155,6 +156,9 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
+        if let Some(hears) = hears {
+            viewer = viewer.with_hearing(hears);
+        }
         if let Some(said) = said {
             viewer.state.problem("settings", said);
         }

@@ -39,6 +39,8 @@ pub enum Message {
 pub struct Job {
     /// What it does.
     pub what: String,
+    /// What its steps are, as in `tiles`.
+    pub steps: &'static str,
     /// Steps done.
     pub done: Arc<AtomicUsize>,
     /// All steps, 0 where that is not known yet.
@@ -48,9 +50,10 @@ pub struct Job {
 }
 
 impl Job {
-    pub(crate) fn new(what: &str, all: usize) -> Self {
+    pub(crate) fn new(what: &str, steps: &'static str, all: usize) -> Self {
         Self {
             what: what.to_owned(),
+            steps,
             done: Arc::default(),
             all: Arc::new(AtomicUsize::new(all)),
             cancelled: Arc::default(),
@@ -60,6 +63,15 @@ impl Job {
     /// Whether it should end.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// What it does and how far it is, for people.
+    pub(crate) fn said(&self) -> String {
+        let (what, steps) = (&self.what, self.steps);
+        match [&self.done, &self.all].map(|n| n.load(Ordering::Relaxed)) {
+            [_, 0 | 1] => what.clone(),
+            [done, all] => format!("{what}: {done} of {all} {steps}"),
+        }
     }
 
     /// Share done, 0 to 1.
@@ -133,7 +145,7 @@ impl Worker {
 
     /// Reads files, folders and circuits on all cores.
     pub fn load(&mut self, wanted: Wanted) {
-        let job = Job::new("reading", 0);
+        let job = Job::new("reading", "files", 0);
         self.loading = Some(job.clone());
         self.start(move |send| {
             let found = sources::find(&wanted);
@@ -205,10 +217,10 @@ impl Worker {
     pub fn save(
         &mut self,
         what: &str,
-        steps: usize,
+        (all, steps): (usize, &'static str),
         work: impl FnOnce(&Job) -> Result<String, String> + Send + 'static,
     ) {
-        let job = Job::new(what, steps);
+        let job = Job::new(what, steps, all);
         self.saving = Some(job.clone());
         self.start(move |send| send(Message::Saved(guarded(|| work(&job)))));
     }

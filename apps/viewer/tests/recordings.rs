@@ -201,7 +201,7 @@ fn spikes_flash() {
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert!(facts.spikes && facts.range == [0.0, 1.0] && facts.without == [0, 9]);
     run(&mut window, Command::Show(Tab::Look));
-    window.get_by_label("flashes");
+    window.get_by_label("spikes fade in");
     let last = facts.time.time_of(facts.time.frames - 1);
     run(&mut window, Command::Seek(last));
     set_look(&mut window, |look| look.decay = 100.0);

@@ -137,29 +137,35 @@ fn bar(
             image.blend(x, y, colour, 1.0);
         }
     }
-    let [low, high] = range;
-    let step = nice_step(f64::from(high - low) / 5.0);
-    let mut tick = (f64::from(low) / step).ceil() * step;
-    while tick <= f64::from(high) * (1.0 + 1e-6) {
-        let fraction = ((tick - f64::from(low)) / f64::from(high - low)) as f32;
-        let y = top + height * (1.0 - fraction);
+    for (share, label) in ticks(range, more, line / height) {
+        let y = top + height * (1.0 - share);
         for column in 0..(0.25 * line).ceil() as i64 {
             image.blend(width as i64 + column, y as i64, ink, 0.8);
         }
-        let last = tick + step > f64::from(high) * (1.0 + 1e-6);
-        let sign = if more && last && fraction > 0.999 {
-            "≥ "
-        } else {
-            ""
-        };
-        let label = format!("{sign}{}", number(tick, step));
         text.draw(image, width + 0.45 * line, y, &label, ink);
+    }
+}
+
+/// Round numbers beside a bar, by their share of its height. `more`: the upper end is one of them, whatever
+/// it is, and says that it stands for all above. None comes nearer to another than `line`, a share of the
+/// height: they would be written over one another.
+fn ticks([low, high]: [f32; 2], more: bool, line: f32) -> Vec<(f32, String)> {
+    let [low, high] = [low, high].map(f64::from);
+    let step = nice_step((high - low) / 5.0);
+    let mut ticks = Vec::new();
+    let mut tick = (low / step).ceil() * step;
+    while tick <= high * (1.0 + 1e-6) {
+        let share = ((tick - low) / (high - low)) as f32;
+        ticks.push((share, number(tick, step)));
         tick += step;
     }
     if more {
-        let label = format!("≥ {}", number(f64::from(high), step / 10.0));
-        text.draw(image, width + 0.45 * line, top - 0.1 * line, &label, ink);
+        let label = ticks.iter().find(|(share, _)| *share > 0.999);
+        let label = label.map_or(number(high, step / 10.0), |(_, label)| label.clone());
+        ticks.retain(|(share, _)| 1.0 - share >= line);
+        ticks.push((1.0, format!("≥ {label}")));
     }
+    ticks
 }
 
 /// A bar of a length in µm with its name above, in lines of this height (pixels).
@@ -241,6 +247,38 @@ mod tests {
         );
         assert_eq!(number(0.5, 0.1), "0.5");
         assert_eq!(number(100.0, 50.0), "100");
+    }
+
+    #[test]
+    fn ticks_are_a_line_apart_and_the_end_stands_for_more() {
+        let line = 1.0 / BAR_LINES;
+        for range in [
+            [0.0, 0.51],
+            [0.0, 0.5],
+            [0.0, 1.0],
+            [-80.3, 35.2],
+            [3.0, 3.1],
+            [0.0, 7e4],
+        ] {
+            for more in [false, true] {
+                let ticks = ticks(range, more, line);
+                let near = ticks.windows(2).any(|t| t[1].0 - t[0].0 < line);
+                assert!(!near && ticks.len() > 1, "{range:?}: {ticks:?}");
+                let end = ticks
+                    .last()
+                    .is_some_and(|(share, l)| *share == 1.0 && l.starts_with("≥ "));
+                assert_eq!(end, more, "{range:?}: {ticks:?}");
+            }
+        }
+        let labels = |range, more| -> Vec<String> {
+            let ticks = ticks(range, more, line);
+            ticks.into_iter().map(|(_, label)| label).collect()
+        };
+        assert_eq!(labels([0.0, 0.51], true), ["0.0", "0.2", "0.4", "≥ 0.51"]);
+        assert_eq!(
+            labels([0.0, 1.0], true),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "≥ 1.0"]
+        );
     }
 
     #[test]

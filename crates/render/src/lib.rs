@@ -52,6 +52,7 @@ mod targets;
 mod templates;
 mod text;
 mod timing;
+mod watch;
 mod work;
 
 pub use adaptive::Adaptive;
@@ -91,3 +92,4 @@ pub use refining::{Choice, Refining, Sight};
 pub use scene::{Instance, Placement, Scene, SceneError, TemplateId};
 pub use shade::{Clip, FAINT, Light, Look, MARKED, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA};
 pub use templates::{Template, Templates};
+pub use watch::Watch;

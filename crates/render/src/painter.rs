@@ -8,6 +8,8 @@
 use std::ops::Range;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::colour::{ColourTable, Rgb, linear};
 use crate::device::Gpu;
@@ -18,6 +20,7 @@ use crate::maker::VertexMaker;
 use crate::shade::{GUARD, Look, Shade, Shader, TableSizes, Way};
 use crate::targets::{Targets, make};
 use crate::timing::{Pass, Timer};
+use crate::watch::Watch;
 
 /// How a tile is finished.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +152,9 @@ impl Painter {
         self.targets.as_ref().map_or(0, |targets| targets.bytes)
     }
 
-    /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB.
+    /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB; nothing if it is not
+    /// wanted any more.
+    #[expect(clippy::too_many_arguments, reason = "a tile has so many sides")]
     pub(crate) fn paint(
         &mut self,
         gpu: &Gpu,
@@ -157,7 +162,8 @@ impl Painter {
         frame: &Frame,
         look: &Look,
         finishing: &Finishing,
-    ) -> Result<Vec<u8>, DeviceError> {
+        watch: Option<&Watch>,
+    ) -> Result<Option<Vec<u8>>, DeviceError> {
         let size = [frame.tile.width, frame.tile.height];
         let empty = finishing
             .background
@@ -165,11 +171,11 @@ impl Painter {
         if !maker.shows(&finishing.without_margin(frame)) {
             let pixel = finishing.scale * finishing.scale;
             let [width, height] = size.map(|n| n - 2 * finishing.margin);
-            return Ok(empty.repeat((width * height / pixel) as usize));
+            return Ok(Some(empty.repeat((width * height / pixel) as usize)));
         }
         self.make_targets(gpu, size)?;
         let Some(targets) = &self.targets else {
-            return Ok(Vec::new());
+            return Ok(None);
         };
         let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
@@ -218,9 +224,13 @@ impl Painter {
         encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
-        let pixels = read(gpu, &targets.read, bytes)?;
+        let Some(pixels) = read_watched(gpu, &targets.read, bytes, watch)? else {
+            // What is read is not there yet, so that it cannot be drawn to again.
+            self.targets = None;
+            return Ok(None);
+        };
         self.timer.read(gpu)?;
-        Ok(pixels)
+        Ok(Some(pixels))
     }
 
     /// Chooses and draws a frame, waits for it, and leaves it where it is: for stopwatches. Gives the
@@ -407,13 +417,31 @@ fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
 
 /// Waits for the device and copies the front of a buffer.
 pub(crate) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, DeviceError> {
+    read_watched(gpu, buffer, bytes, None).map(Option::unwrap_or_default)
+}
+
+/// The same; nothing if it is not wanted any more.
+fn read_watched(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    bytes: u64,
+    watch: Option<&Watch>,
+) -> Result<Option<Vec<u8>>, DeviceError> {
     let slice = buffer.slice(..bytes);
-    slice.map_async(wgpu::MapMode::Read, |_| {});
-    gpu.wait()?;
+    let mapped = Arc::new(AtomicBool::new(false));
+    let tells = Arc::clone(&mapped);
+    slice.map_async(wgpu::MapMode::Read, move |_| {
+        tells.store(true, Ordering::Release);
+    });
+    match watch {
+        Some(watch) if !watch.wait(gpu, &mapped)? => return Ok(None),
+        Some(_) => {}
+        None => gpu.wait()?,
+    }
     let copied = slice
         .get_mapped_range()
         .map(|range| range.to_vec())
         .map_err(|e| DeviceError::Lost(e.to_string()))?;
     buffer.unmap();
-    Ok(copied)
+    Ok(Some(copied))
 }

@@ -19,6 +19,7 @@ use crate::maker::VertexMaker;
 use crate::painter::{self, Finishing, Painter};
 use crate::shade::{GUARD, Look, Way};
 use crate::timing::PASSES;
+use crate::watch::Watch;
 
 /// How a picture is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +97,9 @@ pub enum PictureError<E> {
     /// Whoever takes the bands.
     #[error("{0}")]
     Sink(E),
+    /// Whoever watches wants it no more.
+    #[error("stopped")]
+    Stopped,
 }
 
 /// What a picture cost.
@@ -137,6 +141,13 @@ impl PictureOptions {
     pub fn sub_pixels(&self, gpu: &Gpu) -> u32 {
         let in_each = f64::from(samples_in_sub_pixel(gpu, self.samples_taken()));
         ((f64::from(self.samples_taken()) / in_each).sqrt() as u32).max(1)
+    }
+
+    /// Number of tiles of a picture.
+    pub fn tiles(&self, gpu: &Gpu, camera: &Camera) -> usize {
+        let Parting { step, .. } = self.parting(gpu, camera);
+        let [across, down] = [0, 1].map(|k| self.size[k].max(1).div_ceil(step[k]));
+        across as usize * down as usize
     }
 
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
@@ -191,6 +202,7 @@ pub fn paint<E>(
 pub struct Studio {
     painters: Vec<Painter>,
     states: Vec<u32>,
+    watch: Option<Watch>,
 }
 
 impl Studio {
@@ -202,6 +214,11 @@ impl Studio {
     /// States of instances in the scene's order, [`MARKED`](crate::MARKED) and so on; 0 beyond the end.
     pub fn set_states(&mut self, states: &[u32]) {
         self.states = states.to_vec();
+    }
+
+    /// Tells how far pictures are, and ends them when it is told to.
+    pub fn set_watch(&mut self, watch: Watch) {
+        self.watch = Some(watch);
     }
 
     fn painter(
@@ -252,6 +269,7 @@ impl Studio {
             cut,
             valued: table.values.instances() > 0,
         };
+        let watch = self.watch.clone();
         let painter = self.painter(gpu, maker, way)?;
         painter.set_table(gpu, table);
         painter.timer.reset();
@@ -279,8 +297,17 @@ impl Studio {
                         height: step[1] * scale + 2 * margin,
                     },
                 };
-                let pixels = painter.paint(gpu, maker, &frame, &options.look, &finishing)?;
+                let watch = watch.as_ref();
+                if watch.is_some_and(Watch::is_stopped) {
+                    return Err(PictureError::Stopped);
+                }
+                let look = &options.look;
+                let pixels = painter.paint(gpu, maker, &frame, look, &finishing, watch)?;
+                let Some(pixels) = pixels else {
+                    return Err(PictureError::Stopped);
+                };
                 band.copy_from(left, &pixels, step[0]);
+                watch.into_iter().for_each(Watch::note_tile);
                 tiles += 1;
             }
             take(top, band).map_err(PictureError::Sink)?;

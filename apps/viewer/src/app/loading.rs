@@ -82,7 +82,7 @@ impl Viewer {
         state.document.grid = session.grid;
         state.document.report = session.report.clone();
         state.playback.pace = session.playback;
-        state.view = session.view;
+        (state.view, state.fitted) = (session.view, None);
         state.key_views = session.key_view.clone();
         state.session = Some(file.to_path_buf());
         self.going = None;

@@ -7,12 +7,13 @@ mod saving;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Key};
+use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::render::DeviceError;
 
-use crate::command::Command;
+use crate::command::{Command, listed};
 use crate::document::SomaEdit;
+use crate::input::Input;
 use crate::panels;
 use crate::settings::Settings;
 use crate::stage::Stage;
@@ -42,13 +43,19 @@ pub struct Viewer {
     theme: Option<(bool, u32)>,
     remembered: Settings,
     smooth: bool,
+    /// Whether the form of the picture is known.
+    shaped: bool,
     /// Somata of what is opened first.
     soma: SomaEdit,
     /// When the recording's time was looked at last.
     ticked: Instant,
     /// Where the session is saved when the program must end.
     rescue: PathBuf,
+    hears: Option<Hears>,
 }
+
+/// Told of every command before it runs.
+pub type Hears = Box<dyn Fn(&Command)>;
 
 impl Viewer {
     /// In a window that has a device.
@@ -61,6 +68,7 @@ impl Viewer {
         settings: Settings,
     ) -> Result<Self, DeviceError> {
         let waker = ctx.clone();
+        ctx.add_plugin(Input::new());
         let stage = Stage::new(render)?;
         let mut state = State::new(settings.clone());
         let adapter = &stage.gpu().adapter;
@@ -77,9 +85,11 @@ impl Viewer {
             theme: None,
             remembered: settings,
             smooth: true,
+            shaped: false,
             soma: SomaEdit::default(),
             ticked: Instant::now(),
             rescue: crate::settings::folder().unwrap_or_default(),
+            hears: None,
         })
     }
 
@@ -92,6 +102,12 @@ impl Viewer {
     /// Somata of what is opened first are made so.
     pub fn with_soma(mut self, soma: SomaEdit) -> Self {
         self.soma = soma;
+        self
+    }
+
+    /// Tells somebody of every command before it runs.
+    pub fn with_hearing(mut self, hears: Hears) -> Self {
+        self.hears = Some(hears);
         self
     }
 
@@ -120,19 +136,18 @@ impl Viewer {
             self.take(message);
         }
         self.take_drops(&ctx);
+        self.shortcuts(&ctx);
         self.go_on(&ctx);
         self.tick();
         panels::show(self, ui);
         for command in std::mem::take(&mut self.state.asked) {
-            self.state.run(command);
+            self.run(command);
             ctx.request_repaint();
         }
-        let effects = std::mem::take(&mut self.state.effects);
-        for effect in effects {
-            self.effect(effect);
-            ctx.request_repaint();
-        }
+        self.do_effects(&ctx);
         self.want_somata();
+        self.note_settings();
+        self.end_input(&ctx);
         if self.quits {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
@@ -178,7 +193,7 @@ impl Viewer {
             .filter(|p| !p.as_os_str().is_empty())
             .collect();
         if !paths.is_empty() {
-            self.state.run(Command::Open(paths));
+            self.run(Command::Open(paths));
         }
     }
 
@@ -206,7 +221,24 @@ impl Viewer {
     /// Moves the camera by hand.
     pub(crate) fn steer(&mut self, view: View) {
         self.going = None;
+        self.state.fitted = None;
         self.state.view = view;
+    }
+
+    /// The picture has another form (width by height).
+    pub(crate) fn reshape(&mut self, aspect: f64) {
+        let fitted = self.state.fitted.is_some();
+        if !fitted && let Some((_, to, _)) = self.going.take() {
+            self.state.view = to;
+        }
+        let known = std::mem::replace(&mut self.shaped, true);
+        match (self.state.reshape(aspect), &mut self.going) {
+            // A view that came from elsewhere, such as a session, is for no form of ours.
+            (Some(_), _) if !fitted && !known => {}
+            (Some(view), Some((_, to, _))) => *to = view,
+            (Some(view), None) => self.state.view = view,
+            (None, _) => {}
+        }
     }
 
     fn effect(&mut self, effect: Effect) {
@@ -233,31 +265,45 @@ impl Viewer {
         }
     }
 
-    /// Keys that are commands; not while somebody types.
-    pub(crate) fn shortcuts(&mut self, ctx: &egui::Context) {
-        if ctx.egui_wants_keyboard_input() {
-            return;
+    /// Does what is asked of the program around.
+    fn do_effects(&mut self, ctx: &egui::Context) {
+        for effect in std::mem::take(&mut self.state.effects) {
+            self.effect(effect);
+            ctx.request_repaint();
         }
-        for (_, items) in crate::command::listed(&self.state.toggles()) {
-            for item in items {
-                if let Some(keys) = item.keys
-                    && ctx.input_mut(|input| input.consume_shortcut(&keys))
-                {
-                    self.state.asked.push(item.command);
-                }
+    }
+
+    /// Runs the shortcuts of this frame, in their order: what one changes counts for the next.
+    fn shortcuts(&mut self, ctx: &egui::Context) {
+        let pressed = ctx.with_plugin(Input::take_pressed).unwrap_or_default();
+        for keys in pressed {
+            let menus = listed(&self.state.toggles());
+            let mut items = menus.into_iter().flat_map(|(_, items)| items);
+            if let Some(item) = items.find(|item| item.keys == Some(keys)) {
+                self.run(item.command);
+                ctx.request_repaint();
             }
         }
-        // Some keyboards send ? as a text only.
-        let asks = ctx.input(|input| {
-            input
-                .events
-                .iter()
-                .any(|e| matches!(e, egui::Event::Text(t) if t == "?"))
-                && !input.key_pressed(Key::Questionmark)
+    }
+
+    /// Tells the input what is open, for the next frame.
+    fn end_input(&self, ctx: &egui::Context) {
+        let open = self.state.over.open();
+        let waits = ctx.with_plugin(|input: &mut Input| {
+            input.set_open(open);
+            input.waits()
         });
-        if asks {
-            self.state.asked.push(Command::ToggleKeys);
+        if waits == Some(true) {
+            ctx.request_repaint();
         }
+    }
+
+    /// Does a command, and tells whoever listens.
+    fn run(&mut self, command: Command) {
+        if let Some(hears) = &self.hears {
+            hears(&command);
+        }
+        self.state.run(command);
     }
 }
 

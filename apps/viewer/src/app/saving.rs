@@ -8,6 +8,7 @@ use crate::document::Neuron;
 use crate::save::{self, FilmOptions, MeshPlan, Scenery, Still};
 use crate::scene;
 use crate::session::{self, Session};
+use crate::settings;
 use crate::worker::Job;
 
 impl Viewer {
@@ -25,18 +26,22 @@ impl Viewer {
     }
 
     pub(super) fn save(&mut self, command: Command) {
+        if let Command::SaveSession(path) = &command {
+            // It is small, and written at once, whatever else is being written.
+            return self.save_session(path);
+        }
         if self.worker.saving.is_some() {
             self.state
                 .problem("save", "wait until the last one is written, or stop it");
             return;
         }
         match command {
-            Command::SaveSession(path) => self.save_session(&path),
             Command::SaveMeshes(options) => {
                 let plans = self.mesh_plans(options.all);
                 let (view, detail) = (self.state.view, self.state.document.detail);
                 let height = self.stage.height();
-                self.worker.save("writing meshes", plans.len(), move |job| {
+                let steps = (plans.len(), "meshes");
+                self.worker.save("writing meshes", steps, move |job| {
                     save::meshes(&plans, &options, &view, &detail, height, job)
                 });
             }
@@ -47,11 +52,12 @@ impl Viewer {
                     view: self.state.view,
                     time: Some(self.state.playback.pace.time),
                 };
-                self.worker.save("drawing the picture", 1, move |job| {
-                    let files = save::pictures(&scenery, &[still], &options, job)?;
-                    let file = files.first().map(|f| f.display().to_string());
-                    Ok(format!("Saved {}", file.unwrap_or_default()))
-                });
+                self.worker
+                    .save("drawing the picture", (0, "tiles"), move |job| {
+                        let files = save::pictures(&scenery, &[still], &options, job)?;
+                        let file = files.first().map(|f| f.display().to_string());
+                        Ok(format!("Saved {}", file.unwrap_or_default()))
+                    });
             }
             Command::SaveFilm(film) => {
                 self.save_film(film);
@@ -87,8 +93,7 @@ impl Viewer {
                 first.display()
             ))
         };
-        let length = save::length(keys.len(), film.frames, time.is_some());
-        self.worker.save("drawing the film", length, work);
+        self.worker.save("drawing the film", (0, "tiles"), work);
     }
 
     fn save_session(&mut self, path: &Path) {
@@ -123,6 +128,7 @@ impl Viewer {
     fn scenery(&self) -> Scenery {
         Scenery {
             gpu: self.stage.gpu().clone(),
+            shared: true,
             shown: self.stage.shown().clone(),
             look: self.state.document.look.clone(),
             states: scene::states(&self.state.document),
@@ -132,11 +138,17 @@ impl Viewer {
 
     /// Writes what is remembered, if it has changed.
     pub fn remember(&mut self) {
+        self.note_settings();
+        if let Err(why) = settings::write_noted() {
+            self.state.problem("settings", why);
+        }
+    }
+
+    /// Notes what is remembered, if it has changed: who ends the program writes it.
+    pub(super) fn note_settings(&mut self) {
         if self.state.settings != self.remembered {
             self.remembered = self.state.settings.clone();
-            if let Err(why) = self.remembered.save() {
-                self.state.problem("settings", why);
-            }
+            self.remembered.note();
         }
     }
 }

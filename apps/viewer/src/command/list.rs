@@ -77,7 +77,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::SelectNone,
                 ),
                 item(
-                    "Select the others",
+                    "Invert the selection",
                     Some((CTRL, Key::I)),
                     Command::SelectOthers,
                 ),
@@ -97,7 +97,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::Home,
                 ),
                 item(
-                    "Focus on the selection",
+                    "Zoom to the selection",
                     Some((PLAIN, Key::F)),
                     Command::Focus,
                 ),
@@ -128,20 +128,12 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 item("Isolate selected", Some((PLAIN, Key::I)), Command::Isolate),
                 item("Show all", Some((CTRL, Key::H)), Command::ShowAll),
                 item(
-                    choose(
-                        now.y_down,
-                        "Let y run down (electron microscopy)",
-                        "Let y run up",
-                    ),
+                    choose(now.y_down, "y axis down (electron microscopy)", "y axis up"),
                     Some((PLAIN, Key::Y)),
                     Command::SetYDown(!now.y_down),
                 ),
                 item(
-                    choose(
-                        now.grid,
-                        "Lay out side by side",
-                        "Put where they were traced",
-                    ),
+                    choose(now.grid, "Lay out side by side", "Place as traced"),
                     Some((PLAIN, Key::G)),
                     Command::SetGrid(!now.grid),
                 ),
@@ -149,7 +141,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     choose(
                         now.frozen,
                         "Freeze the level of detail",
-                        "Thaw the level of detail",
+                        "Unfreeze the level of detail",
                     ),
                     Some((CTRL, Key::F)),
                     Command::SetFrozen(!now.frozen),
@@ -160,12 +152,12 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::TogglePlay,
                 ),
                 item(
-                    "A frame back",
+                    "Previous frame",
                     Some((PLAIN, Key::Comma)),
                     Command::StepTime(-1),
                 ),
                 item(
-                    "A frame on",
+                    "Next frame",
                     Some((PLAIN, Key::Period)),
                     Command::StepTime(1),
                 ),

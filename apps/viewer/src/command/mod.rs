@@ -174,6 +174,11 @@ impl Command {
         })
     }
 
+    /// Whether it opens a line of text that hears all keys from then on.
+    pub(crate) fn moves_keyboard(&self) -> bool {
+        matches!(self, Self::AskFiles(_) | Self::TogglePalette)
+    }
+
     /// Whether several in a row are one edit: a slider that is dragged.
     pub fn joins(&self) -> bool {
         matches!(

@@ -1,9 +1,13 @@
 //! The list of neurons, and the tree of neurites and sections of the selected one.
 
-use eframe::egui::{self, CollapsingHeader, Label, RichText, ScrollArea, Sense, TextEdit};
+use eframe::egui::{
+    self, Align, Button, CollapsingHeader, Label, Layout, Rect, RichText, ScrollArea, Sense,
+    TextEdit, vec2,
+};
 use neurotess::morphology::{Attachment, Morphology, SectionId};
 
 use super::measured;
+use super::tip::Tip;
 use crate::command::Command;
 use crate::sources::{SectionFacts, Stale};
 use crate::state::{Part, Picked, State};
@@ -12,19 +16,28 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     ui.add_space(4.0);
     let neurons = state.document.neurons.len();
     let hidden = state.document.neurons.iter().filter(|n| n.hidden).count();
+    let rows = rows(state);
     ui.horizontal(|ui| {
-        ui.label(RichText::new(count(neurons, "neuron")).strong());
+        let title = match state.search.is_empty() {
+            true => count(neurons, "neuron"),
+            false => format!(
+                "{} of {}",
+                super::grouped(rows.len() as u64),
+                count(neurons, "neuron")
+            ),
+        };
+        ui.label(RichText::new(title).strong());
         if hidden > 0
             && ui
                 .link(format!("{hidden} hidden"))
-                .on_hover_text("Show all")
+                .tip("Show all")
                 .clicked()
         {
             state.asked.push(Command::ShowAll);
         }
     });
-    if neurons > 8 {
-        let search = TextEdit::singleline(&mut state.search).hint_text("Search names");
+    if neurons > FEW || !state.search.is_empty() {
+        let search = TextEdit::singleline(&mut state.search).hint_text("Filter by name");
         ui.add(search.desired_width(f32::INFINITY));
     }
     ui.separator();
@@ -42,38 +55,62 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     } else {
         ui.available_height()
     };
-    list(state, height, &mut hovered, ui);
+    list(state, &rows, height, &mut hovered, ui);
     if let Some(picked) = picked {
         ui.separator();
         tree_of(state, picked.neuron, &mut hovered, ui);
     }
-    if hovered.is_some() {
+    // What is hidden has no place in the picture that could be marked.
+    let neurons = &state.document.neurons;
+    let shows = |p: &Picked| neurons.get(p.neuron).is_some_and(|n| !n.hidden);
+    if hovered.as_ref().is_some_and(shows) {
         state.hovered = hovered;
     }
 }
 
-fn list(state: &mut State, height: f32, hovered: &mut Option<Picked>, ui: &mut egui::Ui) {
+/// With so few neurons nobody needs to search.
+const FEW: usize = 8;
+
+/// Neurons whose names have what is searched.
+fn rows(state: &State) -> Vec<usize> {
     let wanted = state.search.to_lowercase();
-    let rows: Vec<usize> = state
-        .document
-        .neurons
-        .iter()
-        .enumerate()
+    let neurons = state.document.neurons.iter().enumerate();
+    neurons
         .filter(|(_, n)| wanted.is_empty() || n.name.to_lowercase().contains(&wanted))
         .map(|(i, _)| i)
-        .collect();
+        .collect()
+}
+
+fn list(
+    state: &mut State,
+    rows: &[usize],
+    height: f32,
+    hovered: &mut Option<Picked>,
+    ui: &mut egui::Ui,
+) {
     let row_height = ui.spacing().interact_size.y;
+    let step = row_height + ui.spacing().item_spacing.y;
+    let wanted = state.reveal.map(|picked| picked.neuron);
+    let wanted = rows.iter().position(|&row| Some(row) == wanted);
     ScrollArea::vertical()
         .id_salt("neurons")
         .max_height(height)
         .auto_shrink([false, true])
         .show_rows(ui, row_height, rows.len(), |ui, shown| {
+            if let Some(wanted) = wanted {
+                let above = (wanted as f32 - shown.start as f32) * step;
+                let line = Rect::from_min_size(
+                    ui.max_rect().min + vec2(0.0, above),
+                    vec2(1.0, row_height),
+                );
+                ui.scroll_to_rect(line, None);
+            }
             for &index in &rows[shown] {
                 row(state, index, hovered, ui);
             }
         });
     if rows.is_empty() {
-        ui.weak("No name has this in it");
+        ui.weak("No name contains this text");
     }
 }
 
@@ -81,53 +118,63 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
     let neuron = &state.document.neurons[index];
     let (name, hidden, selected) = (neuron.name.clone(), neuron.hidden, neuron.selected);
     let stale = state.source_of(index).and_then(|s| s.stale);
-    let warnings = state.source_of(index).map_or(0, |s| s.warnings.len());
+    let warnings = state.source_of(index).map_or(0, |s| {
+        let concerns = s.warnings.iter().filter(|w| w.concerns);
+        concerns.count()
+    });
     ui.horizontal(|ui| {
         let mut shown = !hidden;
         let says = if hidden { "Show" } else { "Hide" };
-        if ui.checkbox(&mut shown, "").on_hover_text(says).changed() {
+        if ui.checkbox(&mut shown, "").tip(says).changed() {
             state.asked.push(Command::SetHidden(index, !shown));
         }
-        let text = RichText::new(&name);
-        let text = if hidden { text.weak() } else { text };
-        let response = ui.selectable_label(selected, text);
-        if response.hovered() {
-            *hovered = Some(Picked {
-                neuron: index,
-                part: Part::Soma,
+        // From the right: what is said of it, then its name in what is left.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            match stale {
+                Some(Stale::Changed) => {
+                    let says = "The file has changed: read it again";
+                    let reloads = ui.small_button("reload").tip(says).clicked();
+                    state.asked.extend(reloads.then_some(Command::Reload));
+                }
+                Some(Stale::Gone) => {
+                    ui.colored_label(ui.visuals().warn_fg_color, "file gone")
+                        .tip("The file was moved or deleted; what was read is still shown");
+                }
+                None if warnings > 0 => {
+                    ui.colored_label(ui.visuals().warn_fg_color, "!")
+                        .tip(format!("{} to check: see Inspect", count(warnings, "note")));
+                }
+                None => {}
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let text = RichText::new(&name);
+                let text = if hidden { text.weak() } else { text };
+                let response = ui.add(Button::selectable(selected, text).truncate());
+                named(state, index, &response, hovered);
             });
-        }
-        if response.double_clicked() {
-            state.asked.push(Command::Select(vec![index], false));
-            state.asked.push(Command::Focus);
-        } else if response.clicked() {
-            let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
-            state.asked.push(Command::Select(vec![index], adds));
-            state.picked = Some(Picked {
-                neuron: index,
-                part: Part::Soma,
-            });
-        }
-        response.context_menu(|ui| menu(state, index, ui));
-        let reloads = |ui: &mut egui::Ui| {
-            let says = "Its file has changed: read it again";
-            ui.small_button("reload").on_hover_text(says).clicked()
-        };
-        match stale {
-            Some(Stale::Changed) => {
-                state.asked.extend(reloads(ui).then_some(Command::Reload));
-            }
-            Some(Stale::Gone) => {
-                ui.colored_label(ui.visuals().warn_fg_color, "gone")
-                    .on_hover_text("Its file is gone; what was read still shows");
-            }
-            None if warnings > 0 => {
-                ui.weak("!")
-                    .on_hover_text(format!("{}: see Inspect", count(warnings, "remark")));
-            }
-            None => {}
-        }
+        });
     });
+}
+
+/// What the cursor does on the name of a neuron.
+fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &mut Option<Picked>) {
+    let soma = Picked {
+        neuron: index,
+        part: Part::Soma,
+    };
+    if response.hovered() {
+        *hovered = Some(soma);
+    }
+    if response.double_clicked() {
+        state.asked.push(Command::Select(vec![index], false));
+        state.asked.push(Command::Focus);
+    } else if response.clicked() {
+        let modifiers = response.ctx.input(|i| i.modifiers);
+        let adds = modifiers.shift || modifiers.command;
+        state.asked.push(Command::Select(vec![index], adds));
+        state.picked = Some(soma);
+    }
+    response.context_menu(|ui| menu(state, index, ui));
 }
 
 fn menu(state: &mut State, index: usize, ui: &mut egui::Ui) {
@@ -161,6 +208,7 @@ fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &
                 neuron,
                 hovered,
                 reveal,
+                opening: false,
             };
             if morphology.soma().is_some() {
                 leaf.show(Part::Soma, "Soma".into(), ui);
@@ -169,6 +217,10 @@ fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &
                 if !matches!(section.attachment, Attachment::Section(_)) {
                     neurite(&mut leaf, &morphology, &facts, index, ui);
                 }
+            }
+            // Where a neurite's lines still unfold, the one that is wanted goes on moving.
+            if leaf.opening {
+                leaf.state.reveal = reveal;
             }
         });
 }
@@ -179,6 +231,8 @@ struct Leaf<'a> {
     neuron: usize,
     hovered: &'a mut Option<Picked>,
     reveal: Option<Picked>,
+    /// Lines that hold what is to be revealed are not all there yet.
+    opening: bool,
 }
 
 impl Leaf<'_> {
@@ -196,7 +250,7 @@ impl Leaf<'_> {
         };
         let response = ui.selectable_label(chosen, text);
         if self.reveal == Some(picked) {
-            response.scroll_to_me(Some(egui::Align::Center));
+            response.scroll_to_me(Some(Align::Center));
         }
         self.respond(picked, &response);
     }
@@ -248,6 +302,7 @@ fn neurite(
                 });
             }
         });
+    leaf.opening |= opens && !header.fully_open();
     let picked = Picked {
         neuron: leaf.neuron,
         part: Part::Neurite(number),

@@ -1,7 +1,12 @@
 //! The level of detail, with what it costs.
 
-use eframe::egui::{self, Color32, Pos2, Sense, Slider, Stroke, Ui, vec2};
+use std::ops::RangeInclusive;
 
+use eframe::egui::emath::Numeric;
+use eframe::egui::{self, Color32, Pos2, Sense, Stroke, Ui, vec2};
+
+use super::number::slider;
+use super::tip::Tip;
 use super::{figures, grouped, heading};
 use crate::command::Command;
 use crate::document::{Criterion, Detail};
@@ -11,44 +16,39 @@ use crate::state::{Draft, Lowered, State};
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let mut detail = state.document.detail;
     let before = detail;
-    heading(ui, "Chosen by");
+    heading(ui, "Triangle size by");
     ui.horizontal_wrapped(|ui| {
         for (criterion, name, says) in CRITERIA {
             ui.selectable_value(&mut detail.criterion, criterion, name)
-                .on_hover_text(says);
+                .tip(says);
         }
     });
     ui.add_space(4.0);
     sliders(&mut detail, ui);
-    let says = "What is smaller in the picture is left out; 0: nothing";
-    ui.add(
-        Slider::new(&mut detail.smallest, 0.0..=8.0)
-            .text("smallest (px)")
-            .fixed_decimals(1),
-    )
-    .on_hover_text(says);
+    let says = "What is smaller than this in the picture is not drawn; 0 draws everything";
+    slider(ui, &mut detail.smallest, 0.0..=8.0, Some(1), |slider| {
+        slider.text("hide below (px)")
+    })
+    .tip(says);
     ui.horizontal(|ui| {
         let usual = Detail::default();
         if ui
-            .add_enabled(detail != usual, egui::Button::new("As usual"))
+            .add_enabled(detail != usual, egui::Button::new("Reset all"))
+            .tip("The defaults of this panel")
             .clicked()
         {
             detail = usual;
         }
         let mut wires = state.document.look.wires;
-        if ui.checkbox(&mut wires, "Triangles").changed() {
+        if ui.checkbox(&mut wires, "Wireframe").changed() {
             let mut look = state.document.look.clone();
             look.wires = wires;
             state.asked.push(Command::SetLook(Box::new(look)));
         }
     });
     let mut frozen = state.frozen.is_some();
-    let says = "Keeps the levels and what is left out as they are now, so that you can go round and look at them";
-    if ui
-        .checkbox(&mut frozen, "Freeze")
-        .on_hover_text(says)
-        .changed()
-    {
+    let says = "Keeps the triangles of this view while you move on, to look at them from elsewhere";
+    if ui.checkbox(&mut frozen, "Freeze").tip(says).changed() {
         state.asked.push(Command::SetFrozen(frozen));
     }
     if detail != before {
@@ -64,62 +64,52 @@ const CRITERIA: [(Criterion, &str, &str); 4] = [
     (
         Criterion::Error,
         "Error",
-        "No surface farther than this from the finest one, in pixels",
+        "At most so many pixels between the triangles and the smooth surface",
     ),
     (
         Criterion::Size,
         "Size",
-        "No edge longer than this, in pixels",
+        "Edges of triangles are at most so many pixels long",
     ),
-    (Criterion::Homogeneous, "Same", "The same level everywhere"),
+    (
+        Criterion::Homogeneous,
+        "Uniform",
+        "The same number of subdivisions everywhere",
+    ),
     (
         Criterion::Distance,
         "Distance",
-        "The level falls with the distance from the eye (García-Cantero et al. 2017)",
+        "Fewer subdivisions with the distance from the camera (García-Cantero et al. 2017)",
     ),
 ];
 
 fn sliders(detail: &mut Detail, ui: &mut Ui) {
     match detail.criterion {
         Criterion::Error => {
-            ui.add(
-                Slider::new(&mut detail.error, 0.05..=20.0)
-                    .logarithmic(true)
-                    .text("error (px)"),
-            );
+            log(ui, &mut detail.error, 0.05..=20.0, "max. error (px)");
         }
         Criterion::Size => {
-            ui.add(
-                Slider::new(&mut detail.size, 1.0..=100.0)
-                    .logarithmic(true)
-                    .text("size (px)"),
-            );
+            log(ui, &mut detail.size, 1.0..=100.0, "max. edge (px)");
         }
         Criterion::Homogeneous => {
-            ui.add(
-                Slider::new(&mut detail.level, 1..=64)
-                    .logarithmic(true)
-                    .text("level"),
-            );
+            log(ui, &mut detail.level, 1..=64, "subdivisions");
         }
         Criterion::Distance => {
-            ui.add(
-                Slider::new(&mut detail.level, 1..=64)
-                    .logarithmic(true)
-                    .text("level at the eye"),
-            );
-            ui.add(
-                Slider::new(&mut detail.far, 1.0..=100_000.0)
-                    .logarithmic(true)
-                    .text("level 1 from (µm)"),
-            );
+            log(ui, &mut detail.level, 1..=64, "at the camera");
+            log(ui, &mut detail.far, 1.0..=100_000.0, "none beyond (µm)");
         }
     }
 }
 
+fn log<N: Numeric>(ui: &mut Ui, value: &mut N, range: RangeInclusive<N>, name: &str) {
+    slider(ui, value, range, None, |slider| {
+        slider.logarithmic(true).text(name)
+    });
+}
+
 fn counters(state: &State, ui: &mut Ui) {
     let c = &state.counters;
-    heading(ui, "At rest");
+    heading(ui, "Picture at rest");
     let mut rows = match c.lowered {
         None => vec![
             ("triangles", grouped(c.triangles)),
@@ -129,28 +119,24 @@ fn counters(state: &State, ui: &mut Ui) {
             ),
         ],
         Some(Lowered::Triangles(Some([drawn, wanted]))) => vec![
-            ("triangles, lowered", grouped(drawn)),
-            ("wanted", grouped(wanted)),
+            ("triangles, reduced", grouped(drawn)),
+            ("for full detail", grouped(wanted)),
         ],
         Some(Lowered::Triangles(None)) => vec![],
-        Some(Lowered::Error(times)) => vec![("lowered", format!("{times:.0} times as coarse"))],
+        Some(Lowered::Error(times)) => vec![("reduced", format!("{times:.0} times as coarse"))],
     };
-    rows.push(("memory, cells", size(c.bytes[0])));
-    rows.push(("memory, pictures", size(c.bytes[1])));
+    rows.push(("GPU memory, neurons", size(c.bytes[0])));
+    rows.push(("GPU memory, images", size(c.bytes[1])));
     figures(ui, "counters", &rows);
-    heading(ui, "Frames");
+    heading(ui, "Drawing times");
     graph(&c.frames_ms, ui);
     match c.draft {
         Draft::Budget(triangles) => {
             let most = grouped(u64::from(triangles));
-            ui.weak(format!(
-                "While moving: at most {most} triangles, to keep up."
-            ));
+            ui.weak(format!("While moving: at most {most} triangles."));
         }
         Draft::Error(times) if times > 1.05 => {
-            ui.weak(format!(
-                "While moving: {times:.0} times as coarse, to keep up."
-            ));
+            ui.weak(format!("While moving: {times:.0} times as coarse."));
         }
         Draft::Error(_) => {}
     }
@@ -199,5 +185,5 @@ fn graph(frames: &[f32], ui: &mut Ui) {
         painter.line_segment(bar, Stroke::new((step - 1.0).max(1.0), colour));
     }
     let last = frames.last().copied().unwrap_or(0.0);
-    ui.weak(format!("last piece of work {last:.1} ms"));
+    ui.weak(format!("last: {last:.1} ms"));
 }

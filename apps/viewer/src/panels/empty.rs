@@ -11,7 +11,7 @@ pub(super) fn show(state: &mut State, reading: bool, ui: &mut egui::Ui) {
     ui.with_layout(Layout::top_down(Align::Center), |ui| {
         ui.add_space((height * 0.2).max(12.0));
         ui.label(RichText::new("neurotess").size(34.0).strong());
-        ui.label(RichText::new("Surfaces of neurons from their tracings").size(15.0).weak());
+        ui.label(RichText::new("Surface meshes of neurons from their tracings").size(15.0).weak());
         ui.add_space(22.0);
         if reading {
             ui.spinner();

@@ -4,6 +4,7 @@ use eframe::egui::{self, RichText};
 use neurotess::morphology::{Measures, NeuriteKind};
 
 use super::cells::{count, kind_name};
+use super::tip::Tip;
 use super::{figures, grouped, heading, measured};
 use crate::command::Command;
 use crate::sources::Source;
@@ -14,7 +15,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     match &selected[..] {
         [] => {
             ui.weak(
-                "Nothing is selected. Click a neuron in the picture or in the list; Shift adds.",
+                "Nothing is selected. Click a neuron in the picture or in the list; Shift + click selects several.",
             );
             ui.add_space(6.0);
             all(state, ui);
@@ -49,13 +50,17 @@ fn buttons(state: &mut State, ui: &mut egui::Ui) {
             (
                 "Focus",
                 Command::Focus,
-                "As near as it fits (F, or double click)",
+                "Zoom to the selection (F or double click)",
             ),
-            ("Hide", Command::Hide, "Leave it out of the picture (H)"),
-            ("Isolate", Command::Isolate, "Leave out all others (I)"),
-            ("Show all", Command::ShowAll, "Everything (Ctrl H)"),
+            ("Hide", Command::Hide, "Hide the selection (H)"),
+            ("Isolate", Command::Isolate, "Hide everything else (I)"),
+            (
+                "Show all",
+                Command::ShowAll,
+                "Show all that is hidden (Ctrl H)",
+            ),
         ] {
-            if ui.button(title).on_hover_text(says).clicked() {
+            if ui.button(title).tip(says).clicked() {
                 state.asked.push(command);
             }
         }
@@ -91,7 +96,7 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
                     ("neurite", (facts.neurite + 1).to_string()),
                     ("branch order", facts.order.to_string()),
                     ("length", measured(facts.length, "µm")),
-                    ("way from the soma", measured(facts.path, "µm")),
+                    ("path from the soma", measured(facts.path, "µm")),
                     ("mean radius", measured(mean, "µm")),
                     ("points", points.len().to_string()),
                 ],
@@ -109,10 +114,10 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
                     ("length", measured(length, "µm")),
                     ("sections", of().count().to_string()),
                     (
-                        "deepest order",
+                        "highest branch order",
                         of().map(|f| f.order).max().unwrap_or(0).to_string(),
                     ),
-                    ("longest way", measured(longest, "µm")),
+                    ("longest path from the soma", measured(longest, "µm")),
                 ],
             );
         }
@@ -166,13 +171,13 @@ fn cell(source: &Source, ui: &mut egui::Ui) {
             grouped((m.n_bifurcations + m.n_multifurcations) as u64),
         ),
         ("ends", grouped(m.n_ends as u64)),
-        ("deepest order", m.max_branch_order.to_string()),
+        ("highest branch order", m.max_branch_order.to_string()),
         ("points", grouped(m.n_points as u64)),
     ];
     if let Some(bounds) = m.bbox {
         let side = |k: usize| bounds.max[k] - bounds.min[k];
         rows.push((
-            "extent",
+            "bounding box",
             format!("{:.0} × {:.0} × {:.0} µm", side(0), side(1), side(2)),
         ));
     }
@@ -202,9 +207,14 @@ fn cell(source: &Source, ui: &mut egui::Ui) {
         ],
     );
     if !source.warnings.is_empty() {
-        heading(ui, "Remarks");
-        for warning in &source.warnings {
-            ui.label(RichText::new(format!("• {warning}")).small());
+        heading(ui, "Notes on the tracing and its mesh");
+        // What somebody should look into comes first.
+        for concerns in [true, false] {
+            for note in source.warnings.iter().filter(|w| w.concerns == concerns) {
+                let text = RichText::new(format!("• {}", note.text)).small();
+                let warn = ui.visuals().warn_fg_color;
+                ui.label(if concerns { text.color(warn) } else { text });
+            }
         }
     }
 }
@@ -236,7 +246,7 @@ fn sums(state: &State, selected: &[usize], ui: &mut egui::Ui) {
     let sum = |of: fn(&Measures) -> f64| measures().map(|m| of(m)).sum::<f64>();
     let count =
         |of: fn(&Measures) -> usize| grouped(measures().map(|m| of(m)).sum::<usize>() as u64);
-    heading(ui, "Together");
+    heading(ui, "Totals");
     figures(
         ui,
         "sums",

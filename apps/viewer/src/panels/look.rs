@@ -1,9 +1,11 @@
 //! Colours, light, what is shown of cells.
 
-use eframe::egui::{self, ComboBox, DragValue, Slider, Ui};
+use eframe::egui::{self, ComboBox, Ui};
 use neurotess::render::{ColourMap, Legend, Palette};
 
 use super::heading;
+use super::number::{field, slider};
+use super::tip::Tip;
 use crate::command::{Ask, Command};
 use crate::document::{ColourBy, Cut, Lighting, Look, PAPER, Parts};
 use crate::state::State;
@@ -21,21 +23,19 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     ui.checkbox(&mut look.legend, "Legend");
     ui.checkbox(&mut look.scale_bar, "Scale bar");
     ui.checkbox(&mut look.axes, "Axes");
-    ui.checkbox(&mut look.wires, "Triangles")
-        .on_hover_text("Thin lines along the triangles' edges");
+    ui.checkbox(&mut look.wires, "Wireframe")
+        .tip("The edges of the triangles");
     heading(ui, "Selection");
-    ui.checkbox(&mut look.mark_selected, "Colour of its own");
-    ui.checkbox(&mut look.faint_others, "See through the others");
+    ui.checkbox(&mut look.mark_selected, "Color of its own");
+    ui.checkbox(&mut look.faint_others, "Fade the others");
     if look.faint_others {
-        ui.add(
-            Slider::new(&mut look.faint, 0.02..=0.9)
-                .text("left of them")
-                .fixed_decimals(2),
-        );
+        slider(ui, &mut look.faint, 0.02..=0.9, Some(2), |slider| {
+            slider.text("opacity of the others")
+        });
     }
     light(&mut look, ui);
     cut(&mut look, ui);
-    heading(ui, "Window");
+    heading(ui, "Window theme");
     let mut dark = state.settings.dark;
     ui.horizontal(|ui| {
         ui.selectable_value(&mut dark, true, "Dark");
@@ -44,8 +44,10 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     if dark != state.settings.dark {
         state.asked.push(Command::SetDark(dark));
     }
-    if look.colour_by == ColourBy::Value && state.document.report.is_none() {
-        look.colour_by = state.document.look.colour_by;
+    let before = state.document.look.colour_by;
+    let chosen_now = look.colour_by == ColourBy::Value && before != ColourBy::Value;
+    if chosen_now && state.document.report.is_none() {
+        look.colour_by = before;
         state.asked.push(match state.circuits.reports().pop() {
             Some((_, file)) => Command::SetReport(Some(file)),
             None => Command::AskFiles(Ask::Report),
@@ -59,9 +61,9 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
 }
 
 fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
-    heading(ui, "Colours");
+    heading(ui, "Colors");
     egui::Grid::new("colours").num_columns(2).show(ui, |ui| {
-        ui.label("by");
+        ui.label("color by");
         let name = ColourBy::ALL
             .iter()
             .find(|(by, _)| *by == look.colour_by)
@@ -87,7 +89,7 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
         let scaled = look.colour_by == ColourBy::Attribute && legend.is_bar();
         if look.colour_by.is_number() || scaled {
             range(state, look, ui);
-            ui.label("map");
+            ui.label("color map");
             ComboBox::from_id_salt("map")
                 .selected_text(look.colour_map.name())
                 .show_ui(ui, |ui| {
@@ -132,7 +134,8 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
 /// Attributes of the circuits' cells.
 fn attribute(state: &State, look: &mut Look, ui: &mut Ui) {
     let names = state.circuits.attributes();
-    if !names.contains(&look.attribute) {
+    let chosen_now = state.document.look.colour_by != ColourBy::Attribute;
+    if chosen_now && !names.contains(&look.attribute) {
         let usual = ["layer", "mtype", "model_name", "population"];
         let first = usual
             .into_iter()
@@ -166,7 +169,7 @@ fn report(state: &mut State, ui: &mut Ui) {
             for (name, file) in reports {
                 let chosen = shown.as_ref() == Some(&file);
                 let line = ui.selectable_label(chosen, name);
-                if line.on_hover_text(file.display().to_string()).clicked() {
+                if line.tip(file.display().to_string()).clicked() {
                     state.asked.push(Command::SetReport(Some(file)));
                 }
             }
@@ -180,22 +183,24 @@ fn report(state: &mut State, ui: &mut Ui) {
 /// Numbers at both ends of the colour map.
 fn range(state: &State, look: &mut Look, ui: &mut Ui) {
     ui.label("range")
-        .on_hover_text("Numbers at both ends of the colours");
+        .tip("The values at the two ends of the color map");
     ui.horizontal(|ui| {
         let facts = state.playback.facts.as_ref();
         let fitting = facts.filter(|_| look.colour_by == ColourBy::Value);
         let mut fixed = look.range.is_some();
         ui.checkbox(&mut fixed, "fixed")
-            .on_hover_text("Otherwise the least and the greatest are at the ends");
+            .tip("Otherwise from the smallest to the largest value");
         if fixed != look.range.is_some() {
             let fit = fitting.map_or([0.0, 100.0], |facts| facts.range);
             look.range = fixed.then_some(fit);
         }
         if let Some([low, high]) = &mut look.range {
             let speed = 0.005 * (*high - *low).abs().max(1e-3);
-            ui.add(DragValue::new(low).speed(speed));
+            let any = f32::MIN..=f32::MAX;
+            let digits = (2.0 - speed.log10()).clamp(2.0, 12.0) as usize;
+            field(ui, low, any.clone(), digits, |field| field.speed(speed));
             ui.label("–");
-            ui.add(DragValue::new(high).speed(speed));
+            field(ui, high, any, digits, |field| field.speed(speed));
         } else if let Some([low, high]) = fitting.map(|facts| facts.range) {
             ui.weak(format!("{low:.1} – {high:.1}"));
         }
@@ -203,13 +208,11 @@ fn range(state: &State, look: &mut Look, ui: &mut Ui) {
     ui.end_row();
     if look.colour_by == ColourBy::Value && state.playback.facts.as_ref().is_some_and(|f| f.spikes)
     {
-        ui.label("flashes");
-        let decay = DragValue::new(&mut look.decay)
-            .range(0.1..=1000.0)
-            .speed(0.1)
-            .suffix(" ms");
-        ui.add(decay)
-            .on_hover_text("After this time a flash has a third of its light");
+        ui.label("spikes fade in");
+        let decay = field(ui, &mut look.decay, 0.1..=1000.0, 2, |field| {
+            field.speed(0.1).suffix(" ms")
+        });
+        decay.tip("After this time the flash of a spike has a third of its brightness");
         ui.end_row();
     }
 }
@@ -224,40 +227,34 @@ fn light(look: &mut Look, ui: &mut Ui) {
             look.light = Lighting::Soft;
         }
         let from = matches!(look.light, Lighting::From { .. });
-        if ui.selectable_label(from, "From…").clicked() && !from {
+        if ui.selectable_label(from, "Directional").clicked() && !from {
             look.light = Lighting::From {
                 right: -35.0,
                 up: 40.0,
             };
         }
         if ui
-            .selectable_label(look.light == Lighting::Flat, "None")
-            .on_hover_text("The bare colours")
+            .selectable_label(look.light == Lighting::Flat, "Off")
+            .tip("Plain colors without shading")
             .clicked()
         {
             look.light = Lighting::Flat;
         }
     });
     if let Lighting::From { right, up } = &mut look.light {
-        ui.add(
-            Slider::new(right, -180.0..=180.0)
-                .text("right")
-                .suffix("°")
-                .fixed_decimals(0),
-        );
-        ui.add(
-            Slider::new(up, -90.0..=90.0)
-                .text("up")
-                .suffix("°")
-                .fixed_decimals(0),
-        );
+        slider(ui, right, -180.0..=180.0, Some(0), |slider| {
+            slider.text("from the right").suffix("°")
+        });
+        slider(ui, up, -90.0..=90.0, Some(0), |slider| {
+            slider.text("from above").suffix("°")
+        });
     }
-    ui.checkbox(&mut look.occlusion, "Dark corners")
-        .on_hover_text("Ambient occlusion: where surfaces are near one another");
+    ui.checkbox(&mut look.occlusion, "Ambient occlusion")
+        .tip("Darkens gaps and creases");
 }
 
 fn cut(look: &mut Look, ui: &mut Ui) {
-    heading(ui, "Cut");
+    heading(ui, "Cutting plane");
     ui.horizontal(|ui| {
         if ui.selectable_label(look.cut.is_none(), "None").clicked() {
             look.cut = None;
@@ -266,7 +263,7 @@ fn cut(look: &mut Look, ui: &mut Ui) {
             let here = look.cut.is_some_and(|cut| cut.axis == axis);
             if ui
                 .selectable_label(here, name)
-                .on_hover_text("A plane across this axis")
+                .tip("A plane across this axis cuts the front part away")
                 .clicked()
             {
                 let cut = look.cut.unwrap_or(Cut {
@@ -278,14 +275,12 @@ fn cut(look: &mut Look, ui: &mut Ui) {
             }
         }
         if let Some(cut) = &mut look.cut {
-            ui.checkbox(&mut cut.flipped, "other side");
+            ui.checkbox(&mut cut.flipped, "keep the other side");
         }
     });
     if let Some(cut) = &mut look.cut {
-        ui.add(
-            Slider::new(&mut cut.place, 0.0..=1.0)
-                .text("place")
-                .fixed_decimals(2),
-        );
+        slider(ui, &mut cut.place, 0.0..=1.0, Some(2), |slider| {
+            slider.text("position")
+        });
     }
 }

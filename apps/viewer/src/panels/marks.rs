@@ -103,9 +103,15 @@ pub(super) fn hovered(state: &State, rect: Rect, painter: &Painter) {
     let Some(Picked { neuron, part }) = state.hovered else {
         return;
     };
-    let (Some(source), Some(placement)) = (
+    let shows = state
+        .document
+        .neurons
+        .get(neuron)
+        .is_some_and(|n| !n.hidden);
+    let (Some(source), Some(placement), true) = (
         state.source_of(neuron),
         state.placements().get(neuron).copied(),
+        shows,
     ) else {
         return;
     };

@@ -7,16 +7,19 @@ mod inspect;
 mod look;
 mod marks;
 mod menu;
+mod number;
 mod over;
 mod rings;
 mod save;
 mod soma;
 mod status;
 mod timeline;
+mod tip;
 mod viewport;
 
 use eframe::egui::{
-    self, CentralPanel, Color32, CornerRadius, Frame, Margin, Panel, RichText, ScrollArea, Visuals,
+    self, CentralPanel, Color32, CornerRadius, Frame, Margin, Panel, RichText, ScrollArea, Sense,
+    UiBuilder, Visuals,
 };
 
 use crate::app::Viewer;
@@ -38,16 +41,20 @@ pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
         Panel::bottom("time").show(ui, |ui| timeline::show(&mut viewer.state, &facts, ui));
     }
     if viewer.state.panels && any {
-        Panel::left("cells")
-            .default_size(236.0)
-            .min_size(160.0)
-            .show(ui, |ui| {
-                cells::show(&mut viewer.state, ui);
-            });
-        Panel::right("side")
-            .default_size(292.0)
-            .min_size(240.0)
-            .show(ui, |ui| side(viewer, ui));
+        // In a narrow window the picture keeps a third.
+        let all = ui.available_width();
+        let sized = |panel: Panel, [least, usual]: [f32; 2], share: f32| {
+            let most = share * all;
+            panel
+                .default_size(usual.min(most))
+                .size_range(least.min(most)..=most)
+        };
+        sized(Panel::left("cells"), [160.0, 236.0], 0.28).show(ui, |ui| {
+            kept_in(ui, |ui| cells::show(&mut viewer.state, ui));
+        });
+        sized(Panel::right("side"), [240.0, 292.0], 0.42).show(ui, |ui| {
+            kept_in(ui, |ui| side(viewer, ui));
+        });
     }
     CentralPanel::no_frame().show(ui, |ui| {
         if any {
@@ -59,12 +66,23 @@ pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
     });
     over::show(&mut viewer.state, &ctx);
     over::hover(&ctx);
-    viewer.shortcuts(&ctx);
+}
+
+/// What is wider than its panel is cut off: it would push the panel over the picture.
+fn kept_in(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
+    let rect = ui.available_rect_before_wrap();
+    let mut inner = ui.new_child(UiBuilder::new().max_rect(rect));
+    inner.shrink_clip_rect(rect.expand(2.0));
+    show(&mut inner);
+    ui.allocate_rect(rect, Sense::hover());
 }
 
 fn side(viewer: &mut Viewer, ui: &mut egui::Ui) {
     ui.add_space(4.0);
-    ui.horizontal(|ui| {
+    // Sliders fill the panel, up to their usual length.
+    let room = (ui.available_width() - 150.0).clamp(40.0, 118.0);
+    ui.spacing_mut().slider_width = room;
+    ui.horizontal_wrapped(|ui| {
         for (tab, name) in Tab::ALL {
             let selected = viewer.state.tab == tab;
             if ui.selectable_label(selected, name).clicked() {

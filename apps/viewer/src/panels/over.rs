@@ -65,18 +65,15 @@ fn window<'a>(title: &'a str, ctx: &Context) -> egui::Window<'a> {
 }
 
 const MOUSE: [(&str, &str); 9] = [
-    ("left drag", "go round"),
-    ("middle or right drag, Shift + left drag", "move"),
-    (
-        "wheel, two fingers, pinch",
-        "nearer and farther, towards the cursor",
-    ),
-    ("click", "select; Shift or Ctrl adds"),
-    ("double click", "focus what is under the cursor"),
+    ("left drag", "rotate"),
+    ("middle or right drag, Shift + left drag", "pan"),
+    ("wheel, two fingers, pinch", "zoom in and out at the cursor"),
+    ("click", "select; with Shift or Ctrl, select several"),
+    ("double click", "zoom to what is under the cursor"),
     ("W A S D", "fly forward, left, back, right"),
     ("Q E", "fly down and up; Shift: faster"),
-    ("arrows", "go round in steps"),
-    ("+  −", "nearer and farther"),
+    ("arrows", "rotate"),
+    ("+  −", "zoom in and out"),
 ];
 
 fn keys(state: &State, ctx: &Context) -> Over {
@@ -158,7 +155,7 @@ fn problems(state: &mut State, ctx: &Context) -> Over {
                         .map(|p| format!("{}: {}\n", p.what, p.why));
                     ui.ctx().copy_text(lines.collect());
                 }
-                if ui.button("Forget them").clicked() {
+                if ui.button("Clear the list").clicked() {
                     state.problems.clear();
                 }
             });
@@ -168,13 +165,6 @@ fn problems(state: &mut State, ctx: &Context) -> Over {
 
 fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Context) -> Over {
     let mut done = false;
-    let all = listed(&state.toggles());
-    let items: Vec<(&str, Listed)> = all
-        .into_iter()
-        .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
-        .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), &words))
-        .collect();
-    chosen = chosen.min(items.len().saturating_sub(1));
     egui::Window::new("palette")
         .title_bar(false)
         .resizable(false)
@@ -188,13 +178,15 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
             line.request_focus();
             let [up, down, enter] = [Key::ArrowUp, Key::ArrowDown, Key::Enter]
                 .map(|key| ui.input(|i| i.key_pressed(key)));
-            if line.changed() {
-                chosen = 0;
-            } else if down {
-                chosen = (chosen + 1).min(items.len().saturating_sub(1));
-            } else if up {
-                chosen = chosen.saturating_sub(1);
-            }
+            // Found by the words of now: Enter may have come with the last letter.
+            let items = found(state, &words);
+            let last = items.len().saturating_sub(1);
+            chosen = match (up, down) {
+                _ if line.changed() => 0,
+                (_, true) => (chosen + 1).min(last),
+                (true, _) => chosen.min(last).saturating_sub(1),
+                _ => chosen.min(last),
+            };
             ui.separator();
             ScrollArea::vertical()
                 .max_height(280.0)
@@ -215,15 +207,28 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
                         }
                     }
                     if items.is_empty() {
-                        ui.weak("No command has this in it");
+                        ui.weak("No command contains these words");
                     }
                 });
+            if done {
+                // The next key is no text any more.
+                line.surrender_focus();
+            }
         });
     if done {
         Over::Nothing
     } else {
         Over::Palette(words, chosen)
     }
+}
+
+/// Commands with their menus, of those whose names have all words.
+fn found(state: &State, words: &str) -> Vec<(&'static str, Listed)> {
+    let all = listed(&state.toggles());
+    all.into_iter()
+        .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
+        .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), words))
+        .collect()
 }
 
 /// Whether all words are in a title, in any order.
@@ -255,7 +260,7 @@ fn replace(
             if ui.button("Replace").clicked() {
                 answer = Some(true);
             }
-            if ui.button("Keep it").clicked() {
+            if ui.button("Cancel").clicked() {
                 answer = Some(false);
             }
         });

@@ -1,8 +1,10 @@
 //! Sliders of first rings: where each neurite leaves its soma. What is touched is shown in the picture.
 
-use eframe::egui::{Button, Color32, Label, RichText, Sense, Slider, Ui};
+use eframe::egui::{Button, Color32, Label, RichText, Sense, Ui};
 
 use super::cells;
+use super::number::slider;
+use super::tip::Tip;
 use crate::command::Command;
 use crate::document::SourceId;
 use crate::sources::Source;
@@ -34,13 +36,13 @@ pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
         let reset = Button::new("reset all").small();
         if ui
             .add_enabled(any, reset)
-            .on_hover_text("All rings where they are by themselves")
+            .tip("All first rings at their automatic positions")
             .clicked()
         {
             state.asked.push(Command::ResetRings(id));
         }
     });
-    ui.weak("0: on the sphere, 1: at the first point");
+    ui.weak("0: on the soma's sphere, 1: at the first traced point");
     for row in &rows {
         self::row(state, id, row, ui);
     }
@@ -83,29 +85,28 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
         ui.painter().rect_filled(swatch, 2.0, row.colour);
         let name = ui.add(Label::new(&row.name).sense(Sense::hover()));
         touched |= name.hovered();
-        name.on_hover_text(
-            "Place of the neurite's first ring: 0 on the soma's sphere, 1 at the first traced point \
-             outside it, 2 as far beyond along the path (at least half the soma's radius)",
+        name.tip(
+            "Where the neurite's mesh begins: 0 on the soma's sphere, 1 at the first traced point outside \
+             it, 2 as far beyond along the path (at least half the soma's radius)",
         );
         match row.asked {
             None => {
-                ui.weak("by itself");
+                ui.weak("automatic");
             }
             Some(asked) if row.position < asked - 5e-3 => {
-                let text = format!("stops at {:.2}", row.position);
+                let text = format!("limited to {:.2}", row.position);
                 ui.label(RichText::new(text).color(ui.visuals().warn_fg_color))
-                    .on_hover_text(
+                    .tip(
                         "A fork, the neurite's end or a turn of its path is in the way, or the soma \
-                         would fold",
+                         would fold over itself",
                     );
             }
             Some(_) => {}
         }
     });
     ui.horizontal(|ui| {
-        let slider = Slider::new(&mut value, 0.0..=2.0).fixed_decimals(2);
         // No tooltip: it would hide the ring that moves.
-        let response = ui.add(slider);
+        let response = slider(ui, &mut value, 0.0..=2.0, Some(2), |slider| slider);
         touched |= response.hovered() || response.dragged() || response.has_focus();
         let ended = response.drag_stopped() || response.lost_focus();
         if value != before {
@@ -118,7 +119,7 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
         let reset = Button::new("reset").small();
         if ui
             .add_enabled(row.asked.is_some(), reset)
-            .on_hover_text("Where it is by itself")
+            .tip("Automatic position")
             .clicked()
         {
             state.asked.push(Command::SetRing(id, row.neurite, None));

@@ -2,13 +2,16 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{Button, ComboBox, DragValue, RichText, TextEdit, Ui};
+use eframe::egui::{Button, ComboBox, RichText, Ui};
 use neurotess::mesh::Format;
 use neurotess::render::LARGEST;
 
 use super::cells::count;
 use super::heading;
+use super::number::field;
+use super::tip::Tip;
 use crate::command::{Ask, Command};
+use crate::paths;
 use crate::save::{FilmOptions, Fineness, PictureFile, has_ffmpeg, length};
 use crate::state::{Over, State};
 
@@ -23,19 +26,10 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     ui.add_space(6.0);
     ui.separator();
     heading(ui, "Session");
-    ui.weak("Files, view, look, somata, what is hidden and selected, to go on later or elsewhere.");
+    ui.weak("Keeps the files, the view, the look, soma settings, and what is hidden and selected, to continue later.");
     if ui.button("Save session…").clicked() {
         state.asked.push(Command::AskFiles(Ask::SaveSession));
     }
-}
-
-/// A line for a path.
-fn path_line(path: &mut String, ui: &mut Ui) {
-    ui.add(
-        TextEdit::singleline(path)
-            .desired_width(f32::INFINITY)
-            .hint_text("A path"),
-    );
 }
 
 /// Asks before files are replaced.
@@ -60,9 +54,9 @@ fn meshes(state: &mut State, ui: &mut Ui) {
     heading(ui, "Meshes");
     let shown = state.document.neurons.iter().filter(|n| !n.hidden).count();
     let selected = state.document.selected().count();
-    let form = &mut state.save;
+    let (form, folder) = (&mut state.save, &state.settings.folder);
     ui.horizontal_wrapped(|ui| {
-        ui.radio_value(&mut form.mesh.all, true, format!("all shown ({shown})"));
+        ui.radio_value(&mut form.mesh.all, true, format!("visible ({shown})"));
         ui.radio_value(&mut form.mesh.all, false, format!("selected ({selected})"));
     });
     ui.horizontal(|ui| {
@@ -86,16 +80,17 @@ fn meshes(state: &mut State, ui: &mut Ui) {
     });
     fineness(&mut form.mesh.fineness, ui);
     ui.horizontal_wrapped(|ui| {
-        ui.checkbox(&mut form.mesh.placed, "where it stands here").on_hover_text(
-            "As laid out in the window, or placed by its circuit; else in the tracing's own coordinates",
+        ui.checkbox(&mut form.mesh.placed, "placed as shown").tip(
+            "Positions as in the window (side by side, or in the circuit); otherwise the coordinates of each file",
         );
-        ui.checkbox(&mut form.mesh.linear, "straight").on_hover_text("Straight between traced points instead of smooth");
-        ui.checkbox(&mut form.mesh.flat, "flat ends").on_hover_text("Disks instead of half spheres");
+        ui.checkbox(&mut form.mesh.linear, "straight segments").tip("Straight between traced points; otherwise smooth curves through them");
+        ui.checkbox(&mut form.mesh.flat, "flat ends").tip("Neurites end in flat disks; otherwise in half spheres");
     });
-    path_line(&mut form.mesh_out, ui);
+    let extension = form.mesh.format.extension();
+    paths::listing_line(&mut form.mesh_out, extension, folder, ui);
     let number = if form.mesh.all { shown } else { selected };
     if number > 1 {
-        ui.weak("Several: a folder of this name, one file each.");
+        ui.weak("Writes a folder of this name with a file for each neuron.");
     }
     let title = format!("Save {}", count(number, "mesh").replace("meshs", "meshes"));
     let ready = number > 0 && !form.mesh_out.trim().is_empty();
@@ -124,8 +119,8 @@ fn fineness(fineness: &mut Fineness, ui: &mut Ui) {
     ui.horizontal(|ui| {
         let level = matches!(fineness, Fineness::Level(_));
         if ui
-            .selectable_label(level, "level")
-            .on_hover_text("Subdivisions of every coarse edge; 0: the coarse quads")
+            .selectable_label(level, "subdivisions")
+            .tip("Of every edge of the coarse mesh; 0: the coarse mesh itself")
             .clicked()
             && !level
         {
@@ -133,8 +128,8 @@ fn fineness(fineness: &mut Fineness, ui: &mut Ui) {
         }
         let error = matches!(fineness, Fineness::MaxError(_));
         if ui
-            .selectable_label(error, "error")
-            .on_hover_text("As fine as keeps the surface within a distance of the finest one")
+            .selectable_label(error, "max. error")
+            .tip("As many subdivisions as keep the mesh within this distance of the smooth surface")
             .clicked()
             && !error
         {
@@ -143,22 +138,19 @@ fn fineness(fineness: &mut Fineness, ui: &mut Ui) {
         let shown = matches!(fineness, Fineness::AsShown);
         if ui
             .selectable_label(shown, "as shown")
-            .on_hover_text("The levels of the picture: near things finer")
+            .tip("The subdivisions of the picture: finer where the camera is close")
             .clicked()
         {
             *fineness = Fineness::AsShown;
         }
         match fineness {
             Fineness::Level(level) => {
-                ui.add(DragValue::new(level).range(0..=64));
+                field(ui, level, 0..=64, 0, |field| field);
             }
             Fineness::MaxError(error) => {
-                ui.add(
-                    DragValue::new(error)
-                        .range(0.001..=10.0)
-                        .speed(0.005)
-                        .suffix(" µm"),
-                );
+                field(ui, error, 0.001..=10.0, 4, |field| {
+                    field.speed(0.005).suffix(" µm")
+                });
             }
             Fineness::AsShown => {}
         }
@@ -167,9 +159,9 @@ fn fineness(fineness: &mut Fineness, ui: &mut Ui) {
 
 fn picture(state: &mut State, ui: &mut Ui) {
     heading(ui, "Picture");
-    let form = &mut state.save;
+    let (form, folder) = (&mut state.save, &state.settings.folder);
     size(&mut form.picture, ui);
-    path_line(&mut form.picture_out, ui);
+    paths::listing_line(&mut form.picture_out, "png", folder, ui);
     let ready = !form.picture_out.trim().is_empty();
     if ui.add_enabled(ready, Button::new("Save picture")).clicked() {
         let out = PathBuf::from(form.picture_out.trim()).with_extension("png");
@@ -195,26 +187,20 @@ fn picture(state: &mut State, ui: &mut Ui) {
 
 fn size(picture: &mut PictureFile, ui: &mut Ui) {
     ui.horizontal(|ui| {
-        ui.add(
-            DragValue::new(&mut picture.size[0])
-                .range(1..=LARGEST)
-                .speed(8),
-        );
+        let [width, height] = &mut picture.size;
+        field(ui, width, 1..=LARGEST, 0, |field| field.speed(8));
         ui.label("×");
-        ui.add(
-            DragValue::new(&mut picture.size[1])
-                .range(1..=LARGEST)
-                .speed(8),
-        );
+        field(ui, height, 1..=LARGEST, 0, |field| field.speed(8));
         ui.label("pixels");
     });
     // Wrapped: what is too wide widens all that comes after it.
     ui.horizontal_wrapped(|ui| {
-        ui.label("smoothness").on_hover_text("Samples of a pixel");
+        ui.label("samples per pixel")
+            .tip("More give smoother edges and take longer");
         for samples in [4, 16, 64] {
             ui.selectable_value(&mut picture.samples, samples, samples.to_string());
         }
-        ui.checkbox(&mut picture.transparent, "no background");
+        ui.checkbox(&mut picture.transparent, "transparent background");
     });
 }
 
@@ -230,24 +216,18 @@ fn film_time(state: &mut State, ui: &mut Ui) {
         form.time = [start, end];
     }
     ui.horizontal(|ui| {
-        ui.checkbox(&mut form.over_time, "time goes on")
-            .on_hover_text(
-                "The report's time runs through the film; with fewer than two views, from here",
+        ui.checkbox(&mut form.over_time, "play the report")
+            .tip(
+                "The report plays through the film; with fewer than two kept views the camera stays here",
             );
         if form.over_time {
             let [from, to] = form.time;
-            ui.add(
-                DragValue::new(&mut form.time[0])
-                    .range(start..=to)
-                    .speed(axis.step),
-            );
+            let [first, last] = &mut form.time;
+            field(ui, first, start..=to, 3, |field| field.speed(axis.step));
             ui.label("–");
-            ui.add(
-                DragValue::new(&mut form.time[1])
-                    .range(from..=end)
-                    .speed(axis.step)
-                    .suffix(" ms"),
-            );
+            field(ui, last, from..=end, 3, |field| {
+                field.speed(axis.step).suffix(" ms")
+            });
         }
     });
 }
@@ -255,18 +235,18 @@ fn film_time(state: &mut State, ui: &mut Ui) {
 fn film(state: &mut State, ui: &mut Ui) {
     heading(ui, "Film");
     if state.key_views.is_empty() {
-        ui.weak("Keep a few views (K); the film goes from one to the next.");
+        ui.weak("Keep two or more views (K): the camera moves from one to the next.");
     }
     for (index, view) in state.key_views.clone().into_iter().enumerate() {
         ui.horizontal(|ui| {
             if ui
                 .button(format!("View {}", index + 1))
-                .on_hover_text("Go there")
+                .tip("Go there")
                 .clicked()
             {
                 state.asked.push(Command::Go(view));
             }
-            if ui.small_button("×").on_hover_text("Forget it").clicked() {
+            if ui.small_button("×").tip("Remove this view").clicked() {
                 state.asked.push(Command::DropKeyView(index));
             }
         });
@@ -280,17 +260,17 @@ fn film(state: &mut State, ui: &mut Ui) {
     if keys < 2 && !over_time {
         return;
     }
-    let form = &mut state.save;
+    let (form, folder) = (&mut state.save, &state.settings.folder);
     ui.horizontal(|ui| {
-        ui.add(DragValue::new(&mut form.frames).range(1..=3000));
+        field(ui, &mut form.frames, 1..=3000, 0, |field| field);
         ui.label(match keys {
-            0 | 1 => "pictures",
-            _ => "pictures from view to view",
+            0 | 1 => "frames",
+            _ => "frames from view to view",
         });
     });
     let all = length(keys, form.frames, over_time);
     ui.weak(format!(
-        "{all} pictures, {:.1} s at 30 a second",
+        "{all} frames, {:.1} s at 30 per second",
         all as f64 / 30.0
     ));
     let ffmpeg = *form.ffmpeg.get_or_insert_with(has_ffmpeg);
@@ -298,9 +278,9 @@ fn film(state: &mut State, ui: &mut Ui) {
         ui.checkbox(&mut form.video, "also a video (MP4)")
             .on_disabled_hover_text("ffmpeg is not installed");
     });
-    path_line(&mut form.film_out, ui);
+    paths::listing_line(&mut form.film_out, "png", folder, ui);
     ui.label(
-        RichText::new("Size and smoothness are the picture's.")
+        RichText::new("Size and samples as set for the picture above.")
             .weak()
             .small(),
     );

@@ -1,7 +1,9 @@
 //! The soma editor: the surface follows while a slider is dragged.
 
-use eframe::egui::{Button, Slider, Ui};
+use eframe::egui::{Button, Ui};
 
+use super::number::slider;
+use super::tip::Tip;
 use super::{figures, heading, measured, rings};
 use crate::command::Command;
 use crate::document::{Method, SomaEdit, SourceId};
@@ -15,10 +17,10 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         sources.sort_unstable();
         sources.dedup();
         if every > 1 {
-            ui.weak("Nothing is selected: changes concern all somata.");
+            ui.weak("No neuron is selected: changes apply to all somata.");
         }
     } else if sources.len() > 1 {
-        ui.weak(format!("Changes concern {} somata.", sources.len()));
+        ui.weak(format!("Changes apply to {} somata.", sources.len()));
     }
     let Some(&first) = sources.first() else {
         return;
@@ -29,14 +31,14 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         for (method, name, says) in METHODS {
             ui.selectable_value(&mut edit.method, method, name)
-                .on_hover_text(says);
+                .tip(says);
         }
     });
     let mut dropped = false;
     if edit.method == Method::Elastic {
         heading(ui, "Material");
-        let says = "Poisson's ratio ν of the soma's material: how much it thins where it is pulled.\n\
-                    0: not at all; near 0.5: its volume stays.";
+        let says = "Poisson's ratio ν of the soma: how much it thins where the neurites pull it.\n\
+                    0: not at all; close to 0.5: its volume is kept.";
         dropped |= number(
             ui,
             "Poisson's ratio",
@@ -49,7 +51,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     }
     if edit.method != Method::None {
         heading(ui, "Size");
-        let says = "Factor on the radius that was traced.";
+        let says = "The soma's traced radius is multiplied by this.";
         dropped |= number(
             ui,
             "Radius factor",
@@ -67,8 +69,8 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         ..SomaEdit::default()
     };
     if ui
-        .add_enabled(edit != usual, Button::new("As usual"))
-        .on_hover_text("Reset these values")
+        .add_enabled(edit != usual, Button::new("Reset all"))
+        .tip("Method, material, size and mesh at their defaults; first rings stay")
         .clicked()
     {
         edit = usual;
@@ -85,7 +87,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
             1 => rings::show(state, first, ui),
             _ => {
                 heading(ui, "First rings");
-                ui.weak("Select one neuron to place the first rings of its neurites.");
+                ui.weak("Select a single neuron to move the first rings of its neurites.");
             }
         }
     }
@@ -96,22 +98,22 @@ const METHODS: [(Method, &str, &str); 4] = [
     (
         Method::Elastic,
         "Elastic",
-        "A sphere that the neurites pull out, by linear elasticity (García-Cantero et al. 2017)",
+        "An elastic sphere that the neurites pull into shape (García-Cantero et al. 2017)",
     ),
     (
         Method::Sphere,
         "Sphere",
-        "The sphere as it is; neurites grow out of it",
+        "A plain sphere, from whose surface the neurites start",
     ),
     (
         Method::Profile,
         "Profile",
-        "LiveMesh's radius function: round near the centre, a tube far out",
+        "Round near the center, passing into the neurites' tubes by the radius function of LiveMesh",
     ),
     (
         Method::None,
         "None",
-        "No soma: every neurite is closed by itself",
+        "No soma: every neurite is a closed mesh of its own",
     ),
 ];
 
@@ -125,14 +127,14 @@ fn number(
     usual: f64,
     says: &str,
 ) -> bool {
-    ui.label(name).on_hover_text(says);
+    ui.label(name).tip(says);
     ui.horizontal(|ui| {
-        let slider = Slider::new(value, range).suffix(unit).fixed_decimals(2);
-        let response = ui.add(slider).on_hover_text(says);
+        let slider = slider(ui, value, range, Some(2), |slider| slider.suffix(unit));
+        let response = slider.tip(says);
         let reset = Button::new("reset").small();
         if ui
             .add_enabled(*value != usual, reset)
-            .on_hover_text(format!("Back to {usual}"))
+            .tip(format!("Reset to {usual}"))
             .clicked()
         {
             *value = usual;
@@ -143,13 +145,14 @@ fn number(
 }
 
 fn reference(edit: &mut SomaEdit, ui: &mut Ui) {
-    heading(ui, "Reference sphere");
+    heading(ui, "Sphere to start from");
     ui.horizontal(|ui| {
         let changed = ui
             .selectable_value(&mut edit.octahedron, false, "Cube")
+            .tip("A subdivided cube, blown up to a sphere")
             .clicked()
             | ui.selectable_value(&mut edit.octahedron, true, "Octahedron")
-                .on_hover_text("The paper's")
+                .tip("A subdivided octahedron, as in García-Cantero et al. 2017")
                 .clicked();
         if changed {
             edit.level = 0;
@@ -157,12 +160,17 @@ fn reference(edit: &mut SomaEdit, ui: &mut Ui) {
     });
     let (low, high) = edit.levels();
     let mut fits = edit.level == 0;
-    ui.checkbox(&mut fits, "Resolution that fits the neurites");
+    ui.checkbox(&mut fits, "Automatic resolution")
+        .tip("Fine enough for the neurites that start on it");
     if fits {
         edit.level = 0;
     } else {
-        edit.level = edit.level.clamp(low, high);
-        ui.add(Slider::new(&mut edit.level, low..=high).text("resolution"));
+        if edit.level == 0 {
+            edit.level = low;
+        }
+        slider(ui, &mut edit.level, low..=high, None, |slider| {
+            slider.text("subdivisions")
+        });
     }
 }
 
@@ -175,11 +183,11 @@ fn measures(state: &State, source: SourceId, edit: &SomaEdit, ui: &mut Ui) {
     if source.soma != *edit {
         ui.horizontal(|ui| {
             ui.spinner();
-            ui.weak("working…");
+            ui.weak("updating…");
         });
     }
     let Some(soma) = source.generated.somata.first() else {
-        ui.weak("This cell has no soma, or its method makes none.");
+        ui.weak("No soma: none was traced, or the method is None.");
         return;
     };
     heading(ui, &format!("Soma of {}", source.name));
@@ -190,16 +198,16 @@ fn measures(state: &State, source: SourceId, edit: &SomaEdit, ui: &mut Ui) {
         &[
             ("volume", measured(soma.volume, "µm³")),
             (
-                "against the sphere",
+                "volume / sphere's",
                 format!("{:+.1} %", change(soma.volume, soma.sphere_volume)),
             ),
             ("area", measured(soma.area, "µm²")),
             (
-                "against the sphere ",
+                "area / sphere's",
                 format!("{:+.1} %", change(soma.area, soma.sphere_area)),
             ),
             (
-                "solved in",
+                "computed in",
                 format!("{:.1} ms", 1e3 * source.generated.soma_seconds),
             ),
         ],

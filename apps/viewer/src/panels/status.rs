@@ -12,7 +12,7 @@ pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f
     ui.horizontal(|ui| {
         for job in jobs.iter().flatten() {
             let share = job.share();
-            ui.label(&job.what);
+            ui.label(job.said());
             ui.add(
                 ProgressBar::new(share)
                     .desired_width(110.0)
@@ -61,37 +61,37 @@ fn problems(state: &mut State, ui: &mut Ui) {
     }
 }
 
-const LOWERED: &str = "Here, the full picture would hold up the window: what shows most is drawn, as it is while you \
-    move. Fewer neurons in the picture come back in full. What is saved is not lowered.";
+const LOWERED: &str = "Full detail would block the window here. Hide or isolate neurons, or move closer, to get it back. \
+    Saved pictures always have full detail.";
 
 /// What does not show as it is, and why.
 fn lowered(state: &State, ui: &mut Ui) {
     let warn = ui.visuals().warn_fg_color;
     if state.frozen.is_some() {
         ui.colored_label(warn, "detail frozen")
-            .on_hover_text("Levels are those of another view (Ctrl F)");
+            .on_hover_text("The triangles are those of another view (Ctrl F)");
     }
     if state.document.detail.smallest > 0.0 {
-        let text = format!("left out below {:.1} px", state.document.detail.smallest);
+        let text = format!("hidden below {:.1} px", state.document.detail.smallest);
         ui.colored_label(warn, text).on_hover_text("Set in Detail");
     }
     if let Some(lowered) = state.counters.lowered {
         let text = match lowered {
             Lowered::Triangles(Some([drawn, wanted])) if drawn < wanted => {
                 format!(
-                    "lowered: {} of {} triangles",
+                    "reduced: {} of {} triangles",
                     grouped(drawn),
                     grouped(wanted)
                 )
             }
-            Lowered::Triangles(_) => "lowered: tubes as strips".to_owned(),
-            Lowered::Error(times) => format!("lowered: {times:.0} times as coarse"),
+            Lowered::Triangles(_) => "reduced detail".to_owned(),
+            Lowered::Error(times) => format!("reduced: {times:.0} times as coarse"),
         };
         ui.colored_label(warn, text).on_hover_text(LOWERED);
     }
     if state.document.look.cut.is_some() {
-        ui.colored_label(warn, "cut")
-            .on_hover_text("Part of the scene is cut away (Look)");
+        ui.colored_label(warn, "cutting plane")
+            .on_hover_text("Part of the scene is cut away: set in Look");
     }
 }
 
@@ -99,7 +99,7 @@ fn right(state: &State, drawing: Option<f32>, ui: &mut Ui) {
     let (adapter, software) = &state.adapter;
     if *software {
         ui.weak("software graphics").on_hover_text(format!(
-            "The processor draws: {adapter}. A graphics card is far faster."
+            "Drawn by the processor ({adapter}). A graphics card is far faster."
         ));
     } else {
         let short: String = adapter.chars().take(28).collect();

@@ -1,9 +1,8 @@
 //! The time line of a recording: play, step, scrub.
 
-use eframe::egui::{
-    Button, DragValue, Rect, Response, RichText, Role, Shape, Slider, Stroke, Ui, WidgetInfo, vec2,
-};
+use eframe::egui::{Button, Rect, Response, RichText, Role, Shape, Stroke, Ui, WidgetInfo, vec2};
 
+use super::number::{field, slider};
 use crate::command::Command;
 use crate::playback::{Facts, Pace, digits};
 use crate::state::State;
@@ -36,13 +35,13 @@ fn buttons(state: &mut State, ui: &mut Ui) {
     for (sign, name, keys, command) in [
         (
             Sign::Begin,
-            "To the beginning",
+            "To the start",
             "",
             Command::Seek(f64::NEG_INFINITY),
         ),
-        (Sign::Back, "A frame back", " (,)", Command::StepTime(-1)),
+        (Sign::Back, "Previous frame", " (,)", Command::StepTime(-1)),
         (sign, name, keys, Command::TogglePlay),
-        (Sign::On, "A frame on", " (.)", Command::StepTime(1)),
+        (Sign::On, "Next frame", " (.)", Command::StepTime(1)),
     ] {
         let response = button(sign, name, ui);
         if response.on_hover_text(format!("{name}{keys}")).clicked() {
@@ -104,16 +103,14 @@ fn scrub(state: &mut State, facts: &Facts, ui: &mut Ui) {
     let axis = &facts.time;
     let last = axis.time_of(axis.frames.saturating_sub(1));
     let digits = digits(axis.step);
-    // Sliders round what they show, and call that a change: time would never go on by less.
-    let unit = 10f64.powi(digits as i32);
-    let rounded = (state.playback.pace.time * unit).round() / unit;
-    let mut time = rounded;
+    let before = state.playback.pace.time;
+    let mut time = before;
     ui.spacing_mut().slider_width = (ui.available_width() - 100.0).max(60.0);
-    let slider = Slider::new(&mut time, axis.start..=last.max(axis.start))
-        .suffix(" ms")
-        .fixed_decimals(digits);
-    let response = ui.add(slider);
-    if response.changed() && (time - rounded).abs() > 0.5 / unit {
+    let range = axis.start..=last.max(axis.start);
+    slider(ui, &mut time, range, Some(digits), |slider| {
+        slider.suffix(" ms")
+    });
+    if time != before {
         state.asked.push(Command::Seek(time));
     }
 }
@@ -126,7 +123,7 @@ fn what(facts: &Facts, ui: &mut Ui) {
     ui.label(RichText::new(text).strong());
     let axis = &facts.time;
     let frames = match facts.spikes {
-        true => format!("spikes to {} ms", axis.end),
+        true => format!("spikes until {} ms", axis.end),
         false => format!(
             "{} frames, {} to {} ms",
             super::grouped(axis.frames),
@@ -137,9 +134,9 @@ fn what(facts: &Facts, ui: &mut Ui) {
     ui.weak(frames);
     let [without, all] = facts.without;
     if without > 0 {
-        let text = format!("{} of {all} grey", without);
+        let text = format!("{without} of {all} neurons without values");
         ui.colored_label(ui.visuals().warn_fg_color, text)
-            .on_hover_text("These neurons have no values in the report");
+            .on_hover_text("The report does not have them; they are gray");
     }
 }
 
@@ -147,16 +144,13 @@ fn pace(state: &mut State, ui: &mut Ui) {
     let mut pace: Pace = state.playback.pace;
     ui.separator();
     let step = 0.02 * pace.speed;
-    ui.add(
-        DragValue::new(&mut pace.speed)
-            .range(0.001..=100_000.0)
-            .speed(step)
-            .suffix(" ms"),
-    )
-    .on_hover_text("Time of the recording that goes by in a second");
-    ui.weak("a second");
-    ui.checkbox(&mut pace.loops, "again")
-        .on_hover_text("From the end to the beginning");
+    field(ui, &mut pace.speed, 0.001..=100_000.0, 3, |field| {
+        field.speed(step).suffix(" ms")
+    })
+    .on_hover_text("Simulated time per second of the clock");
+    ui.weak("per second");
+    ui.checkbox(&mut pace.loops, "loop")
+        .on_hover_text("At the end, start over");
     if pace != state.playback.pace {
         state.asked.push(Command::SetPace(pace));
     }

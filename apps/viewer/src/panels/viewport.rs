@@ -2,12 +2,12 @@
 
 use eframe::egui::{
     self, Align2, Area, Color32, ColorImage, FontId, Id, Key, PointerButton, Pos2, Rect, Response,
-    Sense, Stroke, TextureOptions, Ui, vec2,
+    Role, Sense, Stroke, TextureOptions, Ui, WidgetInfo, vec2,
 };
 use glam::DVec3;
 use neurotess::render::{Legend, is_dark, nice_length};
 
-use super::{marks, plate};
+use super::{marks, plate, tip};
 use crate::app::Viewer;
 use crate::command::Command;
 use crate::state::{Picked, State};
@@ -23,12 +23,14 @@ const SPEED: f64 = 0.7;
 pub(super) fn show(viewer: &mut Viewer, before: Option<Picked>, ui: &mut Ui) {
     let rect = ui.available_rect_before_wrap();
     let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
+    tip::set_picture(ui.ctx(), rect);
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
     let points = ui.ctx().pixels_per_point();
     let size = [rect.width(), rect.height()].map(|n| (n * points).round().max(0.0) as u32);
     if size.contains(&0) {
         return;
     }
-    viewer.state.aspect = f64::from(size[0]) / f64::from(size[1]);
+    viewer.reshape(f64::from(size[0]) / f64::from(size[1]));
     steer(viewer, &response, ui);
     point(viewer, before, &response, points);
     let ctx = ui.ctx().clone();
@@ -203,11 +205,11 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
 
 fn menu(state: &mut State, ui: &mut Ui) {
     for (title, command) in [
-        ("Focus on the selection", Command::Focus),
+        ("Zoom to the selection", Command::Focus),
         ("Hide selected", Command::Hide),
         ("Isolate selected", Command::Isolate),
         ("Show all", Command::ShowAll),
-        ("Home", Command::Home),
+        ("Everything, from the front", Command::Home),
         ("Keep this view for a film", Command::AddKeyView),
     ] {
         if ui.button(title).clicked() {
@@ -250,7 +252,7 @@ fn over(viewer: &Viewer, rect: Rect, ui: &mut Ui) {
                 plate(ui).show(ui, |ui| {
                     ui.horizontal(|ui| {
                         ui.spinner();
-                        ui.label("Getting ready…");
+                        ui.label("Preparing the picture…");
                     });
                 });
             });

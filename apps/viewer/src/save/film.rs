@@ -164,7 +164,7 @@ mod tests {
     fn a_video_that_is_stopped_or_refused_leaves_nothing() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = folder.path().join("f_0000.png");
-        let job = Job::new("", 1);
+        let job = Job::new("", "", 1);
         job.cancelled
             .store(true, std::sync::atomic::Ordering::Relaxed);
         // Without ffmpeg it says so, with it that it was stopped.

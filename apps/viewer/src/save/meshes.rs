@@ -252,7 +252,7 @@ mod tests {
                 &view,
                 &Detail::default(),
                 600.0,
-                &Job::new("", 1),
+                &Job::new("", "", 1),
             )
         };
         for fineness in [

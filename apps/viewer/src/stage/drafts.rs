@@ -89,7 +89,7 @@ impl Stage {
         self.live.set_states(states.map(|(a, b)| a | b).collect());
         self.picks = None;
         self.namer = None;
-        self.counted = false;
+        self.counts = None;
         let any = state.document.selected().next().is_some();
         let outlines = Outlines {
             // Looking for outlines takes time.
@@ -100,6 +100,7 @@ impl Stage {
         self.mask = None;
         self.draw_draft(&wanted)?;
         self.drawn = Some(wanted);
+        self.legend.clone_from(&self.shown.legend);
         self.revalued = false;
         ctx.request_repaint_after(REST);
         Ok(())

@@ -45,6 +45,8 @@ pub struct Stage {
     /// What is on the device.
     shown: Shown,
     colours: Option<ColourKey>,
+    /// Of what was drawn last.
+    legend: Legend,
     building: Option<Receiver<Built>>,
     /// Reads the recording that shows.
     reader: Option<Reader>,
@@ -62,7 +64,8 @@ pub struct Stage {
     picks: Option<Picks>,
     namer: Option<Names>,
     mask: Option<MaskKey>,
-    counted: bool,
+    /// Triangles and patches of the picture at rest, and all patches, once they are counted.
+    counts: Option<[u64; 3]>,
     means: Means,
     full: Full,
     /// Patches of the neurons in the picture.
@@ -106,6 +109,7 @@ impl Stage {
         let mut maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
         let no_colours = colouring(&[], ColourBy::Type, &paint(&Look::default()));
         let shown = Shown::new(Vec::new(), Vec::new(), no_colours.into());
+        let legend = shown.legend.clone();
         maker.set_keeping(true);
         let software = gpu.adapter.software;
         Ok(Self {
@@ -118,6 +122,7 @@ impl Stage {
             texture: None,
             shown,
             colours: None,
+            legend,
             building: None,
             reader: None,
             values: None,
@@ -132,7 +137,7 @@ impl Stage {
             picks: None,
             namer: None,
             mask: None,
-            counted: false,
+            counts: None,
             means: Means::new(software),
             full: Full::Refined,
             patches: 0,
@@ -151,9 +156,9 @@ impl Stage {
         &self.shown
     }
 
-    /// What colours mean.
+    /// What the colours of the picture mean, also while others are being made.
     pub fn legend(&self) -> &Legend {
-        &self.shown.legend
+        &self.legend
     }
 
     /// Whether all that there is to draw is drawn.
@@ -165,6 +170,11 @@ impl Stage {
     /// Whether values are those of the recording's moment, in a draft or a better picture.
     pub fn shows_moment(&self) -> bool {
         !self.values_due && !self.revalued && self.drawn.is_some()
+    }
+
+    /// Whether what shows is of the neurons and colors of now, in a draft at least.
+    pub fn is_drawn(&self) -> bool {
+        self.drawn.is_some()
     }
 
     /// Whether it is the full picture that shows, its first step at least, and no draft.
@@ -220,6 +230,9 @@ impl Stage {
         }
         self.take_ids(ctx)?;
         self.outline(state);
+        state.counters.bytes = self.bytes();
+        let [triangles, patches, all] = self.counts.unwrap_or_default();
+        (state.counters.triangles, state.counters.patches) = (triangles, [patches, all]);
         state.counters.frames_ms = self.frames.iter().copied().collect();
         state.counters.draft = match self.explored {
             true => Draft::Budget(self.explorer.budget()),
@@ -228,6 +241,12 @@ impl Stage {
         state.counters.lowered = self.lowered();
         self.gpu.check()?;
         Ok(self.texture_id())
+    }
+
+    /// Bytes on the device: of cells, and of pictures.
+    fn bytes(&self) -> [u64; 2] {
+        let cells = self.maker.bytes().iter().map(|(_, bytes)| bytes).sum();
+        [cells, self.live.bytes()]
     }
 
     /// The picture for egui; the same number for as long as the texture is the same.

@@ -148,27 +148,21 @@ impl Stage {
     }
 
     /// Triangles and patches of the picture at rest, while somebody looks at their panel.
-    fn count(&mut self, state: &mut State) -> Result<(), DeviceError> {
-        let Some(drawn) = self.drawn.as_ref().filter(|_| !self.counted) else {
+    fn count(&mut self, state: &State) -> Result<(), DeviceError> {
+        let Some(drawn) = self.drawn.as_ref().filter(|_| self.counts.is_none()) else {
             return Ok(());
         };
-        if state.tab != Tab::Detail || !state.panels {
+        let looked_at = state.tab == Tab::Detail && state.panels;
+        // Where it is explored, counting would take as long as drawing.
+        if !looked_at || self.full != Full::Refined {
             return Ok(());
         }
-        self.counted = true;
         let shot = drawn.shot;
-        let cells: u64 = self.maker.bytes().iter().map(|(_, bytes)| bytes).sum();
-        state.counters.bytes = [cells, self.live.bytes()];
-        if self.full != Full::Refined {
-            // Counting would take as long as drawing.
-            return Ok(());
-        }
         let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
         let frame = whole(camera, near, shot.size);
         self.maker.prepare(&self.gpu, &frame)?;
         let stats = self.maker.stats(&self.gpu)?;
-        state.counters.triangles = stats.triangles;
-        state.counters.patches = [stats.patches_drawn, stats.patches];
+        self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);
         Ok(())
     }
 }

@@ -1,0 +1,171 @@
+//! A virtual display with a window manager, what types and clicks on it, and pictures of it.
+#![cfg(target_os = "linux")]
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::work::Work;
+
+/// A display of its own with a window manager; both end with the test.
+pub(crate) struct Display {
+    server: Child,
+    manager: Child,
+    pub(crate) name: String,
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        for child in [&mut self.manager, &mut self.server] {
+            drop(child.kill());
+            drop(child.wait());
+        }
+    }
+}
+
+/// Whether a program can be started.
+fn is_there(program: &str, argument: &str) -> bool {
+    let mut command = Command::new(program);
+    command
+        .arg(argument)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.status().is_ok()
+}
+
+/// The display, or nothing with a word about it.
+#[expect(clippy::print_stdout, reason = "a test says what it skips")]
+pub(crate) fn display() -> Option<Display> {
+    let needed = [
+        ("Xvfb", "-help"),
+        ("xdotool", "version"),
+        ("openbox", "--version"),
+    ];
+    for (program, argument) in needed {
+        if !is_there(program, argument) {
+            println!(
+                "SKIPPED: {program} is not installed: cargo xtask setup installs it on Debian"
+            );
+            return None;
+        }
+    }
+    if neurotess::render::adapters().is_empty() {
+        println!("SKIPPED: no graphics adapter here");
+        return None;
+    }
+    // The server chooses a free number and says it on its standard output.
+    let mut server = Command::new("Xvfb")
+        .args([
+            "-displayfd",
+            "1",
+            "-screen",
+            "0",
+            "1280x860x24",
+            "-nolisten",
+            "tcp",
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("Xvfb starts");
+    let mut line = String::new();
+    let out = server.stdout.take().expect("its output");
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut line).expect("a number");
+    let name = format!(":{}", line.trim());
+    // Without one nobody has the keyboard.
+    let manager = Command::new("openbox")
+        .env("DISPLAY", &name)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("openbox starts");
+    Some(Display {
+        server,
+        manager,
+        name,
+    })
+}
+
+impl Display {
+    pub(crate) fn xdotool(&self, arguments: &str) -> String {
+        let mut command = Command::new("xdotool");
+        command
+            .args(arguments.split_whitespace())
+            .env("DISPLAY", &self.name);
+        let out = command.output().expect("xdotool starts");
+        String::from_utf8_lossy(&out.stdout).trim().to_owned()
+    }
+
+    /// Gives the window the keyboard.
+    pub(crate) fn focus(&self) {
+        let windows = self.xdotool("search --onlyvisible --name neurotess");
+        let id = windows.lines().next().unwrap_or_default();
+        self.xdotool(&format!("windowactivate --sync {id}"));
+    }
+
+    /// The picture of the screen, and the number of its colours: a blank window has few.
+    pub(crate) fn screenshot(&self, name: &str) -> usize {
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("view-test");
+        fs::create_dir_all(&folder).expect("made");
+        let file = folder.join(format!("{name}.png"));
+        if !is_there("import", "-version") {
+            return usize::MAX;
+        }
+        let mut command = Command::new("import");
+        command
+            .args(["-window", "root"])
+            .arg(&file)
+            .env("DISPLAY", &self.name);
+        assert!(command.status().expect("import starts").success());
+        let file = std::io::BufReader::new(fs::File::open(&file).expect("there"));
+        let mut decoder = png::Decoder::new(file);
+        // A black screen has one bit a pixel.
+        decoder.set_transformations(png::Transformations::normalize_to_color8());
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        let info = reader.next_frame(&mut pixels).expect("decoded");
+        let step = info.line_size / info.width as usize;
+        let mut colours: Vec<&[u8]> = pixels.chunks_exact(step).collect();
+        colours.sort_unstable();
+        colours.dedup();
+        colours.len()
+    }
+}
+
+/// The window on a display, with settings of its own, and what it says.
+pub(crate) fn start(display: &Display, work: &Work, line: &str) -> Child {
+    let mut command = work.command(line);
+    command
+        .env("DISPLAY", &display.name)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("NODEVICE_SELECT", "1")
+        .env("NEUROTESS_CONFIG", work.path("config"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
+    command.spawn().expect("it starts")
+}
+
+/// Waits for the program, but not for ever.
+pub(crate) fn ends(child: &mut Child) -> std::process::ExitStatus {
+    let clock = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().expect("a child") {
+            return status;
+        }
+        if clock.elapsed() > Duration::from_secs(60) {
+            drop(child.kill());
+            panic!("the window does not close");
+        }
+        sleep(Duration::from_millis(50));
+    }
+}
+
+pub(crate) fn wait_for(what: &str, mut until: impl FnMut() -> bool) {
+    let clock = Instant::now();
+    while !until() {
+        assert!(clock.elapsed() < Duration::from_secs(90), "never: {what}");
+        sleep(Duration::from_millis(200));
+    }
+}
