@@ -277,6 +277,19 @@ fn what_does_not_fit_is_an_error() {
 }
 
 #[test]
+fn a_vertex_that_is_not_finite_is_an_error() {
+    let mut mesh = torus(4, 3, DVec3::ZERO);
+    mesh.vertices[7].position.y = f32::NAN;
+    for format in Format::ALL {
+        let result = write(&mesh, format, &mut Nowhere(0));
+        assert!(
+            matches!(result, Err(WriteError::NotFinite(7))),
+            "{format}: {result:?}"
+        );
+    }
+}
+
+#[test]
 fn blocks_that_hold_less_than_announced_are_an_error() {
     for format in [Format::Ply, Format::Obj, Format::Off, Format::Glb] {
         let result = write(

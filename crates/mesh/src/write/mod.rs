@@ -48,6 +48,11 @@ pub enum WriteError {
         /// Of what: bytes or triangles.
         unit: &'static str,
     },
+    /// A vertex has no place: what is drawn from it is not there, and what reads it fails.
+    #[error(
+        "vertex {0} of the surface is not finite: check the radii and coordinates of the tracing"
+    )]
+    NotFinite(usize),
     /// A bug of the surface: its blocks hold not what it announced.
     #[error("the surface announced {announced} {what} but its blocks hold {found}")]
     Inconsistent {
@@ -169,10 +174,14 @@ impl File<'_> {
                     }
                     let mut buffers = [const { Vec::new() }; N];
                     encode(&group, &mut buffers);
-                    (group.len(), buffers)
+                    let lost = group.iter().position(|v| !v.position.is_finite());
+                    (group.len(), lost, buffers)
                 })
                 .collect();
-            for (count, buffers) in encoded {
+            for (count, lost, buffers) in encoded {
+                if let Some(lost) = lost {
+                    return Err(WriteError::NotFinite(found + lost));
+                }
                 found += count;
                 self.put_all(places, &buffers)?;
             }

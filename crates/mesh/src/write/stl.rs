@@ -25,6 +25,9 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
 
     let origin = surface.origin();
     let mut positions = positions(surface);
+    if let Some(lost) = positions.iter().position(|p| !p.is_finite()) {
+        return Err(WriteError::NotFinite(lost));
+    }
     for position in &mut positions {
         *position = (position.as_dvec3() + origin).as_vec3();
     }
