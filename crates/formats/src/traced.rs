@@ -158,6 +158,9 @@ fn node(sample: &Sample, kind: NeuriteKind, parent: Option<u32>, before: usize) 
     }
 }
 
+/// The box of an outline, with its number, its middle and its reach.
+type Outline = GeomWithData<Rectangle<[f64; 3]>, (usize, DVec3, f64)>;
+
 /// For each outline an earlier one that it is a slice beside, if any: the latest that is found by way of
 /// its box, so that many outlines take no longer than they must.
 fn slices(outlines: &[Vec<Sample>]) -> Vec<Option<usize>> {
@@ -168,7 +171,7 @@ fn slices(outlines: &[Vec<Sample>]) -> Vec<Option<usize>> {
             .map(|s| s.position.distance(center).max(s.radius));
         (center, reach.fold(0.0, f64::max))
     };
-    let mut earlier: RTree<GeomWithData<Rectangle<[f64; 3]>, (usize, DVec3, f64)>> = RTree::new();
+    let mut earlier: RTree<Outline> = RTree::new();
     let one = |(i, outline): (usize, &Vec<Sample>)| {
         let (center, reach) = sphere(outline);
         // What is out of range is refused when the nodes are built.

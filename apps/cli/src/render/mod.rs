@@ -122,7 +122,12 @@ fn draw_session(
         replace: args.force,
     };
     let drawn = neurotess_viewer::draw_session(session, &picture, args.adapter.as_deref());
-    let drawn = drawn.map_err(anyhow::Error::msg)?;
+    // Places are written one way: FILE:LINE:
+    let (spoken, written) = (
+        format!("{}: line ", session.display()),
+        format!("{}:", session.display()),
+    );
+    let drawn = drawn.map_err(|e| anyhow::anyhow!("{}", e.replacen(&spoken, &written, 1)))?;
     for (file, why) in &drawn.failures {
         reporter.failure(&Failure(format!("{file}: {why}")));
     }

@@ -61,15 +61,24 @@ fn killed_and_started_again_gives_the_same_files() {
     work.run("mesh cells -o whole --level 8").exits(0);
     // At several moments: while the first files are written, and a little later.
     for pause in [0, 15, 60] {
-        let mut child = start(&work, "mesh cells -o again --level 8 --resume");
+        let mut child = start(
+            &work,
+            "mesh cells -o again --level 8 --resume --log log.jsonl",
+        );
         wait_for_a_file(&work, "again");
         sleep(Duration::from_millis(pause));
         // It may have ended by itself.
         drop(child.kill());
         child.wait().expect("it ends");
     }
-    work.run("mesh cells -o again --level 8 --resume").exits(0);
+    work.run("mesh cells -o again --level 8 --resume --log log.jsonl")
+        .exits(0);
     assert_eq!(work.names("whole"), work.names("again"));
+    // Whatever the moment, no output lacks its line.
+    let log = std::fs::read_to_string(work.path("log.jsonl")).expect("a log");
+    for name in work.names("again") {
+        assert!(log.contains(&format!("\"again/{name}\"")), "{name}");
+    }
     let bytes = |folder: &str| work.files(folder).into_values().collect::<Vec<_>>();
     assert!(bytes("whole") == bytes("again"));
 }

@@ -166,6 +166,29 @@ fn whatever_fails_json_is_one_document() {
 }
 
 #[test]
+fn places_are_written_one_way() {
+    let work = Work::new();
+    work.file("broken.swc", BROKEN);
+    work.file("broken.neurotess", "version = ");
+    work.file("circuit.json", "{\n\"networks\": 3,}");
+    work.file("cells.scene.toml", "cells = []\nx");
+    work.file("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0\n");
+    for (command, place) in [
+        ("info broken.swc", "error: broken.swc:2: "),
+        (
+            "render broken.neurotess -o a.png",
+            "error: broken.neurotess:1: ",
+        ),
+        ("info circuit.json", "error: circuit.json:2: "),
+        ("info cells.scene.toml", "error: cells.scene.toml:2: "),
+        ("check mesh.off", "error: mesh.off:4: "),
+    ] {
+        let said = work.run(command).exits(1).stderr();
+        assert!(said.starts_with(place), "{command}: {said}");
+    }
+}
+
+#[test]
 fn pages_of_the_manual_are_roff() {
     let work = Work::new();
     for (command, title) in [("man", "neurotess"), ("man mesh", "neurotess-mesh")] {

@@ -97,7 +97,7 @@ impl Morphology {
         header: Vec<String>,
         nodes: &[Node],
     ) -> Result<Built, BuildError> {
-        build(name.into(), header, nodes, Soma::from_samples)
+        build(name.into(), header, nodes, Traced::Samples)
     }
 
     /// Like [`from_nodes`](Self::from_nodes), for formats that trace somata as outlines: the
@@ -110,15 +110,24 @@ impl Morphology {
         header: Vec<String>,
         nodes: &[Node],
     ) -> Result<Built, BuildError> {
-        build(name.into(), header, nodes, Soma::from_outlines)
+        build(name.into(), header, nodes, Traced::Outlines)
     }
+}
+
+/// How a format traces somata.
+#[derive(Clone, Copy)]
+enum Traced {
+    /// By samples of which each has a radius that means something.
+    Samples,
+    /// By outlines, perhaps several in a stack.
+    Outlines,
 }
 
 fn build(
     name: String,
     header: Vec<String>,
     nodes: &[Node],
-    soma: fn(Vec<SomaSample>) -> Soma,
+    somata_are: Traced,
 ) -> Result<Built, BuildError> {
     let mut parents = checked_parents(nodes)?;
     let mut links = Links::of(&parents);
@@ -141,7 +150,7 @@ fn build(
     let mut morphology = Morphology {
         name,
         origin: frame.origin,
-        somata: walk.somata(&frame, soma, &mut notes),
+        somata: walk.somata(&frame, somata_are, &mut notes),
         header,
         ..Morphology::default()
     };
@@ -214,12 +223,7 @@ impl Walk<'_> {
         Some(self.nodes[*node as usize].position)
     }
 
-    fn somata(
-        &self,
-        frame: &Frame,
-        traced: fn(Vec<SomaSample>) -> Soma,
-        notes: &mut Notes,
-    ) -> Vec<Soma> {
+    fn somata(&self, frame: &Frame, traced: Traced, notes: &mut Notes) -> Vec<Soma> {
         let soma = |members: &Vec<u32>| {
             let sample = |&m: &u32| {
                 let node = &self.nodes[m as usize];
@@ -231,9 +235,20 @@ impl Walk<'_> {
                     parent: (parent != NONE).then(|| self.somata.sample(parent)),
                 }
             };
-            let soma = traced(members.iter().map(sample).collect());
-            notes.soma(&soma, members);
-            soma
+            let samples = members.iter().map(sample).collect();
+            match traced {
+                Traced::Samples => {
+                    let soma = Soma::from_samples(samples);
+                    notes.fork(&soma, members);
+                    notes.soma(&soma, members);
+                    soma
+                }
+                Traced::Outlines => {
+                    let soma = Soma::from_outlines(samples);
+                    notes.soma(&soma, members);
+                    soma
+                }
+            }
         };
         self.somata.members.iter().map(soma).collect()
     }

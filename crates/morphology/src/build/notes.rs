@@ -54,7 +54,7 @@ impl fmt::Display for Oddity {
             Self::NoSoma => "no sample is of type 1: the cell has no soma",
             Self::SomaNotRoot => "the soma is not the root of its tree: re-rooted there",
             Self::SeveralSomata => "several separate somata: the thickest is taken as the main one",
-            Self::SomaBranches => "the samples of the soma fork: taken as frusta along the links",
+            Self::SomaBranches => "the samples of the soma fork: taken as frusta along the links, or as an outline if they have no thickness",
             Self::SomaZeroRadius => "the soma has no radius",
             Self::SomaInsideNeurite => "soma samples inside a neurite: kept as points of type 1",
             Self::Disconnected => "neurites that are connected to nothing: kept where they are",
@@ -93,9 +93,12 @@ impl Notes {
         if soma.radius <= 0.0 {
             self.add(Oddity::SomaZeroRadius, members[0]);
         }
-        if soma.kind == SomaKind::Cylinders
-            && let Some(fork) = soma.fork()
-        {
+    }
+
+    /// Of a soma whose samples are no outlines.
+    pub(super) fn fork(&mut self, soma: &Soma, members: &[u32]) {
+        let of_no_kind = matches!(soma.kind, SomaKind::Cylinders | SomaKind::Contour);
+        if let Some(fork) = soma.fork().filter(|_| of_no_kind) {
             self.add(Oddity::SomaBranches, members[fork as usize]);
         }
     }
