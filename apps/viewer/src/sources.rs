@@ -71,22 +71,19 @@ impl Remark {
 
 /// Names of what somebody should look into. What else readers and the generator tell of is the daily work of
 /// making a mesh: points closer together than they are thick, say, of which nearly every tracing has some.
-const CONCERNS: [&str; 21] = [
+const CONCERNS: [&str; 18] = [
     "disconnected",
     "far_from_soma",
     "negative_radius",
     "no_seat",
-    "no_soma",
     "one_point_tree",
     "other_cells_left_out",
     "radius_mended",
     "ring_unused",
     "rings_cross",
     "several_somata",
-    "soma_branches",
     "soma_folded",
     "soma_inside_neurite",
-    "soma_not_root",
     "soma_of_one_point",
     "soma_radius_mended",
     "soma_zero_radius",

@@ -43,8 +43,8 @@ pub struct Viewer {
     theme: Option<(bool, u32)>,
     remembered: Settings,
     smooth: bool,
-    /// Whether the form of the picture is known.
-    shaped: bool,
+    /// Size of the window, once it is known.
+    window: Option<egui::Vec2>,
     /// Somata of what is opened first.
     soma: SomaEdit,
     /// When the recording's time was looked at last.
@@ -85,7 +85,7 @@ impl Viewer {
             theme: None,
             remembered: settings,
             smooth: true,
-            shaped: false,
+            window: None,
             soma: SomaEdit::default(),
             ticked: Instant::now(),
             rescue: crate::settings::folder().unwrap_or_default(),
@@ -225,19 +225,21 @@ impl Viewer {
         self.state.view = view;
     }
 
-    /// The picture has another form (width by height).
-    pub(crate) fn reshape(&mut self, aspect: f64) {
+    /// The picture has this form (width by height) in a window of this size. A view that fits everything
+    /// does so in any form; another one changes with the window's size only, not with panels.
+    pub(crate) fn reshape(&mut self, aspect: f64, window: egui::Vec2) {
+        let before = self.window.replace(window);
+        let resized = before.is_some_and(|before| before != window);
         let fitted = self.state.fitted.is_some();
-        if !fitted && let Some((_, to, _)) = self.going.take() {
-            self.state.view = to;
-        }
-        let known = std::mem::replace(&mut self.shaped, true);
-        match (self.state.reshape(aspect), &mut self.going) {
-            // A view that came from elsewhere, such as a session, is for no form of ours.
-            (Some(_), _) if !fitted && !known => {}
-            (Some(view), Some((_, to, _))) => *to = view,
-            (Some(view), None) => self.state.view = view,
-            (None, _) => {}
+        let Some(view) = self.state.reshape(aspect) else {
+            return;
+        };
+        match &mut self.going {
+            Some((_, to, _)) if fitted => *to = view,
+            // What is on its way goes where it was asked to.
+            Some(_) => {}
+            None if fitted || resized => self.state.view = view,
+            None => {}
         }
     }
 

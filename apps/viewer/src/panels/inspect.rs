@@ -114,10 +114,10 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
                     ("length", measured(length, "µm")),
                     ("sections", of().count().to_string()),
                     (
-                        "highest branch order",
+                        "max. branch order",
                         of().map(|f| f.order).max().unwrap_or(0).to_string(),
                     ),
-                    ("longest path from the soma", measured(longest, "µm")),
+                    ("longest path", measured(longest, "µm")),
                 ],
             );
         }
@@ -171,7 +171,7 @@ fn cell(source: &Source, ui: &mut egui::Ui) {
             grouped((m.n_bifurcations + m.n_multifurcations) as u64),
         ),
         ("ends", grouped(m.n_ends as u64)),
-        ("highest branch order", m.max_branch_order.to_string()),
+        ("max. branch order", m.max_branch_order.to_string()),
         ("points", grouped(m.n_points as u64)),
     ];
     if let Some(bounds) = m.bbox {

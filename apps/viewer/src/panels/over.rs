@@ -81,27 +81,35 @@ fn keys(state: &State, ctx: &Context) -> Over {
     window("Keys and mouse", ctx)
         .open(&mut open)
         .show(ctx, |ui| {
-            ui.horizontal_top(|ui| {
-                ui.vertical(|ui| {
-                    ui.strong("In the picture");
-                    rows(
-                        ui,
-                        "mouse",
-                        MOUSE.iter().map(|(a, b)| ((*a).to_owned(), *b)),
-                    );
-                    for (name, items) in listed(&state.toggles()).into_iter().take(3) {
-                        menu(ui, name, items);
-                    }
-                });
-                ui.add_space(18.0);
-                ui.vertical(|ui| {
-                    for (name, items) in listed(&state.toggles()).into_iter().skip(3) {
-                        menu(ui, name, items);
-                    }
-                });
-            });
+            let room = ctx.content_rect().size() - egui::vec2(60.0, 90.0);
+            // As large as it must be, and as the window allows.
+            let area = ScrollArea::both().max_width(room.x).max_height(room.y);
+            let area = area.min_scrolled_width(room.x).min_scrolled_height(room.y);
+            area.show(ui, |ui| keys_and_mouse(state, ui));
         });
     if open { Over::Keys } else { Over::Nothing }
+}
+
+fn keys_and_mouse(state: &State, ui: &mut Ui) {
+    ui.horizontal_top(|ui| {
+        ui.vertical(|ui| {
+            ui.strong("In the picture");
+            rows(
+                ui,
+                "mouse",
+                MOUSE.iter().map(|(a, b)| ((*a).to_owned(), *b)),
+            );
+            for (name, items) in listed(&state.toggles()).into_iter().take(3) {
+                menu(ui, name, items);
+            }
+        });
+        ui.add_space(18.0);
+        ui.vertical(|ui| {
+            for (name, items) in listed(&state.toggles()).into_iter().skip(3) {
+                menu(ui, name, items);
+            }
+        });
+    });
 }
 
 fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {

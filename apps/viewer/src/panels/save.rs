@@ -116,7 +116,8 @@ fn meshes(state: &mut State, ui: &mut Ui) {
 }
 
 fn fineness(fineness: &mut Fineness, ui: &mut Ui) {
-    ui.horizontal(|ui| {
+    // Wrapped: what is too wide widens all that comes after it.
+    ui.horizontal_wrapped(|ui| {
         let level = matches!(fineness, Fineness::Level(_));
         if ui
             .selectable_label(level, "subdivisions")

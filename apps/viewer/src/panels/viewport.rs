@@ -30,7 +30,8 @@ pub(super) fn show(viewer: &mut Viewer, before: Option<Picked>, ui: &mut Ui) {
     if size.contains(&0) {
         return;
     }
-    viewer.reshape(f64::from(size[0]) / f64::from(size[1]));
+    let window = ui.ctx().content_rect().size();
+    viewer.reshape(f64::from(size[0]) / f64::from(size[1]), window);
     steer(viewer, &response, ui);
     point(viewer, before, &response, points);
     let ctx = ui.ctx().clone();
