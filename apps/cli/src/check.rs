@@ -64,7 +64,7 @@ fn named(file: &str, error: &ReadError) -> String {
             let what = text
                 .strip_prefix(&format!("line {line}: "))
                 .unwrap_or(&text);
-            format!("{} {what}", place(&file, Some(line as u64)))
+            format!("{} {what}", place(file, Some(line as u64)))
         }
         Place::Byte(_) | Place::File => match error {
             ReadError::Io(e) => {

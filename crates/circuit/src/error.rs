@@ -13,7 +13,7 @@ pub struct CircuitError {
     /// The file as it was named.
     pub file: String,
     /// Line of a text, from 1 on.
-    pub line: Option<u64>,
+    pub line: Option<u32>,
     /// Key within a JSON file (`networks.nodes[0].nodes_file`), path of an HDF5 dataset, element or column
     /// of a text; `None` if it is about the whole file or line.
     pub key: Option<String>,
@@ -45,7 +45,7 @@ impl CircuitError {
     pub(crate) fn at_line(file: &str, line: u64, key: &str, fault: Fault) -> Self {
         Self {
             file: file.into(),
-            line: Some(line),
+            line: u32::try_from(line).ok(),
             key: (!key.is_empty()).then(|| key.into()),
             fault,
         }

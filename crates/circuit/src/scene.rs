@@ -91,7 +91,7 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Circuit, CircuitError> {
             let line = e.span().map(|span| 1 + newlines(text, span.start));
             CircuitError {
                 file: file.clone(),
-                line: line.map(|line| line as u64),
+                line: line.and_then(|line| u32::try_from(line).ok()),
                 key: None,
                 fault: Fault::Scene { reason },
             }

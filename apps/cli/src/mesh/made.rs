@@ -133,7 +133,7 @@ impl Made {
         let of = Stamp::of(formats::member(&job.input).0);
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let lines = known.get(&self.name(&job.out)).into_iter().flatten();
-        match lines.filter(|line| line.is == is).last() {
+        match lines.rev().find(|line| line.is == is) {
             Some(line) if line.options != self.hash(job) => Standing::OtherOptions,
             Some(line) if Some(line.of) != of => Standing::OtherInput,
             Some(_) => Standing::Right,
