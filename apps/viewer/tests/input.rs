@@ -63,7 +63,7 @@ fn heard(window: &mut Window) -> Rc<RefCell<Vec<Command>>> {
     let place = window.state_mut();
     *place = place.take().map(|viewer| {
         viewer.with_hearing(Box::new(move |command| {
-            ours.borrow_mut().push(command.clone())
+            ours.borrow_mut().push(command.clone());
         }))
     });
     list
@@ -109,7 +109,7 @@ fn tab_hides_the_panels_and_the_keys_after_it_are_heard() {
     slow_frame(&mut window, events.collect());
     assert_eq!(list.borrow().len(), keys.len(), "{:?}", list.borrow());
     assert!(state(&mut window).panels && state(&mut window).document.grid);
-    assert_eq!(window.ctx.memory(|memory| memory.focused()), None);
+    assert_eq!(window.ctx.memory(eframe::egui::Memory::focused), None);
 }
 
 #[test]

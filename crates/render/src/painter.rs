@@ -154,7 +154,6 @@ impl Painter {
 
     /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB; nothing if it is not
     /// wanted any more.
-    #[expect(clippy::too_many_arguments, reason = "a tile has so many sides")]
     pub(crate) fn paint(
         &mut self,
         gpu: &Gpu,
