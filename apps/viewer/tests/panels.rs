@@ -43,7 +43,7 @@ fn uneven(document: &Document) -> (Look, Detail, SomaEdit) {
         },
         faint_others: true,
         faint: 0.987_654_3,
-        decay: 4321.098_765,
+        decay: 4_321.098_765,
         range: Some([0.123_456_79, 7654.321]),
         cut: Some(Cut {
             axis: 1,
