@@ -634,7 +634,7 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
         panic!("explored: {:?}", state(&mut window).counters.lowered);
     };
     assert!(drawn > 0 && drawn <= wanted);
-    window.get_by_label_contains("reduced");
+    window.get_by_label_contains("reduced: ");
     // What is seen is known there too: somata, and a section by its number.
     let parts = seen_parts(&mut window);
     assert!(parts.contains(&(0, Part::Soma)) && parts.contains(&(2, Part::Soma)));
@@ -654,7 +654,7 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     run(&mut window, Command::Select(vec![1], false));
     run(&mut window, Command::Isolate);
     assert_eq!(state(&mut window).counters.lowered, None);
-    assert!(window.query_by_label_contains("reduced").is_none());
+    assert!(window.query_by_label_contains("reduced: ").is_none());
     assert!(
         seen_parts(&mut window)
             .iter()
