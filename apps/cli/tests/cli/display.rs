@@ -65,6 +65,8 @@ pub(crate) fn display() -> Option<Display> {
             "1280x860x24",
             "-nolisten",
             "tcp",
+            // A server that is left by its first client begins anew, and drops those that come meanwhile.
+            "-noreset",
         ])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
