@@ -50,7 +50,7 @@ pub(crate) struct Common {
     /// Say nothing but errors
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
-    /// Say more: every warning of every input
+    /// Say more: every warning of every input; of `view`, every command that the window runs
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
     /// Threads to use [default: all cores]

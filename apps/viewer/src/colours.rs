@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use neurotess::circuit::NodeRef;
+use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::colouring::{self, Cell, Colouring, Node, Paint, Replay, ReplayError};
+use neurotess::generate::generate;
 use neurotess::render::{ColourMap, Palette, Rgb};
+use rayon::prelude::*;
 
 use crate::circuits::{CircuitId, Circuits};
 use crate::document::{ColourBy, Document, Look, NodeOf, SourceId};
@@ -132,6 +134,52 @@ impl Wish {
         }
     }
 
+    /// The sources with a point at the middle of each element of the report, if its values show: a dendrite of
+    /// two traced points has room for all its compartments then. What cannot be meshed so stays as it is.
+    pub(crate) fn cut(&self, mut sources: Vec<ShownSource>) -> Vec<ShownSource> {
+        let report = self.report.as_ref();
+        let Some(report) = report.filter(|_| self.look.colour_by == ColourBy::Value) else {
+            return sources;
+        };
+        let mut cuts = std::collections::HashMap::new();
+        for (id, circuit) in self.circuits_newest_first() {
+            let stand = self.neurons.iter().filter_map(|(source, _, of)| {
+                let node = of.filter(|of| of.circuit == id)?.node;
+                Some((*source, node))
+            });
+            let stand: Vec<_> = stand.collect();
+            // What is wrong with the report is told by its colors.
+            cuts = colouring::cuts(report, circuit, &stand).unwrap_or_default();
+            if !cuts.is_empty() {
+                break;
+            }
+        }
+        sources
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(place, source)| {
+                let Some(elements) = cuts.get(&place) else {
+                    return;
+                };
+                let morphology = colouring::with_middles(&source.morphology, elements);
+                if let Ok(generated) = generate(&morphology, &source.options) {
+                    source.morphology = Arc::new(morphology);
+                    source.generated = Arc::new(generated);
+                }
+            });
+        sources
+    }
+
+    /// Circuits of the neurons, the one opened last first.
+    fn circuits_newest_first(&self) -> impl Iterator<Item = (CircuitId, &Circuit)> {
+        let ids = self.neurons.iter().filter_map(|n| Some(n.2?.circuit));
+        let mut ids: Vec<CircuitId> = ids.collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let known = |id| Some((id, self.circuits.get(id)?));
+        ids.into_iter().rev().filter_map(known)
+    }
+
     /// The colours; where they cannot be had, those of types.
     pub(crate) fn colours(&self, sources: &[ShownSource]) -> Coloured {
         let cells: Vec<Cell<'_>> = sources
@@ -188,18 +236,8 @@ impl Wish {
             return Err(("colours by value".into(), why.into()));
         };
         let file = report.display().to_string();
-        let mut circuits: Vec<CircuitId> = self
-            .neurons
-            .iter()
-            .filter_map(|n| Some(n.2?.circuit))
-            .collect();
-        circuits.sort_unstable();
-        circuits.dedup();
         let mut why = "a report has values of a circuit's cells: open its circuit".to_owned();
-        for id in circuits.into_iter().rev() {
-            let Some(circuit) = self.circuits.get(id) else {
-                continue;
-            };
+        for (id, circuit) in self.circuits_newest_first() {
             let node = |of: NodeOf| (of.circuit == id).then_some(of.node);
             let stand: Vec<(usize, Option<NodeRef>)> = self
                 .neurons

@@ -89,7 +89,9 @@ pub fn draw_session(
 
 fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
     let sources = scene::sources(state);
-    let mut coloured = Wish::new(state, &sources).colours(&sources);
+    let wish = Wish::new(state, &sources);
+    let sources = wish.cut(sources);
+    let mut coloured = wish.colours(&sources);
     drawn.failures.extend(coloured.problem.take());
     let standing = scene::standing(state, &sources);
     let shown = Shown::new(sources, standing, coloured);

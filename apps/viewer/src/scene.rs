@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::colouring::{Colouring, Replay};
-use neurotess::generate::Generated;
+use neurotess::generate::{GenerateOptions, Generated};
 use neurotess::morphology::Morphology;
 use neurotess::render::{
     Adaptive, Ball, Clip, ColourTable, DeviceError, FAINT, Gpu, Instance, Legend, MARKED,
@@ -39,6 +39,10 @@ pub(crate) struct ShownSource {
     pub(crate) name: String,
     pub(crate) morphology: Arc<Morphology>,
     pub(crate) generated: Arc<Generated>,
+    /// As the tracing was meshed; another one than `generated` where a report has made room for its values.
+    pub(crate) traced: Arc<Generated>,
+    /// Of its mesh.
+    pub(crate) options: GenerateOptions,
 }
 
 /// What a scene is made of.
@@ -95,6 +99,8 @@ pub(crate) fn sources(state: &State) -> Vec<ShownSource> {
             name: source.name.clone(),
             morphology: Arc::clone(&source.morphology),
             generated: Arc::clone(&source.generated),
+            traced: Arc::clone(&source.generated),
+            options: source.soma.options(),
         })
     });
     shown.collect()

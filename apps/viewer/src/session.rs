@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use neurotess::formats::read_regular;
 use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
@@ -186,7 +187,9 @@ impl Session {
     /// # Errors
     /// What is wrong, with its line, and what to do.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let text = fs::read_to_string(path).map_err(|e| format!("cannot be read: {e}"))?;
+        let text = read_regular(path).map_err(|e| format!("cannot be read: {e}"))?;
+        let text = String::from_utf8(text)
+            .map_err(|_| "not a session: it is no text; open the files themselves".to_owned())?;
         let mut session: Self = toml::from_str(&text).map_err(|e| {
             let line = e
                 .span()

@@ -227,7 +227,10 @@ fn find_folder(folder: &Path, found: &mut Found) {
     for entry in WalkDir::new(folder).follow_links(true).sort_by_file_name() {
         match entry {
             Ok(entry) if entry.file_type().is_file() && is_readable(entry.path()) => {
-                found.files.push(entry.into_path());
+                // Reports and tables of nodes are HDF5 too.
+                if !(is_hdf5(entry.path()) && formats::h5::is_other(entry.path())) {
+                    found.files.push(entry.into_path());
+                }
             }
             Ok(_) => {}
             Err(e) => {

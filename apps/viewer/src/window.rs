@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook, take_hook};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use eframe::egui::{self, ViewportBuilder};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -136,6 +137,9 @@ pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -
 /// Environment variable for tests: once the file that it names is there, the device is lost.
 const LOSE: &str = "NEUROTESS_TEST_LOSE_DEVICE";
 
+/// Times that a device is asked whether it is lost, every 10 ms.
+const LOST_POLLS: usize = 100;
+
 struct Window {
     viewer: Viewer,
     fatal: Arc<Mutex<Option<String>>>,
@@ -201,13 +205,19 @@ impl Drop for Window {
             return;
         }
         let gpu = self.viewer.stage.gpu();
-        // Tells what has become of the device.
-        let _ = gpu.device.poll(wgpu::PollType::Poll);
-        let why = match gpu.check() {
-            Err(DeviceError::Lost(why)) => lost(&why),
-            Err(e) => e.to_string(),
-            Ok(()) => "a bug in neurotess ended it, please report what stands above".into(),
-        };
+        // Tells what has become of the device, once its work under way has ended.
+        let mut faults = (0..LOST_POLLS).filter_map(|_| {
+            std::thread::sleep(Duration::from_millis(10));
+            let _ = gpu.device.poll(wgpu::PollType::Poll);
+            gpu.check().err()
+        });
+        // What a lost device complains of besides is no reason.
+        let why = faults.find_map(|fault| match fault {
+            DeviceError::Lost(why) => Some(lost(&why)),
+            _ => None,
+        });
+        let bug = || "a bug in neurotess ended it, please report what stands above".into();
+        let why = why.unwrap_or_else(bug);
         *fatal = Some(self.viewer.rescue(&why));
     }
 }

@@ -11,11 +11,11 @@ use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Tab;
-use neurotess_viewer::document::{ColourBy, Look};
+use neurotess_viewer::document::{ColourBy, Lighting, Look};
 use neurotess_viewer::playback::Pace;
 use neurotess_viewer::save::{FilmOptions, PictureFile};
 
-use common::circuit::write_circuit;
+use common::circuit::{make_sticks, write_circuit};
 use common::{Window, run, settle, snapshot, state, viewer, window};
 
 /// A window with a circuit of nine cells, of which seven are in the report.
@@ -92,6 +92,61 @@ fn neurons_of_one_tracing_have_their_own_colours() {
             .contains("no cell has an attribute 'weather'"),
         "{problems:?}"
     );
+}
+
+/// Issue 9, 2.8: values had the resolution of traced points, and this dendrite has two.
+#[test]
+fn a_stick_of_two_points_shows_all_its_compartments() {
+    let Some(mut window) = window() else {
+        return;
+    };
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_circuit(folder.path(), 3, 1, 1);
+    make_sticks(
+        folder.path(),
+        &[-80.0, 0.0, -60.0, 20.0, -40.0, 10.0, -70.0],
+    );
+    let open = vec![folder.path().to_path_buf()];
+    run(&mut window, Command::Open(open));
+    set_look(&mut window, |look| {
+        (look.legend, look.axes, look.scale_bar) = (false, false, false);
+        (look.occlusion, look.light) = (false, Lighting::Flat);
+    });
+    let report = folder.path().join("stick.h5");
+    run(&mut window, Command::SetReport(Some(report)));
+    run(&mut window, Command::Select(vec![0], false));
+    run(&mut window, Command::Isolate);
+    run(&mut window, Command::SelectNone);
+    assert_eq!(state(&mut window).problems, []);
+    run(&mut window, Command::Look(Side::Front));
+    let bands = bands(&mut window);
+    // Seven values that rise and fall: six changes of direction.
+    assert!(bands >= 6, "{bands}");
+}
+
+/// How often a color turns from darker to lighter or back, along the middle of the picture.
+fn bands(window: &mut Window) -> usize {
+    let image = window.render().expect("a picture");
+    let light = |x: u32, y: u32| {
+        let [r, g, b, _] = image.get_pixel(x, y).0.map(i32::from);
+        let colored = r.max(g).max(b) - r.min(g).min(b) > 40;
+        colored.then_some(2 * r + 3 * g + b)
+    };
+    let column = |x: u32| {
+        let lights: Vec<i32> = (40..700).filter_map(|y| light(x, y)).collect();
+        let mut turns: Vec<i32> = Vec::new();
+        let mut last = lights.first().copied().unwrap_or(0);
+        for &light in &lights {
+            if (light - last).abs() > 60 {
+                turns.push((light - last).signum());
+                last = light;
+            }
+        }
+        turns.dedup();
+        turns.len()
+    };
+    (250..870).map(column).max().unwrap_or(0)
 }
 
 #[test]

@@ -52,7 +52,9 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                     clip,
                     marked,
                     jitter,
-                    batch
+                    batch,
+                    pad,
+                    edge
                 ]
             );
             assert_layout!(

@@ -31,7 +31,8 @@ pub struct Look {
     /// Share of the samples that instances which are [`FAINT`] cover, 0 to 1.
     pub faint: f32,
     /// The background that colors of the scale must be told from: those that are as light as it have
-    /// edges, darker before a light background and lighter before a dark one. None: no edges.
+    /// edges, darker before a light background and lighter before a dark one. None, or [`Light::Flat`]: no
+    /// edges.
     pub contrast: Option<Rgb>,
 }
 
@@ -165,7 +166,8 @@ impl Shade {
             jitter: [0.0; 2],
             batch: 0,
             pad: 0,
-            edge: edge(look.contrast),
+            // Bare colors are nothing but those.
+            edge: edge(look.contrast.filter(|_| lit > 0.0)),
         }
     }
 

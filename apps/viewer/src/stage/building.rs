@@ -72,7 +72,7 @@ impl Stage {
         let changed: Vec<usize> = if same_sources {
             let pairs = sources.iter().zip(&self.shown.sources).enumerate();
             pairs
-                .filter(|(_, (a, b))| !Arc::ptr_eq(&a.generated, &b.generated))
+                .filter(|(_, (a, b))| !Arc::ptr_eq(&a.traced, &b.traced))
                 .map(|(i, _)| i)
                 .collect()
         } else {
@@ -136,6 +136,7 @@ impl Stage {
         let instances = scene::standing(state, &sources);
         self.building = Some(receiver);
         std::thread::spawn(move || {
+            let sources = wish.cut(sources);
             let mut coloured = wish.colours(&sources);
             let problem = coloured.problem.take();
             let shown = Shown::new(sources, instances, coloured);

@@ -62,3 +62,25 @@ pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, 
     let data: Vec<f32> = data.collect();
     write::report(&layout, &data, create("voltage.h5")).expect("written");
 }
+
+/// Makes all cells of a circuit a ball and a stick of two points, and writes `stick.h5`: the first cell has a
+/// soma and `values` along the stick, at all times.
+pub(crate) fn make_sticks(folder: &Path, values: &[f32]) {
+    let stick = "1 1 0 0 0 8 -1\n2 3 0 9 0 3 1\n3 3 0 120 0 3 2\n";
+    for file in fs::read_dir(folder.join("morphologies")).expect("a folder") {
+        fs::write(file.expect("a file").path(), stick).expect("written");
+    }
+    let layout = ReportLayout {
+        population: POPULATION.into(),
+        time: TimeAxis::of_frames(0.0, 0.5, 2).expect("an axis"),
+        units: "mV".into(),
+        nodes: vec![0],
+        sections: vec![[0].into_iter().chain(values.iter().map(|_| 1)).collect()],
+        chunk: [1, 64],
+        compressed: false,
+    };
+    let frame = || values.iter().take(1).chain(values).copied();
+    let data: Vec<f32> = frame().chain(frame()).collect();
+    let file = File::create(folder.join("stick.h5")).expect("a file");
+    write::report(&layout, &data, file).expect("written");
+}
