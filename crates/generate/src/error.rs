@@ -12,7 +12,7 @@ use crate::warning::Warnings;
 pub enum GenerateError {
     /// A coordinate or radius is beyond anything that is a neuron.
     #[error(
-        "sample {sample}: coordinates or radius of {size:e} µm, and at most {LARGEST:e} µm can be meshed: \
+        "sample {sample}: coordinates or radius of {size:.3e} µm, and at most {LARGEST:e} µm can be meshed: \
          mend the number, or its unit"
     )]
     TooLarge {
@@ -23,7 +23,7 @@ pub enum GenerateError {
     },
     /// So far from the origin, 32-bit coordinates do not resolve the neurite.
     #[error(
-        "sample {sample}: a radius of {radius} µm at {distance:e} µm from the origin, where 32-bit coordinates \
+        "sample {sample}: a radius of {radius} µm at {distance:.3e} µm from the origin, where 32-bit coordinates \
          are rounded by up to {rounding:.2e} µm: move the cell to the origin, or mend the number or its unit"
     )]
     Unresolved {
