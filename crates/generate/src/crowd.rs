@@ -89,7 +89,7 @@ impl Tree {
         }
         let directions: Vec<DVec3> = around.iter().map(|&n| self.direction(fork, n)).collect();
         if around.len() > MOST_PAIRED {
-            self.halve(fork, &around, &directions, touched);
+            self.halve_all(fork, touched);
         } else if around.len() > MOST_NEIGHBOURS || plane(&directions).1 < LEAST_ANGLE {
             let pair = nearest_pair(&directions).map(|slot| around[slot]);
             let new = self.branch_off(fork, &pair, &pair.map(|n| self.direction(fork, n)));
@@ -105,30 +105,42 @@ impl Tree {
         way.try_normalize().unwrap_or(DVec3::Y)
     }
 
-    /// Moves all neighbours but the first, which is the parent if there is one, to two new forks.
-    fn halve(
-        &mut self,
-        fork: u32,
-        around: &[u32],
-        directions: &[DVec3],
-        touched: &mut BTreeSet<u32>,
-    ) {
-        let axis = widest_axis(&directions[1..]);
-        let mut slots: Vec<usize> = (1..around.len()).collect();
+    /// Halves a fork, and the forks that come of it, until each is small enough to be paired. All at once:
+    /// a branch that is paired with this fork searches the list of its children.
+    fn halve_all(&mut self, fork: u32, touched: &mut BTreeSet<u32>) {
+        let mut large = vec![fork];
+        while let Some(fork) = large.pop() {
+            let parent = Some(self.nodes[fork as usize].parent).filter(|&p| p != NONE);
+            let children = self.children(fork).to_vec();
+            // Without a parent one child stays: a fork of two branches would be a path.
+            let moved = &children[usize::from(parent.is_none())..];
+            for new in self.halve(fork, moved) {
+                match self.children(new).len() < MOST_PAIRED {
+                    true => touched.extend(self.children(new).iter().copied().chain([new])),
+                    false => large.push(new),
+                }
+            }
+            touched.insert(fork);
+        }
+    }
+
+    /// Moves children to two new forks, by the axis along which their directions differ most.
+    fn halve(&mut self, fork: u32, children: &[u32]) -> [u32; 2] {
+        let directions: Vec<DVec3> = children.iter().map(|&n| self.direction(fork, n)).collect();
+        let axis = widest_axis(&directions);
+        let mut slots: Vec<usize> = (0..children.len()).collect();
         let middle = slots.len() / 2;
         slots.select_nth_unstable_by(middle, |&a, &b| {
             let along = directions[a][axis].total_cmp(&directions[b][axis]);
             along.then(a.cmp(&b))
         });
-        touched.insert(fork);
         let (low, high) = slots.split_at_mut(middle);
-        for half in [low, high] {
+        [low, high].map(|half| {
             half.sort_unstable(); // children keep their order
-            let nodes: Vec<u32> = half.iter().map(|&slot| around[slot]).collect();
+            let nodes: Vec<u32> = half.iter().map(|&slot| children[slot]).collect();
             let directions: Vec<DVec3> = half.iter().map(|&slot| directions[slot]).collect();
-            touched.insert(self.branch_off(fork, &nodes, &directions));
-            touched.extend(nodes);
-        }
+            self.branch_off(fork, &nodes, &directions)
+        })
     }
 
     /// Moves neighbours of a fork, its parent perhaps the first of them, to a new fork a little way

@@ -88,6 +88,24 @@ fn branches_in_one_direction(count: usize) -> Morphology {
     fork(count, |i, _| vec3(1.0, 1e-4 * (i as f32).sin(), 0.0))
 }
 
+/// Branches that fold back and fork in front of where they begin: each is paired with the fork it comes
+/// from.
+fn branches_that_fold_back(count: usize) -> Morphology {
+    let mut m = fork(0, direction);
+    for i in 0..count / 6 {
+        let away = direction(i, count / 6);
+        let at = Vec3::Y * 10.0 + away * 6.0;
+        let own = m.sections.len() as u32;
+        add_section(&mut m, Attachment::Section(SectionId(0)), &[at], 0.3);
+        for k in 0..5 {
+            let aside = direction(k, 5) * 0.2;
+            let back = at - away * 3.0 + aside;
+            add_section(&mut m, Attachment::Section(SectionId(own)), &[back], 0.2);
+        }
+    }
+    m
+}
+
 /// Twigs that end near the fork, each perhaps buried in another.
 fn short_branches(count: usize) -> Morphology {
     let mut m = fork(0, direction);
@@ -182,7 +200,7 @@ const MOST: f64 = 9.0;
 #[test]
 fn no_stage_takes_the_square_of_what_it_is_given() {
     type Kind = (&'static str, fn(usize) -> Morphology, usize);
-    let kinds: [Kind; 11] = [
+    let kinds: [Kind; 12] = [
         ("stems all around", stems_all_around, 4_000),
         ("stems in one direction", stems_in_one_direction, 4_000),
         ("branches all around", branches_all_around, 4_000),
@@ -191,6 +209,7 @@ fn no_stage_takes_the_square_of_what_it_is_given() {
             branches_in_one_direction,
             4_000,
         ),
+        ("branches that fold back", branches_that_fold_back, 4_000),
         ("short branches", short_branches, 4_000),
         ("forks in a row", forks_in_a_row, 4_000),
         ("forks in one place", forks_in_one_place, 4_000),
