@@ -25,7 +25,7 @@ use crate::ids::{Identifier, Ids};
 use crate::maker::VertexMaker;
 use crate::painter::{Painter, Part, kind};
 use crate::picture::{Occlusion, samples_in_sub_pixel};
-use crate::present::{Outlines, Presenter};
+use crate::present::{Outlines, Presenter, Screen};
 use crate::shade::{Look, Shade, Way};
 use crate::targets::{Targets, make};
 
@@ -84,7 +84,7 @@ struct Canvas {
     targets: Targets,
     /// Of several steps; of one there is none.
     sums: wgpu::Buffer,
-    texture: wgpu::Texture,
+    screen: Screen,
 }
 
 /// How far a picture has come.
@@ -265,17 +265,16 @@ impl Live {
     pub fn show(&self, gpu: &Gpu) {
         if let Some(canvas) = self.shown() {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            let outlines = (&self.outlines, self.shows_draft);
-            let (targets, texture) = (&canvas.targets, &canvas.texture);
+            let (targets, screen) = (&canvas.targets, &canvas.screen);
             self.presenter
-                .present(gpu, targets, texture, outlines, &mut encoder);
+                .present(gpu, targets, screen, &self.outlines, &mut encoder);
             gpu.queue.submit([encoder.finish()]);
         }
     }
 
     /// The texture to show. It changes with the size, and from drafts to pictures.
     pub fn texture(&self) -> Option<&wgpu::Texture> {
-        self.shown().map(|canvas| &canvas.texture)
+        self.shown().map(|canvas| &canvas.screen.texture)
     }
 
     /// Whether it is a draft that shows.
@@ -379,7 +378,7 @@ impl Live {
         let fits = |c: &Canvas| c.size == size && c.samples == samples;
         if !place.as_ref().is_some_and(fits) {
             *place = None;
-            *place = Some(Canvas::new(gpu, size, samples, !draft));
+            *place = Some(Canvas::new(gpu, size, samples, draft));
             gpu.check()?;
         }
         Ok(())
@@ -475,10 +474,9 @@ impl Live {
         pass.set_pipeline(&finisher.last);
         pass.dispatch_workgroups(over[0], over[1], 1);
         drop(pass);
-        let outlines = (&self.outlines, way.draft);
-        let (targets, texture) = (&canvas.targets, &canvas.texture);
+        let (targets, screen) = (&canvas.targets, &canvas.screen);
         self.presenter
-            .present(gpu, targets, texture, outlines, encoder);
+            .present(gpu, targets, screen, &self.outlines, encoder);
     }
 }
 
@@ -507,15 +505,15 @@ impl Clock {
 }
 
 impl Canvas {
-    fn new(gpu: &Gpu, size: [u32; 2], samples: u32, adds_up: bool) -> Self {
+    fn new(gpu: &Gpu, size: [u32; 2], samples: u32, draft: bool) -> Self {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let sums = if adds_up { 16 * pixels } else { 0 };
+        let sums = if draft { 0 } else { 16 * pixels };
         Self {
             size,
             samples,
             targets: Targets::new(gpu, size, samples),
             sums: make(gpu, "sums", sums, wgpu::BufferUsages::STORAGE),
-            texture: Presenter::texture(gpu, size),
+            screen: Screen::new(gpu, size, draft),
         }
     }
 

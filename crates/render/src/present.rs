@@ -1,7 +1,5 @@
 //! The pass that puts a picture into a texture, with outlines. Twin of the uniform in `present.wgsl`.
 
-use std::cell::RefCell;
-
 use bytemuck::{Pod, Zeroable};
 
 use crate::colour::Rgb;
@@ -81,6 +79,24 @@ struct Way {
     layout: wgpu::BindGroupLayout,
 }
 
+/// What a picture is shown in.
+pub(crate) struct Screen {
+    pub(crate) texture: wgpu::Texture,
+    /// Of a draft: the mask that is made of what it has drawn. Others have the host's.
+    drawn: Option<wgpu::Texture>,
+}
+
+impl Screen {
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2], draft: bool) -> Self {
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let shown = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        Self {
+            texture: texture(gpu, size, FORMAT, drawn | shown),
+            drawn: draft.then(|| mask_texture(gpu, size)),
+        }
+    }
+}
+
 /// The pass, with the mask that it looks at.
 pub(crate) struct Presenter {
     show: Way,
@@ -88,8 +104,6 @@ pub(crate) struct Presenter {
     uniform: wgpu::Buffer,
     mask: wgpu::Texture,
     mask_size: Option<[u32; 2]>,
-    /// Of the draft.
-    drawn: RefCell<wgpu::Texture>,
 }
 
 impl Presenter {
@@ -119,15 +133,7 @@ impl Presenter {
             uniform,
             mask: mask_texture(gpu, [1, 1]),
             mask_size: None,
-            drawn: RefCell::new(mask_texture(gpu, [1, 1])),
         }
-    }
-
-    /// A texture that the pass can write to.
-    pub(crate) fn texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
-        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let shown = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        texture(gpu, size, FORMAT, drawn | shown)
     }
 
     /// Bytes of [`SELECTED`] and [`HOVERED`] by pixel, for pictures of this size; none: no outlines.
@@ -149,49 +155,34 @@ impl Presenter {
         );
     }
 
-    /// Encodes the pass. `drawn`: the normals that were drawn are the mask.
+    /// Encodes the pass.
     pub(crate) fn present(
         &self,
         gpu: &Gpu,
         targets: &Targets,
-        to: &wgpu::Texture,
-        (outlines, drawn): (&Outlines, bool),
+        to: &Screen,
+        outlines: &Outlines,
         encoder: &mut wgpu::CommandEncoder,
     ) {
-        let size = [to.width(), to.height()];
+        let size = [to.texture.width(), to.texture.height()];
         // Of another size, the mask belongs to another picture.
-        let outlines = (drawn || self.mask_size == Some(size)).then_some(outlines);
-        let words = Present::new(size, outlines);
+        let fits = to.drawn.is_some() || self.mask_size == Some(size);
+        let outlines = Some(outlines).filter(|outlines| fits && outlines.width > 0);
+        let uniform = Present::new(size, outlines);
         gpu.queue
-            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&words));
-        if drawn && outlines.is_some_and(|o| o.width > 0) {
-            self.gather(gpu, targets, size, encoder);
+            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        if let (Some(drawn), Some(_)) = (&to.drawn, outlines) {
+            let normals = wgpu::BindingResource::TextureView(&targets.normal);
+            self.gather.run(gpu, &[normals], drawn, encoder);
         }
-        let drawn_mask = self.drawn.borrow();
-        let mask = if drawn { &*drawn_mask } else { &self.mask };
+        let mask = to.drawn.as_ref().unwrap_or(&self.mask);
         let mask = mask.create_view(&Default::default());
         let resources = [
             self.uniform.as_entire_binding(),
             targets.pixels.as_entire_binding(),
             wgpu::BindingResource::TextureView(&mask),
         ];
-        self.show.run(gpu, &resources, to, encoder);
-    }
-
-    /// Makes the mask of what a draft has drawn.
-    fn gather(
-        &self,
-        gpu: &Gpu,
-        targets: &Targets,
-        size: [u32; 2],
-        encoder: &mut wgpu::CommandEncoder,
-    ) {
-        let mut mask = self.drawn.borrow_mut();
-        if [mask.width(), mask.height()] != size {
-            *mask = mask_texture(gpu, size);
-        }
-        let normals = wgpu::BindingResource::TextureView(&targets.normal);
-        self.gather.run(gpu, &[normals], &mask, encoder);
+        self.show.run(gpu, &resources, &to.texture, encoder);
     }
 }
 

@@ -15,7 +15,6 @@ struct Present {
 
 @group(0) @binding(0) var<uniform> present: Present;
 @group(0) @binding(1) var<storage, read> pixels: array<u32>;
-// 1: selected, 2: under the cursor.
 // 1: selected, 2: under the cursor, 4: the piece that was clicked.
 @group(0) @binding(2) var mask: texture_2d<u32>;
 
