@@ -28,10 +28,12 @@ struct Converted {
 
 /// Runs the command.
 pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    output::occupy(&args.out.out, reporter)?;
+    reporter.leave_output_to(&args.out.out)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let format = format(args, &inputs)?;
-    warn_of_name(args, format, reporter);
+    let named = args.out.out.extension().unwrap_or_default();
+    let named = Format::of_extension(&named.to_string_lossy());
+    reporter.warn_of_name(&args.out.out, format.name(), named.map(Format::name));
     let extension = format.extensions()[0];
     let jobs = targets::plan(&inputs, &args.out.out, extension)?;
     let outs: BTreeMap<&PathBuf, &Path> = jobs
@@ -64,16 +66,6 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
         }
     }
     reporter.document(&converted)
-}
-
-/// Warns where OUT's name says another format than the one that is written.
-fn warn_of_name(args: &ConvertArgs, format: Format, reporter: &Reporter) {
-    let out = &args.out.out;
-    let named = Format::of_extension(&out.extension().unwrap_or_default().to_string_lossy());
-    if named.is_some_and(|named| named != format) && !out.is_dir() {
-        let (out, format) = (out.display(), format.name());
-        reporter.warning(&format!("{out} will hold {format}, as --format says"));
-    }
 }
 
 /// What OUT lacks: all of it for one file or where much is to be told, else that there is something.

@@ -171,7 +171,7 @@ impl Search<'_> {
         let all = paths.len();
         paths = paths
             .into_par_iter()
-            .filter(|path| !is_other(path))
+            .filter(|path| !formats::h5::is_other(path))
             .collect();
         self.found.others += all - paths.len();
         paths.sort();
@@ -229,14 +229,6 @@ impl Search<'_> {
         let failure = Failure(format!("{}: {what}", path.display()));
         self.found.failures.push(failure);
     }
-}
-
-/// Whether a file of a folder is HDF5, but no morphology.
-fn is_other(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    Format::of_extension(&extension) == Some(Format::H5)
-        && formats::regular(path).is_ok()
-        && formats::h5::is_other(path)
 }
 
 fn is_pattern(path: &Path) -> bool {

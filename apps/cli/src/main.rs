@@ -57,7 +57,7 @@ fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
     if draws || cli.version {
         headless::stay_away_from_windows();
     }
-    interrupt::watch()?;
+    interrupt::watch(reporter.last_words())?;
     if cli.version {
         return version::run(reporter);
     }

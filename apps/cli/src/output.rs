@@ -4,8 +4,6 @@ use std::path::Path;
 
 pub(crate) use neurotess::output::{Existing, Output, OutputError};
 
-use crate::report::Reporter;
-
 /// Only where the user says so.
 pub(crate) fn existing(force: bool) -> Existing {
     match force {
@@ -17,17 +15,6 @@ pub(crate) fn existing(force: bool) -> Existing {
 /// Whether OUT is standard output.
 pub(crate) fn is_standard(out: &Path) -> bool {
     out == Path::new("-")
-}
-
-/// Leaves standard output to the file, where that is where it goes.
-///
-/// # Errors
-/// Wrong usage: it is wanted for JSON too.
-pub(crate) fn occupy(out: &Path, reporter: &Reporter) -> anyhow::Result<()> {
-    match is_standard(out) {
-        true => reporter.occupy(),
-        false => Ok(()),
-    }
 }
 
 /// An error if the file exists and must not be replaced.

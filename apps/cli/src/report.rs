@@ -1,14 +1,16 @@
 //! Who hears what: results on standard output, everything else on standard error.
 
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use indicatif::ProgressBar;
 use serde::Serialize;
 use serde_json::json;
 
 use crate::args::{Color, Common};
+use crate::output::is_standard;
 
 /// Fewest threads that are never too many.
 const THREADS: usize = 16;
@@ -43,7 +45,7 @@ pub(crate) struct Reporter {
     bar: Mutex<Option<ProgressBar>>,
     errors: Mutex<Vec<String>>,
     /// Whether the JSON document has been printed.
-    documented: AtomicBool,
+    documented: Arc<AtomicBool>,
     /// Whether a file goes to standard output, so that nothing else does.
     occupied: AtomicBool,
     /// Whether standard output took all it got.
@@ -63,7 +65,7 @@ impl Reporter {
             color,
             bar: Mutex::new(None),
             errors: Mutex::default(),
-            documented: AtomicBool::new(false),
+            documented: Arc::default(),
             occupied: AtomicBool::new(false),
             broken: AtomicBool::new(false),
         };
@@ -76,16 +78,40 @@ impl Reporter {
         reporter
     }
 
-    /// From now on standard output is for a file.
+    /// Leaves standard output to OUT, if that is where it goes.
     ///
     /// # Errors
     /// Wrong usage: JSON is wanted there too.
-    pub(crate) fn occupy(&self) -> anyhow::Result<()> {
+    pub(crate) fn leave_output_to(&self, out: &Path) -> anyhow::Result<()> {
+        if !is_standard(out) {
+            return Ok(());
+        }
         if self.common.json {
             return usage("--json and -o - both want standard output: leave one of them out");
         }
         self.occupied.store(true, Ordering::Relaxed);
         Ok(())
+    }
+
+    /// Warns where OUT's name says another format than the one that is written.
+    pub(crate) fn warn_of_name(&self, out: &Path, written: &str, named: Option<&str>) {
+        if let Some(named) = named.filter(|&named| named != written && !out.is_dir()) {
+            let out = out.display();
+            self.warning(&format!(
+                "{out} will hold {written}, as --format says, not {named}"
+            ));
+        }
+    }
+
+    /// What to do where the program is interrupted: the one document is printed, if it is wanted and was not.
+    pub(crate) fn last_words(&self) -> impl Fn() + Send + use<> {
+        let (json, documented) = (self.common.json, Arc::clone(&self.documented));
+        move || {
+            if json && !documented.swap(true, Ordering::Relaxed) {
+                let errors = json!({ "errors": ["interrupted: not all inputs are done"] });
+                drop(write_line(&format!("{errors:#}")));
+            }
+        }
     }
 
     /// Whether results are wanted as JSON.

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
         What::Cells(kind) => kind,
         What::Circuit => return circuit::synth::run(args, reporter),
     };
-    output::occupy(&args.out.out, reporter)?;
+    reporter.leave_output_to(&args.out.out)?;
     let cells = plan(args, kind)?;
     let progress = Progress::new(reporter, cells.len(), "cells");
     let order: Vec<usize> = (0..cells.len()).collect();

@@ -33,7 +33,7 @@ pub fn draw_session(
     picture: &PictureFile,
     adapter: Option<&str>,
 ) -> Result<Drawn, String> {
-    let session = Session::read(file).map_err(|why| format!("{}: {why}", file.display()))?;
+    let session = Session::read(file).map_err(|e| e.of(file))?;
     let mut state = State::new(Settings::default());
     let mut drawn = Drawn::default();
     let mut ids = Vec::new();

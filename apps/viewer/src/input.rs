@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use eframe::egui::{self, Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
 
 use crate::command::{Command, Toggles, listed};
+use crate::state::Over;
 
 /// A frame that is made of waiting events alone lasts so long (s): less than the time between two clicks,
 /// enough to fly by a tap.
@@ -30,6 +31,17 @@ pub(crate) enum Open {
     Palette,
     /// A question, or files to choose.
     Question,
+}
+
+impl From<&Over> for Open {
+    fn from(over: &Over) -> Self {
+        match over {
+            Over::Nothing => Self::Nothing,
+            Over::Keys | Over::Problems => Self::Sheet,
+            Over::Palette(..) => Self::Palette,
+            Over::Files(_) | Over::Replace(..) => Self::Question,
+        }
+    }
 }
 
 impl Open {

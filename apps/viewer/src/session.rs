@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use neurotess::formats::read_regular;
 use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use crate::circuits::{self, CircuitId, Circuits};
 use crate::document::{Detail, Look, NodeOf, PlaceFile, SomaEdit};
@@ -18,6 +19,22 @@ use crate::view::View;
 pub const EXTENSION: &str = "neurotess";
 /// What stands in the file.
 const VERSION: u32 = 1;
+
+/// Why a session cannot be read. Displays without the file's name, which stands beside it in the window.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}{why}", .line.map_or(String::new(), |line| format!("line {line}: ")))]
+pub struct SessionError {
+    line: Option<usize>,
+    why: String,
+}
+
+impl SessionError {
+    /// `FILE:LINE: what: what to do`
+    pub fn of(&self, file: &Path) -> String {
+        let line = self.line.map_or(String::new(), |line| format!("{line}:"));
+        format!("{}:{line} {}", file.display(), self.why)
+    }
+}
 
 /// All that a session keeps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -186,24 +203,21 @@ impl Session {
     ///
     /// # Errors
     /// What is wrong, with its line, and what to do.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        let text = read_regular(path).map_err(|e| format!("cannot be read: {e}"))?;
-        let text = String::from_utf8(text)
-            .map_err(|_| "not a session: it is no text; open the files themselves".to_owned())?;
+    pub fn read(path: &Path) -> Result<Self, SessionError> {
+        let whole = |why: String| SessionError { line: None, why };
+        let text = read_regular(path).map_err(|e| whole(format!("cannot be read: {e}")))?;
+        let no_text = "not a session: it is no text; open the files themselves";
+        let text = String::from_utf8(text).map_err(|_| whole(no_text.into()))?;
         let mut session: Self = toml::from_str(&text).map_err(|e| {
-            let line = e
-                .span()
-                .map_or(0, |s| text[..s.start].lines().count().max(1));
-            format!(
-                "line {line}: {}: correct it, or open the files themselves",
-                e.message()
-            )
+            let line = e.span().map(|s| text[..s.start].lines().count().max(1));
+            let why = format!("{}: correct it, or open the files themselves", e.message());
+            SessionError { line, why }
         })?;
         if session.version > VERSION {
-            return Err(format!(
+            return Err(whole(format!(
                 "it is of version {}, this program knows {VERSION}: get a newer one",
                 session.version
-            ));
+            )));
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = session.file.iter_mut().map(|entry| &mut entry.path);
@@ -214,12 +228,12 @@ impl Session {
             }
         }
         if let Some(neuron) = session.neuron.iter().find(|n| n.file >= session.file.len()) {
-            return Err(format!(
+            return Err(whole(format!(
                 "neuron '{}' is of file {}, but there are {}: correct it",
                 neuron.name,
                 neuron.file,
                 session.file.len()
-            ));
+            )));
         }
         Ok(session)
     }
@@ -359,7 +373,7 @@ mod tests {
             ),
         ] {
             fs::write(&file, text).expect("written");
-            let error = Session::read(&file).expect_err("broken");
+            let error = Session::read(&file).expect_err("broken").to_string();
             assert!(error.contains(said), "{error}");
         }
         assert!(Session::read(&folder.path().join("none.neurotess")).is_err());

@@ -228,7 +228,7 @@ fn find_folder(folder: &Path, found: &mut Found) {
         match entry {
             Ok(entry) if entry.file_type().is_file() && is_readable(entry.path()) => {
                 // Reports and tables of nodes are HDF5 too.
-                if !(is_hdf5(entry.path()) && formats::h5::is_other(entry.path())) {
+                if !formats::h5::is_other(entry.path()) {
                     found.files.push(entry.into_path());
                 }
             }

@@ -9,7 +9,6 @@ use crate::command::{Ask, Command, Tab, Toggles};
 use crate::document::{self, Document, SourceId};
 use crate::files::FilePanel;
 use crate::history::History;
-use crate::input::Open;
 use crate::playback::Playback;
 use crate::save::SaveForm;
 use crate::settings::Settings;
@@ -163,18 +162,6 @@ pub enum Over {
     Files(FilePanel),
     /// Files exist: what to do if they may be replaced.
     Replace(PathBuf, Box<Command>),
-}
-
-impl Over {
-    /// What that means for the keys.
-    pub(crate) fn open(&self) -> Open {
-        match self {
-            Self::Nothing => Open::Nothing,
-            Self::Keys | Self::Problems => Open::Sheet,
-            Self::Palette(..) => Open::Palette,
-            Self::Files(_) | Self::Replace(..) => Open::Question,
-        }
-    }
 }
 
 /// What a command asks of the program around.

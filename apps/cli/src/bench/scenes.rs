@@ -34,7 +34,7 @@ pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
             let morphology = grow(&options);
             let soma = morphology.soma().map(|soma| soma.center.as_dvec3());
             let mesh = generate(&morphology, &GenerateOptions::default())
-                .expect("meshed")
+                .expect("a synthetic cell is within 32 bits")
                 .mesh;
             Neuron {
                 words: words(&mesh),

@@ -19,13 +19,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use neurotess::mesh::Format;
 use serde::Serialize;
 
 use crate::args::MeshArgs;
 use crate::circuit;
 use crate::info::{Failed, MORPHOLOGIES, bug};
 use crate::inputs::{Inputs, readable};
-use crate::output::{Output, OutputError, occupy};
+use crate::output::{Output, OutputError};
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, place, usage};
 use crate::targets::{self, Job};
@@ -66,11 +67,12 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
         return usage("no input is a circuit: leave out what chooses cells of one");
     }
     let out = &args.out.out;
-    occupy(out, reporter)?;
+    reporter.leave_output_to(out)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
     let recipe = Recipe::new(args, &inputs, measure)?;
-    recipe.warn_of_name(args, reporter);
+    let named = Format::from_extension(out).ok().map(Format::extension);
+    reporter.warn_of_name(out, recipe.format.extension(), named);
     let mut jobs = targets::plan(&inputs, out, recipe.format.extension())?;
     if let Some(shard) = args.shard {
         jobs = shard.of(jobs);
@@ -161,7 +163,7 @@ impl Context<'_> {
             Ok(Claim::Ours(output)) => make(output),
             Err(failure) => Err(failure),
         };
-        let entry = match result {
+        let failure = match result {
             Ok((cell, output)) => {
                 let cell = Box::new(cell);
                 if self.records
@@ -182,12 +184,22 @@ impl Context<'_> {
             }
             Err(failure) => failure,
         };
+        self.failed(job, failure)
+    }
+
+    /// A cell that failed, in the log too.
+    fn failed(&self, job: &Job, failure: Failure) -> Entry {
         let entry = Entry::Failed(Failed {
             file: job.input.display().to_string(),
-            error: entry.0,
+            error: failure.0,
         });
         self.log(&entry);
         entry
+    }
+
+    /// A cell over which the program stumbled.
+    fn panicked(&self, job: &Job, panic: &str) -> Entry {
+        self.failed(job, bug(&job.input.display().to_string(), panic))
     }
 }
 
@@ -247,12 +259,7 @@ fn mesh_all(jobs: &[Job], made: &Made, context: &Context<'_>) -> anyhow::Result<
     let named = jobs.iter().zip(results);
     let entries = named.map(|(job, result)| {
         result.unwrap_or_else(|panic| {
-            let file = job.input.display().to_string();
-            let entry = Entry::Failed(Failed {
-                error: bug(&file, &panic).0,
-                file,
-            });
-            context.log(&entry);
+            let entry = context.panicked(job, &panic);
             tell(&entry, one, reporter);
             entry
         })

@@ -7,7 +7,7 @@ use neurotess::refine::{Caps, Path, RefineOptions};
 use crate::args::{CapsArg, MeshArgs, PathArg, SphereArg};
 use crate::inputs::Inputs;
 use crate::output::is_standard;
-use crate::report::{Reporter, usage};
+use crate::report::usage;
 use crate::targets;
 
 /// How finely.
@@ -47,20 +47,6 @@ impl Recipe {
             measure: _,
         } = self;
         format!("{fineness:?} {generate:?} {refine:?} {format:?}")
-    }
-
-    /// Warns where OUT's name says another format than the one that is written.
-    pub(crate) fn warn_of_name(&self, args: &MeshArgs, reporter: &Reporter) {
-        let out = &args.out.out;
-        if let (Some(asked), Ok(named)) = (args.format, Format::from_extension(out))
-            && asked != named
-            && !out.is_dir()
-        {
-            let out = out.display();
-            reporter.warning(&format!(
-                "{out} will hold {asked}, as --format says, not {named}"
-            ));
-        }
     }
 
     /// Checks what the options mean together.

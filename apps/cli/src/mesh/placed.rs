@@ -18,7 +18,7 @@ use super::options::Recipe;
 use super::{Context, Entry, scene, summarize};
 use crate::args::MeshArgs;
 use crate::circuit;
-use crate::info::{Failed, bug};
+use crate::info::Failed;
 use crate::inputs::Inputs;
 use crate::progress::Progress;
 use crate::report::{Failure, Reporter, usage};
@@ -192,11 +192,7 @@ fn mesh_all(
         match result {
             Ok(done) => entries.extend(done),
             Err(panic) => entries.extend(cells.iter().map(|(index, placing)| {
-                let file = placing.job.input.display().to_string();
-                let entry = Entry::Failed(Failed {
-                    error: bug(&file, &panic).0,
-                    file,
-                });
+                let entry = context.panicked(&placing.job, &panic);
                 super::tell(&entry, false, reporter);
                 (*index, entry)
             })),

@@ -39,7 +39,7 @@ const WIRE: f32 = 1.0;
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    output::occupy(&args.out, reporter)?;
+    reporter.leave_output_to(&args.out)?;
     let files = files(args)?;
     maker::mode(args)?;
     for file in files.iter().chain(&args.stats) {
@@ -122,12 +122,7 @@ fn draw_session(
         replace: args.force,
     };
     let drawn = neurotess_viewer::draw_session(session, &picture, args.adapter.as_deref());
-    // Places are written one way: FILE:LINE:
-    let (spoken, written) = (
-        format!("{}: line ", session.display()),
-        format!("{}:", session.display()),
-    );
-    let drawn = drawn.map_err(|e| anyhow::anyhow!("{}", e.replacen(&spoken, &written, 1)))?;
+    let drawn = drawn.map_err(anyhow::Error::msg)?;
     for (file, why) in &drawn.failures {
         reporter.failure(&Failure(format!("{file}: {why}")));
     }

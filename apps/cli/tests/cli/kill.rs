@@ -48,6 +48,22 @@ fn interrupted_runs_leave_nothing_and_exit_with_130() {
 }
 
 #[test]
+fn an_interrupted_run_says_so_in_its_document() {
+    let work = Work::new();
+    work.file("cell.swc", &long_cell(3000));
+    let mut command = work.command("mesh cell.swc -o out/cell.obj --level 64 --json");
+    command.stdout(Stdio::piped()).stderr(Stdio::null());
+    let child = command.spawn().expect("it starts");
+    wait_for_a_file(&work, "out");
+    send("-INT", &child);
+    let out = child.wait_with_output().expect("it ends");
+    assert_eq!(out.status.code(), Some(130));
+    let document: serde_json::Value = serde_json::from_slice(&out.stdout).expect("one document");
+    let error = document["errors"][0].as_str().unwrap_or_default();
+    assert!(error.starts_with("interrupted"), "{document}");
+}
+
+#[test]
 fn killed_and_started_again_gives_the_same_files() {
     let work = Work::new();
     for i in 0..12 {

@@ -33,7 +33,8 @@ impl Viewer {
             [] => None,
             [one] => match Session::read(one) {
                 Ok(session) => Some((one.to_path_buf(), session)),
-                Err(why) => {
+                Err(e) => {
+                    let why = e.to_string();
                     self.state.problem(one.display().to_string(), why);
                     self.state.said = "The session was not opened".into();
                     return;

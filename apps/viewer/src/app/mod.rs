@@ -290,7 +290,7 @@ impl Viewer {
 
     /// Tells the input what is open, for the next frame.
     fn end_input(&self, ctx: &egui::Context) {
-        let open = self.state.over.open();
+        let open = (&self.state.over).into();
         let waits = ctx.with_plugin(|input: &mut Input| {
             input.set_open(open);
             input.waits()

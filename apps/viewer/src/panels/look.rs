@@ -100,7 +100,7 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
             ui.end_row();
             ui.label("");
             ui.checkbox(&mut look.trim_map, "without its faint end")
-                .on_hover_text(
+                .tip(
                     "Leaves out the end of the map that is as light or as dark as the background. \
                  Otherwise those colors have edges.",
                 );

@@ -19,7 +19,7 @@ use crate::hdf5::{Store, Table};
 use crate::text::stem;
 use crate::traced::{Sample, Traced, Tracing};
 use crate::warning::Warnings;
-use crate::{Fault, Read, ReadError, ReadOptions};
+use crate::{Fault, Format, Read, ReadError, ReadOptions, regular};
 pub use write::write;
 
 /// Extensions of the format's files, in lower case.
@@ -74,13 +74,17 @@ pub(crate) fn looks_like(bytes: &[u8]) -> bool {
     bytes.starts_with(SIGNATURE)
 }
 
-/// Whether a file is sound HDF5 that holds something else: a report, nodes of a circuit. Only its
-/// beginning and the names in it are read.
+/// Whether a file is named as HDF5 is and is sound, but holds something else: a report, nodes of a circuit.
+/// Only its beginning and the names in it are read.
 pub fn is_other(path: impl AsRef<Path>) -> bool {
-    let Ok(store) = Store::open(path.as_ref()) else {
+    let path = path.as_ref();
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    if Format::of_extension(&extension) != Some(Format::H5) || regular(path).is_err() {
         return false;
-    };
-    !store.has("connectivity") && Layout::of(&store).is_none() && morphologies(&store).0 == 0
+    }
+    Store::open(path).is_ok_and(|store| {
+        !store.has("connectivity") && Layout::of(&store).is_none() && morphologies(&store).0 == 0
+    })
 }
 
 fn interpret(
