@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Rect, Vec2};
+use eframe::egui::{Event, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
@@ -13,7 +13,9 @@ use neurotess_viewer::command::{Ask, Tab};
 use neurotess_viewer::document::{ColourBy, Look};
 use neurotess_viewer::state::{Part, Picked};
 
-use common::{SIZE, Window, run, settle, state, viewer, window, with_samples};
+use common::{
+    SIZE, Window, click, picture, run, seen_at, settle, state, viewer, window, with_samples,
+};
 
 /// A window with so many cells of three neurites, `cell_00` and so on.
 fn many(count: usize) -> Option<Window> {
@@ -36,35 +38,6 @@ fn many(count: usize) -> Option<Window> {
     Some(window)
 }
 
-fn picture(window: &Window) -> Rect {
-    window.get_by_role(Role::Canvas).rect()
-}
-
-/// Where a place of the world is seen.
-fn seen_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
-    let rect = picture(window);
-    let size = [rect.width(), rect.height()].map(|n| n as u32);
-    let pixel = state(window).view.camera().pixel_of(place, size);
-    let [x, y] = pixel.expect("in front");
-    rect.min + Vec2::new(x as f32, y as f32)
-}
-
-fn click(window: &mut Window, at: Pos2) {
-    window.event(Event::PointerMoved(at));
-    window.step();
-    for pressed in [true, false] {
-        window.event(Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-        window.step();
-    }
-    window.run_steps(30);
-    settle(window);
-}
-
 #[test]
 fn the_list_counts_what_it_shows() {
     let Some(mut window) = many(12) else { return };
@@ -85,7 +58,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     };
     assert!(!inside(&window, "cell_37"));
     let soma = seen_at(&mut window, glam::DVec3::new(37.0 * 90.0, 0.0, 0.0));
-    click(&mut window, soma);
+    click(&mut window, soma, Modifiers::NONE);
     let picked = state(&mut window).picked.expect("picked");
     assert_eq!(picked.neuron, 37);
     assert!(inside(&window, "cell_37"));

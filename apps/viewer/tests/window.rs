@@ -22,42 +22,13 @@ use neurotess_viewer::sources::Stale;
 use neurotess_viewer::state::{Lowered, Part, State};
 use neurotess_viewer::view::View;
 
-use common::{SIZE, Window, run, settle, snapshot, state, viewer, window, with_samples};
+use common::{
+    SIZE, Window, click, run, seen_at, settle, snapshot, state, viewer, window, with_samples,
+};
 
-/// Middle of the picture.
+/// Middle of the picture, where the soma of a single sample is: it is the target's.
 fn middle(window: &mut Window) -> Pos2 {
-    let size = window.ctx.content_rect().size();
-    assert!(size.x > 300.0);
-    // Where the soma of a single sample is: it is the target's.
-    let view = state(window).view;
-    let (left, right) = (236.0, 292.0);
-    let rect = egui::Rect::from_min_max(
-        Pos2::new(left, 24.0),
-        Pos2::new(size.x - right, size.y - 24.0),
-    );
-    let height = rect.height() as u32;
-    let pixel = view
-        .camera()
-        .pixel_of(glam::DVec3::ZERO, [rect.width() as u32, height]);
-    let [x, y] = pixel.expect("in front");
-    rect.min + Vec2::new(x as f32, y as f32)
-}
-
-fn click(window: &mut Window, at: Pos2, modifiers: Modifiers) {
-    window.event(Event::PointerMoved(at));
-    window.step();
-    for pressed in [true, false] {
-        window.event(Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers,
-        });
-        window.step();
-    }
-    // No double click with the next one.
-    window.run_steps(30);
-    settle(window);
+    seen_at(window, glam::DVec3::ZERO)
 }
 
 #[test]

@@ -8,7 +8,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::Vec2;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Rect, Vec2};
+use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use egui_kittest::{Harness, SnapshotOptions};
 use egui_wgpu::RendererOptions;
@@ -97,4 +99,35 @@ pub(crate) fn snapshot(window: &mut Window, name: &str) {
         .threshold(0.8)
         .max_failed_pixels((SIZE.x * SIZE.y * 0.005) as usize);
     window.snapshot_options(name, &options);
+}
+
+/// Where the picture is.
+pub(crate) fn picture(window: &Window) -> Rect {
+    window.get_by_role(Role::Canvas).rect()
+}
+
+/// Where a place of the world is seen.
+pub(crate) fn seen_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
+    let rect = picture(window);
+    let size = [rect.width(), rect.height()].map(|n| n as u32);
+    let pixel = state(window).view.camera().pixel_of(place, size);
+    let [x, y] = pixel.expect("in front");
+    rect.min + Vec2::new(x as f32, y as f32)
+}
+
+pub(crate) fn click(window: &mut Window, at: Pos2, modifiers: Modifiers) {
+    window.event(Event::PointerMoved(at));
+    window.step();
+    for pressed in [true, false] {
+        window.event(Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers,
+        });
+        window.step();
+    }
+    // No double click with the next one.
+    window.run_steps(30);
+    settle(window);
 }
