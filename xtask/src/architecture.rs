@@ -78,7 +78,7 @@ mod tests {
         Package {
             name: name.into(),
             version: "0.1.0".into(),
-            licence: "MIT".into(),
+            license: "MIT".into(),
             ours: true,
             dependencies: dependencies.iter().map(|&name| name.into()).collect(),
         }

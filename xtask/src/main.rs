@@ -10,7 +10,7 @@
 mod architecture;
 mod bench;
 mod demo;
-mod licences;
+mod licenses;
 mod metadata;
 mod pictures;
 mod python;
@@ -24,7 +24,7 @@ use std::process::ExitCode;
 const USAGE: &str = "cargo xtask COMMAND
 
   demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
-  test      set up, then every check: formatting, clippy, tests, docs, licences, architecture
+  test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   setup     a software Vulkan driver where there is none, and the Python environment in which other

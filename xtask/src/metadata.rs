@@ -13,7 +13,7 @@ pub(crate) struct Package {
     pub(crate) name: String,
     pub(crate) version: String,
     /// SPDX expression, empty if there is none.
-    pub(crate) licence: String,
+    pub(crate) license: String,
     /// Whether it is a member of the workspace.
     pub(crate) ours: bool,
     /// Direct dependencies by name that are not for its tests alone.
@@ -45,7 +45,7 @@ fn packages(value: &Value) -> Option<Vec<Package>> {
         let package = Package {
             name: text("name"),
             version: text("version"),
-            licence: text("license"),
+            license: text("license"),
             ours: members.contains(&text("id")),
             dependencies,
         };

@@ -5,7 +5,7 @@ use std::fmt;
 use anyhow::bail;
 
 use crate::steps::{self, Steps, cargo, run_listening};
-use crate::{architecture, licences, metadata, setup};
+use crate::{architecture, licenses, metadata, setup};
 
 /// Runs the command. The last line tells how many tests there were.
 pub(crate) fn run() -> anyhow::Result<()> {
@@ -32,7 +32,7 @@ fn all(steps: &mut Steps) -> anyhow::Result<Counts> {
     })?;
     let metadata = metadata::read()?;
     steps.step("architecture", || architecture::check(&metadata))?;
-    steps.step("licences", || licences::check(&metadata))?;
+    steps.step("licenses", || licenses::check(&metadata))?;
     steps.step("clippy", || {
         let clippy = "clippy --workspace --all-targets --locked -- -D warnings";
         steps::run(&mut cargo(clippy)).map(|()| "no warning".into())

@@ -16,7 +16,7 @@ pub(crate) use crate::render::args::RenderArgs;
 use crate::rings::RingArgs;
 use crate::view::ViewArgs;
 
-/// From tracings of neurons to closed surface meshes. Lengths are micrometres (µm).
+/// From tracings of neurons to closed surface meshes. Lengths are micrometers (µm).
 #[derive(Debug, Parser)]
 #[command(
     name = "neurotess",
@@ -60,12 +60,12 @@ pub(crate) struct Common {
     /// Show no progress bar, not even on a terminal
     #[arg(long, global = true)]
     pub(crate) no_progress: bool,
-    /// Colour messages
+    /// Color messages
     #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
     pub(crate) color: Color,
 }
 
-/// When messages are coloured.
+/// When messages are colored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Color {
     /// On a terminal, unless NO_COLOR is set

@@ -22,7 +22,7 @@ use egui_kittest::Harness;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use egui_wgpu::RendererOptions;
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::colouring::{Cell, DECAY, Replay};
+use neurotess::coloring::{Cell, DECAY, Replay};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::{Command, Viewer, wgpu_setup};

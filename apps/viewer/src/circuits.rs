@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::colouring::{self, Node};
+use neurotess::coloring::{self, Node};
 
 use crate::document::NodeOf;
 
@@ -42,7 +42,7 @@ impl Circuits {
         (0..).map(CircuitId).zip(circuits)
     }
 
-    /// A node with its circuit, as colours want it.
+    /// A node with its circuit, as colors want it.
     pub fn node(&self, of: NodeOf) -> Option<Node<'_>> {
         let (circuit, node) = (self.get(of.circuit)?, of.node);
         Some(Node { circuit, node })
@@ -50,7 +50,7 @@ impl Circuits {
 
     /// Attributes that neurons can be told apart by.
     pub fn attributes(&self) -> Vec<String> {
-        colouring::attributes(self.iter().map(|(_, circuit)| circuit))
+        coloring::attributes(self.iter().map(|(_, circuit)| circuit))
     }
 
     /// Files of the reports that circuits name, with the names.

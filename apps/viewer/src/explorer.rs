@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
 use eframe::egui;
-use neurotess::colouring::Colouring;
+use neurotess::coloring::Coloring;
 use neurotess::generate::Generated;
 use neurotess::render::{
     DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Sketch, SketchNamer, SketchNames,
@@ -39,7 +39,7 @@ struct Made {
 #[derive(Clone)]
 struct Key {
     meshes: Vec<Arc<Generated>>,
-    colouring: Arc<Colouring>,
+    coloring: Arc<Coloring>,
 }
 
 impl Key {
@@ -50,13 +50,13 @@ impl Key {
                 .iter()
                 .map(|s| Arc::clone(&s.generated))
                 .collect(),
-            colouring: Arc::clone(&shown.colouring),
+            coloring: Arc::clone(&shown.coloring),
         }
     }
 
     fn fits(&self, shown: &Shown) -> bool {
         self.meshes.len() == shown.sources.len()
-            && Arc::ptr_eq(&self.colouring, &shown.colouring)
+            && Arc::ptr_eq(&self.coloring, &shown.coloring)
             && self
                 .meshes
                 .iter()
@@ -104,7 +104,7 @@ impl Explorer {
         self.making = Some((key.clone(), receiver));
         let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
         std::thread::spawn(move || {
-            let cells = key.meshes.iter().zip(&key.colouring.words);
+            let cells = key.meshes.iter().zip(&key.coloring.words);
             let sketches: Vec<Sketch> = cells
                 .map(|(cell, words)| Sketch::new(&cell.mesh, words))
                 .collect();

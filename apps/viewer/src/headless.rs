@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use neurotess::render::Gpu;
 
-use crate::colours::Wish;
+use crate::colors::Wish;
 use crate::document::Neuron;
 use crate::save::{self, PictureFile, Scenery, Still};
 use crate::scene::{self, Shown};
@@ -91,10 +91,10 @@ fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
     let sources = scene::sources(state);
     let wish = Wish::new(state, &sources);
     let sources = wish.cut(sources);
-    let mut coloured = wish.colours(&sources);
-    drawn.failures.extend(coloured.problem.take());
+    let mut colored = wish.colors(&sources);
+    drawn.failures.extend(colored.problem.take());
     let standing = scene::standing(state, &sources);
-    let shown = Shown::new(sources, standing, coloured);
+    let shown = Shown::new(sources, standing, colored);
     Scenery {
         gpu,
         shared: false,

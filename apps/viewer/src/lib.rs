@@ -13,7 +13,7 @@
 
 pub mod app;
 pub mod circuits;
-mod colours;
+mod colors;
 pub mod command;
 pub mod document;
 mod explorer;

@@ -42,7 +42,7 @@ impl Picks {
         let mut known: HashMap<Id, u32> = HashMap::from([([0; 2], 0)]);
         let mut last = ([0; 2], 0);
         let index = ids.iter().map(|&id| {
-            // Neighbours are mostly alike.
+            // Neighbors are mostly alike.
             if last.0 != id {
                 let index = *known.entry(id).or_insert_with(|| match name(id) {
                     Some(found) => {

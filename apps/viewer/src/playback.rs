@@ -41,7 +41,7 @@ pub struct Facts {
     pub time: TimeAxis,
     /// Whether it is of spikes.
     pub spikes: bool,
-    /// Numbers at both ends of the colour map.
+    /// Numbers at both ends of the color map.
     pub range: [f32; 2],
     /// Neurons that have no values, and all.
     pub without: [usize; 2],

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use eframe::egui;
-use neurotess::colouring::Replay;
+use neurotess::coloring::Replay;
 use neurotess::render::InstanceValues;
 
 /// Pictures that are read ahead.
@@ -23,7 +23,7 @@ pub(crate) struct Reader {
 pub(crate) struct Sight {
     /// By neuron: whether it shows.
     pub(crate) shows: Vec<bool>,
-    /// Numbers at both ends of the colour map.
+    /// Numbers at both ends of the color map.
     pub(crate) range: [f32; 2],
     /// Of flashes (ms).
     pub(crate) decay: f64,
@@ -150,7 +150,7 @@ fn read(shared: &Shared, replay: &Replay, ctx: &egui::Context) {
         let moment = replay.at(replay.time.time_of(frame), sight.decay, &shows);
         let (values, problem) = match moment {
             Ok(moment) => (moment.values(sight.range), None),
-            // Grey instead of the values of another time; it is not read again and again.
+            // Gray instead of the values of another time; it is not read again and again.
             Err(e) => (none(sight.shows.len()), Some(e.to_string())),
         };
         let mut inner = shared.lock();

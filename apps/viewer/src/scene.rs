@@ -1,26 +1,26 @@
-//! What is on the device: templates, instances, colours.
+//! What is on the device: templates, instances, colors.
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use neurotess::colouring::{Colouring, Replay};
+use neurotess::coloring::{Coloring, Replay};
 use neurotess::generate::{GenerateOptions, Generated};
 use neurotess::morphology::Morphology;
 use neurotess::render::{
-    Adaptive, Ball, Clip, ColourTable, DeviceError, FAINT, Gpu, Instance, Legend, MARKED,
+    Adaptive, Ball, Clip, ColorTable, DeviceError, FAINT, Gpu, Instance, Legend, MARKED,
     Placement, Refining, Scene, SceneError, Template, TemplateId, Templates, WITHOUT_NEURITES,
     WITHOUT_SOMA,
 };
 use thiserror::Error;
 
-use crate::colours::Coloured;
+use crate::colors::Colored;
 use crate::document::{Document, Look, Parts, SourceId};
 use crate::sources::extent;
 use crate::state::State;
 
 /// Width (pixels) of wires.
 const WIRE: f32 = 1.0;
-/// Colour of what is selected.
+/// Color of what is selected.
 pub(crate) const SELECTION: [u8; 3] = [255, 140, 0];
 
 /// Why there is no scene.
@@ -51,9 +51,9 @@ pub(crate) struct Shown {
     pub(crate) sources: Vec<ShownSource>,
     pub(crate) instances: Vec<Standing>,
     /// What points say on the device.
-    pub(crate) colouring: Arc<Colouring>,
+    pub(crate) coloring: Arc<Coloring>,
     /// What that means now.
-    pub(crate) table: ColourTable,
+    pub(crate) table: ColorTable,
     pub(crate) legend: Legend,
     /// A recording, with the range of all its values.
     pub(crate) replay: Option<(Arc<Replay>, [f32; 2])>,
@@ -63,17 +63,17 @@ impl Shown {
     pub(crate) fn new(
         sources: Vec<ShownSource>,
         instances: Vec<Standing>,
-        coloured: Coloured,
+        colored: Colored,
     ) -> Self {
-        let Coloured {
-            colouring, replay, ..
-        } = coloured;
+        let Colored {
+            coloring, replay, ..
+        } = colored;
         Self {
             sources,
             instances,
-            table: colouring.table.clone(),
-            legend: colouring.legend.clone(),
-            colouring: Arc::new(colouring),
+            table: coloring.table.clone(),
+            legend: coloring.legend.clone(),
+            coloring: Arc::new(coloring),
             replay,
         }
     }
@@ -125,11 +125,11 @@ pub(crate) fn standing(state: &State, sources: &[ShownSource]) -> Vec<Standing> 
 pub(crate) fn templates(
     gpu: &Gpu,
     sources: &[ShownSource],
-    colouring: &Colouring,
+    coloring: &Coloring,
 ) -> Result<Templates, DeviceError> {
     let list: Vec<Template<'_>> = sources
         .iter()
-        .zip(&colouring.words)
+        .zip(&coloring.words)
         .map(|(source, words)| Template {
             mesh: &source.generated.mesh,
             words,
@@ -155,7 +155,7 @@ pub(crate) fn instances(standing: &[Standing]) -> Vec<Instance> {
 
 /// A maker for a whole scene, for pictures that are saved.
 pub(crate) fn maker(gpu: &Gpu, shown: &Shown, sub_pixels: u32) -> Result<Adaptive, BuildError> {
-    let templates = templates(gpu, &shown.sources, &shown.colouring)?;
+    let templates = templates(gpu, &shown.sources, &shown.coloring)?;
     let scene = Scene::new(templates, instances(&shown.instances))?;
     Ok(Adaptive::new(gpu, scene, Refining::default(), sub_pixels)?)
 }
@@ -185,7 +185,7 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
     document.neurons.iter().map(|n| state(n.selected)).collect()
 }
 
-/// Light, wires and colours of states.
+/// Light, wires and colors of states.
 pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
     neurotess::render::Look {
         light: look.light.light(),

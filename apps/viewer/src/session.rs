@@ -51,7 +51,7 @@ pub struct Session {
     /// From where.
     #[serde(default)]
     pub view: View,
-    /// Colours and light.
+    /// Colors and light.
     #[serde(default)]
     pub look: Look,
     /// How finely.
@@ -302,7 +302,7 @@ fn relative(path: &Path, folder: &Path) -> PathBuf {
 mod tests {
     use super::*;
     use crate::command::Command;
-    use crate::document::{ColourBy, Cut, Lighting, Neuron};
+    use crate::document::{ColorBy, Cut, Lighting, Neuron};
     use crate::settings::Settings;
     use crate::sources;
 
@@ -328,7 +328,7 @@ mod tests {
         state.run(Command::SetRing(id, 0, Some(1.25)));
         state.run(Command::SetRing(id, 3, Some(0.0)));
         let mut look = state.document.look.clone();
-        look.colour_by = ColourBy::Depth;
+        look.color_by = ColorBy::Depth;
         look.light = Lighting::From {
             right: 30.0,
             up: -10.5,

@@ -9,7 +9,7 @@ use directories::ProjectDirs;
 use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
-use crate::document::{ColourBy, Detail, Look};
+use crate::document::{ColorBy, Detail, Look};
 
 /// Most files in the recent list.
 const RECENT: usize = 12;
@@ -35,7 +35,7 @@ pub struct Settings {
     pub picture_size: [u32; 2],
     /// Factor on everything's size.
     pub zoom: f32,
-    /// Colours and light.
+    /// Colors and light.
     pub look: Look,
     /// How finely.
     pub detail: Detail,
@@ -71,10 +71,10 @@ impl Settings {
                 // A cut of another scene would hide half of this one.
                 settings.look.cut = None;
                 settings.look.faint_others = false;
-                // So would colours of another circuit be.
+                // So would colors of another circuit be.
                 settings.look.range = None;
-                if !settings.look.colour_by.is_of_tracings() {
-                    settings.look.colour_by = ColourBy::default();
+                if !settings.look.color_by.is_of_tracings() {
+                    settings.look.color_by = ColorBy::default();
                 }
                 (settings, None)
             }

@@ -22,7 +22,7 @@ pub enum Message {
     Found(Box<Found>),
     /// A file that was read; the number is its place among those found of that loading.
     Loaded(usize, Box<Result<Source, (PathBuf, String)>>),
-    /// All files of a loading are read, or it was cancelled.
+    /// All files of a loading are read, or it was canceled.
     LoadingDone,
     /// A file that was read again.
     Reloaded(SourceId, Box<Result<Source, String>>),
@@ -46,7 +46,7 @@ pub struct Job {
     /// All steps, 0 where that is not known yet.
     pub all: Arc<AtomicUsize>,
     /// Set to end it.
-    pub cancelled: Arc<AtomicBool>,
+    pub canceled: Arc<AtomicBool>,
 }
 
 impl Job {
@@ -56,13 +56,13 @@ impl Job {
             steps,
             done: Arc::default(),
             all: Arc::new(AtomicUsize::new(all)),
-            cancelled: Arc::default(),
+            canceled: Arc::default(),
         }
     }
 
     /// Whether it should end.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+    pub fn is_canceled(&self) -> bool {
+        self.canceled.load(Ordering::Relaxed)
     }
 
     /// What it does and how far it is, for people.
@@ -162,7 +162,7 @@ impl Worker {
                     scope.spawn(move || {
                         loop {
                             let index = next.fetch_add(1, Ordering::Relaxed);
-                            let Some(file) = files.get(index).filter(|_| !job.is_cancelled())
+                            let Some(file) = files.get(index).filter(|_| !job.is_canceled())
                             else {
                                 break;
                             };

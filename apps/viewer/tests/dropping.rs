@@ -9,7 +9,7 @@ use std::sync::Arc;
 use eframe::egui::{DroppedFile, HoveredFile};
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::document::ColourBy;
+use neurotess_viewer::document::ColorBy;
 
 use common::circuit::write_circuit;
 use common::{Window, run, settle, snapshot, state, window, with_samples};
@@ -105,7 +105,7 @@ fn a_circuit_and_its_report_are_dropped_together() {
     let report = folder.path().join("voltage.h5");
     drop_on(&mut window, &[folder.path(), &report]);
     assert_eq!(names(&mut window).len(), 4);
-    assert_eq!(state(&mut window).document.look.colour_by, ColourBy::Value);
+    assert_eq!(state(&mut window).document.look.color_by, ColorBy::Value);
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert_eq!((facts.title.as_str(), facts.without), ("voltage", [0, 4]));
     // Another one takes its place; several are too many.

@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Ask, Tab};
-use neurotess_viewer::document::{ColourBy, Look};
+use neurotess_viewer::document::{ColorBy, Look};
 use neurotess_viewer::state::{Part, Picked};
 
 use common::{
@@ -162,7 +162,7 @@ fn the_legend_is_that_of_the_picture() {
     let Some(mut window) = many(3) else { return };
     let before = viewer(&mut window).stage.legend().clone();
     let look = Look {
-        colour_by: ColourBy::Depth,
+        color_by: ColorBy::Depth,
         ..state(&mut window).document.look.clone()
     };
     state(&mut window).run(Command::SetLook(Box::new(look)));

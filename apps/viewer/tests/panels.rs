@@ -10,7 +10,7 @@ use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Tab;
 use neurotess_viewer::document::{
-    ColourBy, Criterion, Cut, Detail, Document, Lighting, Look, SomaEdit, SourceId,
+    ColorBy, Criterion, Cut, Detail, Document, Lighting, Look, SomaEdit, SourceId,
 };
 
 use common::{Window, run, settle, state, window, with_samples};
@@ -123,9 +123,9 @@ fn looking_at_numbers_that_are_not_round_changes_nothing() {
         );
         look_at_all_panels(&mut window, "uneven detail");
     }
-    for (colour_by, _) in ColourBy::ALL {
+    for (color_by, _) in ColorBy::ALL {
         let look = Look {
-            colour_by,
+            color_by,
             attribute: "none such".into(),
             ..look.clone()
         };

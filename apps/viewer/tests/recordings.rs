@@ -1,4 +1,4 @@
-//! Circuits in the window: colours of their cells, reports and spikes played back.
+//! Circuits in the window: colors of their cells, reports and spikes played back.
 
 mod common;
 
@@ -11,7 +11,7 @@ use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Tab;
-use neurotess_viewer::document::{ColourBy, Lighting, Look};
+use neurotess_viewer::document::{ColorBy, Lighting, Look};
 use neurotess_viewer::playback::Pace;
 use neurotess_viewer::save::{FilmOptions, PictureFile};
 
@@ -39,20 +39,20 @@ fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
     run(window, Command::SetLook(Box::new(look)));
 }
 
-/// The distinct colours of the picture alone, without its legend, roughly.
+/// The distinct colors of the picture alone, without its legend, roughly.
 fn hues(window: &mut Window) -> usize {
     let image = window.render().expect("a picture");
     let picture = (240..880).flat_map(|x| (30..640).map(move |y| (x, y)));
-    let coloured = picture.filter_map(|(x, y)| {
+    let colored = picture.filter_map(|(x, y)| {
         let [r, g, b, _] = image.get_pixel(x, y).0;
         let spread = r.max(g).max(b) - r.min(g).min(b);
         (spread > 60).then_some([r / 64, g / 64, b / 64])
     });
-    coloured.collect::<std::collections::BTreeSet<_>>().len()
+    colored.collect::<std::collections::BTreeSet<_>>().len()
 }
 
 #[test]
-fn neurons_of_one_tracing_have_their_own_colours() {
+fn neurons_of_one_tracing_have_their_own_colors() {
     let Some((mut window, _folder)) = with_circuit() else {
         return;
     };
@@ -64,7 +64,7 @@ fn neurons_of_one_tracing_have_their_own_colours() {
     };
     set_look(&mut window, |look| {
         plain(look);
-        look.colour_by = ColourBy::Neuron;
+        look.color_by = ColorBy::Neuron;
     });
     let each = hues(&mut window);
     run(&mut window, Command::Select(vec![4], false));
@@ -74,13 +74,13 @@ fn neurons_of_one_tracing_have_their_own_colours() {
     assert!(each > 2 * one, "{each}, {one}");
     run(&mut window, Command::ShowAll);
     set_look(&mut window, |look| {
-        look.colour_by = ColourBy::Attribute;
+        look.color_by = ColorBy::Attribute;
         look.attribute = "synapse_class".into();
         look.legend = true;
     });
     run(&mut window, Command::Show(Tab::Look));
     snapshot(&mut window, "attribute");
-    // The colour goes with the neuron when others go.
+    // The color goes with the neuron when others go.
     run(&mut window, Command::Select(vec![0, 1], false));
     run(&mut window, Command::Remove);
     assert_eq!(state(&mut window).problems, []);
@@ -250,7 +250,7 @@ fn a_frame_changes_values_and_nothing_else() {
     run(&mut window, Command::Seek(0.0));
     let again = window.render().expect("a picture");
     assert_same(first.width(), first.as_raw(), again.as_raw());
-    // A fixed range has other colours of the same values, and an undo has the old ones.
+    // A fixed range has other colors of the same values, and an undo has the old ones.
     set_look(&mut window, |look| look.range = Some([-80.0, -70.0]));
     assert_eq!(
         state(&mut window).playback.facts.as_ref().map(|f| f.range),
@@ -306,7 +306,7 @@ fn reports_that_do_not_fit_are_told_while_the_rest_shows() {
         assert!(state.playback.facts.is_none());
     }
     run(&mut window, Command::SetReport(None));
-    assert_eq!(state(&mut window).document.look.colour_by, ColourBy::Type);
+    assert_eq!(state(&mut window).document.look.color_by, ColorBy::Type);
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let values = &opened.populations[0];
         println!("  opened in {:.3} s", seconds(clock));
         // As a view does it: the elements of some whole neurons, near one another or not.
-        for (what, step) in [("of neighbours", 1), ("of neurons all over", 100)] {
+        for (what, step) in [("of neighbors", 1), ("of neurons all over", 100)] {
             let nodes = (0..1000).map(|n| n * step);
             let wanted: Vec<u64> = nodes.flat_map(|n| values.elements_of(n)).collect();
             for frame in [3, 4] {

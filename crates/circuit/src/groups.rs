@@ -1,4 +1,4 @@
-//! Nodes of equal attributes, for colours.
+//! Nodes of equal attributes, for colors.
 
 use std::collections::BTreeMap;
 

@@ -19,7 +19,7 @@
 //! let selection = Selection { sample: Some((1000, 1)), ..Selection::default() };
 //! let nodes = circuit.select(&selection)?;
 //!
-//! // **Instances** are what a renderer needs: template, place, id, group for the colour.
+//! // **Instances** are what a renderer needs: template, place, id, group for the color.
 //! let groups = Groups::by(&circuit, "layer");
 //! let instances = circuit.instances(&nodes, Some(&groups));
 //! read_all(instances.iter().map(|i| &circuit.templates[i.template.index()]));

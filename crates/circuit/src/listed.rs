@@ -14,7 +14,7 @@ use crate::{Attribute, Circuit, CircuitError, NodeSets, Population, Warning};
 pub(crate) struct Cell {
     pub(crate) id: u64,
     pub(crate) placement: Placement,
-    pub(crate) recentred: bool,
+    pub(crate) recentered: bool,
     /// Morphology file; `None` shows nothing.
     pub(crate) file: Option<PathBuf>,
     pub(crate) attributes: BTreeMap<&'static str, String>,
@@ -83,7 +83,7 @@ pub(crate) fn circuit(
         positions: cells.iter().map(|c| c.placement.0).collect(),
         rotations: cells.iter().map(|c| c.placement.1).collect(),
         scales: cells.iter().map(|c| c.placement.2).collect(),
-        recentred: cells.iter().map(|c| c.recentred).collect(),
+        recentered: cells.iter().map(|c| c.recentered).collect(),
         templates: of_cells,
         attributes: attributes.collect(),
     };

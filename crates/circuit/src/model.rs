@@ -39,14 +39,14 @@ pub struct Population {
     pub kind: String,
     /// Ids that the file gives its nodes: 0, 1, 2, … if it gives none.
     pub ids: Vec<u64>,
-    /// Where the soma's centre goes (µm); NaN for nodes that have no place.
+    /// Where the soma's center goes (µm); NaN for nodes that have no place.
     pub positions: Vec<DVec3>,
     /// From the morphology's axes to the circuit's; unit quaternions.
     pub rotations: Vec<DQuat>,
     /// Factors on the morphology's size; empty if all are 1.
     pub scales: Vec<f64>,
-    /// Whether the soma's centre is moved to the origin before the cell is turned; empty if all are.
-    pub recentred: Vec<bool>,
+    /// Whether the soma's center is moved to the origin before the cell is turned; empty if all are.
+    pub recentered: Vec<bool>,
     /// Morphologies; `None` for nodes that show nothing.
     pub templates: Vec<Option<TemplateId>>,
     /// Everything else that nodes have, by name.
@@ -109,27 +109,27 @@ pub struct Instance {
     pub id: u64,
     /// What it shows.
     pub template: TemplateId,
-    /// Where the soma's centre goes (µm), if `recentred`; else where the morphology's origin goes.
+    /// Where the soma's center goes (µm), if `recentered`; else where the morphology's origin goes.
     pub position: DVec3,
     /// From the morphology's axes to the circuit's.
     pub rotation: DQuat,
     /// Factor on its size.
     pub scale: f64,
-    /// Whether the soma's centre is moved to the origin first.
-    pub recentred: bool,
-    /// Cells of one group have one colour: place in [`Groups::words`]; 0 without a grouping.
+    /// Whether the soma's center is moved to the origin first.
+    pub recentered: bool,
+    /// Cells of one group have one color: place in [`Groups::words`]; 0 without a grouping.
     pub group: u32,
 }
 
 impl Instance {
-    /// From the morphology's coordinates (µm) to the circuit's: the soma's centre moves to the origin,
+    /// From the morphology's coordinates (µm) to the circuit's: the soma's center moves to the origin,
     /// then the cell turns, then it goes to its place. This is how the SONATA guide has it; bmtk does
     /// so, and bluepysnap leaves the first step out.
     ///
     /// `soma_center`: in the morphology's coordinates, its origin included (see
     /// [`crate::soma_center`]); zero for a cell without a soma.
     pub fn world_from_cell(&self, soma_center: DVec3) -> DAffine3 {
-        let center = if self.recentred {
+        let center = if self.recentered {
             soma_center
         } else {
             DVec3::ZERO
@@ -198,7 +198,7 @@ impl Circuit {
                 position: population.positions[row],
                 rotation: population.rotations[row],
                 scale: population.scales.get(row).copied().unwrap_or(1.0),
-                recentred: population.recentred.get(row).copied().unwrap_or(true),
+                recentered: population.recentered.get(row).copied().unwrap_or(true),
                 group: groups.map_or(0, |groups| groups.of(node)),
             })
         };

@@ -164,7 +164,7 @@ impl Scan<'_> {
                 self.cells.push(Cell {
                     id,
                     placement: Cell::PLACED_AT_ORIGIN,
-                    recentred: false,
+                    recentered: false,
                     file: None,
                     attributes: words.chain(place).collect(),
                 });

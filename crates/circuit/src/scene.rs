@@ -6,7 +6,7 @@
 //!
 //! [[cells]]
 //! file = "pyramidal.swc"            # relative to the scene
-//! position = [0, 100, 0]            # µm; where the soma's centre goes, if recenter
+//! position = [0, 100, 0]            # µm; where the soma's center goes, if recenter
 //! rotation_degrees = [0, 90, 0]     # about x, y and z: R = Rx Ry Rz
 //! group = "left"
 //! ```
@@ -128,7 +128,7 @@ fn newlines(text: &str, to: usize) -> usize {
 }
 
 fn no_color(file: &str, key: String, text: String) -> CircuitError {
-    let expected = "a colour like #0072b2";
+    let expected = "a color like #0072b2";
     CircuitError::new(file, key, Fault::NotANumber { expected, text })
 }
 
@@ -182,7 +182,7 @@ impl Entry {
         Ok(Cell {
             id: self.id.unwrap_or(index as u64),
             placement: (position, rotation, scale),
-            recentred: self.recenter,
+            recentered: self.recenter,
             file: Some(folder.join(&self.file)),
             attributes: words
                 .filter_map(|(name, word)| Some((name, word?.clone())))
@@ -191,7 +191,7 @@ impl Entry {
     }
 }
 
-/// Red, green and blue of a colour like `#0072b2`.
+/// Red, green and blue of a color like `#0072b2`.
 pub fn color(text: &str) -> Option<[u8; 3]> {
     let digits = text.strip_prefix('#')?;
     if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
@@ -229,7 +229,7 @@ scale = 2
     }
 
     #[test]
-    fn cells_have_places_groups_and_colours() {
+    fn cells_have_places_groups_and_colors() {
         let circuit = read(Path::new("s.scene.toml"), SCENE).expect("a scene");
         let cells = &circuit.populations[0];
         assert_eq!(
@@ -261,7 +261,7 @@ scale = 2
         let scale = message("[[cells]]\nfile = \"a\"\nscale = nan");
         assert!(scale.contains("'cells[0].scale'"), "{scale}");
         let tint = message("[[cells]]\nfile = \"a\"\ncolor = \"red\"");
-        assert!(tint.contains("'cells[0].color': is not a colour"), "{tint}");
+        assert!(tint.contains("'cells[0].color': is not a color"), "{tint}");
     }
 
     #[test]

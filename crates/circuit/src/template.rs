@@ -64,7 +64,7 @@ pub fn read_all<'a>(templates: impl IntoIterator<Item = &'a Template>) {
     });
 }
 
-/// Centre of the main soma in the file's coordinates (µm); zero if there is no soma.
+/// Center of the main soma in the file's coordinates (µm); zero if there is no soma.
 pub fn soma_center(morphology: &Morphology) -> DVec3 {
     morphology.soma().map_or(DVec3::ZERO, |soma| {
         morphology.origin + soma.center.as_dvec3()

@@ -32,20 +32,20 @@ pub(crate) struct Assembly<'a> {
 /// A joint with its place in the mesh.
 struct PlacedJoint {
     joint: Joint,
-    /// Neighbour nodes as the joint numbers them.
-    neighbours: Vec<u32>,
+    /// Neighbor nodes as the joint numbers them.
+    neighbors: Vec<u32>,
     poles: [u32; 2],
     crotches: Vec<u32>,
 }
 
 impl PlacedJoint {
-    /// Ring towards a neighbour, counter-clockwise about the direction away from the joint.
-    fn ring(&self, neighbour: u32) -> Ring {
+    /// Ring towards a neighbor, counter-clockwise about the direction away from the joint.
+    fn ring(&self, neighbor: u32) -> Ring {
         let k = self.crotches.len();
         let number = self
-            .neighbours
+            .neighbors
             .iter()
-            .position(|&n| n == neighbour)
+            .position(|&n| n == neighbor)
             .unwrap_or(0);
         let place = self
             .joint
@@ -147,8 +147,8 @@ impl<'a> Assembly<'a> {
 
     fn place_joint(&mut self, fork: u32) {
         let node = *self.skeleton.node(fork);
-        let neighbours = fork::neighbours(self.children, self.skeleton, fork);
-        let tubes = fork::tubes(self.skeleton, self.children, fork, &neighbours);
+        let neighbors = fork::neighbors(self.children, self.skeleton, fork);
+        let tubes = fork::tubes(self.skeleton, self.children, fork, &neighbors);
         let joint = Joint::new(node.radius, &tubes);
         let tracing = self.tracing(fork, Role::Joint);
         let poles = joint.poles.map(|p| self.vertex(node.center, p, tracing));
@@ -159,7 +159,7 @@ impl<'a> Assembly<'a> {
             .collect();
         self.joints[fork as usize] = Some(Box::new(PlacedJoint {
             joint,
-            neighbours,
+            neighbors,
             poles,
             crotches,
         }));
@@ -265,7 +265,7 @@ impl<'a> Assembly<'a> {
             .collect()
     }
 
-    /// Frames along a run: rotation-minimising from the start, with the angle that remains at a
+    /// Frames along a run: rotation-minimizing from the start, with the angle that remains at a
     /// joint at its end spread in proportion to the length of the path.
     fn frames(&self, nodes: &[u32], tangents: &[DVec3]) -> Vec<DVec3> {
         let center = |i: usize| self.skeleton.node(nodes[i]).center;

@@ -1,7 +1,7 @@
 //! Crowded forks, of which one joint cannot tell the branches apart, split over several forks that a
 //! short segment joins.
 //!
-//! Up to [`MOST_PAIRED`] neighbours the nearest pair moves to a new fork, again and again. Beyond, the
+//! Up to [`MOST_PAIRED`] neighbors the nearest pair moves to a new fork, again and again. Beyond, the
 //! children are halved by direction, so that thousands of them take n log n steps.
 
 use std::collections::{BTreeSet, HashMap};
@@ -12,15 +12,15 @@ use crate::joint::plane;
 use crate::skeleton::{Children, NONE, Node, Root, Skeleton};
 use crate::warning::Warnings;
 
-/// Least angle about the joint's normal between two of four or more neighbours (radians).
+/// Least angle about the joint's normal between two of four or more neighbors (radians).
 const LEAST_ANGLE: f64 = 0.35;
-/// More neighbours than this are split over several joints.
-const MOST_NEIGHBOURS: usize = 6;
-/// More neighbours than this are halved: pairing takes the cube of them.
+/// More neighbors than this are split over several joints.
+const MOST_NEIGHBORS: usize = 6;
+/// More neighbors than this are halved: pairing takes the cube of them.
 const MOST_PAIRED: usize = 24;
 
-/// Splits forks of four and more neighbours until a joint can tell these apart. Each split takes
-/// neighbours from a fork and makes one of three, which is never split, so that this ends.
+/// Splits forks of four and more neighbors until a joint can tell these apart. Each split takes
+/// neighbors from a fork and makes one of three, which is never split, so that this ends.
 pub(crate) fn split_crowded_forks(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
     let branches = |fork: &u32| children.of(*fork).len() > 2;
@@ -79,7 +79,7 @@ impl Tree {
         children.or_insert_with(|| before.of(node).to_vec())
     }
 
-    /// Splits a fork once if it is crowded; the forks that see another neighbour now go to `touched`.
+    /// Splits a fork once if it is crowded; the forks that see another neighbor now go to `touched`.
     fn split(&mut self, fork: u32, touched: &mut BTreeSet<u32>) -> bool {
         let parent = Some(self.nodes[fork as usize].parent).filter(|&p| p != NONE);
         let children = self.children(fork).iter().copied();
@@ -90,7 +90,7 @@ impl Tree {
         let directions: Vec<DVec3> = around.iter().map(|&n| self.direction(fork, n)).collect();
         if around.len() > MOST_PAIRED {
             self.halve_all(fork, touched);
-        } else if around.len() > MOST_NEIGHBOURS || plane(&directions).1 < LEAST_ANGLE {
+        } else if around.len() > MOST_NEIGHBORS || plane(&directions).1 < LEAST_ANGLE {
             let pair = nearest_pair(&directions).map(|slot| around[slot]);
             let new = self.branch_off(fork, &pair, &pair.map(|n| self.direction(fork, n)));
             touched.extend([fork, new].into_iter().chain(pair));
@@ -143,19 +143,19 @@ impl Tree {
         })
     }
 
-    /// Moves neighbours of a fork, its parent perhaps the first of them, to a new fork a little way
+    /// Moves neighbors of a fork, its parent perhaps the first of them, to a new fork a little way
     /// towards them.
-    fn branch_off(&mut self, fork: u32, neighbours: &[u32], directions: &[DVec3]) -> u32 {
+    fn branch_off(&mut self, fork: u32, neighbors: &[u32], directions: &[DVec3]) -> u32 {
         let at = self.nodes[fork as usize];
         let distance = |&n: &u32| self.nodes[n as usize].center.distance(at.center);
-        let shortest = neighbours
+        let shortest = neighbors
             .iter()
             .map(distance)
             .fold(f64::INFINITY, f64::min);
         let mean = directions.iter().sum::<DVec3>().try_normalize();
         let towards = mean.unwrap_or(directions[0]);
         let new = self.nodes.len() as u32;
-        let between = neighbours[0] == at.parent;
+        let between = neighbors[0] == at.parent;
         self.nodes.push(Node {
             center: at.center + towards * (1.2 * at.radius).min(0.4 * shortest),
             parent: if between { at.parent } else { fork },
@@ -163,9 +163,9 @@ impl Tree {
             ..at
         });
         let moved = if between {
-            &neighbours[1..]
+            &neighbors[1..]
         } else {
-            neighbours
+            neighbors
         };
         for &node in moved {
             self.nodes[node as usize].parent = new;

@@ -1,17 +1,17 @@
-//! Forks of the skeleton as [`joint`](crate::joint) needs them: their neighbours, and the way to these
+//! Forks of the skeleton as [`joint`](crate::joint) needs them: their neighbors, and the way to these
 //! cleared of points that would lie within the joint.
 
 use glam::DVec3;
 
-use crate::joint::{Joint, Neighbour};
+use crate::joint::{Joint, Neighbor};
 use crate::skeleton::{Children, NONE, Skeleton};
 use crate::warning::Warnings;
 
-/// Free way between a joint and a neighbour's ring, in radii of that ring.
+/// Free way between a joint and a neighbor's ring, in radii of that ring.
 const FREE_WAY: f64 = 0.35;
 
-/// Neighbours of a fork, the parent first if there is one.
-pub(crate) fn neighbours(children: &Children, skeleton: &Skeleton, fork: u32) -> Vec<u32> {
+/// Neighbors of a fork, the parent first if there is one.
+pub(crate) fn neighbors(children: &Children, skeleton: &Skeleton, fork: u32) -> Vec<u32> {
     let parent = Some(skeleton.node(fork).parent).filter(|&p| p != NONE);
     parent
         .into_iter()
@@ -19,21 +19,21 @@ pub(crate) fn neighbours(children: &Children, skeleton: &Skeleton, fork: u32) ->
         .collect()
 }
 
-/// What a joint needs to know of each neighbour.
+/// What a joint needs to know of each neighbor.
 pub(crate) fn tubes(
     skeleton: &Skeleton,
     children: &Children,
     fork: u32,
-    neighbours: &[u32],
-) -> Vec<Neighbour> {
+    neighbors: &[u32],
+) -> Vec<Neighbor> {
     let center = skeleton.node(fork).center;
-    neighbours
+    neighbors
         .iter()
         .map(|&n| {
             let way = skeleton.node(n).center - center;
             // Two joints share the way between them.
             let share = if children.of(n).len() > 1 { 0.5 } else { 1.0 };
-            Neighbour {
+            Neighbor {
                 direction: way.try_normalize().unwrap_or(DVec3::Y),
                 length: way.length() * share,
                 radius: skeleton.node(n).radius,
@@ -56,12 +56,12 @@ pub(crate) fn clear_the_way(skeleton: &mut Skeleton, warnings: &mut Warnings) {
                 continue;
             }
             changed[fork as usize] = false;
-            let around = neighbours(children, skeleton, fork);
+            let around = neighbors(children, skeleton, fork);
             let tubes = tubes(skeleton, children, fork, &around);
             // Where the tubes would part if their rings left them room.
-            let free: Vec<Neighbour> = tubes
+            let free: Vec<Neighbor> = tubes
                 .iter()
-                .map(|t| Neighbour {
+                .map(|t| Neighbor {
                     length: f64::INFINITY,
                     ..*t
                 })

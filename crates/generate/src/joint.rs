@@ -2,18 +2,18 @@
 //!
 //! ```text
 //!            pole +
-//!     b  ╲    │    ╱  a        neighbours a, b, c in order of their angle about the normal n
+//!     b  ╲    │    ╱  a        neighbors a, b, c in order of their angle about the normal n
 //!         ╲ v │ ╱              (n points at you; pole − lies behind pole +)
-//!     v ───── ● ───── v        one vertex v between two consecutive neighbours
+//!     v ───── ● ───── v        one vertex v between two consecutive neighbors
 //!             │
-//!             │ c              ring of a neighbour: pole +, vertex before, pole −, vertex after
+//!             │ c              ring of a neighbor: pole +, vertex before, pole −, vertex after
 //! ```
 //!
 //! The paper joins a fork with four vertices of the parent's quad and one more, v′. That is this
-//! rule for three neighbours: k + 2 vertices, and every edge from a pole to a vertex is shared by
+//! rule for three neighbors: k + 2 vertices, and every edge from a pole to a vertex is shared by
 //! exactly the two tubes beside it, so the joint is closed for every k.
 //!
-//! Where a vertex lies: the tubes of two neighbours a and b, of radii ra and rb, whose directions
+//! Where a vertex lies: the tubes of two neighbors a and b, of radii ra and rb, whose directions
 //! enclose φ, part at distance ra from a's axis and rb from b's. With θ the angle from a,
 //! `tan θ = ra sin φ / (rb + ra cos φ)` and the distance is `ra / sin θ` (own derivation; for equal
 //! radii the known `r / sin(φ/2)` on the bisector).
@@ -22,43 +22,43 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-/// A neighbour as the joint sees it.
+/// A neighbor as the joint sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Neighbour {
+pub(crate) struct Neighbor {
     /// Unit direction from the joint.
     pub(crate) direction: DVec3,
-    /// Distance of the neighbour's own ring (µm).
+    /// Distance of the neighbor's own ring (µm).
     pub(crate) length: f64,
-    /// Radius of the neighbour's tube where it leaves the joint (µm).
+    /// Radius of the neighbor's tube where it leaves the joint (µm).
     pub(crate) radius: f64,
 }
 
 /// The vertices of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Joint {
-    /// Normal of the plane that the neighbours lie in.
+    /// Normal of the plane that the neighbors lie in.
     pub(crate) normal: DVec3,
-    /// The poles on the side of the normal and on the other, relative to the centre.
+    /// The poles on the side of the normal and on the other, relative to the center.
     pub(crate) poles: [DVec3; 2],
-    /// Neighbours in order of their angle about the normal.
+    /// Neighbors in order of their angle about the normal.
     pub(crate) order: Vec<usize>,
-    /// `crotches[i]` lies between neighbour `order[i]` and the next; relative to the centre.
+    /// `crotches[i]` lies between neighbor `order[i]` and the next; relative to the center.
     pub(crate) crotches: Vec<DVec3>,
 }
 
-/// Least angle between two consecutive neighbours about the normal; nearer ones are spread.
+/// Least angle between two consecutive neighbors about the normal; nearer ones are spread.
 const LEAST_GAP: f64 = 0.12;
-/// A crotch stays behind this share of the way to either neighbour's ring.
+/// A crotch stays behind this share of the way to either neighbor's ring.
 const BEFORE_RING: f64 = 0.85;
 
 impl Joint {
     /// Joins tubes at a point of radius `radius`.
-    pub(crate) fn new(radius: f64, neighbours: &[Neighbour]) -> Self {
-        let directions: Vec<DVec3> = neighbours.iter().map(|n| n.direction).collect();
+    pub(crate) fn new(radius: f64, neighbors: &[Neighbor]) -> Self {
+        let directions: Vec<DVec3> = neighbors.iter().map(|n| n.direction).collect();
         let (normal, _) = plane(&directions);
         let (e1, e2) = normal.any_orthonormal_pair();
         let angle = |d: DVec3| f64::atan2(d.dot(e2), d.dot(e1));
-        let mut order: Vec<usize> = (0..neighbours.len()).collect();
+        let mut order: Vec<usize> = (0..neighbors.len()).collect();
         order.sort_by(|&a, &b| {
             angle(directions[a])
                 .total_cmp(&angle(directions[b]))
@@ -69,7 +69,7 @@ impl Joint {
         let k = order.len();
         let crotches = (0..k)
             .map(|i| {
-                let (a, b) = (&neighbours[order[i]], &neighbours[order[(i + 1) % k]]);
+                let (a, b) = (&neighbors[order[i]], &neighbors[order[(i + 1) % k]]);
                 let gap = (angles[(i + 1) % k] - angles[i]).rem_euclid(TAU);
                 let (turn, distance) = crotch(gap, radius, a, b);
                 let around = angles[i] + turn;
@@ -90,10 +90,10 @@ impl Joint {
         }
     }
 
-    /// How far the joint reaches along a neighbour's direction (µm).
-    pub(crate) fn reach(&self, neighbour: usize, direction: DVec3) -> f64 {
+    /// How far the joint reaches along a neighbor's direction (µm).
+    pub(crate) fn reach(&self, neighbor: usize, direction: DVec3) -> f64 {
         let k = self.order.len();
-        let Some(place) = self.order.iter().position(|&n| n == neighbour) else {
+        let Some(place) = self.order.iter().position(|&n| n == neighbor) else {
             return 0.0;
         };
         let beside = [self.crotches[place], self.crotches[(place + k - 1) % k]];
@@ -105,8 +105,8 @@ impl Joint {
     }
 }
 
-/// Angle from a, and distance, of the vertex between two neighbours that enclose `gap`.
-fn crotch(gap: f64, radius: f64, a: &Neighbour, b: &Neighbour) -> (f64, f64) {
+/// Angle from a, and distance, of the vertex between two neighbors that enclose `gap`.
+fn crotch(gap: f64, radius: f64, a: &Neighbor, b: &Neighbor) -> (f64, f64) {
     if gap >= PI {
         return (0.5 * gap, radius);
     }
@@ -132,16 +132,16 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Slope against the plane, between those of the two neighbours.
-fn tilt(a: &Neighbour, b: &Neighbour, normal: DVec3, share: f64) -> f64 {
-    let slope = |n: &Neighbour| {
+/// Slope against the plane, between those of the two neighbors.
+fn tilt(a: &Neighbor, b: &Neighbor, normal: DVec3, share: f64) -> f64 {
+    let slope = |n: &Neighbor| {
         let up = n.direction.dot(normal);
         (up / (1.0 - up * up).max(0.04).sqrt()).clamp(-2.0, 2.0)
     };
     slope(a) * (1.0 - share) + slope(b) * share
 }
 
-/// Poles, farther out where the neighbours lean towards them.
+/// Poles, farther out where the neighbors lean towards them.
 fn poles(radius: f64, normal: DVec3, directions: &[DVec3]) -> [DVec3; 2] {
     let lean = |side: f64| {
         directions
@@ -178,7 +178,7 @@ fn spread(angles: &mut [f64]) {
 /// consecutive ones about it.
 ///
 /// Candidates are the normals of the planes through any three tips (for three directions the plane
-/// of least variance exactly) and of those through the centre and any two; the one with the widest
+/// of least variance exactly) and of those through the center and any two; the one with the widest
 /// least gap wins, with a penalty for directions that lean out of the plane.
 pub(crate) fn plane(directions: &[DVec3]) -> (DVec3, f64) {
     let mut best = (DVec3::Y, f64::NEG_INFINITY, 0.0);
@@ -229,9 +229,9 @@ fn least_gap(normal: DVec3, directions: &[DVec3]) -> f64 {
 mod tests {
     use super::*;
 
-    fn neighbour(x: f64, y: f64, z: f64, radius: f64) -> Neighbour {
+    fn neighbor(x: f64, y: f64, z: f64, radius: f64) -> Neighbor {
         let direction = DVec3::new(x, y, z).try_normalize().unwrap();
-        Neighbour {
+        Neighbor {
             direction,
             length: 10.0,
             radius,
@@ -241,8 +241,8 @@ mod tests {
     #[test]
     fn equal_tubes_part_on_the_bisector() {
         let (a, b) = (
-            neighbour(1.0, 0.0, 0.0, 1.0),
-            neighbour(0.5, 0.75_f64.sqrt(), 0.0, 1.0),
+            neighbor(1.0, 0.0, 0.0, 1.0),
+            neighbor(0.5, 0.75_f64.sqrt(), 0.0, 1.0),
         );
         let (turn, distance) = crotch(PI / 3.0, 1.0, &a, &b);
         assert!((turn - PI / 6.0).abs() < 1e-12);
@@ -263,12 +263,12 @@ mod tests {
     }
 
     #[test]
-    fn every_crotch_lies_between_its_neighbours() {
+    fn every_crotch_lies_between_its_neighbors() {
         let tubes = [
-            neighbour(0.0, 0.0, -1.0, 1.0),
-            neighbour(0.6, 0.1, 1.0, 0.4),
-            neighbour(-0.5, -0.1, 1.0, 0.8),
-            neighbour(1.0, 0.2, -0.1, 0.5),
+            neighbor(0.0, 0.0, -1.0, 1.0),
+            neighbor(0.6, 0.1, 1.0, 0.4),
+            neighbor(-0.5, -0.1, 1.0, 0.8),
+            neighbor(1.0, 0.2, -0.1, 0.5),
         ];
         let joint = Joint::new(1.0, &tubes);
         let (e1, e2) = joint.normal.any_orthonormal_pair();

@@ -70,7 +70,7 @@ pub struct FirstRing {
     /// Where it is: 0 on the soma's sphere, 1 at the first traced point outside it, 2 beyond; see
     /// [`GenerateOptions::rings`].
     pub position: f64,
-    /// Its centre (µm), relative to the mesh's origin.
+    /// Its center (µm), relative to the mesh's origin.
     pub center: DVec3,
     /// Unit normal of its plane, away from the soma.
     pub outwards: DVec3,

@@ -12,7 +12,7 @@ pub enum SomaMethod {
     Fem,
     /// The sphere as it is, neurites growing out of it.
     Sphere,
-    /// LiveMesh's radius function: circle near the centre, tube far out, cubic between.
+    /// LiveMesh's radius function: circle near the center, tube far out, cubic between.
     Profile,
     /// No soma: every neurite is closed by itself.
     None,

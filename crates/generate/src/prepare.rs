@@ -77,7 +77,7 @@ pub(crate) fn mend_radii(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         warnings.add(
             "radius_mended",
             Some(node.sample),
-            "radius was zero, negative or no number: taken from its neighbours",
+            "radius was zero, negative or no number: taken from its neighbors",
         );
     }
 }

@@ -1,7 +1,7 @@
 //! First rings: where each neurite leaves its soma.
 //!
 //! A ring's **position** is 0 on the soma's sphere and 1 at the first point outside it; between the
-//! two it lies on the ray from the soma's centre. Beyond 1 it follows the traced path: 2 is as far
+//! two it lies on the ray from the soma's center. Beyond 1 it follows the traced path: 2 is as far
 //! beyond the first point as that is from the sphere, at least [`LEAST_BEYOND`] radii. What the ring
 //! has passed becomes a part of the soma.
 //!
@@ -73,7 +73,7 @@ pub(crate) struct Given {
     pub(crate) asked: Option<f64>,
     /// Asked to be farther out than it would be if nobody asked.
     pub(crate) farther: bool,
-    /// Distance from the soma's centre in radii of the soma.
+    /// Distance from the soma's center in radii of the soma.
     pub(crate) reach: f64,
 }
 
@@ -85,7 +85,7 @@ impl Given {
 }
 
 /// Gives every neurite of a soma its first ring: the skeleton with them. `farthest`, by soma: radii from
-/// its centre beyond which no wish is heard.
+/// its center beyond which no wish is heard.
 pub(crate) fn insert(
     skeleton: &Skeleton,
     balls: &[Option<Ball>],
@@ -121,7 +121,7 @@ struct Site {
     soma: u32,
     /// The first node that stays: the ring itself, or what follows it.
     next: u32,
-    /// Centre and radius of a ring of its own; none: the node is the ring.
+    /// Center and radius of a ring of its own; none: the node is the ring.
     own: Option<(DVec3, f64)>,
     position: f64,
     asked: Option<f64>,
@@ -134,7 +134,7 @@ struct Stem<'a> {
     children: &'a Children,
     root: u32,
     ball: Ball,
-    /// From the soma's centre to the first point.
+    /// From the soma's center to the first point.
     direction: DVec3,
     distance: f64,
     branches: usize,
@@ -169,7 +169,7 @@ impl<'a> Stem<'a> {
         }
     }
 
-    /// `farthest`: distance (µm) from the soma's centre beyond which no wish is heard.
+    /// `farthest`: distance (µm) from the soma's center beyond which no wish is heard.
     fn site(&self, asked: Option<f64>, farthest: f64) -> Site {
         let usual = self.usual();
         let Some(asked) = asked else {

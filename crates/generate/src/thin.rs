@@ -139,7 +139,7 @@ pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings
     skeleton.retain(&keep);
 }
 
-/// Leaves out ordinary points that are closer to a neighbour than their radius allows.
+/// Leaves out ordinary points that are closer to a neighbor than their radius allows.
 pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
     let mut keep = vec![true; skeleton.nodes().len()];
@@ -181,7 +181,7 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     warnings.add_many(
         "dense_points",
         dropped,
-        "point nearer to its neighbour than the radius allows: left out of the mesh",
+        "point nearer to its neighbor than the radius allows: left out of the mesh",
     );
     skeleton.retain(&keep);
 }

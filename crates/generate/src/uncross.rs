@@ -5,7 +5,7 @@
 //! `L e·oᵢ > rⱼ sin γ`, γ the angle between the two orientations.
 //!
 //! Work is local: a pair is looked at again only when one of its rings was turned or got a new
-//! neighbour, so the cost follows the number of bad bends and not the size of the cell.
+//! neighbor, so the cost follows the number of bad bends and not the size of the cell.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The whole judgement of a mesh, as `neurotess check` prints it.
+//! The whole judgment of a mesh, as `neurotess check` prints it.
 
 use serde::Serialize;
 

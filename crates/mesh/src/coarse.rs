@@ -52,10 +52,10 @@ pub enum Role {
     Insertion,
 }
 
-/// A traced centre with what the surface needs of it.
+/// A traced center with what the surface needs of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TracingPoint {
-    /// Centre (µm, relative to the mesh's origin).
+    /// Center (µm, relative to the mesh's origin).
     pub center: Vec3,
     /// Radius (µm).
     pub radius: f32,

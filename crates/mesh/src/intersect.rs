@@ -1,9 +1,9 @@
 //! Where a mesh crosses itself.
 //!
 //! **The rule.** A pair of faces counts if their triangles have a point in common beyond what they
-//! share as neighbours. Quads are two triangles, split along the diagonal from their first corner,
+//! share as neighbors. Quads are two triangles, split along the diagonal from their first corner,
 //! and no pair with each other. Corners are the same if their index is, or their position bit for
-//! bit, so that a file that repeats its vertices (STL) has the neighbours that it shows.
+//! bit, so that a file that repeats its vertices (STL) has the neighbors that it shows.
 //!
 //! | corners shared | the pair counts if |
 //! | --- | --- |

@@ -10,7 +10,7 @@ use crate::{CoarseMesh, Faces, Surface, SurfaceMesh};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
     /// What the surface encloses: positive if the faces turn outwards. Means little if the surface
-    /// is not closed: then it is taken about the centre of the bounds.
+    /// is not closed: then it is taken about the center of the bounds.
     pub volume: f64,
     /// Sum over the faces.
     pub area: f64,
@@ -52,21 +52,21 @@ impl CoarseMesh {
 /// Volume and area of a surface made block by block; holds the positions and one block of faces.
 pub fn measure_surface(surface: &dyn Surface) -> Measure {
     let positions = positions(surface);
-    let centre = centre(&positions);
+    let center = center(&positions);
     let mut sum = Measure::default();
     let mut faces = Faces::default();
     for block in 0..surface.face_blocks() {
         faces.triangles.clear();
         faces.quads.clear();
         surface.faces(block, &mut faces);
-        sum = sum.plus(measure_about(centre, &positions, &faces));
+        sum = sum.plus(measure_about(center, &positions, &faces));
     }
     sum
 }
 
 /// Volume and area of faces. Equal input gives equal sums, whatever the number of threads.
 pub fn measure(positions: &[Vec3], faces: &Faces) -> Measure {
-    measure_about(centre(positions), positions, faces)
+    measure_about(center(positions), positions, faces)
 }
 
 /// Positions of all blocks.
@@ -93,8 +93,8 @@ impl Measure {
 /// Faces in one partial sum.
 const CHUNK: usize = 1 << 14;
 
-fn measure_about(centre: DVec3, positions: &[Vec3], faces: &Faces) -> Measure {
-    let at = |corner: u32| positions[corner as usize].as_dvec3() - centre;
+fn measure_about(center: DVec3, positions: &[Vec3], faces: &Faces) -> Measure {
+    let at = |corner: u32| positions[corner as usize].as_dvec3() - center;
     let of = |[a, b, c]: [u32; 3]| {
         let [a, b, c] = [at(a), at(b), at(c)];
         let area = (b - a).cross(c - a).length() / 2.0;
@@ -125,7 +125,7 @@ fn partial_sums<F: Sync>(faces: &[F], of: impl Fn(&F) -> Measure + Sync) -> Vec<
         .collect()
 }
 
-fn centre(positions: &[Vec3]) -> DVec3 {
+fn center(positions: &[Vec3]) -> DVec3 {
     let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let (low, high) = positions
         .iter()

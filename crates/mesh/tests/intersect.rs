@@ -133,7 +133,7 @@ fn quads_are_numbered_after_triangles_and_count_once() {
 }
 
 /// A sphere of triangles.
-fn sphere(centre: Vec3, rings: u32, points: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>) {
+fn sphere(center: Vec3, rings: u32, points: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>) {
     let first = points.len() as u32;
     let sides = 2 * rings;
     for ring in 1..rings {
@@ -143,11 +143,11 @@ fn sphere(centre: Vec3, rings: u32, points: &mut Vec<Vec3>, triangles: &mut Vec<
                 (theta * std::f32::consts::PI).sin_cos(),
                 (phi * std::f32::consts::PI).sin_cos(),
             );
-            points.push(centre + Vec3::new(st * cp, st * sp, ct));
+            points.push(center + Vec3::new(st * cp, st * sp, ct));
         }
     }
     let (north, south) = (points.len() as u32, points.len() as u32 + 1);
-    points.extend([centre + Vec3::Z, centre - Vec3::Z]);
+    points.extend([center + Vec3::Z, center - Vec3::Z]);
     let at = |ring: u32, side: u32| first + (ring - 1) * sides + side % sides;
     for side in 0..sides {
         triangles.push([north, at(1, side), at(1, side + 1)]);

@@ -117,10 +117,10 @@ fn obj_variants() {
 #[test]
 fn off_variants() {
     let plain = "OFF # comment\n# another\n3 1 0\n0 0 0\n1 0 0\n\n0 1 0\n3 0 1 2 255 0 0\n";
-    let coloured = "COFF 3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n";
+    let colored = "COFF 3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n";
     let bare = "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     let normals = "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
-    for text in [plain, coloured, bare, normals] {
+    for text in [plain, colored, bare, normals] {
         let mesh = parse(text, Format::Off);
         assert_eq!(
             (mesh.vertices.len(), &mesh.faces.triangles[..]),

@@ -80,7 +80,7 @@ fn stl_closes_again_when_merged() {
     assert!(!report.closed);
     assert_eq!(
         report.self_intersections, 0,
-        "equal positions are neighbours"
+        "equal positions are neighbors"
     );
     merge_identical(&mut found);
     let report = check(&found);

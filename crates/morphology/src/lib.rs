@@ -1,7 +1,7 @@
 //! The morphology of a neuron as flat arrays: **somata**, **sections** and **points**.
 //!
-//! A **point** is a traced centre with a *radius*; a **section** is a maximal unbranched run of
-//! points of one kind; a **neurite** is a tree of sections. Lengths are micrometres (µm).
+//! A **point** is a traced center with a *radius*; a **section** is a maximal unbranched run of
+//! points of one kind; a **neurite** is a tree of sections. Lengths are micrometers (µm).
 //!
 //! Points stand in depth-first order, so that a section is a range of them and a parent always
 //! comes before its children. A section holds its own points only: the point that it branches

@@ -39,7 +39,7 @@ pub struct Measures {
     pub length_by_type: LengthByType,
     /// The main soma.
     pub soma: SomaMeasures,
-    /// Box around all centres in the file's coordinates; `None` without samples.
+    /// Box around all centers in the file's coordinates; `None` without samples.
     pub bbox: Option<Bounds>,
 }
 
@@ -61,7 +61,7 @@ pub struct LengthByType {
 pub struct SomaMeasures {
     /// `none`, `point`, `three_point`, `contour` or `cylinders`.
     pub kind: &'static str,
-    /// Centre in the file's coordinates.
+    /// Center in the file's coordinates.
     pub center: Option<[f64; 3]>,
     /// Radius of the sphere that stands for it.
     pub radius: f64,

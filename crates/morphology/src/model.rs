@@ -12,7 +12,7 @@ pub struct Morphology {
     /// Name for people: the file's stem, or what made the cell.
     pub name: String,
     /// What to add to every position to get the file's coordinates (µm). Zero unless the
-    /// coordinates are so large that `f32` would lose hundredths of a micrometre.
+    /// coordinates are so large that `f32` would lose hundredths of a micrometer.
     pub origin: DVec3,
     /// Somata, the main one first; nearly always one or none.
     pub somata: Vec<Soma>,
@@ -27,10 +27,10 @@ pub struct Morphology {
     pub header: Vec<String>,
 }
 
-/// Centre (µm, relative to the morphology's origin) and radius (µm) of a traced point.
+/// Center (µm, relative to the morphology's origin) and radius (µm) of a traced point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Centre.
+    /// Center.
     pub position: Vec3,
     /// Radius; as the file gave it, so possibly zero or negative.
     pub radius: f32,
@@ -96,7 +96,7 @@ pub enum Attachment {
 pub enum SomaKind {
     /// One sample: a sphere.
     Point,
-    /// NeuroMorpho's three samples: a centre and two at ± radius, standing for a sphere.
+    /// NeuroMorpho's three samples: a center and two at ± radius, standing for a sphere.
     ThreePoint,
     /// An outline.
     Contour,
@@ -111,7 +111,7 @@ pub struct Soma {
     pub kind: SomaKind,
     /// The traced samples, in the file's order.
     pub samples: Vec<SomaSample>,
-    /// Centre (µm, relative to the morphology's origin): the mean of the samples; of a contour the
+    /// Center (µm, relative to the morphology's origin): the mean of the samples; of a contour the
     /// centroid of its area.
     pub center: Vec3,
     /// Radius (µm) of the sphere that stands for it: the sample's own, or that of equal area.

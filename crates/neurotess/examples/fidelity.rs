@@ -8,7 +8,7 @@
 //! * how many of the tracing points that the mesh kept lie inside the surface (winding number along
 //!   a ray);
 //! * self-intersecting pairs of faces by cause: `fork`, `bend` and `soma` where the two faces belong
-//!   to neighbouring tracing points, `apart` where neurites were traced through one another.
+//!   to neighboring tracing points, `apart` where neurites were traced through one another.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -175,7 +175,7 @@ fn points_inside(mesh: &CoarseMesh, surface: &SurfaceMesh) -> (usize, usize) {
     };
     let traced = |role: Role| matches!(role, Role::Ordinary | Role::Joint | Role::Insertion);
     let kept: Vec<_> = mesh.tracing.iter().filter(|t| traced(t.role)).collect();
-    // Off the centre by a hair: rays through vertices would count twice.
+    // Off the center by a hair: rays through vertices would count twice.
     let aside = DVec3::new(1.3e-4, 0.7e-4, 0.0);
     let count = kept
         .iter()

@@ -2,7 +2,7 @@
 //!
 //! # A tour
 //!
-//! A **morphology** is a traced cell: somata, sections and points with radii, in micrometres. It is
+//! A **morphology** is a traced cell: somata, sections and points with radii, in micrometers. It is
 //! read from a file, or grown by [`synth`].
 //!
 //! ```
@@ -63,12 +63,12 @@
 //! | [`generate`] | from a morphology to a coarse mesh |
 //! | [`refine`] | from a coarse mesh to a surface |
 //! | [`render`] | from coarse meshes to pictures |
-//! | [`colouring`] | what the colours of pictures tell |
+//! | [`coloring`] | what the colors of pictures tell |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
 //! | [`output`] | files that are there whole or not at all |
 #![forbid(unsafe_code)]
 
-pub mod colouring;
+pub mod coloring;
 pub mod output;
 
 pub use neurotess_circuit as circuit;

@@ -3,13 +3,13 @@
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
 
-/// Farthest that a tube reaches from its centre's chord, in its larger ring's size: the rings
-/// themselves, the sway of the centre line (0.24), and what a quarter ellipse bulges.
+/// Farthest that a tube reaches from its center's chord, in its larger ring's size: the rings
+/// themselves, the sway of the center line (0.24), and what a quarter ellipse bulges.
 pub(crate) const TUBE_REACH: f32 = 1.5;
 /// Farthest that a soma's patch reaches from its middle, in the distance of its farthest corner.
 pub(crate) const SOMA_REACH: f32 = 1.5;
 
-/// Ball around a patch at any level: centre and radius (µm).
+/// Ball around a patch at any level: center and radius (µm).
 pub fn patch_ball(mesh: &CoarseMesh, patch: &Patch) -> (Vec3, f32) {
     let soma = patch.kind == PatchKind::Soma;
     let corners = patch.corners.map(|v| {

@@ -2,17 +2,17 @@
 //!
 //! | what | bytes | holds |
 //! | --- | --- | --- |
-//! | point | 16 | centre in its ball (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), word (10), kind and run (3) |
-//! | ball, for 32 points | 20 | centre, radius, the most that an edge bends |
+//! | point | 16 | center in its ball (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), word (10), kind and run (3) |
+//! | ball, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | loose vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
-//! | anchor | 32 | centre, reach, radius, tangent, role, word |
+//! | anchor | 32 | center, reach, radius, tangent, role, word |
 //! | patch of a soma | 6 | four loose vertices |
 //! | loose patch | 8 | four loose vertices, kind |
 //! | cap | 4 | its ring |
 //!
 //! A point has a ring of its own, four vertices a quarter turn apart, and four lateral patches to the
 //! next: rings and lateral patches are derived from points alone. Joints, insertions and somata are
-//! loose vertices around anchors. Errors: at most 0.2 % of the radius for the centre (a point for which
+//! loose vertices around anchors. Errors: at most 0.2 % of the radius for the center (a point for which
 //! the ball is too large becomes loose), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the
 //! turn; loose vertices: 2⁻¹⁶ of their distance from the anchor. All together under a hundredth of
 //! the radius: `resident_form_is_within_a_hundredth_of_the_radius`.
@@ -20,7 +20,7 @@
 use glam::Vec3;
 use neurotess_mesh::Role;
 
-/// Points whose centres are relative to the same ball.
+/// Points whose centers are relative to the same ball.
 pub const POINTS_OF_BALL: usize = 32;
 /// Words of a ball.
 pub(crate) const BALL_WORDS: usize = 5;
@@ -82,7 +82,7 @@ pub(crate) fn basis(tangent: Vec3) -> (Vec3, Vec3) {
     (u, v)
 }
 
-/// Corner k of a ring, relative to the centre: a quarter turn about the tangent each.
+/// Corner k of a ring, relative to the center: a quarter turn about the tangent each.
 pub(crate) fn ring_direction(tangent: Vec3, turn: u32, k: u32) -> Vec3 {
     let (u, v) = basis(tangent);
     let t = (turn & 0xff) as f32 / 256.0;
@@ -168,7 +168,7 @@ impl OwnRing {
         octahedral(self.tangent.0, self.tangent.1, 511.0)
     }
 
-    /// Position and normal of corner k around a centre.
+    /// Position and normal of corner k around a center.
     pub(crate) fn corner(&self, center: Vec3, k: u32) -> (Vec3, Vec3) {
         let tangent = self.tangent();
         let direction = ring_direction(tangent, self.turn, k);

@@ -1,8 +1,8 @@
 //! The refined surface as a function: edges, patches, normals.
 //!
 //! **Theory.** García-Cantero et al. 2017, eq. 1 and 2: a point of a tube is `v = c + r n̂`, with the
-//! centre c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
-//! renormalised so that the tube does not pinch. We interpolate the offsets d = v − c of the four
+//! center c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
+//! renormalized so that the tube does not pinch. We interpolate the offsets d = v − c of the four
 //! corners and divide by the length of the interpolated unit normals,
 //!
 //! `v(x, y) = c(y) + Σ wᵢ dᵢ / |Σ wᵢ n̂ᵢ|`,
@@ -42,9 +42,9 @@ pub(crate) struct Jet {
 pub(crate) struct Corner {
     pub(crate) position: Vec3,
     pub(crate) normal: Vec3,
-    /// Centre of its tracing point.
+    /// Center of its tracing point.
     pub(crate) center: Vec3,
-    /// From the centre to the corner.
+    /// From the center to the corner.
     pub(crate) offset: Vec3,
     /// Unit direction of the offset.
     pub(crate) radial: Vec3,
@@ -82,7 +82,7 @@ impl Corner {
     }
 }
 
-/// Centre line between two tracing points, y ∈ [0, 1].
+/// Center line between two tracing points, y ∈ [0, 1].
 pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
     let way = b.center - a.center;
     if path == Path::Linear {
@@ -105,17 +105,17 @@ pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
     }
 }
 
-/// Farthest that one end's tangent may lead the centre line away from the straight segment, in radii
+/// Farthest that one end's tangent may lead the center line away from the straight segment, in radii
 /// of the thinner end.
 ///
 /// A full tangent sways a thin neurite of long segments by many times its radius, away from the
-/// cones that were traced and into its neighbours. Chosen from 0.1, 0.12, 0.25, 0.5 and no limit with
+/// cones that were traced and into its neighbors. Chosen from 0.1, 0.12, 0.25, 0.5 and no limit with
 /// the example `fidelity`: the largest that keeps the median distance to the traced cones under
 /// 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113, 0.20 on
 /// IF4_140201). The price is visible corners on thin axons of long segments.
 pub(crate) const MOST_SWAY: f32 = 0.12;
 
-/// Tangents of the centre line: the orientations times the segment's length, so that it makes no
+/// Tangents of the center line: the orientations times the segment's length, so that it makes no
 /// loops, shortened where it would sway too far; the segment itself at a joint, whose tubes have no
 /// direction in common.
 ///
@@ -305,7 +305,7 @@ impl PatchShape {
     }
 
     /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the
-    /// distance from the disk's centre.
+    /// distance from the disk's center.
     fn cap(&self, caps: Caps, x: f32, y: f32) -> (Vec3, Vec3) {
         let (flat, _) = self.coons(x, y);
         let [a, b, _, d] = &self.corners;

@@ -34,7 +34,7 @@ fn soma_normal(corner: Corner) -> vec3<f32> {
     return corner.radial;
 }
 
-// Centre line between two tracing points, y in [0, 1].
+// Center line between two tracing points, y in [0, 1].
 fn center_line(a: Corner, b: Corner, path: u32, y: f32) -> Jet {
     let way = b.center - a.center;
     if (path == PATH_LINEAR) {
@@ -53,7 +53,7 @@ fn center_line(a: Corner, b: Corner, path: u32, y: f32) -> Jet {
     return Jet(position, derivative);
 }
 
-// Tangent of the centre line from a to b at one of its ends.
+// Tangent of the center line from a to b at one of its ends.
 fn hermite_tangent(end: Corner, a: Corner, b: Corner) -> vec3<f32> {
     let way = b.center - a.center;
     let span = length(way);
@@ -85,7 +85,7 @@ struct TubePoint {
     by_y: vec3<f32>,
     // Where the surface faces, not yet of unit length.
     radial: vec3<f32>,
-    // Point of the centre line.
+    // Point of the center line.
     axis: vec3<f32>,
 }
 
@@ -238,7 +238,7 @@ fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
 }
 
 // The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the distance
-// from the disk's centre. `flat`: the point of the disk.
+// from the disk's center. `flat`: the point of the disk.
 fn cap(shape: PatchShape, caps: u32, flat: vec3<f32>) -> Inside {
     let a = shape.a;
     let outwards = cross(shape.b.offset - a.offset, shape.d.offset - a.offset);

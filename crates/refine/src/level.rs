@@ -91,7 +91,7 @@ fn round_up(cuts: f32) -> u32 {
 }
 
 /// Bound of the second derivative of the offset as it turns from one corner to the other: the
-/// normalised mixture of two directions θ apart turns by at most 2 tan(θ/2) per unit.
+/// normalized mixture of two directions θ apart turns by at most 2 tan(θ/2) per unit.
 fn turning(a: &Corner, b: &Corner) -> f32 {
     let (ra, rb) = (a.offset.length(), b.offset.length());
     // tan(θ/2) of unit vectors without the arc cosine, which GPUs have to few digits only.

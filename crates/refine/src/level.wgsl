@@ -144,7 +144,7 @@ fn near_depth(view: View, k: Corner) -> f32 {
     return dot(view.forward, k.center - view.eye) - length(k.offset);
 }
 
-// Size (micrometres) of a pixel at the nearer end of an edge.
+// Size (micrometers) of a pixel at the nearer end of an edge.
 fn um_per_pixel(view: View, a: Corner, b: Corner) -> f32 {
     let nearer = max(min(near_depth(view, a), near_depth(view, b)), view.near);
     return view.slope * nearer + view.flat;

@@ -7,7 +7,7 @@ use crate::decode::{POINTS_OF_BALL, POSITION_STEPS};
 use crate::pack::{Packer, cap_ring};
 use crate::runs::{Run, own_ring};
 
-/// Largest error of a point's centre, in its radii.
+/// Largest error of a point's center, in its radii.
 const MOST_CENTER_ERROR: f32 = 0.002;
 
 impl Packer<'_> {

@@ -65,7 +65,7 @@ pub struct Part {
     pub balls: Vec<(Vec3, f32)>,
     /// By vertex of the mesh that is in this part: position and normal as shaders read them.
     pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
-    /// By tracing point: centre, radius and tangent as shaders read them.
+    /// By tracing point: center, radius and tangent as shaders read them.
     pub(crate) tracing: Vec<(u32, Vec3, f32, Vec3)>,
 }
 

@@ -20,7 +20,7 @@ struct Grid {
 struct SurfacePoint {
     position: vec3<f32>,
     normal: vec3<f32>,
-    // Point of the tube's centre line and the radius there; a radius of 0 on somata.
+    // Point of the tube's center line and the radius there; a radius of 0 on somata.
     axis: vec3<f32>,
     radius: f32,
     // The vertex whose attributes it has.

@@ -241,7 +241,7 @@ impl<'m> Refinement<'m> {
     }
 }
 
-/// A soma's edges belong to the soma up to the neurite's ring, so that colours change there.
+/// A soma's edges belong to the soma up to the neurite's ring, so that colors change there.
 fn on_soma<'t>(
     kind: EdgeKind,
     ends: [&'t TracingPoint; 2],

@@ -7,7 +7,7 @@ use crate::decode::{OwnRing, to_octahedral, to_radius, to_slope, to_turn};
 
 /// Most segments of a run; longer ones are cut.
 const MOST_SEGMENTS: usize = 1 << 14;
-/// Farthest, in radii, that a derived corner may lie from the mesh's own, the centre's error aside.
+/// Farthest, in radii, that a derived corner may lie from the mesh's own, the center's error aside.
 const MOST_APART: f32 = 0.0095;
 
 /// Rings that lateral patches lead along, four patches from each to the next.

@@ -138,7 +138,7 @@ fn point_radius(words: vec4<u32>) -> f32 {
     return bitcast<f32>(((words.z & 0xffffu) + RADIUS_BASE) << 12u);
 }
 
-// Corner k of the ring at a point, relative to the centre: a quarter turn about the tangent each.
+// Corner k of the ring at a point, relative to the center: a quarter turn about the tangent each.
 fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     // Duff et al., Building an orthonormal basis, revisited, 2017.
     let sign = select(-1.0, 1.0, tangent.z >= 0.0);
@@ -295,7 +295,7 @@ fn point_word(base: Base, words: vec4<u32>) -> u32 {
     return heap[base.words + (words.w >> 22u)];
 }
 
-// What the renderer put beside a vertex's tracing point: its colour.
+// What the renderer put beside a vertex's tracing point: its color.
 fn word_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & LOOSE) != 0u) {
         return heap[anchor_of(base, vertex) + 7u];

@@ -79,7 +79,7 @@ proptest! {
         };
         refined(mesh, &Levels::Homogeneous(1), &options, "level 1");
         refined(mesh, &Levels::Homogeneous(3), &options, "level 3");
-        // Neighbours as unlike as 1 and 64.
+        // Neighbors as unlike as 1 and 64.
         let mixed: Vec<u8> = (0..mesh.tracing.len() as u64)
             .map(|i| [1, 2, 3, 5, 8, 17][((seed ^ (i * 0x9e37_79b9)) >> 7) as usize % 6])
             .collect();

@@ -41,7 +41,7 @@ fn assert_complete(mesh: &CoarseMesh, parts: &[Part]) {
     assert!(found.iter().all(|&times| times == 1), "{found:?}");
 }
 
-/// Largest move of a vertex or centre, in radii of its tracing point.
+/// Largest move of a vertex or center, in radii of its tracing point.
 fn largest_move(mesh: &CoarseMesh, rounded: &CoarseMesh) -> f32 {
     let vertices = mesh.vertices.iter().zip(&rounded.vertices).map(|(a, b)| {
         let point = &mesh.tracing[a.tracing as usize];

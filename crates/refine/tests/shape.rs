@@ -120,7 +120,7 @@ fn rings_are_circles_of_the_traced_radius() {
     let refined = surface(&mesh, Levels::Homogeneous(8), Path::Hermite);
     let mut checked = 0;
     for tracing in mesh.tracing.iter().filter(|t| t.role == Role::Ordinary) {
-        // Vertices in the ring's plane and near its centre are the ring's.
+        // Vertices in the ring's plane and near its center are the ring's.
         let ring = refined.vertices.iter().filter(|v| {
             let offset = v.position - tracing.center;
             offset.dot(tracing.tangent).abs() < 1e-5 && offset.length() < 1.2 * tracing.radius

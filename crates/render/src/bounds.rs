@@ -9,7 +9,7 @@ use neurotess_mesh::{CoarseMesh, Patch, Role};
 use crate::frame::{Frame, shows};
 use crate::framing::Ball;
 
-/// Patches in a ball: neighbours, as patches follow the tree.
+/// Patches in a ball: neighbors, as patches follow the tree.
 const TOGETHER: usize = 8;
 /// How far a surface may bulge beyond its corners, by their distance from the middle.
 const BULGE: f32 = 1.5;
@@ -54,8 +54,8 @@ pub fn any_shows(balls: &[Ball], frame: &Frame) -> bool {
     })
 }
 
-/// At most so many balls that hold all of these: neighbours in the list should be
-/// neighbours in space.
+/// At most so many balls that hold all of these: neighbors in the list should be
+/// neighbors in space.
 pub fn merged(balls: &[Ball], most: usize) -> Vec<Ball> {
     if balls.len() <= most {
         return balls.to_vec();

@@ -5,9 +5,9 @@
 // of the struct stands in work.rs.
 
 // Rings by a quarter of their first corner's place, then two entries for each loose vertex. Places are
-// relative to the eye (micrometres), directions are the world's.
+// relative to the eye (micrometers), directions are the world's.
 struct CoarsePoint {
-    // Of a ring: its centre. Of a loose vertex: where it is, and in its second entry the centre.
+    // Of a ring: its center. Of a loose vertex: where it is, and in its second entry the center.
     x: f32,
     y: f32,
     z: f32,

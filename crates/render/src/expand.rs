@@ -26,7 +26,7 @@ pub struct ExpandedVertex {
     /// Unit normal.
     pub normal: [f32; 3],
     pad2: f32,
-    /// Point of the tube's centre line; the position itself on somata.
+    /// Point of the tube's center line; the position itself on somata.
     pub axis: [f32; 3],
     /// Radius (µm) there; 0 on somata.
     pub radius: f32,

@@ -27,7 +27,7 @@ struct Finish {
 }
 
 @group(0) @binding(0) var<uniform> finish: Finish;
-@group(0) @binding(1) var colours: texture_2d<f32>;
+@group(0) @binding(1) var colors: texture_2d<f32>;
 @group(0) @binding(2) var normals: SAMPLED_TEXTURE;
 @group(0) @binding(3) var depths: SAMPLED_TEXTURE;
 @group(0) @binding(4) var<storage, read_write> raw: array<f32>;
@@ -90,11 +90,11 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var y = 0u; y < finish.scale; y++) {
         for (var x = 0u; x < finish.scale; x++) {
             let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.margin);
-            var colour = textureLoad(colours, p, 0);
-            if finish.radius > 0.0 && colour.a > 0.0 {
-                colour = vec4(colour.rgb * occlusion_at(p), colour.a);
+            var color = textureLoad(colors, p, 0);
+            if finish.radius > 0.0 && color.a > 0.0 {
+                color = vec4(color.rgb * occlusion_at(p), color.a);
             }
-            sum += colour;
+            sum += color;
         }
     }
     let at = id.y * finish.kept.x + id.x;

@@ -25,7 +25,7 @@ pub enum Side {
     Iso,
 }
 
-/// A ball to be seen: centre and radius (µm).
+/// A ball to be seen: center and radius (µm).
 pub type Ball = (DVec3, f64);
 
 /// Angle of view (radians) unless told otherwise: little distortion, as through a long lens.

@@ -1,4 +1,4 @@
-//! The pass that draws ids instead of colours, and the way back to the host. Its text: ids.wgsl.
+//! The pass that draws ids instead of colors, and the way back to the host. Its text: ids.wgsl.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};

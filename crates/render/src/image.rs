@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::colour::Rgb;
+use crate::color::Rgb;
 
 /// Pixels: rows from the top, four bytes each, sRGB with straight alpha.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Image {
         }
     }
 
-    /// Lays a colour over a pixel, if it lies inside. `alpha`: 0 to 1.
+    /// Lays a color over a pixel, if it lies inside. `alpha`: 0 to 1.
     pub fn blend(&mut self, x: i64, y: i64, rgb: Rgb, alpha: f32) {
         let inside = |v: i64, n: u32| (0..i64::from(n)).contains(&v);
         if alpha <= 0.0 || !inside(x, self.width) || !inside(y, self.height) {

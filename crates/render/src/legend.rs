@@ -1,10 +1,10 @@
-//! What colours and lengths mean: legends and scale bars, drawn as images to lay over pictures.
+//! What colors and lengths mean: legends and scale bars, drawn as images to lay over pictures.
 
-use crate::colour::Rgb;
+use crate::color::Rgb;
 use crate::image::Image;
 use crate::text::Text;
 
-/// What the colours of a picture mean.
+/// What the colors of a picture mean.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
     title: String,
@@ -26,7 +26,7 @@ enum Kind {
 }
 
 impl Legend {
-    /// Colours with names.
+    /// Colors with names.
     pub fn swatches(title: &str, entries: impl IntoIterator<Item = (Rgb, String)>) -> Self {
         Self {
             title: title.to_owned(),
@@ -97,9 +97,9 @@ impl Legend {
         text.draw(&mut image, 0.0, all - 0.6 * line, &self.note, ink);
         match &self.kind {
             Kind::Swatches(entries) => {
-                for ((colour, name), row) in entries.iter().zip(0_u8..) {
+                for ((color, name), row) in entries.iter().zip(0_u8..) {
                     let y = title + 1.3 * line * (f32::from(row) + 0.5);
-                    disc(&mut image, [0.5 * line, y], 0.36 * line, *colour);
+                    disc(&mut image, [0.5 * line, y], 0.36 * line, *color);
                     text.draw(&mut image, 1.25 * line, y, name, ink);
                 }
             }
@@ -129,12 +129,12 @@ fn bar(
     for row in 0..height as u32 {
         let fraction = 1.0 - (row as f32 + 0.5) / height;
         let entry = (fraction * scale.len() as f32) as usize;
-        let Some(&colour) = scale.get(entry) else {
+        let Some(&color) = scale.get(entry) else {
             continue;
         };
         for column in 0..width as u32 {
             let (x, y) = (i64::from(column), i64::from(row) + top as i64);
-            image.blend(x, y, colour, 1.0);
+            image.blend(x, y, color, 1.0);
         }
     }
     for (share, label) in ticks(range, more, line / height) {
@@ -219,13 +219,13 @@ fn number(value: f64, step: f64) -> String {
     format!("{value:.digits$}")
 }
 
-fn disc(image: &mut Image, center: [f32; 2], radius: f32, colour: Rgb) {
+fn disc(image: &mut Image, center: [f32; 2], radius: f32, color: Rgb) {
     let reach = radius.ceil() as i64 + 1;
     let [cx, cy] = center.map(|c| c as i64);
     for y in cy - reach..=cy + reach {
         for x in cx - reach..=cx + reach {
             let (dx, dy) = (x as f32 + 0.5 - center[0], y as f32 + 0.5 - center[1]);
-            image.blend(x, y, colour, (radius + 0.5 - dx.hypot(dy)).clamp(0.0, 1.0));
+            image.blend(x, y, color, (radius + 0.5 - dx.hypot(dy)).clamp(0.0, 1.0));
         }
     }
 }
@@ -233,7 +233,7 @@ fn disc(image: &mut Image, center: [f32; 2], radius: f32, colour: Rgb) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::ColourMap;
+    use crate::color::ColorMap;
 
     #[test]
     fn lengths_are_round() {
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn swatches_show_their_colours_and_bars_their_map() {
+    fn swatches_show_their_colors_and_bars_their_map() {
         let legend = Legend::swatches("", [([200, 10, 20], "axon".into())]);
         let image = legend.draw(20.0, [0; 3]);
         assert_eq!(image.at(10, 13), [200, 10, 20, 255]);
@@ -295,7 +295,7 @@ mod tests {
         let bar = Legend::bar(
             "depth",
             "µm",
-            ColourMap::Viridis.scale(),
+            ColorMap::Viridis.scale(),
             [0.0, 70.0],
             false,
         );

@@ -3,7 +3,7 @@
 //! A [`Gpu`] is an open device. A **camera** ([`Camera`]) is where one looks from. A **maker**
 //! ([`VertexMaker`]) makes vertices and decides how many: [`Adaptive`] refines a [`Scene`] as it is
 //! drawn, [`Prerefined`] keeps a refined surface in memory. A **word** per tracing point says its
-//! colour, which a [`ColourTable`] knows. [`paint`] draws a picture of any size, tile by tile, and
+//! color, which a [`ColorTable`] knows. [`paint`] draws a picture of any size, tile by tile, and
 //! hands it over in **bands**; an [`Overlay`] lays legend and scale bar over them, a [`PngWriter`]
 //! writes them.
 //!
@@ -15,7 +15,7 @@
 mod adaptive;
 mod bounds;
 mod camera;
-mod colour;
+mod color;
 mod decide;
 mod device;
 mod error;
@@ -58,8 +58,8 @@ mod work;
 pub use adaptive::Adaptive;
 pub use bounds::{any_shows, bounds, merged};
 pub use camera::Camera;
-pub use colour::{
-    CATEGORY_BIT, ColourMap, ColourTable, InstanceValues, Palette, Rgb, SCALE_ENTRIES, category,
+pub use color::{
+    CATEGORY_BIT, ColorMap, ColorTable, InstanceValues, Palette, Rgb, SCALE_ENTRIES, category,
     fraction, is_dark, linear,
 };
 pub use decide::decide;

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use crate::camera::Camera;
-use crate::colour::{ColourTable, InstanceValues, Rgb, linear};
+use crate::color::{ColorTable, InstanceValues, Rgb, linear};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher, Last};
@@ -42,7 +42,7 @@ pub struct Shot {
     pub look: Look,
     /// How far corners darken one another.
     pub occlusion: Occlusion,
-    /// Colour behind everything.
+    /// Color behind everything.
     pub background: Rgb,
     /// Another camera and near plane, for which levels are chosen and things are left out.
     pub frozen: Option<(Camera, f64)>,
@@ -69,7 +69,7 @@ pub struct Live {
     fine: Option<Canvas>,
     shows_draft: bool,
     outlines: Outlines,
-    table: ColourTable,
+    table: ColorTable,
     /// Counts tables, so that each painter gets each once.
     tables: u64,
     states: Vec<u32>,
@@ -126,7 +126,7 @@ impl Live {
             fine: None,
             shows_draft: false,
             outlines: Outlines::default(),
-            table: ColourTable::default(),
+            table: ColorTable::default(),
             tables: 1,
             states: Vec::new(),
             under_way: None,
@@ -134,13 +134,13 @@ impl Live {
         }
     }
 
-    /// Colours from the next picture on.
-    pub fn set_colours(&mut self, table: ColourTable) {
+    /// Colors from the next picture on.
+    pub fn set_colors(&mut self, table: ColorTable) {
         self.table = table;
         self.tables += 1;
     }
 
-    /// Other values of instances from the next picture on; the colours stay.
+    /// Other values of instances from the next picture on; the colors stay.
     pub fn set_values(&mut self, values: InstanceValues) {
         self.table.values = values;
         self.tables += 1;
@@ -160,7 +160,7 @@ impl Live {
     }
 
     /// Draws a draft at once. Instances that are [`OUTLINED`](crate::OUTLINED) have an outline in the
-    /// colour of what is selected, as wide as told by [`Live::set_outlines`].
+    /// color of what is selected, as wide as told by [`Live::set_outlines`].
     ///
     /// # Errors
     /// What the device cannot do.
@@ -521,7 +521,7 @@ impl Canvas {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view = wgpu::BindingResource::TextureView;
         let targets = &self.targets;
-        let resolved = targets.resolved.as_ref().unwrap_or(&targets.colour);
+        let resolved = targets.resolved.as_ref().unwrap_or(&targets.color);
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("finish"),
             layout: &finisher.layout,

@@ -11,7 +11,7 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let p = vec2<i32>(id.xy);
     let at = id.y * finish.kept.x + id.x;
-    var sum = textureLoad(colours, p, 0);
+    var sum = textureLoad(colors, p, 0);
     if finish.radius > 0.0 && sum.a > 0.0 {
         sum = vec4(sum.rgb * occlusion_at(p), sum.a);
     }
@@ -28,7 +28,7 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     sum /= f32(finish.spare + 1u);
-    let colour = encoded(sum.rgb + finish.background.rgb * (1.0 - sum.a));
-    let bytes = vec4<u32>(floor(vec4(colour, 1.0) * 255.0 + 0.5));
+    let color = encoded(sum.rgb + finish.background.rgb * (1.0 - sum.a));
+    let bytes = vec4<u32>(floor(vec4(color, 1.0) * 255.0 + 0.5));
     pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }

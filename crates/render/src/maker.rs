@@ -6,9 +6,9 @@
 //! struct SurfaceVertex {
 //!     position: vec3<f32>,  // µm, relative to the eye, after the instance's transform
 //!     normal: vec3<f32>,    // unit, outwards
-//!     axis: vec3<f32>,      // point of the tube's centre line, relative to the eye
+//!     axis: vec3<f32>,      // point of the tube's center line, relative to the eye
 //!     radius: f32,          // µm; 0 on somata, which are never widened
-//!     word: u32,            // word of the tracing point: what the colour is looked up by
+//!     word: u32,            // word of the tracing point: what the color is looked up by
 //!     instance: u32,
 //!     grid: vec2<f32>,      // for wireframes: lines run where x, y or x + y is a whole number
 //! }

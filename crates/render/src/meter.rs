@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use crate::colour::ColourTable;
+use crate::color::ColorTable;
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::frame::Frame;
@@ -45,7 +45,7 @@ impl<'g> Meter<'g> {
     pub fn new(
         gpu: &'g Gpu,
         maker: &dyn VertexMaker,
-        table: &ColourTable,
+        table: &ColorTable,
     ) -> Result<Self, DeviceError> {
         let mut painter = Painter::new(
             gpu,

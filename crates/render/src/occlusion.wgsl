@@ -22,7 +22,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let reach = min(finish.radius / pixel, finish.most);
     let radius = reach * pixel;
     let whole = vec2<u32>(p + finish.tile_origin + 65536);
-    // One of 16 turns, so that neighbours, which the blur joins, look in different directions.
+    // One of 16 turns, so that neighbors, which the blur joins, look in different directions.
     let turn = f32((whole.x & 3u) + 4u * ((whole.y & 3u) ^ ((whole.x & 1u) << 1u))) / 16.0;
     var sum = 0.0;
     for (var i = 0u; i < TAPS; i++) {

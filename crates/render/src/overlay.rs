@@ -1,7 +1,7 @@
 //! Legend and scale bar in the corners of a picture.
 
 use crate::camera::Camera;
-use crate::colour::{Rgb, is_dark};
+use crate::color::{Rgb, is_dark};
 use crate::framing::Ball;
 use crate::image::Image;
 use crate::legend::{Legend, nice_length, scale_bar};
@@ -33,11 +33,11 @@ struct Kept {
 /// What to write into the corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlayOptions {
-    /// What colours mean.
+    /// What colors mean.
     pub legend: Option<Legend>,
     /// A scale bar of this length (µm), 0: what fits.
     pub scale_bar: Option<f64>,
-    /// Colour behind everything; none: transparent.
+    /// Color behind everything; none: transparent.
     pub background: Option<Rgb>,
 }
 

@@ -1,7 +1,7 @@
 //! Tiles: from a frame to bytes.
 //!
 //! ```text
-//! maker.prepare ─▶ draw: colour, normals, depth ─▶ occlude ─▶ blur ─▶ gather: bytes ─▶ read back
+//! maker.prepare ─▶ draw: color, normals, depth ─▶ occlude ─▶ blur ─▶ gather: bytes ─▶ read back
 //!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
 //! ```
 
@@ -11,7 +11,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::colour::{ColourTable, Rgb, linear};
+use crate::color::{ColorTable, Rgb, linear};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::{Finish, Finisher, Last};
@@ -31,7 +31,7 @@ pub(crate) struct Finishing {
     pub(crate) margin: u32,
     /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may be.
     pub(crate) occlusion: Option<(f32, f32)>,
-    /// Colour behind everything; none: transparent.
+    /// Color behind everything; none: transparent.
     pub(crate) background: Option<Rgb>,
 }
 
@@ -109,7 +109,7 @@ impl Painter {
             finisher: Finisher::new(gpu, samples, Last::Gather),
             shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
             finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
-            table: make(gpu, "colours", 16, storage),
+            table: make(gpu, "colors", 16, storage),
             states: make(gpu, "states", 16, storage),
             sizes: TableSizes::default(),
             holds: 0,
@@ -130,12 +130,12 @@ impl Painter {
         self.kind == kind
     }
 
-    /// The colours from now on.
-    pub(crate) fn set_table(&mut self, gpu: &Gpu, table: &ColourTable) {
-        let (entries, colours) = table.entries();
+    /// The colors from now on.
+    pub(crate) fn set_table(&mut self, gpu: &Gpu, table: &ColorTable) {
+        let (entries, colors) = table.entries();
         self.sizes = TableSizes {
             scale: table.scale.len() as u32,
-            colours,
+            colors,
             valued: table.values.instances() as u32,
         };
         upload(gpu, &mut self.table, bytemuck::cast_slice(&entries));
@@ -275,7 +275,7 @@ impl Painter {
     fn groups(&self, gpu: &Gpu, targets: &Targets) -> (wgpu::BindGroup, wgpu::BindGroup) {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view = wgpu::BindingResource::TextureView;
-        let resolved = targets.resolved.as_ref().unwrap_or(&targets.colour);
+        let resolved = targets.resolved.as_ref().unwrap_or(&targets.color);
         let device = &gpu.device;
         let shade = self.shade_group(gpu);
         let finish = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -346,14 +346,14 @@ impl Painter {
             false => wgpu::StoreOp::Store,
         };
         let resolved = targets.resolved.as_ref().filter(|_| part.last);
-        let colour_store = match targets.resolved {
+        let color_store = match targets.resolved {
             Some(_) => kept,
             None => wgpu::StoreOp::Store,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("draw"),
             color_attachments: &[
-                attachment(&targets.colour, resolved, colour_store),
+                attachment(&targets.color, resolved, color_store),
                 attachment(&targets.normal, None, wgpu::StoreOp::Store),
                 attachment(&targets.distance, None, wgpu::StoreOp::Store),
             ],

@@ -9,7 +9,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 use crate::camera::Camera;
-use crate::colour::{ColourTable, Rgb};
+use crate::color::{ColorTable, Rgb};
 use crate::device::Gpu;
 use crate::error::DeviceError;
 use crate::finish::BLUR;
@@ -28,7 +28,7 @@ pub struct PictureOptions {
     pub size: [u32; 2],
     /// Samples of a pixel: 1, 4, 16, 36 or 64.
     pub samples: u32,
-    /// Colour behind everything; none: transparent.
+    /// Color behind everything; none: transparent.
     pub background: Option<Rgb>,
     /// Light and wires.
     pub look: Look,
@@ -189,7 +189,7 @@ pub fn paint<E>(
     maker: &mut dyn VertexMaker,
     camera: &Camera,
     near: f64,
-    table: &ColourTable,
+    table: &ColorTable,
     options: &PictureOptions,
     take: impl FnMut(u32, Image) -> Result<(), E>,
 ) -> Result<Cost, PictureError<E>> {
@@ -251,7 +251,7 @@ impl Studio {
         maker: &mut dyn VertexMaker,
         camera: &Camera,
         near: f64,
-        table: &ColourTable,
+        table: &ColorTable,
         options: &PictureOptions,
         mut take: impl FnMut(u32, Image) -> Result<(), E>,
     ) -> Result<Cost, PictureError<E>> {

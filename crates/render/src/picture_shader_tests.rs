@@ -45,7 +45,7 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                     viewport_size,
                     lit,
                     scale_entries,
-                    colours,
+                    colors,
                     valued,
                     shift,
                     faint,

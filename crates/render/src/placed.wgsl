@@ -2,7 +2,7 @@
 //
 // Called by all shaders of refiner.rs. Structs as in refining.rs; constants come from its prelude.
 
-// One for the whole frame. Lengths in micrometres; planes are relative to the eye.
+// One for the whole frame. Lengths in micrometers; planes are relative to the eye.
 struct Frame {
     planes: array<vec4<f32>, 5>,
     slope: f32,

@@ -26,8 +26,8 @@ const CHUNK: usize = 128 * RUN;
 /// Distance of dynamic offsets into a uniform buffer that every device allows.
 const STRIDE: u64 = 256;
 
-/// A coarse mesh with one word per tracing point that says its colour: see
-/// [`ColourTable`](crate::ColourTable).
+/// A coarse mesh with one word per tracing point that says its color: see
+/// [`ColorTable`](crate::ColorTable).
 #[derive(Clone, Copy, Debug)]
 pub struct Painted<'m> {
     /// The mesh.

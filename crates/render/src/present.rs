@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::colour::Rgb;
+use crate::color::Rgb;
 use crate::device::Gpu;
 use crate::targets::Targets;
 
@@ -21,9 +21,9 @@ pub const PICKED: u8 = 4;
 pub struct Outlines {
     /// Width (pixels); 0: none.
     pub width: u32,
-    /// Colour of those round what is selected.
+    /// Color of those round what is selected.
     pub selected: Rgb,
-    /// Colour of those round what is under the cursor.
+    /// Color of those round what is under the cursor.
     pub hovered: Rgb,
 }
 
@@ -51,13 +51,13 @@ pub(crate) struct Present {
 impl Present {
     pub(crate) fn new(size: [u32; 2], outlines: Option<&Outlines>) -> Self {
         let look = outlines.copied().unwrap_or_default();
-        let colour = |[r, g, b]: Rgb| [r, g, b, 235].map(|c| f32::from(c) / 255.0);
+        let color = |[r, g, b]: Rgb| [r, g, b, 235].map(|c| f32::from(c) / 255.0);
         Self {
             size,
             width: outlines.map_or(0, |outlines| outlines.width),
             spare: 0,
-            selected: colour(look.selected),
-            hovered: colour(look.hovered),
+            selected: color(look.selected),
+            hovered: color(look.hovered),
         }
     }
 }

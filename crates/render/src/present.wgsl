@@ -54,18 +54,18 @@ fn bits_near(p: vec2<i32>) -> vec3<u32> {
 @fragment
 fn show(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let p = vec2<u32>(position.xy);
-    var colour = unpack4x8unorm(pixels[p.y * present.size.x + p.x]);
+    var color = unpack4x8unorm(pixels[p.y * present.size.x + p.x]);
     if present.width == 0u {
-        return colour;
+        return color;
     }
     let bits = bits_near(vec2<i32>(p));
     // Whole neurons have a free pixel between them and their outline, pieces have none.
     let around = (bits.z & ~bits.y & 3u) | (bits.y & ~bits.x & 6u);
     if (around & 5u) != 0u {
-        colour = vec4(mix(colour.rgb, present.selected.rgb, present.selected.a), 1.0);
+        color = vec4(mix(color.rgb, present.selected.rgb, present.selected.a), 1.0);
     }
     if (around & 2u) != 0u {
-        colour = vec4(mix(colour.rgb, present.hovered.rgb, present.hovered.a), 1.0);
+        color = vec4(mix(color.rgb, present.hovered.rgb, present.hovered.a), 1.0);
     }
-    return colour;
+    return color;
 }

@@ -63,7 +63,7 @@ pub struct Instance {
     pub placement: Placement,
     /// Not drawn.
     pub hidden: bool,
-    /// Free for whoever shades: selection, colour.
+    /// Free for whoever shades: selection, color.
     pub state: u32,
 }
 

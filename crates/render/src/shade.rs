@@ -3,13 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::colour::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
+use crate::color::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
 use crate::device::Gpu;
 use crate::frame::Frame;
 use crate::maker::{SURFACE_VERTEX_WGSL, VertexMaker};
 
-/// Linear colour, premultiplied.
-pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Linear color, premultiplied.
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Normals in the view.
 pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Depths (µm): the bytes of an f32.
@@ -26,7 +26,7 @@ pub struct Look {
     pub wire: f32,
     /// What is cut away.
     pub clip: Option<Clip>,
-    /// Colour of instances that are [`MARKED`], and its share, 0 to 1.
+    /// Color of instances that are [`MARKED`], and its share, 0 to 1.
     pub marked: (Rgb, f32),
     /// Share of the samples that instances which are [`FAINT`] cover, 0 to 1.
     pub faint: f32,
@@ -45,7 +45,7 @@ pub struct Clip {
     pub normal: DVec3,
 }
 
-/// State of an instance: it has the colour of [`Look::marked`].
+/// State of an instance: it has the color of [`Look::marked`].
 pub const MARKED: u32 = 1;
 /// State of an instance: one looks through it, see [`Look::faint`].
 pub const FAINT: u32 = 2;
@@ -65,7 +65,7 @@ pub enum Light {
     /// The same with the key light in this direction, seen from the picture: right, up, towards
     /// the viewer. Any length but 0.
     From(Vec3),
-    /// None: the bare colours.
+    /// None: the bare colors.
     Flat,
 }
 
@@ -104,7 +104,7 @@ pub(crate) struct Shade {
     pub(crate) viewport_size: [f32; 2],
     pub(crate) lit: f32,
     pub(crate) scale_entries: u32,
-    pub(crate) colours: u32,
+    pub(crate) colors: u32,
     pub(crate) valued: u32,
     pub(crate) shift: [f32; 3],
     pub(crate) faint: f32,
@@ -116,13 +116,13 @@ pub(crate) struct Shade {
     pub(crate) edge: [f32; 4],
 }
 
-/// What shaders must know of a colour table.
+/// What shaders must know of a color table.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TableSizes {
-    /// Colours of the scale.
+    /// Colors of the scale.
     pub(crate) scale: u32,
-    /// All colours.
-    pub(crate) colours: u32,
+    /// All colors.
+    pub(crate) colors: u32,
     /// Instances with values.
     pub(crate) valued: u32,
 }
@@ -157,7 +157,7 @@ impl Shade {
             viewport_size: [frame.tile.width, frame.tile.height].map(|n| n as f32 + 2.0 * GUARD),
             lit,
             scale_entries: table.scale,
-            colours: table.colours,
+            colors: table.colors,
             valued: table.valued,
             shift: [0.0; 3],
             faint: look.faint,
@@ -252,7 +252,7 @@ impl Shader {
                     module: &module,
                     entry_point: Some("fragment"),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[COLOUR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
+                    targets: &[COLOR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
                 }),
                 multiview_mask: None,
                 cache: None,

@@ -1,4 +1,4 @@
-// From a maker's vertices to lit samples: projection, widening of thin tubes, colour, light, wires.
+// From a maker's vertices to lit samples: projection, widening of thin tubes, color, light, wires.
 // Called by painter.rs; comes after surface_vertex.wgsl and the maker's text. Rust twin of the
 // uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
 
@@ -21,12 +21,12 @@ struct Shade {
     // Of the viewport, which reaches beyond the tile (sub-pixels of the whole picture).
     viewport_origin: vec2<f32>,
     viewport_size: vec2<f32>,
-    // 1: lit, 0: the bare colour.
+    // 1: lit, 0: the bare color.
     lit: f32,
     // Number of scale entries at the start of the table; categories follow.
     scale_entries: u32,
-    // Number of all colours, and of instances whose values follow them; 0: words are fractions.
-    colours: u32,
+    // Number of all colors, and of instances whose values follow them; 0: words are fractions.
+    colors: u32,
     valued: u32,
     // From positions as the maker has them to those relative to the eye: 0 unless the maker's eye is
     // another one.
@@ -35,7 +35,7 @@ struct Shade {
     faint: f32,
     // What lies behind this plane, relative to the eye, is cut away; all 0: nothing.
     clip: vec4<f32>,
-    // Linear colour of what is marked, and its share.
+    // Linear color of what is marked, and its share.
     marked: vec4<f32>,
     // Sub-pixels by which the whole picture is moved.
     jitter: vec2<f32>,
@@ -53,7 +53,7 @@ const WITHOUT_SOMA: u32 = 8u;
 const OUTLINED: u32 = 16u;
 
 @group(1) @binding(0) var<uniform> shade: Shade;
-// Linear colours.
+// Linear colors.
 @group(1) @binding(1) var<storage, read> table: array<vec4<f32>>;
 // By instance; those beyond the end have 0.
 @group(1) @binding(2) var<storage, read> states: array<u32>;
@@ -61,7 +61,7 @@ const OUTLINED: u32 = 16u;
 struct Varying {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
-    @location(1) colour: vec3<f32>,
+    @location(1) color: vec3<f32>,
     @location(2) relative: vec3<f32>,
     @location(3) grid: vec2<f32>,
     @location(4) coverage: f32,
@@ -74,7 +74,7 @@ struct Varying {
 }
 
 fn category_entry(category: u32) -> u32 {
-    return min(shade.scale_entries + category, shade.colours - 1u);
+    return min(shade.scale_entries + category, shade.colors - 1u);
 }
 
 // The value that a word means for an instance: see InstanceValues.
@@ -82,13 +82,13 @@ fn value_of_instance(word: u32, instance: u32) -> f32 {
     if instance >= shade.valued {
         return -1.0;
     }
-    let first = u32(table[shade.colours + instance / 4u][instance % 4u]);
+    let first = u32(table[shade.colors + instance / 4u][instance % 4u]);
     return table[min(first + word / 4u, arrayLength(&table) - 1u)][word % 4u];
 }
 
 // A category counts from the end of the scale; anything else is a fraction of the scale, or a place
 // among the instance's values. The last component is 1 for colors of the scale.
-fn colour_of(word: u32, instance: u32) -> vec4<f32> {
+fn color_of(word: u32, instance: u32) -> vec4<f32> {
     var share = f32(word) / f32(CATEGORY_BIT);
     var category = (word & CATEGORY_BIT) != 0u;
     var named = word & ~CATEGORY_BIT;
@@ -101,18 +101,18 @@ fn colour_of(word: u32, instance: u32) -> vec4<f32> {
     let place = select(share * f32(last), 0.0, category);
     let low = select(u32(place), category_entry(named), category);
     let high = select(min(u32(place) + 1u, last), low, category);
-    let colour = mix(table[low].rgb, table[high].rgb, fract(place));
-    return vec4(colour, select(1.0, 0.0, category));
+    let color = mix(table[low].rgb, table[high].rgb, fract(place));
+    return vec4(color, select(1.0, 0.0, category));
 }
 
-fn luminance(colour: vec3<f32>) -> f32 {
-    return dot(colour, vec3(0.2126, 0.7152, 0.0722));
+fn luminance(color: vec3<f32>) -> f32 {
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
 // How little a color is told from the background: 1 up to a contrast of 1.25, as the light end of viridis has
 // before white, 0 from 1.8 on. Contrast as WCAG 2.2 defines it.
-fn lack_of_contrast(colour: vec3<f32>) -> f32 {
-    let own = luminance(colour) + 0.05;
+fn lack_of_contrast(color: vec3<f32>) -> f32 {
+    let own = luminance(color) + 0.05;
     let other = shade.edge.w + 0.05;
     return 1.0 - smoothstep(1.25, 1.8, max(own, other) / min(own, other));
 }
@@ -164,8 +164,8 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     v.position += shade.shift;
     v.axis += shade.shift;
     let state = state_of(v.instance);
-    let colour = colour_of(v.word, v.instance);
-    let edge = colour.a * lack_of_contrast(colour.rgb);
+    let color = color_of(v.word, v.instance);
+    let edge = color.a * lack_of_contrast(color.rgb);
     var relative = v.position;
     var coverage = 1.0;
     var thin = 0.0;
@@ -194,10 +194,10 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     }
     coverage = shown_part(state, v.radius, coverage);
     out.normal = v.normal;
-    out.colour = colour.rgb;
+    out.color = color.rgb;
     out.edge = edge;
     if (state & MARKED) != 0u {
-        out.colour = mix(out.colour, shade.marked.rgb, shade.marked.a);
+        out.color = mix(out.color, shade.marked.rgb, shade.marked.a);
     }
     out.relative = relative;
     out.grid = v.grid;
@@ -217,7 +217,7 @@ fn vertex(
 
 struct Sample {
     // Linear, premultiplied by coverage through the mask.
-    @location(0) colour: vec4<f32>,
+    @location(0) color: vec4<f32>,
     // Normal in the view, from -1..1 to 0..1, and bits of the mask of outlines in bytes.
     @location(1) normal: vec4<f32>,
     // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
@@ -227,7 +227,7 @@ struct Sample {
 }
 
 // A key light from the upper left, a weak fill from the lower right, a sky brighter than the ground.
-// Weights were chosen by eye on real cells so that a side that faces the viewer has the colour of
+// Weights were chosen by eye on real cells so that a side that faces the viewer has the color of
 // the legend.
 fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
@@ -259,7 +259,7 @@ fn bayer(p: vec2<u32>) -> f32 {
     return (f32((q.x ^ q.y) * 2u + q.y) + 0.5) / 4.0;
 }
 
-// As many samples as the coverage asks for, dithered over neighbouring sub-pixels.
+// As many samples as the coverage asks for, dithered over neighboring sub-pixels.
 fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
     let p = vec2<u32>(position.xy + shade.tile_origin + 4096.0);
     let count = u32(clamp(coverage, 0.0, 1.0) * f32(SAMPLES) + bayer(p));
@@ -280,22 +280,22 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     let axes = mat3x3(shade.right, shade.up, shade.backward);
     let left = left_by_clip(in.relative, in.coverage);
     let to_eye = -normalize(in.relative) * axes;
-    // A line shows no sides: it gets the light of a face towards the viewer, so its colour is the
-    // legend's. Means over all sides were a third darker, and thin things looked grey.
+    // A line shows no sides: it gets the light of a face towards the viewer, so its color is the
+    // legend's. Means over all sides were a third darker, and thin things looked gray.
     let n = normalize(mix(world * axes, to_eye, in.thin));
-    var colour = in.colour;
+    var color = in.color;
     if shade.wire > 0.0 {
-        let line = select(vec3(0.22), colour * 0.06, luminance(colour) > 0.06);
-        colour = mix(colour, line, wires(in.grid) * (1.0 - in.thin));
+        let line = select(vec3(0.22), color * 0.06, luminance(color) > 0.06);
+        color = mix(color, line, wires(in.grid) * (1.0 - in.thin));
     }
     if shade.lit > 0.0 {
-        colour = light(colour, n, to_eye);
+        color = light(color, n, to_eye);
     }
     let facing = dot(world * axes, to_eye);
     let across = sqrt(max(1.0 - facing * facing, 0.0));
-    colour = mix(colour, shade.edge.rgb, 0.7 * in.edge * smoothstep(0.5, 0.85, across));
+    color = mix(color, shade.edge.rgb, 0.7 * in.edge * smoothstep(0.5, 0.85, across));
     var out: Sample;
-    out.colour = vec4(colour, 1.0);
+    out.color = vec4(color, 1.0);
     out.normal = vec4(n * 0.5 + 0.5, f32(in.outline) / 255.0);
     out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
     MASK_STATEMENT

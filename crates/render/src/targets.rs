@@ -1,11 +1,11 @@
 //! Textures and buffers that a tile passes through.
 
 use crate::device::Gpu;
-use crate::shade::{COLOUR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, NORMAL_FORMAT};
+use crate::shade::{COLOR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, NORMAL_FORMAT};
 
 /// Textures and buffers for one tile of the greatest size.
 pub(crate) struct Targets {
-    pub(crate) colour: wgpu::TextureView,
+    pub(crate) color: wgpu::TextureView,
     pub(crate) resolved: Option<wgpu::TextureView>,
     pub(crate) normal: wgpu::TextureView,
     pub(crate) distance: wgpu::TextureView,
@@ -42,15 +42,15 @@ impl Targets {
             });
             texture.create_view(&Default::default())
         };
-        let colour = texture(COLOUR_FORMAT, samples);
-        let resolved = (samples > 1).then(|| texture(COLOUR_FORMAT, 1));
+        let color = texture(COLOR_FORMAT, samples);
+        let resolved = (samples > 1).then(|| texture(COLOR_FORMAT, 1));
         let normal = texture(NORMAL_FORMAT, samples);
         let distance = texture(DISTANCE_FORMAT, samples);
         let depth = texture(DEPTH_FORMAT, samples);
         let storage = wgpu::BufferUsages::STORAGE;
         let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         Self {
-            colour,
+            color,
             resolved,
             normal,
             distance,

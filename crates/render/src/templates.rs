@@ -20,7 +20,7 @@ const WORDS_OF_PATCH: usize = 2 + 4 * (3 + 8);
 pub struct Template<'t> {
     /// The mesh.
     pub mesh: &'t CoarseMesh,
-    /// One word per tracing point for whoever shades: its colour. Missing ones are 0.
+    /// One word per tracing point for whoever shades: its color. Missing ones are 0.
     pub words: &'t [u32],
     /// One level per tracing point, for [`Choice::PerPoint`](crate::Choice::PerPoint). Missing ones
     /// are 1.

@@ -2,7 +2,7 @@
 
 use ab_glyph::{Font, FontRef, Glyph, ScaleFont, point};
 
-use crate::colour::Rgb;
+use crate::color::Rgb;
 use crate::image::Image;
 
 /// A font at a size.

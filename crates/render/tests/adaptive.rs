@@ -8,7 +8,7 @@ use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface};
 use neurotess_refine::{Levels, RefineOptions, Refinement};
 use neurotess_render::{
-    Adaptive, Camera, Choice, ColourTable, Gpu, Image, Instance, Occlusion, Painted, Palette,
+    Adaptive, Camera, Choice, ColorTable, Gpu, Image, Instance, Occlusion, Painted, Palette,
     PictureOptions, Placement, Prerefined, Refining, Scene, SceneError, Template, TemplateId,
     Templates, VertexMaker, category, paint,
 };
@@ -20,9 +20,9 @@ fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, size: [u32; 
         occlusion: Occlusion::Off,
         ..PictureOptions::default()
     };
-    let table = ColourTable {
+    let table = ColorTable {
         categories: [3, 1].map(|kind| Palette::default().of_type(kind)).to_vec(),
-        ..ColourTable::default()
+        ..ColorTable::default()
     };
     let mut whole = Image::default();
     paint(gpu, maker, camera, 0.1, &table, &options, |_, band| {

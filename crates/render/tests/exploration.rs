@@ -9,7 +9,7 @@ use common::{Random, cell, extent, gpu, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{
-    Adaptive, Asked, Camera, ColourTable, Exploration, ExplorationError, Frame, Gpu, Image,
+    Adaptive, Asked, Camera, ColorTable, Exploration, ExplorationError, Frame, Gpu, Image,
     Instance, MOST_BUDGET, Occlusion, PictureOptions, Placement, Refining, Scene, Sketch, Template,
     TemplateId, Templates, Tile, VertexMaker, asked, paint,
 };
@@ -151,7 +151,7 @@ fn drawn_steps(steps: &[Asked], quads: u32) -> Option<usize> {
     sums.position(|sum| sum == quads)
 }
 
-fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, table: &ColourTable) -> Image {
+fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, table: &ColorTable) -> Image {
     let options = PictureOptions {
         size: [320, 240],
         samples: 16,
@@ -364,7 +364,7 @@ fn instances_hide_and_come_back() {
 }
 
 #[test]
-fn templates_are_recoloured_in_place() {
+fn templates_are_recolored_in_place() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
     let (words, table) = by_type(&mesh);
@@ -376,21 +376,21 @@ fn templates_are_recoloured_in_place() {
     let before = picture(&gpu, &mut maker, &camera, &table);
     sketches[0].set_words(&words);
     maker
-        .recolour(&gpu, TemplateId(0), &sketches[0])
-        .expect("recoloured");
-    let coloured = picture(&gpu, &mut maker, &camera, &table);
-    assert_ne!(before, coloured);
+        .recolor(&gpu, TemplateId(0), &sketches[0])
+        .expect("recolored");
+    let colored = picture(&gpu, &mut maker, &camera, &table);
+    assert_ne!(before, colored);
     maker
         .set_instances(&gpu, vec![Instance::new(TemplateId(1))])
         .expect("placed");
-    assert_eq!(coloured, picture(&gpu, &mut maker, &camera, &table));
+    assert_eq!(colored, picture(&gpu, &mut maker, &camera, &table));
     maker
         .set_instances(&gpu, vec![Instance::new(TemplateId(0))])
         .expect("placed");
     sketches[0].set_words(&plain);
     maker
-        .recolour(&gpu, TemplateId(0), &sketches[0])
-        .expect("recoloured");
+        .recolor(&gpu, TemplateId(0), &sketches[0])
+        .expect("recolored");
     assert_eq!(before, picture(&gpu, &mut maker, &camera, &table));
 }
 
@@ -398,9 +398,9 @@ fn templates_are_recoloured_in_place() {
 fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
     let Some(gpu) = gpu() else { return };
     let camera = Camera::new(DVec3::Z * 50.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-    let table = ColourTable {
+    let table = ColorTable {
         scale: vec![[0; 3]],
-        ..ColourTable::default()
+        ..ColorTable::default()
     };
     let mut maker = Exploration::new(&gpu, 1).expect("a maker");
     assert!(

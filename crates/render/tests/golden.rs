@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{
-    Camera, ColourMap, Image, Legend, Light, Look, Occlusion, Overlay, OverlayOptions,
+    Camera, ColorMap, Image, Legend, Light, Look, Occlusion, Overlay, OverlayOptions,
     PictureOptions, PngWriter, Side, fraction,
 };
 use pictured::{balls, explored, gpu, mesh, picture, picture_of};
@@ -48,7 +48,7 @@ fn small() -> PictureOptions {
 }
 
 #[test]
-fn a_whole_cell_in_the_colours_of_its_types() {
+fn a_whole_cell_in_the_colors_of_its_types() {
     let Some(gpu) = gpu() else { return };
     let cell = sample("pyramidal.swc");
     let fit = Camera::fit(Side::Front, 0.35, 150.0 / 200.0, 0.04, &balls(&cell));
@@ -121,7 +121,7 @@ fn a_scale_with_its_legend_on_nothing() {
         .iter()
         .map(|t| fraction(t.center.length() / reach))
         .collect();
-    let scale = ColourMap::Viridis.scale();
+    let scale = ColorMap::Viridis.scale();
     let camera = Camera::fit(Side::Iso, 0.4, 200.0 / 150.0, 0.04, &balls(&cell)).expect("fits");
     let options = PictureOptions {
         background: None,
@@ -194,7 +194,7 @@ fn compare(name: &str, image: &Image) {
     }
 }
 
-/// Means over 3 × 3 pixels, colours premultiplied.
+/// Means over 3 × 3 pixels, colors premultiplied.
 fn blurred(image: &Image) -> Vec<f64> {
     let (width, height) = (i64::from(image.width), i64::from(image.height));
     let mut out = Vec::with_capacity(image.pixels.len());

@@ -44,7 +44,7 @@ fn shot(mesh: &CoarseMesh) -> Shot {
 
 fn live(gpu: &Gpu, mesh: &CoarseMesh) -> Live {
     let mut live = Live::new(gpu);
-    live.set_colours(by_type(mesh).1);
+    live.set_colors(by_type(mesh).1);
     live
 }
 
@@ -254,9 +254,9 @@ fn a_draft_shows_the_same_cell() {
     assert!(apart > 0.0 && apart < 3.0, "{apart}");
 }
 
-/// Number of pixels that are nearly of a colour, left and right of the middle.
-fn of_colour(image: &Image, colour: [u8; 3]) -> [usize; 2] {
-    let near = |p: &[u8]| (0..3).all(|k| p[k].abs_diff(colour[k]) < 40);
+/// Number of pixels that are nearly of a color, left and right of the middle.
+fn of_color(image: &Image, color: [u8; 3]) -> [usize; 2] {
+    let near = |p: &[u8]| (0..3).all(|k| p[k].abs_diff(color[k]) < 40);
     let mut counts = [0; 2];
     for (i, pixel) in image.pixels.chunks(4).enumerate() {
         let right = i % image.width as usize >= image.width as usize / 2;
@@ -302,7 +302,7 @@ fn drafts_have_outlines_round_what_is_outlined() {
         let mut drawn = |states: [u32; 2]| {
             live.set_states(states.to_vec());
             live.draft(&gpu, maker, &shot(&mesh)).expect("drawn");
-            of_colour(&pixels(&gpu, &live), orange)
+            of_color(&pixels(&gpu, &live), orange)
         };
         assert_eq!(drawn([0, 0]), [0, 0], "maker {which}");
         let [left, right] = drawn([0, OUTLINED]);

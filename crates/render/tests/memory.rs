@@ -12,7 +12,7 @@ use neurotess_render::{Gpu, Template, Templates};
 
 /// Bytes per point, and how many points.
 fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
-    // As many colours as coloring by section needs.
+    // As many colors as coloring by section needs.
     let words: Vec<u32> = mesh.tracing.iter().map(|t| t.section as u32).collect();
     let template = Template {
         mesh,

@@ -139,7 +139,7 @@ fn transparent_pictures_have_straight_alpha() {
     let axon = neurotess_render::Palette::NeuroM.of_type(2);
     let near = |p: &&[u8]| p.iter().zip(axon).all(|(a, b)| a.abs_diff(b) < 6);
     let partly = image.pixels.chunks(4).filter(|p| (1..250).contains(&p[3]));
-    // Half covered is the whole colour, half opaque: not a darker one.
+    // Half covered is the whole color, half opaque: not a darker one.
     assert!(partly.filter(near).count() > 20);
     assert!(image.pixels.chunks(4).any(|p| p[3] == 255));
     assert_eq!(image.at(0, 0), [0; 4]);

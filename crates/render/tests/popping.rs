@@ -9,7 +9,7 @@ mod common;
 use common::{gpu, smooth_cell};
 use glam::DVec3;
 use neurotess_render::{
-    Adaptive, Camera, Choice, ColourTable, Gpu, Image, Instance, Occlusion, PictureOptions,
+    Adaptive, Camera, Choice, ColorTable, Gpu, Image, Instance, Occlusion, PictureOptions,
     Refining, Scene, Template, Templates, paint,
 };
 
@@ -22,9 +22,9 @@ fn frames(gpu: &Gpu, maker: &mut Adaptive) -> Vec<Image> {
         occlusion: Occlusion::Off,
         ..PictureOptions::default()
     };
-    let table = ColourTable {
+    let table = ColorTable {
         scale: vec![[200, 60, 30]],
-        ..ColourTable::default()
+        ..ColorTable::default()
     };
     let frame = |i: usize| {
         // Towards the soma, a thousandth nearer in every frame, and a little around it.

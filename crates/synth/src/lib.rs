@@ -82,7 +82,7 @@ impl Options {
     }
 }
 
-/// Grows a cell; it is named after its kind and seed. The soma's centre is the origin, and up is y.
+/// Grows a cell; it is named after its kind and seed. The soma's center is the origin, and up is y.
 ///
 /// # Panics
 /// Never: whatever is grown here is a forest with finite coordinates.

@@ -1,7 +1,7 @@
 //! Frames of exploration and of adaptive refinement, while the camera turns.
 
 use neurotess::render::{
-    Choice, ColourTable, Exploration, Frame, FrameTime, Gpu, Meter, Refining, Sketch, VertexMaker,
+    Choice, ColorTable, Exploration, Frame, FrameTime, Gpu, Meter, Refining, Sketch, VertexMaker,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -90,11 +90,11 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
         rows: Vec::new(),
     };
     reporter.result(&head(&document));
-    let colours = scenes::colours();
+    let colors = scenes::colors();
     for &count in &args.neurons {
         let scene = Scene::new(&neurons, count, args.size.0)?;
         maker.set_instances(&gpu, instances(&scene, &ids))?;
-        let times = times(&gpu, &mut maker, &scene.frame, &colours, args.frames)?;
+        let times = times(&gpu, &mut maker, &scene.frame, &colors, args.frames)?;
         let stats = maker.stats(&gpu)?;
         let points = scene.places.iter().map(|&(n, _)| sketches[n].point_count());
         let mut row = Row {
@@ -110,7 +110,7 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
             ratio: None,
         };
         if count <= args.compare {
-            compare(&mut row, &gpu, &neurons, &scene, &colours, args.frames)?;
+            compare(&mut row, &gpu, &neurons, &scene, &colors, args.frames)?;
         }
         reporter.result(&line(&row));
         document.rows.push(row);
@@ -124,7 +124,7 @@ fn compare(
     gpu: &Gpu,
     neurons: &[Neuron],
     scene: &Scene,
-    colours: &ColourTable,
+    colors: &ColorTable,
     frames: u32,
 ) -> anyhow::Result<()> {
     let refining = Refining {
@@ -132,7 +132,7 @@ fn compare(
         ..Refining::default()
     };
     let mut maker = adaptive(gpu, neurons, scene, refining)?;
-    let times = times(gpu, &mut maker, &scene.frame, colours, frames)?;
+    let times = times(gpu, &mut maker, &scene.frame, colors, frames)?;
     row.ratio = Some(times.waited / row.exploration.waited);
     row.adaptive = Some(times);
     row.adaptive_triangles = Some(maker.stats(gpu)?.triangles);
@@ -145,10 +145,10 @@ fn times(
     gpu: &Gpu,
     maker: &mut dyn VertexMaker,
     frame: &Frame,
-    colours: &ColourTable,
+    colors: &ColorTable,
     frames: u32,
 ) -> anyhow::Result<Times> {
-    let mut meter = Meter::new(gpu, maker, colours)?;
+    let mut meter = Meter::new(gpu, maker, colors)?;
     let mut times: Vec<FrameTime> = Vec::new();
     for i in 0..=frames {
         let turned = Frame {

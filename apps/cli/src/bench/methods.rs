@@ -4,7 +4,7 @@ use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, Surface};
 use neurotess::refine::{Levels, RefineOptions, Refinement};
 use neurotess::render::{
-    Adaptive, Choice, ColourTable, FrameTime, Gpu, Instance, Meter, Painted, Place, Placement,
+    Adaptive, Choice, ColorTable, FrameTime, Gpu, Instance, Meter, Painted, Place, Placement,
     Prerefined, Refining, Scene as Placed, Template, TemplateId, Templates, VertexMaker,
 };
 use serde::Serialize;
@@ -54,7 +54,7 @@ pub(crate) struct Drawing<'a> {
     pub(crate) gpu: &'a Gpu,
     pub(crate) args: &'a RefinementArgs,
     pub(crate) neurons: &'a [Neuron],
-    pub(crate) colours: ColourTable,
+    pub(crate) colors: ColorTable,
 }
 
 impl Drawing<'_> {
@@ -175,7 +175,7 @@ impl Drawing<'_> {
 
     /// Times of some frames, after one that is not counted; of one only where it takes long.
     fn times(&self, maker: &mut dyn VertexMaker, scene: &Scene) -> anyhow::Result<Vec<FrameTime>> {
-        let mut meter = Meter::new(self.gpu, maker, &self.colours)?;
+        let mut meter = Meter::new(self.gpu, maker, &self.colors)?;
         let first = meter.time(maker, &scene.frame)?;
         if first.waited_ms > 1e3 * self.args.patience {
             return Ok(vec![first]);

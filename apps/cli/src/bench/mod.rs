@@ -92,7 +92,7 @@ fn refinement(args: &RefinementArgs, reporter: &Reporter) -> anyhow::Result<()> 
         gpu: &gpu,
         args,
         neurons: &neurons,
-        colours: scenes::colours(),
+        colors: scenes::colors(),
     };
     let rows = levels(&drawing, reporter)?;
     let growth = growth(&drawing, reporter)?;

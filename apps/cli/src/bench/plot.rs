@@ -8,7 +8,7 @@ use super::methods::{Method, Row};
 /// Size of a panel (pixels).
 const PANEL: (u32, u32) = (360, 300);
 
-/// Curves, their names and colours: told apart by the colour-blind.
+/// Curves, their names and colors: told apart by the color-blind.
 const CURVES: [(Method, &str, RGBColor); 3] = [
     (
         Method::Prerefined,
@@ -83,7 +83,7 @@ fn panel(
         .x_label_formatter(&|level| whole(*level))
         .draw()
         .map_err(fault)?;
-    for (method, name, colour) in CURVES {
+    for (method, name, color) in CURVES {
         let points: Vec<(f64, f64)> = here
             .iter()
             .filter(|(row, _)| row.method == method)
@@ -91,13 +91,13 @@ fn panel(
             .collect();
         let marks = points
             .iter()
-            .map(|&point| Circle::new(point, 3, colour.filled()));
+            .map(|&point| Circle::new(point, 3, color.filled()));
         chart.draw_series(marks).map_err(fault)?;
-        let line = LineSeries::new(points, colour.stroke_width(2));
+        let line = LineSeries::new(points, color.stroke_width(2));
         let series = chart.draw_series(line).map_err(fault)?;
         series
             .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color.stroke_width(2)));
     }
     chart
         .configure_series_labels()

@@ -3,18 +3,18 @@
 use glam::DVec3;
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
-use neurotess::render::{Ball, Camera, ColourTable, Frame, Palette, Side, Tile, bounds, category};
+use neurotess::render::{Ball, Camera, ColorTable, Frame, Palette, Side, Tile, bounds, category};
 use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 
-/// Distance (µm) of neighbours: dendrites meet.
+/// Distance (µm) of neighbors: dendrites meet.
 const APART: f64 = 120.0;
 /// Angle of view (radians): wide, so that some neurons are near and others far.
 const FOV: f64 = 60.0 * std::f64::consts::PI / 180.0;
-/// Types that colours are told by; the others look like the last.
+/// Types that colors are told by; the others look like the last.
 const TYPES: i32 = 8;
 
-/// A neuron and its colours.
+/// A neuron and its colors.
 pub(crate) struct Neuron {
     pub(crate) mesh: CoarseMesh,
     pub(crate) words: Vec<u32>,
@@ -54,16 +54,16 @@ fn words(mesh: &CoarseMesh) -> Vec<u32> {
     mesh.tracing.iter().map(word).collect()
 }
 
-/// Colours of types.
-pub(crate) fn colours() -> ColourTable {
+/// Colors of types.
+pub(crate) fn colors() -> ColorTable {
     let of_type = |kind| match kind {
         1 => Palette::NeuroM.of_soma(Some([255; 3])),
         _ => Palette::NeuroM.of_type(kind),
     };
-    ColourTable {
+    ColorTable {
         scale: Vec::new(),
         categories: (0..TYPES).map(of_type).collect(),
-        ..ColourTable::default()
+        ..ColorTable::default()
     }
 }
 

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{DVec3, Vec3};
-use neurotess::render::{ColourMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
+use neurotess::render::{ColorMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
 
 use super::times::{MOST, Time, times};
 use crate::args::{SomaArg, Types};
@@ -49,26 +49,26 @@ pub(crate) struct RenderArgs {
     #[arg(long, default_value_t = 16, value_name = "N", help_heading = "Picture",
           allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) samples: u32,
-    /// Colour behind everything: a name (white, black, grey), RRGGBB or RGB
+    /// Color behind everything: a name (white, black, gray), RRGGBB or RGB
     #[arg(
         long,
         default_value = "white",
-        value_name = "COLOUR",
+        value_name = "COLOR",
         help_heading = "Picture"
     )]
-    pub(crate) background: Colour,
+    pub(crate) background: RgbArg,
     /// Leave the background out
     #[arg(long, conflicts_with = "background", help_heading = "Picture")]
     pub(crate) transparent: bool,
-    /// What colours tell [default: type; what a scene says; value, if there is a --report]
-    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Colours")]
+    /// What colors tell [default: type; what a scene says; value, if there is a --report]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Colors")]
     pub(crate) color_by: Option<ColorBy>,
     /// Cells of a circuit by an attribute, like layer, mtype, population or group
     #[arg(long, value_name = "NAME", conflicts_with_all = ["color_by", "report"],
-          help_heading = "Colours")]
+          help_heading = "Colors")]
     pub(crate) color_by_attribute: Option<String>,
     /// Values of a simulation: a SONATA report, or a file of spikes
-    #[arg(long, value_name = "FILE", help_heading = "Colours")]
+    #[arg(long, value_name = "FILE", help_heading = "Colors")]
     pub(crate) report: Option<PathBuf>,
     /// Time (ms) in the report [default: its first]; FROM:TO:STEP, TO left out, makes a series of pictures
     #[arg(
@@ -76,37 +76,37 @@ pub(crate) struct RenderArgs {
         value_name = "MS",
         requires = "report",
         allow_hyphen_values = true,
-        help_heading = "Colours"
+        help_heading = "Colors"
     )]
     pub(crate) time: Option<Time>,
-    /// Numbers at both ends of the colour map [default: the least and the greatest of all pictures]
+    /// Numbers at both ends of the color map [default: the least and the greatest of all pictures]
     #[arg(long, value_name = "LOW,HIGH", value_parser = range,
-          allow_hyphen_values = true, help_heading = "Colours")]
+          allow_hyphen_values = true, help_heading = "Colors")]
     pub(crate) range: Option<[f32; 2]>,
-    /// Colours of types and of things told apart
+    /// Colors of types and of things told apart
     #[arg(
         long,
         default_value = "neurom",
         value_name = "NAME",
         value_parser = palettes(),
-        help_heading = "Colours"
+        help_heading = "Colors"
     )]
     pub(crate) palette: Palette,
-    /// Colours of numbers
+    /// Colors of numbers
     #[arg(
         long,
         default_value = "viridis",
         value_name = "NAME",
-        value_parser = colour_maps(),
-        help_heading = "Colours"
+        value_parser = color_maps(),
+        help_heading = "Colors"
     )]
-    pub(crate) colormap: ColourMap,
+    pub(crate) colormap: ColorMap,
     /// Leave out the end of the color map that is as light or as dark as the background. Without it that
     /// end has edges
-    #[arg(long, help_heading = "Colours")]
+    #[arg(long, help_heading = "Colors")]
     pub(crate) trim_colormap: bool,
     /// Draw no legend
-    #[arg(long, help_heading = "Colours")]
+    #[arg(long, help_heading = "Colors")]
     pub(crate) no_legend: bool,
     /// Draw a scale bar, of this length (µm) or one that fits
     #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
@@ -179,7 +179,7 @@ pub(crate) struct RenderArgs {
     /// Show the triangles by thin lines
     #[arg(long, help_heading = "Look")]
     pub(crate) wireframe: bool,
-    /// soft, flat (bare colours), or where the light comes from: right, up, towards you
+    /// soft, flat (bare colors), or where the light comes from: right, up, towards you
     #[arg(
         long,
         default_value = "soft",
@@ -236,7 +236,7 @@ impl RenderArgs {
         }
     }
 
-    /// Whether colours tell numbers.
+    /// Whether colors tell numbers.
     pub(crate) fn is_number(&self) -> bool {
         let by = [ColorBy::Order, ColorBy::Radius, ColorBy::Depth];
         let number = self.color_by.is_some_and(|what| by.contains(&what));
@@ -250,10 +250,10 @@ fn palettes() -> impl TypedValueParser<Value = Palette> {
         .try_map(|name| name.parse::<Palette>())
 }
 
-/// Colour maps by name, likewise.
-fn colour_maps() -> impl TypedValueParser<Value = ColourMap> {
-    let names = ColourMap::ALL.map(ColourMap::name);
-    PossibleValuesParser::new(names).try_map(|name| name.parse::<ColourMap>())
+/// Color maps by name, likewise.
+fn color_maps() -> impl TypedValueParser<Value = ColorMap> {
+    let names = ColorMap::ALL.map(ColorMap::name);
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<ColorMap>())
 }
 
 fn range(text: &str) -> Result<[f32; 2], String> {
@@ -271,7 +271,7 @@ pub(crate) enum ColorBy {
     Type,
     /// Every neurite its own
     Neurite,
-    /// Neighbouring sections differ
+    /// Neighboring sections differ
     Section,
     /// Number of forks from the neurite's start
     Order,
@@ -354,18 +354,18 @@ impl FromStr for Triple {
     }
 }
 
-/// A colour.
+/// A color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Colour(pub(crate) Rgb);
+pub(crate) struct RgbArg(pub(crate) Rgb);
 
-impl FromStr for Colour {
+impl FromStr for RgbArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         let rgb = match text.to_ascii_lowercase().as_str() {
             "white" => [255; 3],
             "black" => [0; 3],
-            "grey" | "gray" => [128; 3],
+            "gray" | "grey" => [128; 3],
             other => {
                 let digits = other.strip_prefix('#').unwrap_or(other);
                 let hexadecimal = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
@@ -376,7 +376,7 @@ impl FromStr for Colour {
                     _ => String::new(),
                 };
                 let [_, r, g, b] = u32::from_str_radix(&digits, 16)
-                    .map_err(|_| "white, black, grey, RRGGBB or RGB is needed, as in 102030")?
+                    .map_err(|_| "white, black, gray, RRGGBB or RGB is needed, as in 102030")?
                     .to_be_bytes();
                 [r, g, b]
             }
@@ -432,16 +432,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_colours_and_places_are_read() {
+    fn sizes_colors_and_places_are_read() {
         assert_eq!("640x480".parse(), Ok(Size([640, 480])));
         for wrong in ["640", "0x1", "1x99999", "x", "1x1x1"] {
             assert!(wrong.parse::<Size>().is_err(), "{wrong}");
         }
-        assert_eq!("#102030".parse(), Ok(Colour([16, 32, 48])));
-        assert_eq!("#fA0".parse(), Ok(Colour([255, 170, 0])));
-        assert_eq!("White".parse(), Ok(Colour([255; 3])));
+        assert_eq!("#102030".parse(), Ok(RgbArg([16, 32, 48])));
+        assert_eq!("#fA0".parse(), Ok(RgbArg([255, 170, 0])));
+        assert_eq!("White".parse(), Ok(RgbArg([255; 3])));
         for wrong in ["12345", "reddish", "#ééé", "+12345", "+12", "#ff"] {
-            assert!(wrong.parse::<Colour>().is_err(), "{wrong}");
+            assert!(wrong.parse::<RgbArg>().is_err(), "{wrong}");
         }
         assert_eq!("1,-2,3e1".parse(), Ok(Triple(DVec3::new(1.0, -2.0, 30.0))));
         assert!("1,2".parse::<Triple>().is_err());

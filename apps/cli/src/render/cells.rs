@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use neurotess::circuit::Compartment;
-use neurotess::colouring::with_middles;
+use neurotess::coloring::with_middles;
 use neurotess::formats::{ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions};
 use neurotess::mesh::{CoarseMesh, TracingPoint};

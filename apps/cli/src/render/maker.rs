@@ -78,7 +78,7 @@ impl Maker {
             args,
             cells,
             places,
-            coloured,
+            colored,
             ..
         } = *sitting;
         let choice = match mode(args)? {
@@ -90,7 +90,7 @@ impl Maker {
         };
         let list: Vec<Template<'_>> = cells
             .iter()
-            .zip(&coloured.colouring.words)
+            .zip(&colored.coloring.words)
             .map(|(cell, words)| Template {
                 mesh: &cell.mesh,
                 words,
@@ -187,12 +187,12 @@ fn exploring(gpu: &Gpu, options: &PictureOptions, sitting: &Sitting<'_>) -> anyh
         args,
         cells,
         places,
-        coloured,
+        colored,
         ..
     } = *sitting;
     let sketches: Vec<Sketch> = cells
         .par_iter()
-        .zip(&coloured.colouring.words)
+        .zip(&colored.coloring.words)
         .map(|(cell, words)| Sketch::new(&cell.mesh, words))
         .collect();
     let mut maker = Exploration::new(gpu, options.sub_pixels(gpu))?;
@@ -214,7 +214,7 @@ fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
         args,
         cells,
         places,
-        coloured,
+        colored,
         cameras,
         balls,
         ..
@@ -226,7 +226,7 @@ fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
     }
     let painted: Vec<Painted<'_>> = cells
         .iter()
-        .zip(&coloured.colouring.words)
+        .zip(&colored.coloring.words)
         .map(|(cell, words)| Painted {
             mesh: &cell.mesh,
             words,

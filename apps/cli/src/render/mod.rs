@@ -1,12 +1,12 @@
 //! `neurotess render`: pictures of cells and circuits, without a window.
 //!
 //! ```text
-//! arguments ─read, mesh─▶ cells, places ─▶ cameras, colouring, maker ─paint─▶ bands ─▶ PNG, stats
+//! arguments ─read, mesh─▶ cells, places ─▶ cameras, coloring, maker ─paint─▶ bands ─▶ PNG, stats
 //! ```
 
 pub(crate) mod args;
 mod cells;
-mod colouring;
+mod coloring;
 mod maker;
 mod places;
 mod shown;
@@ -29,7 +29,7 @@ use crate::progress::Progress;
 use crate::report::{Failure, Reporter, count, usage};
 use args::{ColorBy, Fit, RenderArgs};
 use cells::Cell;
-use colouring::Coloured;
+use coloring::Colored;
 use maker::Maker;
 use places::Cast;
 use stats::{Stage, Stages, Stats};
@@ -77,13 +77,13 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
     let stand: Vec<usize> = places.iter().map(|&(cell, _)| cell).collect();
-    let coloured = colouring::coloured(&cells, shown.as_ref(), &stand, args, reporter)?;
-    let (overlay, cameras) = overlay(args, &coloured, cameras, &balls);
+    let colored = coloring::colored(&cells, shown.as_ref(), &stand, args, reporter)?;
+    let (overlay, cameras) = overlay(args, &colored, cameras, &balls);
     let sitting = Sitting {
         args,
         cells: &cells,
         places: &places,
-        coloured: &coloured,
+        colored: &colored,
         cameras: &cameras,
         balls: &balls,
         overlay: &overlay,
@@ -179,12 +179,12 @@ fn files(args: &RenderArgs) -> anyhow::Result<Vec<PathBuf>> {
 /// room for it if it can.
 fn overlay(
     args: &RenderArgs,
-    coloured: &Coloured,
+    colored: &Colored,
     mut cameras: Vec<Camera>,
     balls: &[Ball],
 ) -> (Overlay, Vec<Camera>) {
     let options = OverlayOptions {
-        legend: (!args.no_legend).then(|| coloured.colouring.legend.clone()),
+        legend: (!args.no_legend).then(|| colored.coloring.legend.clone()),
         scale_bar: args.scale_bar.map(|bar| match bar {
             Fit::Auto => 0.0,
             Fit::Length(length) => length,
@@ -207,7 +207,7 @@ struct Sitting<'a> {
     args: &'a RenderArgs,
     cells: &'a [&'a Cell],
     places: &'a [(usize, Placement)],
-    coloured: &'a Coloured,
+    colored: &'a Colored,
     cameras: &'a [Camera],
     balls: &'a [Ball],
     overlay: &'a Overlay,
@@ -223,7 +223,7 @@ fn draw(
     let Sitting {
         args,
         places,
-        coloured,
+        colored,
         cameras,
         balls,
         overlay,
@@ -245,7 +245,7 @@ fn draw(
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
         let near = camera.near(balls);
-        let (table, legend) = coloured.picture(number)?;
+        let (table, legend) = colored.picture(number)?;
         let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);
         let cost = write(file, args, |take| {
             let lay = |top: u32, mut band: Image| {

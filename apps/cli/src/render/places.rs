@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use neurotess::circuit::{Compartment, Instance, soma_center};
-use neurotess::colouring::cuts;
+use neurotess::coloring::cuts;
 use neurotess::render::{Ball, Placement, bounds, merged};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! What a circuit shows, cell by cell as they stand.
 
 use neurotess::circuit::{Circuit, Instance, NodeRef};
-use neurotess::colouring::Node;
+use neurotess::coloring::Node;
 
 /// A circuit and those of its cells that are drawn.
 pub(crate) struct Shown {

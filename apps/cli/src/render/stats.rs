@@ -38,7 +38,7 @@ pub(crate) struct Stats {
 pub(crate) struct Stages {
     /// Reading and meshing.
     read: f64,
-    /// Cameras, colours, legend.
+    /// Cameras, colors, legend.
     frame: f64,
     /// Opening the adapter.
     adapter: f64,

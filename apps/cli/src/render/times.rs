@@ -66,7 +66,7 @@ pub(crate) fn times(args: &RenderArgs) -> anyhow::Result<Option<Vec<f64>>> {
     Ok(Some((0..frames as u32).map(time).collect()))
 }
 
-/// A time for people, with as many digits as tell it from its neighbours.
+/// A time for people, with as many digits as tell it from its neighbors.
 pub(crate) fn said(times: &[f64], time: f64) -> String {
     let rounded = |digits: i32| {
         let unit = 10f64.powi(digits);

@@ -107,7 +107,7 @@ impl Display {
         self.xdotool(&format!("windowactivate --sync {id}"));
     }
 
-    /// The picture of the screen, and the number of its colours: a blank window has few.
+    /// The picture of the screen, and the number of its colors: a blank window has few.
     pub(crate) fn screenshot(&self, name: &str) -> usize {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("view-test");
         fs::create_dir_all(&folder).expect("made");
@@ -129,10 +129,10 @@ impl Display {
         let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
         let info = reader.next_frame(&mut pixels).expect("decoded");
         let step = info.line_size / info.width as usize;
-        let mut colours: Vec<&[u8]> = pixels.chunks_exact(step).collect();
-        colours.sort_unstable();
-        colours.dedup();
-        colours.len()
+        let mut colors: Vec<&[u8]> = pixels.chunks_exact(step).collect();
+        colors.sort_unstable();
+        colors.dedup();
+        colors.len()
     }
 }
 

@@ -98,13 +98,13 @@ fn quiet_says_nothing_but_errors() {
 }
 
 #[test]
-fn colour_is_asked_for_or_not() {
+fn color_is_asked_for_or_not() {
     let work = Work::new();
     let plain = work.run("info missing.swc").exits(1).stderr();
     assert!(plain.starts_with("error: missing.swc: "), "{plain}");
-    let colour = work
+    let color = work
         .run("info missing.swc --color always")
         .exits(1)
         .stderr();
-    assert!(colour.starts_with("\x1b[1;31merror:\x1b[0m"), "{colour}");
+    assert!(color.starts_with("\x1b[1;31merror:\x1b[0m"), "{color}");
 }

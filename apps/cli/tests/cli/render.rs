@@ -48,7 +48,7 @@ impl Picture {
         }
     }
 
-    /// The different colours, reduced to 3 bits a channel.
+    /// The different colors, reduced to 3 bits a channel.
     pub(crate) fn hues(&self) -> BTreeSet<Vec<u8>> {
         let pixels = self.pixels.chunks(self.channels);
         pixels
@@ -83,7 +83,7 @@ fn picture(arguments: &str) -> Picture {
 }
 
 #[test]
-fn a_cell_becomes_a_picture_in_the_colours_of_its_types() {
+fn a_cell_becomes_a_picture_in_the_colors_of_its_types() {
     if !can_draw() {
         return;
     }

@@ -5,7 +5,7 @@ use crate::work::Work;
 
 const CIRCUIT: &str = "synth circuit -o c --neurons 12 --morphologies 3 --seed 4";
 
-/// The brightest pixel of a picture: bare colours on black, so that it is a colour of the scale.
+/// The brightest pixel of a picture: bare colors on black, so that it is a color of the scale.
 fn brightest(work: &Work, options: &str) -> u32 {
     let look = "--background black --light flat --ao 0 --no-legend --colormap magma";
     work.run(&format!(
@@ -101,7 +101,7 @@ fn a_series_runs_through_time_in_one_start() {
 }
 
 #[test]
-fn cells_have_colours_as_a_whole() {
+fn cells_have_colors_as_a_whole() {
     if !can_draw() {
         return;
     }
@@ -132,7 +132,7 @@ fn cells_have_colours_as_a_whole() {
     let picture = Picture::read(&work, "s.png");
     assert!(picture.count(0) > 50 && picture.count(2) > 50);
     let unknown = work
-        .run("render c -o q.png --color-by-attribute colour")
+        .run("render c -o q.png --color-by-attribute color")
         .exits(1);
     assert!(unknown.stderr().contains("layer, "), "{}", unknown.stderr());
 }

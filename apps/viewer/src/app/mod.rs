@@ -250,7 +250,7 @@ impl Viewer {
             Effect::Cancel => {
                 self.waiting.clear();
                 for job in self.jobs().into_iter().flatten() {
-                    job.cancelled
+                    job.canceled
                         .store(true, std::sync::atomic::Ordering::Relaxed);
                     self.state.said = format!("Stopped {}", job.what);
                 }

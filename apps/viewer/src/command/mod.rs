@@ -22,7 +22,7 @@ pub enum Tab {
     Inspect,
     /// How somata are made.
     Soma,
-    /// Colours and light.
+    /// Colors and light.
     Look,
     /// How finely.
     Detail,
@@ -99,7 +99,7 @@ pub enum Command {
     SetRing(SourceId, u32, Option<f64>),
     /// Leaves all first rings to themselves.
     ResetRings(SourceId),
-    /// Colours and light.
+    /// Colors and light.
     SetLook(Box<Look>),
     /// How finely.
     SetDetail(Detail),

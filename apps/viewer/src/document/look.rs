@@ -1,31 +1,32 @@
-//! Colours, light, what is shown of cells.
+//! Colors, light, what is shown of cells.
 
-use neurotess::colouring;
-use neurotess::render::{ColourMap, Light, Palette, Rgb};
+use neurotess::coloring;
+use neurotess::render::{ColorMap, Light, Palette, Rgb};
 use serde::{Deserialize, Serialize};
 
 /// Background unless another one is chosen: a light gray, before which neither pale lines nor dark somata
 /// are as hard as before white.
 pub const PAPER: Rgb = [238, 240, 243];
 
-/// Colours, light, what is shown of cells.
+/// Colors, light, what is shown of cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Look {
-    /// What colours tell.
-    pub colour_by: ColourBy,
+    /// What colors tell.
+    #[serde(alias = "colour_by")]
+    pub color_by: ColorBy,
     /// Name of the attribute, where that is what they tell.
     pub attribute: String,
-    /// Numbers at both ends of the colour map; none: those that fit.
+    /// Numbers at both ends of the color map; none: those that fit.
     pub range: Option<[f32; 2]>,
     /// After this time (ms) the flash of a spike has a third of its light.
     pub decay: f64,
-    /// Colours of types.
+    /// Colors of types.
     #[serde(with = "palette")]
     pub palette: Palette,
-    /// Colours of numbers.
-    #[serde(with = "colour_map")]
-    pub colour_map: ColourMap,
+    /// Colors of numbers.
+    #[serde(with = "color_map", alias = "colour_map")]
+    pub color_map: ColorMap,
     /// Whether the end of the color map that is as light or dark as the background is left out.
     pub trim_map: bool,
     /// Behind everything.
@@ -36,13 +37,13 @@ pub struct Look {
     pub occlusion: bool,
     /// Triangles.
     pub wires: bool,
-    /// What colours mean.
+    /// What colors mean.
     pub legend: bool,
     /// A length to compare with.
     pub scale_bar: bool,
     /// Directions of x, y and z.
     pub axes: bool,
-    /// A colour of its own for what is selected.
+    /// A color of its own for what is selected.
     pub mark_selected: bool,
     /// Whether one looks through what is not selected.
     pub faint_others: bool,
@@ -54,11 +55,11 @@ pub struct Look {
     pub cut: Option<Cut>,
 }
 
-/// What colours tell; see [`colouring::ColourBy`].
+/// What colors tell; see [`coloring::ColorBy`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[expect(missing_docs, reason = "the names say it")]
-pub enum ColourBy {
+pub enum ColorBy {
     #[default]
     Type,
     Neuron,
@@ -71,7 +72,7 @@ pub enum ColourBy {
     Value,
 }
 
-impl ColourBy {
+impl ColorBy {
     /// All, with names for people.
     pub const ALL: [(Self, &'static str); 9] = [
         (Self::Type, "type"),
@@ -100,21 +101,21 @@ impl ColourBy {
         self.is_number() || self == Self::Attribute
     }
 
-    /// Whether it is a number, with a colour map.
+    /// Whether it is a number, with a color map.
     pub fn is_number(self) -> bool {
         matches!(self, Self::Order | Self::Radius | Self::Depth | Self::Value)
     }
 
     /// As the library has it; none: it is no matter of a tracing alone.
-    pub(crate) fn in_library(self) -> Option<colouring::ColourBy> {
+    pub(crate) fn in_library(self) -> Option<coloring::ColorBy> {
         Some(match self {
-            Self::Type => colouring::ColourBy::Type,
-            Self::Neuron => colouring::ColourBy::Neuron,
-            Self::Neurite => colouring::ColourBy::Neurite,
-            Self::Section => colouring::ColourBy::Section,
-            Self::Order => colouring::ColourBy::Order,
-            Self::Radius => colouring::ColourBy::Radius,
-            Self::Depth => colouring::ColourBy::Depth,
+            Self::Type => coloring::ColorBy::Type,
+            Self::Neuron => coloring::ColorBy::Neuron,
+            Self::Neurite => coloring::ColorBy::Neurite,
+            Self::Section => coloring::ColorBy::Section,
+            Self::Order => coloring::ColorBy::Order,
+            Self::Radius => coloring::ColorBy::Radius,
+            Self::Depth => coloring::ColorBy::Depth,
             Self::Attribute | Self::Value => return None,
         })
     }
@@ -182,12 +183,12 @@ pub struct Cut {
 impl Default for Look {
     fn default() -> Self {
         Self {
-            colour_by: ColourBy::Type,
+            color_by: ColorBy::Type,
             attribute: String::new(),
             range: None,
-            decay: colouring::DECAY,
+            decay: coloring::DECAY,
             palette: Palette::default(),
-            colour_map: ColourMap::default(),
+            color_map: ColorMap::default(),
             trim_map: false,
             background: PAPER,
             light: Lighting::Soft,
@@ -229,4 +230,4 @@ macro_rules! by_name {
 }
 
 by_name!(palette, neurotess::render::Palette);
-by_name!(colour_map, neurotess::render::ColourMap);
+by_name!(color_map, neurotess::render::ColorMap);

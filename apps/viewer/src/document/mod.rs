@@ -16,7 +16,7 @@ use crate::circuits::CircuitId;
 use crate::session::NeuronEntry;
 
 pub use detail::{Criterion, Detail};
-pub use look::{ColourBy, Cut, Lighting, Look, PAPER, Parts};
+pub use look::{ColorBy, Cut, Lighting, Look, PAPER, Parts};
 pub(crate) use place::PlaceFile;
 pub use soma::{Method, SomaEdit};
 
@@ -40,7 +40,7 @@ pub struct Document {
     pub neurons: Vec<Neuron>,
     /// Somata that are not as usual, by source.
     pub somata: Vec<(SourceId, SomaEdit)>,
-    /// Colours, light, what is shown of cells.
+    /// Colors, light, what is shown of cells.
     pub look: Look,
     /// How finely.
     pub detail: Detail,
@@ -109,9 +109,9 @@ impl Document {
 
     /// Shows the values of a recording, or no longer.
     pub fn set_report(&mut self, report: Option<PathBuf>) {
-        match (&report, self.look.colour_by) {
-            (Some(_), _) => self.look.colour_by = ColourBy::Value,
-            (None, ColourBy::Value) => self.look.colour_by = ColourBy::default(),
+        match (&report, self.look.color_by) {
+            (Some(_), _) => self.look.color_by = ColorBy::Value,
+            (None, ColorBy::Value) => self.look.color_by = ColorBy::default(),
             (None, _) => {}
         }
         self.report = report;
@@ -132,7 +132,7 @@ impl Document {
     }
 }
 
-/// Where neurons stand side by side: `extents` are centre and size (µm) of each in its own place.
+/// Where neurons stand side by side: `extents` are center and size (µm) of each in its own place.
 pub fn grid(neurons: &[Neuron], extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
     let columns = (neurons.len() as f64).sqrt().ceil().max(1.0) as usize;
     let widest = |axis: usize| {

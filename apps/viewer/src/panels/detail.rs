@@ -176,13 +176,13 @@ fn graph(frames: &[f32], ui: &mut Ui) {
     let step = rect.width() / 90.0;
     for (i, &ms) in frames.iter().enumerate() {
         let x = rect.left() + (i as f32 + 0.5) * step;
-        let colour = if ms > 100.0 {
+        let color = if ms > 100.0 {
             visuals.warn_fg_color
         } else {
             Color32::from_rgb(0x2f, 0x7d, 0xc4)
         };
         let bar = [Pos2::new(x, rect.bottom()), Pos2::new(x, y(ms))];
-        painter.line_segment(bar, Stroke::new((step - 1.0).max(1.0), colour));
+        painter.line_segment(bar, Stroke::new((step - 1.0).max(1.0), color));
     }
     let last = frames.last().copied().unwrap_or(0.0);
     ui.weak(format!("last: {last:.1} ms"));

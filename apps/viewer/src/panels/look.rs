@@ -1,19 +1,19 @@
-//! Colours, light, what is shown of cells.
+//! Colors, light, what is shown of cells.
 
 use eframe::egui::{self, ComboBox, Ui};
-use neurotess::render::{ColourMap, Legend, Palette};
+use neurotess::render::{ColorMap, Legend, Palette};
 
 use super::heading;
 use super::number::{field, slider};
 use super::tip::Tip;
 use crate::command::{Ask, Command};
-use crate::document::{ColourBy, Cut, Lighting, Look, PAPER, Parts};
+use crate::document::{ColorBy, Cut, Lighting, Look, PAPER, Parts};
 use crate::state::State;
 
 pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     let mut look = state.document.look.clone();
     let released = ui.input(|i| i.pointer.any_released());
-    colours(state, &mut look, legend, ui);
+    colors(state, &mut look, legend, ui);
     heading(ui, "Shown");
     ui.horizontal_wrapped(|ui| {
         ui.selectable_value(&mut look.parts, Parts::All, "All");
@@ -44,10 +44,10 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     if dark != state.settings.dark {
         state.asked.push(Command::SetDark(dark));
     }
-    let before = state.document.look.colour_by;
-    let chosen_now = look.colour_by == ColourBy::Value && before != ColourBy::Value;
+    let before = state.document.look.color_by;
+    let chosen_now = look.color_by == ColorBy::Value && before != ColorBy::Value;
     if chosen_now && state.document.report.is_none() {
-        look.colour_by = before;
+        look.color_by = before;
         state.asked.push(match state.circuits.reports().pop() {
             Some((_, file)) => Command::SetReport(Some(file)),
             None => Command::AskFiles(Ask::Report),
@@ -60,41 +60,41 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     }
 }
 
-fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
+fn colors(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
     heading(ui, "Colors");
-    egui::Grid::new("colours").num_columns(2).show(ui, |ui| {
+    egui::Grid::new("colors").num_columns(2).show(ui, |ui| {
         ui.label("color by");
-        let name = ColourBy::ALL
+        let name = ColorBy::ALL
             .iter()
-            .find(|(by, _)| *by == look.colour_by)
+            .find(|(by, _)| *by == look.color_by)
             .map_or("", |(_, n)| n);
-        ComboBox::from_id_salt("colour by")
+        ComboBox::from_id_salt("color by")
             .selected_text(name)
             .show_ui(ui, |ui| {
                 let circuits = state.circuits.iter().next().is_some();
-                for (by, name) in ColourBy::ALL {
+                for (by, name) in ColorBy::ALL {
                     // A tracing alone has neither.
-                    if circuits || by.is_of_tracings() || by == look.colour_by {
-                        ui.selectable_value(&mut look.colour_by, by, name);
+                    if circuits || by.is_of_tracings() || by == look.color_by {
+                        ui.selectable_value(&mut look.color_by, by, name);
                     }
                 }
             });
         ui.end_row();
-        match look.colour_by {
-            ColourBy::Attribute => attribute(state, look, ui),
-            ColourBy::Value => report(state, ui),
+        match look.color_by {
+            ColorBy::Attribute => attribute(state, look, ui),
+            ColorBy::Value => report(state, ui),
             _ => {}
         }
         // Numbers of an attribute are on a scale if there are many.
-        let scaled = look.colour_by == ColourBy::Attribute && legend.is_bar();
-        if look.colour_by.is_number() || scaled {
+        let scaled = look.color_by == ColorBy::Attribute && legend.is_bar();
+        if look.color_by.is_number() || scaled {
             range(state, look, ui);
             ui.label("color map");
             ComboBox::from_id_salt("map")
-                .selected_text(look.colour_map.name())
+                .selected_text(look.color_map.name())
                 .show_ui(ui, |ui| {
-                    for map in ColourMap::ALL {
-                        ui.selectable_value(&mut look.colour_map, map, map.name());
+                    for map in ColorMap::ALL {
+                        ui.selectable_value(&mut look.color_map, map, map.name());
                     }
                 });
             ui.end_row();
@@ -118,13 +118,13 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
         ui.label("background");
         ui.horizontal(|ui| {
             ui.color_edit_button_srgb(&mut look.background);
-            for (name, colour) in [
+            for (name, color) in [
                 ("paper", PAPER),
                 ("white", [255; 3]),
                 ("slate", [40, 44, 50]),
                 ("black", [0; 3]),
             ] {
-                ui.selectable_value(&mut look.background, colour, name);
+                ui.selectable_value(&mut look.background, color, name);
             }
         });
         ui.end_row();
@@ -134,7 +134,7 @@ fn colours(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
 /// Attributes of the circuits' cells.
 fn attribute(state: &State, look: &mut Look, ui: &mut Ui) {
     let names = state.circuits.attributes();
-    let chosen_now = state.document.look.colour_by != ColourBy::Attribute;
+    let chosen_now = state.document.look.color_by != ColorBy::Attribute;
     if chosen_now && !names.contains(&look.attribute) {
         let usual = ["layer", "mtype", "model_name", "population"];
         let first = usual
@@ -180,13 +180,13 @@ fn report(state: &mut State, ui: &mut Ui) {
     ui.end_row();
 }
 
-/// Numbers at both ends of the colour map.
+/// Numbers at both ends of the color map.
 fn range(state: &State, look: &mut Look, ui: &mut Ui) {
     ui.label("range")
         .tip("The values at the two ends of the color map");
     ui.horizontal(|ui| {
         let facts = state.playback.facts.as_ref();
-        let fitting = facts.filter(|_| look.colour_by == ColourBy::Value);
+        let fitting = facts.filter(|_| look.color_by == ColorBy::Value);
         let mut fixed = look.range.is_some();
         ui.checkbox(&mut fixed, "fixed")
             .tip("Otherwise from the smallest to the largest value");
@@ -206,7 +206,7 @@ fn range(state: &State, look: &mut Look, ui: &mut Ui) {
         }
     });
     ui.end_row();
-    if look.colour_by == ColourBy::Value && state.playback.facts.as_ref().is_some_and(|f| f.spikes)
+    if look.color_by == ColorBy::Value && state.playback.facts.as_ref().is_some_and(|f| f.spikes)
     {
         ui.label("spikes fade in");
         let decay = field(ui, &mut look.decay, 0.1..=1000.0, 2, |field| {

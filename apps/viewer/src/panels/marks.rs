@@ -40,7 +40,7 @@ impl Sight<'_> {
     }
 }
 
-fn hovered_colour() -> Color32 {
+fn hovered_color() -> Color32 {
     let [r, g, b] = OUTLINES.hovered;
     Color32::from_rgb(r, g, b)
 }
@@ -94,7 +94,7 @@ fn round(sight: &Sight<'_>, center: DVec3, [a, b]: [DVec3; 2], painter: &Painter
     if let Some(points) = points {
         let halo = Color32::from_white_alpha(150);
         painter.line(points.clone(), Stroke::new(5.0, halo));
-        painter.line(points, Stroke::new(2.5, hovered_colour()));
+        painter.line(points, Stroke::new(2.5, hovered_color()));
     }
 }
 
@@ -145,7 +145,7 @@ fn soma(sight: &Sight<'_>, source: &Source, painter: &Painter) {
 
 /// A line on both sides of each of a section's segments.
 fn beside(sight: &Sight<'_>, source: &Source, section: usize, painter: &Painter) {
-    let stroke = Stroke::new(1.0, hovered_colour());
+    let stroke = Stroke::new(1.0, hovered_color());
     let within = sight.rect.expand(20.0);
     let end = |p: &Point| {
         let center = p.position.as_dvec3();

@@ -105,7 +105,7 @@ fn side(viewer: &mut Viewer, ui: &mut egui::Ui) {
     });
 }
 
-/// Colours and spacing.
+/// Colors and spacing.
 pub(crate) fn style(ctx: &egui::Context, dark: bool) {
     ctx.set_theme(if dark {
         egui::Theme::Dark

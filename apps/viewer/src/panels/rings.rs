@@ -14,7 +14,7 @@ use crate::state::{Part, Picked, State};
 struct Row {
     neurite: u32,
     name: String,
-    colour: Color32,
+    color: Color32,
     /// Where the ring is; where it is asked to be.
     position: f64,
     asked: Option<f64>,
@@ -67,7 +67,7 @@ fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
         rows.push(Row {
             neurite: ring.neurite,
             name: format!("{kind} {}", ring.neurite + 1),
-            colour: Color32::from_rgb(r, g, b),
+            color: Color32::from_rgb(r, g, b),
             position: ring.position,
             asked: asked.get(&ring.neurite).copied(),
         });
@@ -82,7 +82,7 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
     let mut touched = false;
     ui.horizontal(|ui| {
         let (swatch, _) = ui.allocate_exact_size([10.0, 10.0].into(), Sense::hover());
-        ui.painter().rect_filled(swatch, 2.0, row.colour);
+        ui.painter().rect_filled(swatch, 2.0, row.color);
         let name = ui.add(Label::new(&row.name).sense(Sense::hover()));
         touched |= name.hovered();
         name.tip(

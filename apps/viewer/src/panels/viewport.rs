@@ -348,16 +348,16 @@ fn axes(state: &State, rect: Rect, ui: &Ui) {
     set_off(state, Rect::from_center_size(center, vec2(84.0, 84.0)), ui);
     // The farthest first.
     arms.sort_by(|a, b| a.0.dot(backward).total_cmp(&b.0.dot(backward)));
-    for (axis, name, colour) in arms {
+    for (axis, name, color) in arms {
         let tip = vec2(axis.dot(right) as f32, -axis.dot(up) as f32) * 26.0;
         ui.painter()
-            .line_segment([center, center + tip], Stroke::new(2.0, colour));
+            .line_segment([center, center + tip], Stroke::new(2.0, color));
         ui.painter().text(
             center + tip * 1.35,
             Align2::CENTER_CENTER,
             name,
             FontId::proportional(12.0),
-            colour,
+            color,
         );
     }
 }

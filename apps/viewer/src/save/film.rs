@@ -107,7 +107,7 @@ pub(crate) fn video(first: &Path, replace: bool, job: &Job) -> Result<PathBuf, S
 /// Waits until it is done, or ends it.
 fn wait(ffmpeg: &mut Child, job: &Job) -> Result<(), String> {
     loop {
-        if job.is_cancelled() {
+        if job.is_canceled() {
             drop(ffmpeg.kill());
             drop(ffmpeg.wait());
             return Err("stopped before the video was whole".into());
@@ -165,7 +165,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let first = folder.path().join("f_0000.png");
         let job = Job::new("", "", 1);
-        job.cancelled
+        job.canceled
             .store(true, std::sync::atomic::Ordering::Relaxed);
         // Without ffmpeg it says so, with it that it was stopped.
         let error = video(&first, false, &job).expect_err("stopped");

@@ -79,7 +79,7 @@ pub(crate) fn meshes(
     }
     let (mut faces, mut written) = (0, 0);
     for (plan, file) in plans.iter().zip(&files) {
-        if job.is_cancelled() {
+        if job.is_canceled() {
             return Err(format!("stopped after {written} of {} meshes", files.len()));
         }
         faces += write_mesh(plan, options, view, detail, height, file)?;

@@ -7,12 +7,12 @@ use std::sync::atomic::Ordering;
 
 use neurotess::output::{Output, OutputError};
 use neurotess::render::{
-    Ball, Camera, Choice, ColourTable, Gpu, Image, Legend, Occlusion, Overlay, OverlayOptions,
+    Ball, Camera, Choice, ColorTable, Gpu, Image, Legend, Occlusion, Overlay, OverlayOptions,
     PictureError, PictureOptions, PngWriter, Refining, Studio, Watch,
 };
 
 use super::{Still, existing};
-use crate::colours::paint;
+use crate::colors::paint;
 use crate::document::Look;
 use crate::playback::said;
 use crate::scene::{self, Shown};
@@ -46,7 +46,7 @@ pub(crate) struct Scenery {
 
 impl Scenery {
     /// Table and legend of a picture, at its time of a recording if one shows.
-    fn colours(&self, time: Option<f64>) -> Result<(ColourTable, Legend), String> {
+    fn colors(&self, time: Option<f64>) -> Result<(ColorTable, Legend), String> {
         let (table, legend) = (&self.shown.table, &self.shown.legend);
         let (Some((replay, all)), Some(time)) = (&self.shown.replay, time) else {
             return Ok((table.clone(), legend.clone()));
@@ -57,7 +57,7 @@ impl Scenery {
         let moment = replay.at(time, self.look.decay, &shows);
         let moment = moment.map_err(|e| e.to_string())?;
         let range = paint(&self.look).range.unwrap_or(*all);
-        let table = ColourTable {
+        let table = ColorTable {
             scale: table.scale.clone(),
             categories: table.categories.clone(),
             values: moment.values(range),
@@ -68,7 +68,7 @@ impl Scenery {
     /// What stands in the corners, the same ones for all pictures.
     fn overlay(&self, stills: &[Still], options: &PictureFile) -> Result<Overlay, String> {
         let cameras: Vec<Camera> = stills.iter().map(|still| still.view.camera()).collect();
-        let (_, legend) = self.colours(stills.first().and_then(|still| still.time))?;
+        let (_, legend) = self.colors(stills.first().and_then(|still| still.time))?;
         let overlay = OverlayOptions {
             legend: self.look.legend.then_some(legend),
             scale_bar: self.look.scale_bar.then_some(0.0),
@@ -118,16 +118,16 @@ pub(crate) fn pictures(
     studio.set_states(&scenery.states);
     studio.set_watch(Watch {
         tiles: Arc::clone(&job.done),
-        stopped: Arc::clone(&job.cancelled),
+        stopped: Arc::clone(&job.canceled),
     });
     let overlay = scenery.overlay(stills, options)?;
     for (number, (still, file)) in stills.iter().zip(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
-        if job.is_cancelled() {
+        if job.is_canceled() {
             return Err(stopped());
         }
         let camera = still.view.camera();
-        let (table, legend) = scenery.colours(still.time)?;
+        let (table, legend) = scenery.colors(still.time)?;
         let overlay = overlay.again(scenery.look.legend.then_some(&legend), &camera);
         let mut picture = picture;
         picture.look.clip = scene::clip(&scenery.look, &scenery.balls);

@@ -8,20 +8,20 @@ use eframe::egui;
 use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 
 use super::Stage;
-use crate::colours::{ColourKey, Wish};
+use crate::colors::{ColorKey, Wish};
 use crate::scene::{self, BuildError, Shown, ShownSource};
 use crate::state::State;
 
-/// Cells up to which a soma is changed at once; with more, all colours are made anew beside.
+/// Cells up to which a soma is changed at once; with more, all colors are made anew beside.
 const QUICK: usize = 24;
 
 pub(super) type Built = Result<Made, DeviceError>;
 
-/// What was made beside: the scene, what shows, what could not be coloured.
+/// What was made beside: the scene, what shows, what could not be colored.
 pub(super) struct Made {
     templates: Templates,
     shown: Shown,
-    key: ColourKey,
+    key: ColorKey,
     problem: Option<(String, String)>,
 }
 
@@ -42,9 +42,9 @@ impl Stage {
         let made = built?;
         let scene = Scene::new(made.templates, scene::instances(&made.shown.instances));
         self.maker.set_scene(scene.unwrap_or_default());
-        self.live.set_colours(made.shown.table.clone());
+        self.live.set_colors(made.shown.table.clone());
         self.shown = made.shown;
-        self.colours = Some(made.key);
+        self.colors = Some(made.key);
         self.drawn = None;
         self.replay(state, ctx);
         if let Some((what, why)) = made.problem {
@@ -63,7 +63,7 @@ impl Stage {
             return Ok(());
         }
         let sources = scene::sources(state);
-        let colours = ColourKey::new(&state.document);
+        let colors = ColorKey::new(&state.document);
         let same_sources = sources.len() == self.shown.sources.len()
             && sources
                 .iter()
@@ -78,21 +78,21 @@ impl Stage {
         } else {
             Vec::new()
         };
-        let recoloured = self.colours.as_ref() != Some(&colours);
-        if same_sources && !recoloured && changed.is_empty() {
+        let recolored = self.colors.as_ref() != Some(&colors);
+        if same_sources && !recolored && changed.is_empty() {
             return Ok(());
         }
         let replays = self.shown.replay.is_some();
-        let same_matter = self.colours.as_ref().map(|c| &c.matter) == Some(&colours.matter);
+        let same_matter = self.colors.as_ref().map(|c| &c.matter) == Some(&colors.matter);
         if same_sources && replays && same_matter && changed.is_empty() {
-            self.tint(state, colours);
+            self.tint(state, colors);
             return Ok(());
         }
-        if same_sources && !recoloured && !replays && sources.len() <= QUICK {
+        if same_sources && !recolored && !replays && sources.len() <= QUICK {
             let wish = Wish::new(state, &sources);
             return self.replace(sources, &changed, &wish);
         }
-        self.build(state, sources, colours, ctx);
+        self.build(state, sources, colors, ctx);
         Ok(())
     }
 
@@ -102,8 +102,8 @@ impl Stage {
         changed: &[usize],
         wish: &Wish,
     ) -> Result<(), DeviceError> {
-        let coloured = wish.colours(&sources);
-        let words = &coloured.colouring.words;
+        let colored = wish.colors(&sources);
+        let words = &colored.coloring.words;
         let mut scene = self.maker.take_scene();
         let mut replaced = Ok(());
         for &place in changed {
@@ -117,8 +117,8 @@ impl Stage {
         }
         self.maker.set_scene(scene);
         let standing = std::mem::take(&mut self.shown.instances);
-        self.shown = Shown::new(sources, standing, coloured);
-        self.live.set_colours(self.shown.table.clone());
+        self.shown = Shown::new(sources, standing, colored);
+        self.live.set_colors(self.shown.table.clone());
         self.drawn = None;
         replaced
     }
@@ -127,7 +127,7 @@ impl Stage {
         &mut self,
         state: &State,
         sources: Vec<ShownSource>,
-        key: ColourKey,
+        key: ColorKey,
         ctx: &egui::Context,
     ) {
         let (sender, receiver) = channel();
@@ -137,10 +137,10 @@ impl Stage {
         self.building = Some(receiver);
         std::thread::spawn(move || {
             let sources = wish.cut(sources);
-            let mut coloured = wish.colours(&sources);
-            let problem = coloured.problem.take();
-            let shown = Shown::new(sources, instances, coloured);
-            let templates = scene::templates(&gpu, &shown.sources, &shown.colouring);
+            let mut colored = wish.colors(&sources);
+            let problem = colored.problem.take();
+            let shown = Shown::new(sources, instances, colored);
+            let templates = scene::templates(&gpu, &shown.sources, &shown.coloring);
             let made = templates.map(|templates| Made {
                 templates,
                 shown,

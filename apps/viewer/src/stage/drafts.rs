@@ -137,7 +137,7 @@ impl Stage {
         match Scene::new(templates, scene::instances(standing)) {
             Ok(scene) => self.maker.set_scene(scene),
             // Placements are finite by construction; if not, all is built anew.
-            Err(_) => self.colours = None,
+            Err(_) => self.colors = None,
         }
     }
 

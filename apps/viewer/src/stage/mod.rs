@@ -15,12 +15,12 @@ use std::time::Instant;
 
 use eframe::egui;
 use egui_wgpu::RenderState;
-use neurotess::colouring::{ColourBy, colouring};
+use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::{
     Adaptive, Camera, DeviceError, Gpu, InstanceValues, Legend, Live, Refining, Scene, Shot,
 };
 
-use crate::colours::{ColourKey, paint};
+use crate::colors::{ColorKey, paint};
 use crate::document::{Detail, Look};
 use crate::explorer::Explorer;
 use crate::picks::Picks;
@@ -44,7 +44,7 @@ pub struct Stage {
     texture: Option<(egui::TextureId, [u32; 2], bool)>,
     /// What is on the device.
     shown: Shown,
-    colours: Option<ColourKey>,
+    colors: Option<ColorKey>,
     /// Of what was drawn last.
     legend: Legend,
     building: Option<Receiver<Built>>,
@@ -107,8 +107,8 @@ impl Stage {
         let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
         let live = Live::new(&gpu);
         let mut maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
-        let no_colours = colouring(&[], ColourBy::Type, &paint(&Look::default()));
-        let shown = Shown::new(Vec::new(), Vec::new(), no_colours.into());
+        let no_colors = coloring(&[], ColorBy::Type, &paint(&Look::default()));
+        let shown = Shown::new(Vec::new(), Vec::new(), no_colors.into());
         let legend = shown.legend.clone();
         maker.set_keeping(true);
         let software = gpu.adapter.software;
@@ -121,7 +121,7 @@ impl Stage {
             explored: false,
             texture: None,
             shown,
-            colours: None,
+            colors: None,
             legend,
             building: None,
             reader: None,
@@ -156,7 +156,7 @@ impl Stage {
         &self.shown
     }
 
-    /// What the colours of the picture mean, also while others are being made.
+    /// What the colors of the picture mean, also while others are being made.
     pub fn legend(&self) -> &Legend {
         &self.legend
     }

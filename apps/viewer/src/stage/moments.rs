@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::ColourTable;
+use neurotess::render::ColorTable;
 
 use super::Stage;
-use crate::colours::{ColourKey, paint};
+use crate::colors::{ColorKey, paint};
 use crate::playback::Facts;
 use crate::reader::{Reader, Sight};
 use crate::state::State;
@@ -40,21 +40,21 @@ impl Stage {
         }
     }
 
-    /// Other colours of the same values: nothing of the scene changes.
-    pub(super) fn tint(&mut self, state: &mut State, key: ColourKey) {
+    /// Other colors of the same values: nothing of the scene changes.
+    pub(super) fn tint(&mut self, state: &mut State, key: ColorKey) {
         let Some((replay, all)) = &self.shown.replay else {
             return;
         };
         let paint = paint(&state.document.look);
-        let tinted = replay.colouring(paint.range.unwrap_or(*all), &paint);
+        let tinted = replay.coloring(paint.range.unwrap_or(*all), &paint);
         let values = std::mem::take(&mut self.shown.table.values);
-        self.shown.table = ColourTable {
+        self.shown.table = ColorTable {
             values,
             ..tinted.table
         };
         self.shown.legend = tinted.legend;
-        self.live.set_colours(self.shown.table.clone());
-        self.colours = Some(key);
+        self.live.set_colors(self.shown.table.clone());
+        self.colors = Some(key);
         self.drawn = None;
         self.tell(state);
     }

@@ -1,7 +1,7 @@
 //! How nodes are turned: by quaternions, or by angles around the axes.
 //!
 //! **Quaternions** `orientation_{w,x,y,z}` turn the morphology's axes to the circuit's. Real files
-//! have lengths from 0.95 to 1.59, so they are normalised. **Angles** `rotation_angle_{x,y,z}axis`
+//! have lengths from 0.95 to 1.59, so they are normalized. **Angles** `rotation_angle_{x,y,z}axis`
 //! (radians) turn about the circuit's z, then y, then x: R = Rx Ry Rz for column vectors; a missing
 //! one is zero. Where a file has both, quaternions win, as in bluepysnap. SONATA developer guide,
 //! "Representing nodes"; bluepysnap `NodePopulation.orientations`.

@@ -61,7 +61,7 @@ pub(crate) fn read(
     };
     places(table, &mut population, &mut broken, notes)?;
     rotations(table, &mut population, &mut broken, notes)?;
-    recentring(table, &mut population)?;
+    recentering(table, &mut population)?;
     let names: Vec<String> = table
         .attributes()
         .into_iter()
@@ -223,11 +223,11 @@ fn rotations(
 }
 
 /// `recenter`: 0 leaves the morphology where its file has it.
-fn recentring(table: &Table, population: &mut Population) -> Result<(), CircuitError> {
-    if let Some(recentre) = table.numbers("recenter")?
-        && recentre.contains(&0.0)
+fn recentering(table: &Table, population: &mut Population) -> Result<(), CircuitError> {
+    if let Some(recenter) = table.numbers("recenter")?
+        && recenter.contains(&0.0)
     {
-        population.recentred = recentre.iter().map(|&r| r != 0.0).collect();
+        population.recentered = recenter.iter().map(|&r| r != 0.0).collect();
     }
     Ok(())
 }

@@ -74,7 +74,7 @@ pub(super) fn whole(text: &[u8], column: &'static str) -> Result<(i64, usize, bo
         return Ok((if negative { -value } else { value }, length, false));
     }
     let (number, length) = lenient(text).ok_or_else(|| not_a_number(text, column))?;
-    // Beyond 2^53 floating-point numbers cannot tell neighbours apart.
+    // Beyond 2^53 floating-point numbers cannot tell neighbors apart.
     if number.fract() == 0.0 && number.abs() < 9_007_199_254_740_992.0 {
         Ok((number as i64, length, true))
     } else {

@@ -8,7 +8,7 @@
 //!
 //! **Practice.** [`Reference`] is made once per (sphere, level, ν) and kept; [`rebuild`] per soma.
 //!
-//! A soma is accepted if it is star-shaped about its centre (every quad faces outwards), which excludes folds and self-intersections alike.
+//! A soma is accepted if it is star-shaped about its center (every quad faces outwards), which excludes folds and self-intersections alike.
 
 pub(crate) mod elasticity;
 mod profile;
@@ -296,7 +296,7 @@ fn deform(
     }
 }
 
-/// Whether a quad is folded as seen from the centre: neither of its diagonals halves it into two
+/// Whether a quad is folded as seen from the center: neither of its diagonals halves it into two
 /// triangles that both face outwards.
 fn folded(nodes: &[DVec3], quad: [u32; 4]) -> bool {
     let [a, b, c, d] = quad.map(|v| nodes[v as usize]);
@@ -334,7 +334,7 @@ fn pull(
         .collect()
 }
 
-/// Rotation and warp together, and the rings' corners in µm about the soma's centre.
+/// Rotation and warp together, and the rings' corners in µm about the soma's center.
 struct Flow {
     rotation: DMat3,
     warp: Option<Warp>,

@@ -1,6 +1,6 @@
 //! LiveMesh's soma: a surface of revolution about each neurite, joined by their outermost parts.
 //!
-//! Defferrard 2015: the tube's radius at distance d from the soma's centre is √(R² − d²) up to
+//! Defferrard 2015: the tube's radius at distance d from the soma's center is √(R² − d²) up to
 //! 0.7 R, the neurite's own beyond 1.5 R, and a cubic with equal value and slope at both ends
 //! between.
 
@@ -11,7 +11,7 @@ use super::seats::Insertion;
 /// Share of R up to which the profile is the circle.
 const CIRCLE_TO: f64 = 0.7;
 
-/// Moves directions out to the profile. `vertices` are relative to the centre in units of `radius`.
+/// Moves directions out to the profile. `vertices` are relative to the center in units of `radius`.
 pub(crate) fn apply(vertices: &mut [DVec3], radius: f64, insertions: &[Insertion]) {
     for vertex in vertices {
         let Some(direction) = vertex.try_normalize() else {

@@ -9,16 +9,16 @@ use super::sphere::Sphere;
 /// Where a neurite wants to leave the soma.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Insertion {
-    /// Unit direction from the soma's centre.
+    /// Unit direction from the soma's center.
     pub(crate) direction: DVec3,
-    /// Distance of the first ring's centre from the soma's.
+    /// Distance of the first ring's center from the soma's.
     pub(crate) distance: f64,
     /// Radius of the first ring.
     pub(crate) radius: f64,
 }
 
 impl Insertion {
-    /// Angle that the ring's radius takes seen from the soma's centre.
+    /// Angle that the ring's radius takes seen from the soma's center.
     pub(crate) fn angle(&self) -> f64 {
         (self.radius / self.distance).atan()
     }
@@ -127,7 +127,7 @@ pub(crate) struct Seats {
     pub(crate) rotation: DMat3,
     /// Quad of each insertion.
     pub(crate) quads: Vec<usize>,
-    /// Largest angle between an insertion and its quad's centre.
+    /// Largest angle between an insertion and its quad's center.
     pub(crate) worst: f64,
 }
 

@@ -4,7 +4,7 @@
 //! every edge `level` times, so that with N = 2^level there are 4·N² + 2 surface vertices, 4·N²
 //! quads (the two triangles of a quad come from one quad, so that the pairing is by construction)
 //! and 8·N³ tetrahedra. The **cube** has 6·n² quads of nearly equal size (equiangular map) over a
-//! few shells, which serves better: neurites land closer to a quad's centre, and quads are square.
+//! few shells, which serves better: neurites land closer to a quad's center, and quads are square.
 //!
 //! García-Cantero et al., Front. Neuroinform. 11:38, 2017, section on soma generation.
 
@@ -211,7 +211,7 @@ fn cube(level: u32) -> Sphere {
     }
 }
 
-/// Splits the prism over a triangle between two shells in three, so that neighbours agree on the
+/// Splits the prism over a triangle between two shells in three, so that neighbors agree on the
 /// diagonals: each runs from the lower index outside to the higher one inside.
 fn prism(nodes: &[DVec3], triangle: [u32; 3], first: u32, shell: u32, out: &mut Vec<[u32; 4]>) {
     let mut sorted = triangle;

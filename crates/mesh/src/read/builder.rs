@@ -108,7 +108,7 @@ impl Builder {
         let origin = if exact {
             DVec3::ZERO
         } else {
-            centre(&self.positions)
+            center(&self.positions)
         };
         for (vertex, position) in self.vertices.iter_mut().zip(&self.positions) {
             vertex.position = (position - origin).as_vec3();
@@ -121,8 +121,8 @@ impl Builder {
     }
 }
 
-/// The centre of the bounds, rounded to whole micrometres.
-fn centre(positions: &[DVec3]) -> DVec3 {
+/// The center of the bounds, rounded to whole micrometers.
+fn center(positions: &[DVec3]) -> DVec3 {
     let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = positions
         .iter()

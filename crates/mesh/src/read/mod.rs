@@ -111,7 +111,7 @@ impl fmt::Display for Place {
 
 /// Reads a mesh; the extension names the format (`gltf` too, if it embeds its data).
 ///
-/// The origin is zero if all coordinates are numbers of 32 bits, else near the centre of the
+/// The origin is zero if all coordinates are numbers of 32 bits, else near the center of the
 /// bounds.
 pub fn read(path: &Path) -> Result<SurfaceMesh, ReadError> {
     read_as(path, Format::from_extension(path)?)

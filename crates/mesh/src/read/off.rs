@@ -1,4 +1,4 @@
-//! OFF with its variants: `[ST][C][N]OFF`, whose extra numbers are skipped, and colours of faces.
+//! OFF with its variants: `[ST][C][N]OFF`, whose extra numbers are skipped, and colors of faces.
 
 use glam::DVec3;
 

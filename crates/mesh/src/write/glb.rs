@@ -145,7 +145,7 @@ fn document(spans: &[Span], origins: &[DVec3], nodes: &[GlbNode]) -> Value {
     let asset = json!({
         "version": "2.0",
         "generator": concat!("neurotess ", env!("CARGO_PKG_VERSION")),
-        "extras": { "units": "micrometre" },
+        "extras": { "units": "micrometer" },
     });
     let mut arrays = Arrays::default();
     let meshes: Vec<Option<usize>> = spans.iter().map(|span| arrays.add(span)).collect();

@@ -6,7 +6,7 @@ use crate::Surface;
 pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
     let origin = surface.origin();
     let mut place = 0;
-    file.put(&mut place, b"# neurotess, units: micrometre\n")?;
+    file.put(&mut place, b"# neurotess, units: micrometer\n")?;
     let mut places = [place];
     file.vertices(surface, &mut places, |group, [text]| {
         text.reserve(72 * group.len());

@@ -63,7 +63,7 @@ fn header(surface: &dyn Surface, double: bool) -> String {
         "ply\n\
          format binary_little_endian 1.0\n\
          comment neurotess\n\
-         comment units: micrometre\n\
+         comment units: micrometer\n\
          element vertex {vertices}\n\
          property {real} x\nproperty {real} y\nproperty {real} z\n\
          property float nx\nproperty float ny\nproperty float nz\n\

@@ -127,7 +127,7 @@ fn header(vertices: u64, cells: u64, double: bool, offsets: &[u64; 10]) -> Strin
     };
     format!(
         r#"<?xml version="1.0"?>
-<!-- neurotess, units: micrometre -->
+<!-- neurotess, units: micrometer -->
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <UnstructuredGrid>
     <Piece NumberOfPoints="{vertices}" NumberOfCells="{cells}">

@@ -33,7 +33,7 @@ pub struct Node {
     pub id: i64,
     /// What it belongs to.
     pub kind: NeuriteKind,
-    /// Centre (µm, the file's coordinates).
+    /// Center (µm, the file's coordinates).
     pub position: DVec3,
     /// Radius (µm); zero or less is noted and kept.
     pub radius: f64,

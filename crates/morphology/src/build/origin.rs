@@ -1,7 +1,7 @@
 //! The offset that keeps far-away coordinates precise in `f32`.
 //!
 //! `f32` resolves 0.0005 µm at 4096 µm and 0.004 µm at 52,000 µm (a connectome in voxels). Beyond
-//! 4096 all positions are therefore stored relative to whole micrometres near the main soma's
+//! 4096 all positions are therefore stored relative to whole micrometers near the main soma's
 //! first sample.
 //!
 //! Writing and reading back must find the same origin, although the decimals are then a little

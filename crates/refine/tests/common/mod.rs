@@ -134,9 +134,9 @@ pub(crate) fn assert_closed(mesh: &SurfaceMesh, what: &str) {
     // Walking from face to face about a vertex must come round to all of them.
     let mut degree: HashMap<u32, usize> = HashMap::new();
     let mut start: HashMap<u32, u32> = HashMap::new();
-    for &(v, neighbour) in next_at.keys() {
+    for &(v, neighbor) in next_at.keys() {
         *degree.entry(v).or_default() += 1;
-        start.entry(v).or_insert(neighbour);
+        start.entry(v).or_insert(neighbor);
     }
     assert_eq!(degree.len(), mesh.vertices.len(), "{what}: unused vertices");
     for (&v, &first) in &start {

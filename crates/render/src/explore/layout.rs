@@ -37,7 +37,7 @@ pub(crate) const MOST_SWAY: f32 = 0.12;
 pub(crate) const RUN_SOMA: u32 = 1;
 pub(crate) const RUN_FREE_START: u32 = 2;
 pub(crate) const RUN_FREE_END: u32 = 4;
-/// One word colours all of it; else there is one per point.
+/// One word colors all of it; else there is one per point.
 pub(crate) const RUN_ONE_WORD: u32 = 8;
 
 impl Run {

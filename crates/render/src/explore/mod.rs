@@ -15,7 +15,7 @@
 //!
 //! **Practice.** [`Sketch::new`] on any thread, [`Exploration::add`] once a template,
 //! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
-//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolour`] at any time:
+//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any time:
 //! pipelines are made once. A frame uploads 144 bytes and what changed; where camera, size and scene
 //! are those of the frame before, it chooses nothing anew.
 //!

@@ -24,10 +24,10 @@ impl SketchNames {
     /// Of a sketch.
     pub fn new(sketch: &Sketch) -> Self {
         let mut names = Self::default();
-        for (run, colours) in sketch.runs.iter().zip(&sketch.colours) {
+        for (run, colors) in sketch.runs.iter().zip(&sketch.colors) {
             let soma = run.flags & RUN_SOMA != 0;
             names.runs.push((names.points.len() as u32, soma));
-            names.points.extend(colours);
+            names.points.extend(colors);
         }
         names
     }

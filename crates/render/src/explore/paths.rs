@@ -25,7 +25,7 @@ pub(crate) struct TubePath {
 pub(crate) struct PathPoint {
     pub(crate) center: Vec3,
     pub(crate) radius: f32,
-    /// Tracing point that says the colour.
+    /// Tracing point that says the color.
     pub(crate) tracing: u32,
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
             ..TubePath::default()
         };
         if fork != NONE {
-            // The branch leaves with its own width and colour: the fork's tube is there already.
+            // The branch leaves with its own width and color: the fork's tube is there already.
             path.points.push(PathPoint {
                 center: mesh.tracing[fork as usize].center,
                 ..point(mesh, first)
@@ -186,7 +186,7 @@ mod tests {
 
     use super::*;
 
-    /// Rings of four vertices at these centres, joined in pairs.
+    /// Rings of four vertices at these centers, joined in pairs.
     fn rings(centers: &[Vec3], pairs: &[[u32; 2]]) -> CoarseMesh {
         let mut mesh = CoarseMesh::default();
         for (i, &center) in centers.iter().enumerate() {

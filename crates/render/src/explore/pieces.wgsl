@@ -75,7 +75,7 @@ fn from_octahedral(p: vec2<f32>) -> vec3<f32> {
 }
 
 // Direction of the path at a point of a form. At the ends of a run it is that of all its points, the
-// same as its neighbour's there; but where a coarse form starts off in quite another direction.
+// same as its neighbor's there; but where a coarse form starts off in quite another direction.
 fn direction(run: Run, level: u32, index: u32, here: vec3<f32>) -> vec3<f32> {
     let last = segments(run, level);
     if (index > 0u && index < last) {

@@ -1,4 +1,4 @@
-//! What is resident for exploration, and how it changes: templates, their colours, instances.
+//! What is resident for exploration, and how it changes: templates, their colors, instances.
 
 use glam::{DVec3, Vec3};
 
@@ -99,7 +99,7 @@ impl Exploration {
     ///
     /// # Panics
     /// If there is no such template, or the sketch is another one's.
-    pub fn recolour(
+    pub fn recolor(
         &mut self,
         gpu: &Gpu,
         template: TemplateId,

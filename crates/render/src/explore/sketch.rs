@@ -29,7 +29,7 @@ pub struct Sketch {
     pub(crate) heap: Vec<u32>,
     pub(crate) words: Vec<u32>,
     /// By run: tracing points that its words are of.
-    pub(super) colours: Vec<Vec<u32>>,
+    pub(super) colors: Vec<Vec<u32>>,
     pub(crate) center: Vec3,
     pub(crate) reach: f32,
     points: usize,
@@ -73,19 +73,19 @@ impl Sketch {
         sketch
     }
 
-    /// Other colours: words of the tracing points of the mesh that it was made of.
+    /// Other colors: words of the tracing points of the mesh that it was made of.
     pub fn set_words(&mut self, words: &[u32]) {
         self.words.clear();
-        for (run, colours) in self.runs.iter_mut().zip(&self.colours) {
+        for (run, colors) in self.runs.iter_mut().zip(&self.colors) {
             let word = |&tracing: &u32| words.get(tracing as usize).copied().unwrap_or(0);
-            let first = colours.first().map_or(0, word);
-            if colours.iter().all(|tracing| word(tracing) == first) {
+            let first = colors.first().map_or(0, word);
+            if colors.iter().all(|tracing| word(tracing) == first) {
                 run.flags |= RUN_ONE_WORD;
                 run.words = first;
             } else {
                 run.flags &= !RUN_ONE_WORD;
                 run.words = self.words.len() as u32;
-                self.words.extend(colours.iter().map(word));
+                self.words.extend(colors.iter().map(word));
             }
         }
     }
@@ -168,10 +168,10 @@ impl Sketch {
         );
     }
 
-    /// Adds a run with the tracing points that colour it.
-    pub(super) fn push(&mut self, run: Run, colours: Vec<u32>) {
+    /// Adds a run with the tracing points that color it.
+    pub(super) fn push(&mut self, run: Run, colors: Vec<u32>) {
         self.runs.push(run);
-        self.colours.push(colours);
+        self.colors.push(colors);
     }
 }
 

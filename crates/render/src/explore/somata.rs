@@ -73,7 +73,7 @@ fn connected(quads: &[[u32; 4]]) -> Vec<Vec<[u32; 4]>> {
 fn add_soma(sketch: &mut Sketch, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut vertices = Vec::new();
-    // Its own vertices first: the colour of the first is that of the ball.
+    // Its own vertices first: the color of the first is that of the ball.
     let own = |&&vertex: &&u32| {
         let tracing = mesh.vertices[vertex as usize].tracing;
         mesh.tracing[tracing as usize].role == Role::Soma
@@ -126,12 +126,12 @@ fn add_soma(sketch: &mut Sketch, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
             length: 2.0 * radius,
             ..Run::default()
         },
-        // The rings of neurites have the soma's colour on its side.
+        // The rings of neurites have the soma's color on its side.
         vec![at(&vertices[0]).tracing],
     );
 }
 
-/// Centre of a soma, and the mean distance of its surface, insertions aside.
+/// Center of a soma, and the mean distance of its surface, insertions aside.
 fn middle(mesh: &CoarseMesh, vertices: &[u32]) -> Option<(Vec3, f32)> {
     let own = || {
         let tracing = vertices.iter().map(|&v| mesh.vertices[v as usize].tracing);

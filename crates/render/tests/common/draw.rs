@@ -1,4 +1,4 @@
-//! Draws a scene with the least shading there is: front faces in one colour, back faces in another.
+//! Draws a scene with the least shading there is: front faces in one color, back faces in another.
 
 use neurotess_render::{Camera, Gpu, Refiner, Refining, SURFACE_VERTEX_WGSL, Scene, Sight};
 

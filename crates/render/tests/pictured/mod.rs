@@ -7,7 +7,7 @@ use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::CoarseMesh;
 use neurotess_refine::{Levels, RefineOptions};
 use neurotess_render::{
-    Ball, Camera, ColourTable, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Painted, Palette,
+    Ball, Camera, ColorTable, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Painted, Palette,
     PictureOptions, Placement, Prerefined, Rgb, Side, Sketch, VertexMaker, category, paint,
 };
 
@@ -62,17 +62,17 @@ pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
 }
 
 /// Words and table by type.
-pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColourTable) {
+pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColorTable) {
     let words = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
-    let table = ColourTable {
+    let table = ColorTable {
         scale: Vec::new(),
         categories: (0..8).map(|kind| Palette::NeuroM.of_type(kind)).collect(),
-        ..ColourTable::default()
+        ..ColorTable::default()
     };
     (words.collect(), table)
 }
 
-/// The whole picture of a mesh at level 4, in the colours of its types.
+/// The whole picture of a mesh at level 4, in the colors of its types.
 pub(crate) fn picture(
     gpu: &Gpu,
     mesh: &CoarseMesh,
@@ -92,10 +92,10 @@ pub(crate) fn picture_of(
     camera: &Camera,
     options: &PictureOptions,
 ) -> Image {
-    let table = ColourTable {
+    let table = ColorTable {
         scale: scale.to_vec(),
         categories: Vec::new(),
-        ..ColourTable::default()
+        ..ColorTable::default()
     };
     draw(gpu, mesh, words, &table, camera, options)
 }
@@ -134,7 +134,7 @@ fn whole(
     maker: &mut dyn VertexMaker,
     camera: &Camera,
     near: f64,
-    table: &ColourTable,
+    table: &ColorTable,
     options: &PictureOptions,
 ) -> Image {
     let mut whole = Image::new(options.size[0], options.size[1]);
@@ -150,7 +150,7 @@ fn draw(
     gpu: &Gpu,
     mesh: &CoarseMesh,
     words: &[u32],
-    table: &ColourTable,
+    table: &ColorTable,
     camera: &Camera,
     options: &PictureOptions,
 ) -> Image {

@@ -1,12 +1,12 @@
-//! What colours things have: words, the table that they are looked up in, palettes and colour maps.
+//! What colors things have: words, the table that they are looked up in, palettes and color maps.
 //!
 //! A tracing point has a **word**. It is a **category**, or a fraction of a **scale**. The table has
-//! the colours of the scale, then those of the categories; so a map or a palette changes without
+//! the colors of the scale, then those of the categories; so a map or a palette changes without
 //! touching the words.
 
 use std::str::FromStr;
 
-/// A colour as pictures and people have it: sRGB.
+/// A color as pictures and people have it: sRGB.
 pub type Rgb = [u8; 3];
 
 /// Set in the word of a category.
@@ -25,10 +25,10 @@ pub fn fraction(value: f32) -> u32 {
 
 /// What words mean.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ColourTable {
-    /// Colours of fractions, evenly spaced.
+pub struct ColorTable {
+    /// Colors of fractions, evenly spaced.
     pub scale: Vec<Rgb>,
-    /// Colours of categories; the last also of all that follow.
+    /// Colors of categories; the last also of all that follow.
     pub categories: Vec<Rgb>,
     /// If there are any, words that are no category are places among an instance's values.
     pub values: InstanceValues,
@@ -44,7 +44,7 @@ pub struct InstanceValues {
 
 impl InstanceValues {
     /// Adds the values of the next instance: fractions of the scale, 0 to 1. What is not a number has the
-    /// colour of the first category, and so has all of an instance without values.
+    /// color of the first category, and so has all of an instance without values.
     pub fn push(&mut self, values: &[f32]) {
         let first = self.fours.len() as u32;
         self.first
@@ -76,8 +76,8 @@ const NO_VALUE: f32 = -1.0;
 /// Where the values of an instance begin that has none: beyond all, so that shaders take the last entry.
 const NOWHERE: u32 = 1 << 24;
 
-impl ColourTable {
-    /// Linear colours, those of the scale first; never empty.
+impl ColorTable {
+    /// Linear colors, those of the scale first; never empty.
     pub(crate) fn linear(&self) -> Vec<[f32; 4]> {
         let all = self.scale.iter().chain(&self.categories);
         let mut entries: Vec<[f32; 4]> = all.map(|&rgb| extended(linear(rgb))).collect();
@@ -87,14 +87,14 @@ impl ColourTable {
         entries
     }
 
-    /// All that shaders look colours up in, with the number of colours: these, then where each instance's
+    /// All that shaders look colors up in, with the number of colors: these, then where each instance's
     /// values begin, then the values, four to an entry.
     pub(crate) fn entries(&self) -> (Vec<[f32; 4]>, u32) {
         let mut entries = self.linear();
-        let colours = entries.len() as u32;
+        let colors = entries.len() as u32;
         let InstanceValues { first, fours } = &self.values;
         // Whole numbers up to 2²⁴ are exact: 67 million values.
-        let behind = first.len().div_ceil(4) as u32 + colours;
+        let behind = first.len().div_ceil(4) as u32 + colors;
         entries.extend(first.chunks(4).map(|chunk| {
             let mut entry = [0.0; 4];
             let places = chunk
@@ -110,7 +110,7 @@ impl ColourTable {
         if !first.is_empty() {
             entries.push([NO_VALUE; 4]);
         }
-        (entries, colours)
+        (entries, colors)
     }
 }
 
@@ -118,7 +118,7 @@ fn extended([r, g, b]: [f32; 3]) -> [f32; 4] {
     [r, g, b, 1.0]
 }
 
-/// Linear light of an sRGB colour (IEC 61966-2-1).
+/// Linear light of an sRGB color (IEC 61966-2-1).
 pub fn linear(rgb: Rgb) -> [f32; 3] {
     rgb.map(|byte| {
         let c = f32::from(byte) / 255.0;
@@ -130,7 +130,7 @@ pub fn linear(rgb: Rgb) -> [f32; 3] {
     })
 }
 
-/// Whether light things are seen better before this colour than dark ones.
+/// Whether light things are seen better before this color than dark ones.
 pub fn is_dark(rgb: Rgb) -> bool {
     luminance(rgb) < 0.2
 }
@@ -141,12 +141,12 @@ pub(crate) fn luminance(rgb: Rgb) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Entries of a scale: neighbours differ by less than a step of 8 bits.
+/// Entries of a scale: neighbors differ by less than a step of 8 bits.
 pub const SCALE_ENTRIES: usize = 256;
 
-/// Perceptually uniform colour maps, dark to light: as matplotlib has them, by the crate `colorous`.
+/// Perceptually uniform color maps, dark to light: as matplotlib has them, by the crate `colorous`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourMap {
+pub enum ColorMap {
     /// Blue, green, yellow.
     #[default]
     Viridis,
@@ -156,11 +156,11 @@ pub enum ColourMap {
     Inferno,
     /// Blue, red, yellow.
     Plasma,
-    /// Blue to yellow, the same for the colour-blind.
+    /// Blue to yellow, the same for the color-blind.
     Cividis,
 }
 
-impl ColourMap {
+impl ColorMap {
     /// All of them.
     pub const ALL: [Self; 5] = [
         Self::Viridis,
@@ -181,7 +181,7 @@ impl ColourMap {
         }
     }
 
-    /// Colour at a fraction, 0 to 1.
+    /// Color at a fraction, 0 to 1.
     pub fn at(self, fraction: f64) -> Rgb {
         let map = match self {
             Self::Viridis => colorous::VIRIDIS,
@@ -215,7 +215,7 @@ impl ColourMap {
     }
 }
 
-impl FromStr for ColourMap {
+impl FromStr for ColorMap {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
@@ -224,15 +224,15 @@ impl FromStr for ColourMap {
     }
 }
 
-/// Colours of the parts of a cell, by SWC type, and of things that are merely told apart.
+/// Colors of the parts of a cell, by SWC type, and of things that are merely told apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Palette {
     /// NeuroM's: soma black, axon blue, basal dendrites red, apical ones purple.
     #[default]
     NeuroM,
-    /// NeuroMorpho.org's: soma red, axon grey, basal dendrites green, apical ones magenta.
+    /// NeuroMorpho.org's: soma red, axon gray, basal dendrites green, apical ones magenta.
     NeuroMorpho,
-    /// Okabe and Ito's, told apart by the colour-blind: axon blue, basal dendrites vermilion,
+    /// Okabe and Ito's, told apart by the color-blind: axon blue, basal dendrites vermilion,
     /// apical ones reddish purple.
     OkabeIto,
 }
@@ -280,7 +280,7 @@ impl Palette {
         }
     }
 
-    /// Colour of an SWC type; 5 and above have their own, and repeat after eight.
+    /// Color of an SWC type; 5 and above have their own, and repeat after eight.
     pub fn of_type(self, kind: i32) -> Rgb {
         match usize::try_from(kind) {
             Ok(kind @ 0..=4) => self.types()[kind],
@@ -289,7 +289,7 @@ impl Palette {
         }
     }
 
-    /// Colour of somata before this background: black before black is light grey.
+    /// Color of somata before this background: black before black is light gray.
     pub fn of_soma(self, background: Option<Rgb>) -> Rgb {
         let soma = self.of_type(1);
         if background.is_some_and(is_dark) && is_dark(soma) && self != Self::NeuroMorpho {
@@ -298,7 +298,7 @@ impl Palette {
         soma
     }
 
-    /// Number of different colours of things that are merely told apart.
+    /// Number of different colors of things that are merely told apart.
     pub fn distinct_count(self) -> usize {
         match self {
             Self::OkabeIto => OKABE_ITO.len(),
@@ -306,7 +306,7 @@ impl Palette {
         }
     }
 
-    /// Colour of the index-th of things that are merely told apart; they repeat after ten.
+    /// Color of the index-th of things that are merely told apart; they repeat after ten.
     pub fn distinct(self, index: usize) -> Rgb {
         if self == Self::OkabeIto {
             return OKABE_ITO[index % OKABE_ITO.len()];
@@ -378,14 +378,14 @@ mod tests {
         let mut values = InstanceValues::default();
         values.push(&[]);
         values.push(&[0.5; 5]);
-        let table = ColourTable {
+        let table = ColorTable {
             scale: vec![[0; 3]; 2],
             values,
-            ..ColourTable::default()
+            ..ColorTable::default()
         };
-        let (entries, colours) = table.entries();
+        let (entries, colors) = table.entries();
         let value = |instance: usize, word: usize| {
-            let first = entries[colours as usize + instance / 4][instance % 4] as usize;
+            let first = entries[colors as usize + instance / 4][instance % 4] as usize;
             entries[(first + word / 4).min(entries.len() - 1)][word % 4]
         };
         assert_eq!([0, 4].map(|word| value(0, word)), [NO_VALUE; 2]);
@@ -394,7 +394,7 @@ mod tests {
 
     #[test]
     fn maps_rise_in_lightness() {
-        for map in ColourMap::ALL {
+        for map in ColorMap::ALL {
             let light = |i: u8| {
                 let [r, g, b] = linear(map.at(f64::from(i) / 20.0));
                 (0.2126 * r + 0.7152 * g + 0.0722 * b).cbrt()
@@ -403,7 +403,7 @@ mod tests {
             assert_eq!(map.name().parse(), Ok(map));
         }
         // matplotlib's first and last of viridis.
-        let viridis = ColourMap::Viridis;
+        let viridis = ColorMap::Viridis;
         assert_eq!(
             (viridis.at(0.0), viridis.at(1.0)),
             ([68, 1, 84], [253, 231, 37])
@@ -416,12 +416,12 @@ mod tests {
     }
 
     #[test]
-    fn types_have_different_colours() {
+    fn types_have_different_colors() {
         for palette in Palette::ALL {
             assert_eq!(palette.name().parse(), Ok(palette));
-            let colours: Vec<Rgb> = (0..13).map(|kind| palette.of_type(kind)).collect();
-            for (i, a) in colours.iter().enumerate() {
-                assert!(!colours[..i].contains(a), "{} {i}", palette.name());
+            let colors: Vec<Rgb> = (0..13).map(|kind| palette.of_type(kind)).collect();
+            for (i, a) in colors.iter().enumerate() {
+                assert!(!colors[..i].contains(a), "{} {i}", palette.name());
             }
         }
     }

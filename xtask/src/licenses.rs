@@ -1,4 +1,4 @@
-//! Licences of all dependencies, and packages that are there in two versions.
+//! Licenses of all dependencies, and packages that are there in two versions.
 //!
 //! `cargo deny` judges by `deny.toml` where it is installed. Elsewhere this does the part of it that
 //! needs no other program, by the same lists.
@@ -11,7 +11,7 @@ use anyhow::bail;
 use crate::metadata::Package;
 use crate::steps::{cargo, run};
 
-/// Licences that may be linked into a program under MIT OR Apache-2.0; as in `deny.toml`.
+/// Licenses that may be linked into a program under MIT OR Apache-2.0; as in `deny.toml`.
 const ALLOWED: &[&str] = &[
     "MIT",
     "MIT-0",
@@ -102,7 +102,7 @@ const DUPLICATES: &[(&str, &str)] = &[
     ),
 ];
 
-/// An error that names each package whose licence or second version is not allowed.
+/// An error that names each package whose license or second version is not allowed.
 pub(crate) fn check(packages: &[Package]) -> anyhow::Result<String> {
     let deny = Command::new("cargo-deny")
         .arg("--version")
@@ -114,8 +114,8 @@ pub(crate) fn check(packages: &[Package]) -> anyhow::Result<String> {
     }
     let mut faults: Vec<String> = packages
         .iter()
-        .filter(|package| !allows(&package.licence))
-        .map(|p| format!("{} {}: licence '{}'", p.name, p.version, p.licence))
+        .filter(|package| !allows(&package.license))
+        .map(|p| format!("{} {}: license '{}'", p.name, p.version, p.license))
         .collect();
     let duplicates = duplicates(packages);
     for (name, versions) in &duplicates {
@@ -125,12 +125,12 @@ pub(crate) fn check(packages: &[Package]) -> anyhow::Result<String> {
     }
     if !faults.is_empty() {
         bail!(
-            "{}: allow it in xtask/src/licences.rs and deny.toml, or do without",
+            "{}: allow it in xtask/src/licenses.rs and deny.toml, or do without",
             faults.join("; ")
         );
     }
     Ok(format!(
-        "{} packages, all licences allowed, {} in several versions",
+        "{} packages, all licenses allowed, {} in several versions",
         packages.len(),
         duplicates.len()
     ))
@@ -146,7 +146,7 @@ fn duplicates(packages: &[Package]) -> BTreeMap<&str, Vec<&str>> {
     versions
 }
 
-/// Whether an SPDX expression leaves a choice of allowed licences only.
+/// Whether an SPDX expression leaves a choice of allowed licenses only.
 fn allows(expression: &str) -> bool {
     // The slash is how old packages wrote OR.
     let spaced = expression
@@ -176,13 +176,13 @@ fn all(words: &mut &[&str]) -> bool {
     allowed
 }
 
-/// `( any )`, `licence` or `licence WITH exception`
+/// `( any )`, `license` or `license WITH exception`
 fn one(words: &mut &[&str]) -> bool {
     if take(words, "(") {
         let allowed = any(words);
         return take(words, ")") && allowed;
     }
-    let Some((&licence, rest)) = words.split_first() else {
+    let Some((&license, rest)) = words.split_first() else {
         return false;
     };
     *words = rest;
@@ -191,9 +191,9 @@ fn one(words: &mut &[&str]) -> bool {
             return false;
         };
         *words = rest;
-        return ALLOWED.contains(&format!("{licence} WITH {exception}").as_str());
+        return ALLOWED.contains(&format!("{license} WITH {exception}").as_str());
     }
-    ALLOWED.contains(&licence)
+    ALLOWED.contains(&license)
 }
 
 fn take(words: &mut &[&str], word: &str) -> bool {

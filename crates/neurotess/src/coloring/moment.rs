@@ -43,7 +43,7 @@ impl Moment {
         shows: &dyn Fn(usize) -> bool,
     ) -> Result<(), CircuitError> {
         let shown = || part.spans.iter().filter(|(place, _)| shows(*place));
-        // Together, so that neighbours in the file are read at once.
+        // Together, so that neighbors in the file are read at once.
         let mut wanted = Vec::new();
         for (_, span) in shown() {
             wanted.extend_from_slice(&part.elements[span.clone()]);
@@ -65,7 +65,7 @@ impl Moment {
         finite.fold(NO_BOUNDS, |[low, high], &v| [low.min(v), high.max(v)])
     }
 
-    /// As the colour table has them, in the order of the neurons.
+    /// As the color table has them, in the order of the neurons.
     pub fn values(&self, [low, high]: [f32; 2]) -> InstanceValues {
         let mut values = InstanceValues::default();
         let mut shares = Vec::new();

@@ -1,7 +1,7 @@
-//! What colours tell: a word for every tracing point, the table of colours and the legend.
+//! What colors tell: a word for every tracing point, the table of colors and the legend.
 //!
 //! Words belong to a cell, whatever shows it. What differs from neuron to neuron of one cell is in the
-//! table's values: a colour for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
+//! table's values: a color for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
 //! ([`Replay`]).
 
 mod by_node;
@@ -19,17 +19,17 @@ use std::collections::{BTreeMap, HashMap};
 
 use crate::mesh::{CoarseMesh, Role, TracingPoint};
 use crate::morphology::{Morphology, NeuriteKind, Section, SectionId, shape};
-use crate::render::{ColourTable, Legend, Palette, Rgb, category, fraction};
+use crate::render::{ColorTable, Legend, Palette, Rgb, category, fraction};
 
-/// What colours tell.
+/// What colors tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourBy {
+pub enum ColorBy {
     /// SWC type.
     #[default]
     Type,
     /// Every neurite its own.
     Neurite,
-    /// Neighbouring sections differ.
+    /// Neighboring sections differ.
     Section,
     /// Number of forks from the neurite's start.
     Order,
@@ -41,7 +41,7 @@ pub enum ColourBy {
     Neuron,
 }
 
-/// What is coloured.
+/// What is colored.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell<'c> {
     /// Name for the legend.
@@ -52,18 +52,18 @@ pub struct Cell<'c> {
     pub mesh: &'c CoarseMesh,
 }
 
-/// Colours of all cells.
+/// Colors of all cells.
 #[derive(Clone, Debug)]
-pub struct Colouring {
+pub struct Coloring {
     /// By cell and tracing point.
     pub words: Vec<Vec<u32>>,
     /// What words mean.
-    pub table: ColourTable,
-    /// What colours mean.
+    pub table: ColorTable,
+    /// What colors mean.
     pub legend: Legend,
 }
 
-/// The colours to choose from.
+/// The colors to choose from.
 #[derive(Clone, Debug)]
 pub struct Paint {
     /// Of types and of what is merely told apart.
@@ -76,7 +76,7 @@ pub struct Paint {
     pub range: Option<[f32; 2]>,
 }
 
-/// Colour of what has no value: a grey that no scale has.
+/// Color of what has no value: a gray that no scale has.
 pub const NOTHING: Rgb = [160; 3];
 
 impl Paint {
@@ -87,14 +87,14 @@ impl Paint {
         title: &str,
         unit: &str,
         range: [f32; 2],
-    ) -> Colouring {
-        Colouring {
+    ) -> Coloring {
+        Coloring {
             words,
             legend: Legend::bar(title, unit, self.scale.clone(), range, false),
-            table: ColourTable {
+            table: ColorTable {
                 scale: self.scale.clone(),
                 categories: vec![NOTHING],
-                ..ColourTable::default()
+                ..ColorTable::default()
             },
         }
     }
@@ -107,26 +107,26 @@ impl Paint {
     }
 }
 
-/// Chooses the colours.
-pub fn colouring(cells: &[Cell<'_>], by: ColourBy, paint: &Paint) -> Colouring {
+/// Chooses the colors.
+pub fn coloring(cells: &[Cell<'_>], by: ColorBy, paint: &Paint) -> Coloring {
     match by {
-        ColourBy::Type => by_type(cells, paint),
-        ColourBy::Neuron => by_neuron(cells, paint),
-        ColourBy::Neurite => told_apart(cells, paint, "neurite", shape::neurites),
-        ColourBy::Section => told_apart(cells, paint, "section", sections),
-        ColourBy::Order => measured(cells, paint, "branch order", "", |cell| {
+        ColorBy::Type => by_type(cells, paint),
+        ColorBy::Neuron => by_neuron(cells, paint),
+        ColorBy::Neurite => told_apart(cells, paint, "neurite", shape::neurites),
+        ColorBy::Section => told_apart(cells, paint, "section", sections),
+        ColorBy::Order => measured(cells, paint, "branch order", "", |cell| {
             let orders = shape::branch_orders(cell.morphology);
             of_sections(cell, |section| orders.get(section).map(|&o| o as f32))
         }),
-        ColourBy::Radius => measured(cells, paint, "radius", "µm", |cell| {
+        ColorBy::Radius => measured(cells, paint, "radius", "µm", |cell| {
             let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
             cell.mesh.tracing.iter().map(radius).collect()
         }),
-        ColourBy::Depth => measured(cells, paint, "path distance", "µm", depths),
+        ColorBy::Depth => measured(cells, paint, "path distance", "µm", depths),
     }
 }
 
-fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Colouring {
+fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Coloring {
     // The soma's points keep a type of their own whatever the file says.
     let kind = |point: &TracingPoint| match point.role {
         Role::Soma => NeuriteKind::SOMA.0,
@@ -147,18 +147,18 @@ fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Colouring {
     let names = kinds
         .keys()
         .map(|&kind| NeuriteKind(kind).name().replace('_', " "));
-    Colouring {
+    Coloring {
         words: cells.iter().map(words).collect(),
         legend: Legend::swatches("", categories.iter().copied().zip(names)),
-        table: ColourTable {
+        table: ColorTable {
             scale: Vec::new(),
             categories,
-            ..ColourTable::default()
+            ..ColorTable::default()
         },
     }
 }
 
-fn by_neuron(cells: &[Cell<'_>], paint: &Paint) -> Colouring {
+fn by_neuron(cells: &[Cell<'_>], paint: &Paint) -> Coloring {
     let words = |(cell, index)| {
         let cell: &Cell<'_> = cell;
         vec![category(index); cell.mesh.tracing.len()]
@@ -172,13 +172,13 @@ fn by_neuron(cells: &[Cell<'_>], paint: &Paint) -> Colouring {
     )
 }
 
-/// Things numbered from 0 on over all cells; somata have a colour of their own.
+/// Things numbered from 0 on over all cells; somata have a color of their own.
 fn told_apart(
     cells: &[Cell<'_>],
     paint: &Paint,
     thing: &str,
     number: impl Fn(&Morphology) -> Vec<u32>,
-) -> Colouring {
+) -> Coloring {
     let mut next = 0;
     let mut words = Vec::new();
     for cell in cells {
@@ -194,13 +194,13 @@ fn told_apart(
     }
     let soma = paint.of_type(1);
     let names: Vec<String> = (1..=next).map(|n| format!("{thing} {n}")).collect();
-    let mut colouring = listed(words, &names, thing, paint);
-    colouring.table.categories.insert(0, soma);
-    colouring
+    let mut coloring = listed(words, &names, thing, paint);
+    coloring.table.categories.insert(0, soma);
+    coloring
 }
 
-/// Category i has the i-th distinct colour and name.
-fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) -> Colouring {
+/// Category i has the i-th distinct color and name.
+fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) -> Coloring {
     let categories: Vec<Rgb> = (0..names.len())
         .map(|i| paint.palette.distinct(i))
         .collect();
@@ -211,17 +211,17 @@ fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) ->
         .collect();
     let title = if entries.len() > paint.palette.distinct_count() {
         entries.clear();
-        format!("{} {thing}s, colours repeat", names.len())
+        format!("{} {thing}s, colors repeat", names.len())
     } else {
         String::new()
     };
-    Colouring {
+    Coloring {
         words,
         legend: Legend::swatches(&title, entries),
-        table: ColourTable {
+        table: ColorTable {
             scale: Vec::new(),
             categories,
-            ..ColourTable::default()
+            ..ColorTable::default()
         },
     }
 }
@@ -230,14 +230,14 @@ fn sections(morphology: &Morphology) -> Vec<u32> {
     (0..morphology.sections.len() as u32).collect()
 }
 
-/// Numbers on a scale; points without one have the soma's colour.
+/// Numbers on a scale; points without one have the soma's color.
 fn measured(
     cells: &[Cell<'_>],
     paint: &Paint,
     title: &str,
     unit: &str,
     values: impl Fn(&Cell<'_>) -> Vec<Option<f32>>,
-) -> Colouring {
+) -> Coloring {
     let values: Vec<Vec<Option<f32>>> = cells.iter().map(&values).collect();
     let mut sorted: Vec<f32> = values.iter().flatten().flatten().copied().collect();
     sorted.sort_unstable_by(f32::total_cmp);
@@ -245,7 +245,7 @@ fn measured(
         let place = share * sorted.len().saturating_sub(1) as f64;
         sorted.get(place as usize).copied().unwrap_or(0.0)
     };
-    // A few stems are far thicker than all else: they would leave one colour for the rest.
+    // A few stems are far thicker than all else: they would leave one color for the rest.
     let whole = title != "radius";
     let (low, high) = if whole {
         (0.0, at(1.0))
@@ -261,7 +261,7 @@ fn measured(
     let words = values
         .iter()
         .map(|values| values.iter().map(word).collect());
-    Colouring {
+    Coloring {
         words: words.collect(),
         legend: Legend::bar(
             title,
@@ -270,10 +270,10 @@ fn measured(
             [low, high],
             at(1.0) > high,
         ),
-        table: ColourTable {
+        table: ColorTable {
             scale: paint.scale.clone(),
             categories: vec![paint.of_type(1)],
-            ..ColourTable::default()
+            ..ColorTable::default()
         },
     }
 }

@@ -1,55 +1,55 @@
-//! What colours tell in the window: of tracings, of a circuit's nodes, of a recording.
+//! What colors tell in the window: of tracings, of a circuit's nodes, of a recording.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::colouring::{self, Cell, Colouring, Node, Paint, Replay, ReplayError};
+use neurotess::coloring::{self, Cell, Coloring, Node, Paint, Replay, ReplayError};
 use neurotess::generate::generate;
-use neurotess::render::{ColourMap, Palette, Rgb};
+use neurotess::render::{ColorMap, Palette, Rgb};
 use rayon::prelude::*;
 
 use crate::circuits::{CircuitId, Circuits};
-use crate::document::{ColourBy, Document, Look, NodeOf, SourceId};
+use crate::document::{ColorBy, Document, Look, NodeOf, SourceId};
 use crate::scene::ShownSource;
 use crate::state::State;
 
-/// What colours depend on.
+/// What colors depend on.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ColourKey {
+pub(crate) struct ColorKey {
     /// What they tell, and of whom.
     pub(crate) matter: Matter,
     /// Which they are.
     pub(crate) tints: Tints,
 }
 
-/// What colours tell, and of whom.
+/// What colors tell, and of whom.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Matter {
-    by: ColourBy,
+    by: ColorBy,
     attribute: String,
     report: Option<PathBuf>,
-    /// The neurons in their order, where colours differ among those of one tracing.
+    /// The neurons in their order, where colors differ among those of one tracing.
     pub(crate) own: Vec<(SourceId, Option<NodeOf>)>,
 }
 
-/// The colours themselves.
+/// The colors themselves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tints {
     palette: Palette,
-    map: ColourMap,
+    map: ColorMap,
     trim: bool,
     background: Rgb,
     range: Option<[f32; 2]>,
 }
 
-impl ColourKey {
+impl ColorKey {
     pub(crate) fn new(document: &Document) -> Self {
         let look = &document.look;
-        let by = look.colour_by;
+        let by = look.color_by;
         let neurons = document.neurons.iter().filter(|_| by.is_of_neurons());
         let attribute = match by {
-            ColourBy::Attribute => look.attribute.clone(),
+            ColorBy::Attribute => look.attribute.clone(),
             _ => String::new(),
         };
         let report = document.report.clone();
@@ -57,12 +57,12 @@ impl ColourKey {
             matter: Matter {
                 by,
                 attribute,
-                report: report.filter(|_| by == ColourBy::Value),
+                report: report.filter(|_| by == ColorBy::Value),
                 own: neurons.map(|n| (n.source, n.node)).collect(),
             },
             tints: Tints {
                 palette: look.palette,
-                map: look.colour_map,
+                map: look.color_map,
                 trim: look.trim_map,
                 background: look.background,
                 range: look.range.filter(|_| by.has_range()),
@@ -71,21 +71,21 @@ impl ColourKey {
     }
 }
 
-/// The colours to choose from.
+/// The colors to choose from.
 pub(crate) fn paint(look: &Look) -> Paint {
     let background = Some(look.background);
     Paint {
         palette: look.palette,
         background,
         scale: match look.trim_map {
-            true => look.colour_map.scale_before(look.background),
-            false => look.colour_map.scale(),
+            true => look.color_map.scale_before(look.background),
+            false => look.color_map.scale(),
         },
         range: look.range.filter(|[low, high]| low < high),
     }
 }
 
-/// All that colours are made of, free of the window.
+/// All that colors are made of, free of the window.
 #[derive(Clone, Debug)]
 pub(crate) struct Wish {
     look: Look,
@@ -97,20 +97,20 @@ pub(crate) struct Wish {
     neurons: Vec<(usize, String, Option<NodeOf>)>,
 }
 
-/// Colours, and what they were made from.
+/// Colors, and what they were made from.
 #[derive(Clone, Debug)]
-pub(crate) struct Coloured {
-    pub(crate) colouring: Colouring,
+pub(crate) struct Colored {
+    pub(crate) coloring: Coloring,
     /// A recording with the range of its values.
     pub(crate) replay: Option<(Arc<Replay>, [f32; 2])>,
-    /// What could not be told by colours: what, and why.
+    /// What could not be told by colors: what, and why.
     pub(crate) problem: Option<(String, String)>,
 }
 
-impl From<Colouring> for Coloured {
-    fn from(colouring: Colouring) -> Self {
+impl From<Coloring> for Colored {
+    fn from(coloring: Coloring) -> Self {
         Self {
-            colouring,
+            coloring,
             replay: None,
             problem: None,
         }
@@ -138,7 +138,7 @@ impl Wish {
     /// two traced points has room for all its compartments then. What cannot be meshed so stays as it is.
     pub(crate) fn cut(&self, mut sources: Vec<ShownSource>) -> Vec<ShownSource> {
         let report = self.report.as_ref();
-        let Some(report) = report.filter(|_| self.look.colour_by == ColourBy::Value) else {
+        let Some(report) = report.filter(|_| self.look.color_by == ColorBy::Value) else {
             return sources;
         };
         let mut cuts = std::collections::HashMap::new();
@@ -149,7 +149,7 @@ impl Wish {
             });
             let stand: Vec<_> = stand.collect();
             // What is wrong with the report is told by its colors.
-            cuts = colouring::cuts(report, circuit, &stand).unwrap_or_default();
+            cuts = coloring::cuts(report, circuit, &stand).unwrap_or_default();
             if !cuts.is_empty() {
                 break;
             }
@@ -161,7 +161,7 @@ impl Wish {
                 let Some(elements) = cuts.get(&place) else {
                     return;
                 };
-                let morphology = colouring::with_middles(&source.morphology, elements);
+                let morphology = coloring::with_middles(&source.morphology, elements);
                 if let Ok(generated) = generate(&morphology, &source.options) {
                     source.morphology = Arc::new(morphology);
                     source.generated = Arc::new(generated);
@@ -180,8 +180,8 @@ impl Wish {
         ids.into_iter().rev().filter_map(known)
     }
 
-    /// The colours; where they cannot be had, those of types.
-    pub(crate) fn colours(&self, sources: &[ShownSource]) -> Coloured {
+    /// The colors; where they cannot be had, those of types.
+    pub(crate) fn colors(&self, sources: &[ShownSource]) -> Colored {
         let cells: Vec<Cell<'_>> = sources
             .iter()
             .map(|s| Cell {
@@ -191,22 +191,22 @@ impl Wish {
             })
             .collect();
         let paint = paint(&self.look);
-        let of_type = || colouring::colouring(&cells, colouring::ColourBy::Type, &paint);
-        let instead = |(what, why): (String, String)| Coloured {
+        let of_type = || coloring::coloring(&cells, coloring::ColorBy::Type, &paint);
+        let instead = |(what, why): (String, String)| Colored {
             problem: Some((what, why)),
             ..of_type().into()
         };
-        match self.look.colour_by {
+        match self.look.color_by {
             _ if sources.is_empty() => of_type().into(),
-            ColourBy::Neuron => {
+            ColorBy::Neuron => {
                 let names: Vec<String> = self.neurons.iter().map(|n| n.1.clone()).collect();
-                colouring::each(&cells, &names, &paint).into()
+                coloring::each(&cells, &names, &paint).into()
             }
-            ColourBy::Attribute => self.by_attribute(&cells, &paint).unwrap_or_else(instead),
-            ColourBy::Value => self.by_value(&cells, &paint).unwrap_or_else(instead),
+            ColorBy::Attribute => self.by_attribute(&cells, &paint).unwrap_or_else(instead),
+            ColorBy::Value => self.by_value(&cells, &paint).unwrap_or_else(instead),
             by => {
                 let by = by.in_library().unwrap_or_default();
-                colouring::colouring(&cells, by, &paint).into()
+                coloring::coloring(&cells, by, &paint).into()
             }
         }
     }
@@ -215,25 +215,25 @@ impl Wish {
         &self,
         cells: &[Cell<'_>],
         paint: &Paint,
-    ) -> Result<Coloured, (String, String)> {
+    ) -> Result<Colored, (String, String)> {
         let node = |of: &Option<NodeOf>| of.and_then(|of| self.circuits.node(of));
         let neurons: Vec<Option<Node<'_>>> = self.neurons.iter().map(|n| node(&n.2)).collect();
-        let what = || "colours by attribute".to_owned();
+        let what = || "colors by attribute".to_owned();
         if neurons.iter().all(Option::is_none) {
             let why = "attributes are those of a circuit's cells: open a circuit";
             return Err((what(), why.into()));
         }
         let attribute = &self.look.attribute;
-        colouring::by_attribute(cells, &neurons, attribute, paint)
-            .map(Coloured::from)
+        coloring::by_attribute(cells, &neurons, attribute, paint)
+            .map(Colored::from)
             .map_err(|e| (what(), e.to_string()))
     }
 
     /// Of the first circuit that the recording fits.
-    fn by_value(&self, cells: &[Cell<'_>], paint: &Paint) -> Result<Coloured, (String, String)> {
+    fn by_value(&self, cells: &[Cell<'_>], paint: &Paint) -> Result<Colored, (String, String)> {
         let Some(report) = &self.report else {
             let why = "there is no report: open one (File, Open report)";
-            return Err(("colours by value".into(), why.into()));
+            return Err(("colors by value".into(), why.into()));
         };
         let file = report.display().to_string();
         let mut why = "a report has values of a circuit's cells: open its circuit".to_owned();
@@ -252,16 +252,16 @@ impl Wish {
         Err((file, why))
     }
 
-    fn replayed(&self, replay: Replay, paint: &Paint) -> Result<Coloured, String> {
+    fn replayed(&self, replay: Replay, paint: &Paint) -> Result<Colored, String> {
         let told = |e: ReplayError| without(&replay.file, &e.to_string());
         let all = replay.range(&|_| true).map_err(told)?;
         let range = paint.range.unwrap_or(all);
         let time = replay.time.nearest(self.time);
         let moment = replay.at(time, self.look.decay, &|_| true).map_err(told)?;
-        let mut colouring = replay.colouring(range, paint);
-        colouring.table.values = moment.values(range);
-        Ok(Coloured {
-            colouring,
+        let mut coloring = replay.coloring(range, paint);
+        coloring.table.values = moment.values(range);
+        Ok(Colored {
+            coloring,
             replay: Some((Arc::new(replay), all)),
             problem: None,
         })

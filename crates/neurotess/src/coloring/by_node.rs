@@ -1,13 +1,13 @@
-//! Colours that neurons have as a whole: each its own, those of an attribute, or those that a scene gives
-//! them. Neurons of one template share it; a value for each says its colour.
+//! Colors that neurons have as a whole: each its own, those of an attribute, or those that a scene gives
+//! them. Neurons of one template share it; a value for each says its color.
 
 use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::{Cell, Colouring, NOTHING, Paint};
+use super::{Cell, Coloring, NOTHING, Paint};
 use crate::circuit::{Attribute, Circuit, NodeRef, color, natural};
-use crate::render::{ColourTable, InstanceValues, Legend, Rgb};
+use crate::render::{ColorTable, InstanceValues, Legend, Rgb};
 
 /// A node and the circuit that it is of.
 #[derive(Clone, Copy, Debug)]
@@ -73,13 +73,13 @@ pub fn attributes<'c>(circuits: impl IntoIterator<Item = &'c Circuit>) -> Vec<St
     names
 }
 
-/// Every neuron its own colour; `names`: of the neurons as they stand.
-pub fn each(cells: &[Cell<'_>], names: &[String], paint: &Paint) -> Colouring {
+/// Every neuron its own color; `names`: of the neurons as they stand.
+pub fn each(cells: &[Cell<'_>], names: &[String], paint: &Paint) -> Coloring {
     let own: Vec<Option<usize>> = (0..names.len()).map(Some).collect();
     told_apart(cells, &own, names, "neuron", paint)
 }
 
-/// Neurons of equal attribute have one colour; numbers of more kinds than there are colours are on the
+/// Neurons of equal attribute have one color; numbers of more kinds than there are colors are on the
 /// scale. `neurons`: as they stand; none: of no circuit.
 ///
 /// # Errors
@@ -89,7 +89,7 @@ pub fn by_attribute(
     neurons: &[Option<Node<'_>>],
     attribute: &str,
     paint: &Paint,
-) -> Result<Colouring, NoAttribute> {
+) -> Result<Coloring, NoAttribute> {
     // Of many neurons most are of the same few circuits.
     let mut circuits: Vec<&Circuit> = neurons.iter().flatten().map(|n| n.circuit).collect();
     circuits.dedup_by_key(|circuit| std::ptr::from_ref(*circuit));
@@ -123,19 +123,19 @@ pub fn by_attribute(
     Ok(told_apart(cells, &own, &names, attribute, paint))
 }
 
-/// The colours that a scene gives its cells; none if it gives no cell any.
-pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colouring> {
-    let mut colours: Vec<Rgb> = Vec::new();
+/// The colors that a scene gives its cells; none if it gives no cell any.
+pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Coloring> {
+    let mut colors: Vec<Rgb> = Vec::new();
     let mut names: BTreeMap<String, Rgb> = BTreeMap::new();
     let mut own = Vec::new();
     for neuron in neurons {
         let word = |attribute| neuron.and_then(|node| node.word(attribute));
         let rgb = word("color").as_deref().and_then(color);
         own.push(rgb.map(|rgb| {
-            let known = colours.iter().position(|&other| other == rgb);
+            let known = colors.iter().position(|&other| other == rgb);
             known.unwrap_or_else(|| {
-                colours.push(rgb);
-                colours.len() - 1
+                colors.push(rgb);
+                colors.len() - 1
             })
         }));
         if let (Some(rgb), Some(group)) = (rgb, word("group")) {
@@ -144,7 +144,7 @@ pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colouri
     }
     let swatches = names.into_iter().map(|(name, rgb)| (rgb, name));
     let legend = Legend::swatches("", swatches);
-    (!colours.is_empty()).then(|| painted(cells, &own, colours, legend))
+    (!colors.is_empty()).then(|| painted(cells, &own, colors, legend))
 }
 
 fn told_apart(
@@ -153,38 +153,38 @@ fn told_apart(
     names: &[String],
     thing: &str,
     paint: &Paint,
-) -> Colouring {
+) -> Coloring {
     let count = names.len().min(paint.palette.distinct_count()).max(1);
-    let colours: Vec<Rgb> = (0..count).map(|i| paint.palette.distinct(i)).collect();
+    let colors: Vec<Rgb> = (0..count).map(|i| paint.palette.distinct(i)).collect();
     let legend = if names.len() > count {
-        let title = format!("{} {thing}s, colours repeat", names.len());
+        let title = format!("{} {thing}s, colors repeat", names.len());
         Legend::swatches(&title, Vec::new())
     } else {
         let title = if thing == "neuron" { "" } else { thing };
-        let named = colours.iter().copied().zip(names.iter().cloned());
+        let named = colors.iter().copied().zip(names.iter().cloned());
         let none = own.contains(&None).then(|| (NOTHING, "none".to_owned()));
         Legend::swatches(title, named.chain(none))
     };
     let own: Vec<Option<usize>> = own.iter().map(|place| place.map(|p| p % count)).collect();
-    painted(cells, &own, colours, legend)
+    painted(cells, &own, colors, legend)
 }
 
 fn painted(
     cells: &[Cell<'_>],
     own: &[Option<usize>],
-    colours: Vec<Rgb>,
+    colors: Vec<Rgb>,
     legend: Legend,
-) -> Colouring {
-    let last = (colours.len().max(2) - 1) as f32;
+) -> Coloring {
+    let last = (colors.len().max(2) - 1) as f32;
     let mut values = InstanceValues::default();
     for place in own {
         values.push(&[place.map_or(f32::NAN, |place| place as f32 / last)]);
     }
-    Colouring {
+    Coloring {
         words: first_values(cells),
         legend,
-        table: ColourTable {
-            scale: colours,
+        table: ColorTable {
+            scale: colors,
             categories: vec![NOTHING],
             values,
         },
@@ -196,7 +196,7 @@ fn on_scale(
     numbers: &[Option<f64>],
     attribute: &str,
     paint: &Paint,
-) -> Colouring {
+) -> Coloring {
     let (low, high) = numbers
         .iter()
         .flatten()
@@ -210,9 +210,9 @@ fn on_scale(
         let share = |n: f64| ((n - f64::from(low)) / f64::from(high - low)) as f32;
         values.push(&[number.map_or(f32::NAN, share)]);
     }
-    let mut colouring = paint.scaled(first_values(cells), attribute, "", [low, high]);
-    colouring.table.values = values;
-    colouring
+    let mut coloring = paint.scaled(first_values(cells), attribute, "", [low, high]);
+    coloring.table.values = values;
+    coloring
 }
 
 /// Every point has the first value of whichever neuron shows the cell.
@@ -276,18 +276,18 @@ mod tests {
     }
 
     #[test]
-    fn neurons_of_equal_words_have_one_colour_and_those_without_none() {
+    fn neurons_of_equal_words_have_one_color_and_those_without_none() {
         let library = vec!["b".to_owned(), "a".to_owned()];
         let indices = (0..30)
             .map(|i| if i == 3 { Attribute::NONE } else { i % 2 })
             .collect();
         let circuit = circuit(vec![("kind", Attribute::Words { library, indices })]);
-        let colouring = by_attribute(&[], &neurons(&circuit), "kind", &paint()).expect("there");
+        let coloring = by_attribute(&[], &neurons(&circuit), "kind", &paint()).expect("there");
         let share = |i: usize| match i {
             3 | 30 => f32::NAN,
             i => 1.0 - (i % 2) as f32,
         };
-        assert_eq!(colouring.table.values, values((0..31).map(share)));
+        assert_eq!(coloring.table.values, values((0..31).map(share)));
         let name = |n: &str, rgb| (rgb, n.to_owned());
         let distinct = |i| Palette::NeuroM.distinct(i);
         let expected = [
@@ -295,7 +295,7 @@ mod tests {
             name("b", distinct(1)),
             name("none", NOTHING),
         ];
-        assert_eq!(colouring.legend, Legend::swatches("kind", expected));
+        assert_eq!(coloring.legend, Legend::swatches("kind", expected));
         let error = by_attribute(&[], &neurons(&circuit), "layer", &paint());
         assert_eq!(error.expect_err("none").there, ["kind", "population"]);
     }
@@ -306,19 +306,19 @@ mod tests {
             |most: u32| Attribute::Numbers((0..30).map(|i| f64::from(i % most)).collect());
         let circuit = circuit(vec![("depth", numbers(30)), ("layer", numbers(3))]);
         let neurons = neurons(&circuit);
-        let colouring = |name, range| {
+        let coloring = |name, range| {
             let paint = Paint { range, ..paint() };
             by_attribute(&[], &neurons, name, &paint).expect("there")
         };
         let shares = |high: f32| (0..30).map(move |i| i as f32 / high).chain([f32::NAN]);
-        assert_eq!(colouring("depth", None).table.values, values(shares(29.0)));
-        let wider = colouring("depth", Some([0.0, 58.0]));
+        assert_eq!(coloring("depth", None).table.values, values(shares(29.0)));
+        let wider = coloring("depth", Some([0.0, 58.0]));
         assert_eq!(wider.table.values, values(shares(58.0)));
-        assert_eq!(colouring("layer", None).table.scale.len(), 3);
+        assert_eq!(coloring("layer", None).table.scale.len(), 3);
     }
 
     #[test]
-    fn each_neuron_has_its_own_colour() {
+    fn each_neuron_has_its_own_color() {
         let names: Vec<String> = (0..4).map(|i| format!("n{i}")).collect();
         let four = each(&[], &names, &paint());
         let shares = (0..4).map(|i| i as f32 / 3.0);
@@ -329,12 +329,12 @@ mod tests {
     }
 
     #[test]
-    fn colours_of_a_scene_are_taken_as_they_are() {
+    fn colors_of_a_scene_are_taken_as_they_are() {
         let library = vec!["#102030".to_owned()];
         let indices = (0..30).map(|i| if i == 2 { 0 } else { Attribute::NONE });
         let indices = indices.collect();
         let circuit = circuit(vec![("color", Attribute::Words { library, indices })]);
-        let given = given(&[], &neurons(&circuit)).expect("colours");
+        let given = given(&[], &neurons(&circuit)).expect("colors");
         assert_eq!(given.table.scale, [[16, 32, 48]]);
         let share = |i| if i == 2 { 0.0 } else { f32::NAN };
         assert_eq!(given.table.values, values((0..31).map(share)));

@@ -15,7 +15,7 @@ use thiserror::Error;
 use super::by_node::first_values;
 use super::elements::{matched, on_cell};
 use super::moment::{Moment, NO_BOUNDS, Part, merged, opened};
-use super::{Cell, Colouring, Paint};
+use super::{Cell, Coloring, Paint};
 use crate::circuit::{
     Circuit, CircuitError, Compartment, NodeRef, Recording, Report, ReportPopulation,
     SpikePopulation, Spikes, TimeAxis,
@@ -316,8 +316,8 @@ impl Replay {
         Ok(opened(bounds))
     }
 
-    /// Colours, as yet without values: those of a [`Moment`] belong into the table.
-    pub fn colouring(&self, range: [f32; 2], paint: &Paint) -> Colouring {
+    /// Colors, as yet without values: those of a [`Moment`] belong into the table.
+    pub fn coloring(&self, range: [f32; 2], paint: &Paint) -> Coloring {
         paint.scaled(self.words.clone(), &self.title, &self.unit, range)
     }
 }

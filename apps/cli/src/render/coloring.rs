@@ -1,9 +1,9 @@
-//! What colours tell, as the options say.
+//! What colors tell, as the options say.
 
 use std::path::Path;
 
-use neurotess::colouring::{self, Cell, ColourBy, Colouring, DECAY, Paint, Replay, by_attribute};
-use neurotess::render::{ColourTable, Legend};
+use neurotess::coloring::{self, Cell, ColorBy, Coloring, DECAY, Paint, Replay, by_attribute};
+use neurotess::render::{ColorTable, Legend};
 
 use super::args::{ColorBy, RenderArgs};
 use super::cells;
@@ -11,10 +11,10 @@ use super::shown::Shown;
 use super::times::{self, said};
 use crate::report::Reporter;
 
-/// Colours of all pictures.
-pub(crate) struct Coloured {
+/// Colors of all pictures.
+pub(crate) struct Colored {
     /// Of the first.
-    pub(crate) colouring: Colouring,
+    pub(crate) coloring: Coloring,
     /// Of a series over time: what differs.
     film: Option<Film>,
 }
@@ -26,16 +26,16 @@ struct Film {
     range: [f32; 2],
 }
 
-impl Coloured {
+impl Colored {
     /// Table and legend of a picture: of a series only the values differ.
-    pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColourTable, Legend)> {
-        let Colouring { table, legend, .. } = &self.colouring;
+    pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColorTable, Legend)> {
+        let Coloring { table, legend, .. } = &self.coloring;
         let time = |film: &Film| film.times.get(number).copied();
         let Some((film, time)) = self.film.as_ref().and_then(|f| Some((f, time(f)?))) else {
             return Ok((table.clone(), legend.clone()));
         };
         let moment = film.replay.at(time, DECAY, &|_| true).map_err(told)?;
-        let table = ColourTable {
+        let table = ColorTable {
             scale: table.scale.clone(),
             categories: table.categories.clone(),
             values: moment.values(film.range),
@@ -44,17 +44,17 @@ impl Coloured {
     }
 }
 
-/// Chooses the colours. `shown`: what a circuit shows; `places`: the cell at each.
+/// Chooses the colors. `shown`: what a circuit shows; `places`: the cell at each.
 ///
 /// # Errors
 /// What is wrong with a report.
-pub(crate) fn coloured(
+pub(crate) fn colored(
     cells: &[&cells::Cell],
     shown: Option<&Shown>,
     places: &[usize],
     args: &RenderArgs,
     reporter: &Reporter,
-) -> anyhow::Result<Coloured> {
+) -> anyhow::Result<Colored> {
     let background = (!args.transparent).then_some(args.background.0);
     let paint = Paint {
         palette: args.palette,
@@ -80,34 +80,34 @@ pub(crate) fn coloured(
         let replay = Replay::open(report, &shown.circuit, &cells, &stand).map_err(told)?;
         return over_time(replay, args, &paint, reporter);
     }
-    let colouring = match shown {
+    let coloring = match shown {
         Some(shown) => of_circuit(&cells, shown, args, &paint)?,
         None => None,
     };
     let by = by(args.color_by.unwrap_or(ColorBy::Type));
-    let of_cells = || colouring::colouring(&cells, by, &paint);
-    Ok(Coloured {
-        colouring: colouring.unwrap_or_else(of_cells),
+    let of_cells = || coloring::coloring(&cells, by, &paint);
+    Ok(Colored {
+        coloring: coloring.unwrap_or_else(of_cells),
         film: None,
     })
 }
 
-/// Colours that cells of a circuit have as a whole, if those are wanted.
+/// Colors that cells of a circuit have as a whole, if those are wanted.
 fn of_circuit(
     cells: &[Cell<'_>],
     shown: &Shown,
     args: &RenderArgs,
     paint: &Paint,
-) -> anyhow::Result<Option<Colouring>> {
+) -> anyhow::Result<Option<Coloring>> {
     let neurons = shown.neurons();
     match (&args.color_by_attribute, args.color_by) {
         (Some(attribute), _) => {
             let named = |e| anyhow::anyhow!("{}: {e}", shown.circuit.file);
-            let colouring = by_attribute(cells, &neurons, attribute, paint);
-            colouring.map(Some).map_err(named)
+            let coloring = by_attribute(cells, &neurons, attribute, paint);
+            coloring.map(Some).map_err(named)
         }
-        (None, Some(ColorBy::Neuron)) => Ok(Some(colouring::each(cells, &shown.names(), paint))),
-        (None, None) => Ok(colouring::given(cells, &neurons)),
+        (None, Some(ColorBy::Neuron)) => Ok(Some(coloring::each(cells, &shown.names(), paint))),
+        (None, None) => Ok(coloring::given(cells, &neurons)),
         (None, Some(_)) => Ok(None),
     }
 }
@@ -118,12 +118,12 @@ fn over_time(
     args: &RenderArgs,
     paint: &Paint,
     reporter: &Reporter,
-) -> anyhow::Result<Coloured> {
+) -> anyhow::Result<Colored> {
     let without = replay.without();
     if without > 0 {
         let (all, file) = (replay.places(), &replay.file);
         reporter.warning(&format!(
-            "{file}: no values for {without} of {all} cells: drawn grey"
+            "{file}: no values for {without} of {all} cells: drawn gray"
         ));
     }
     if args.time.is_none() && replay.is_of_spikes() {
@@ -138,16 +138,16 @@ fn over_time(
             replay.range_at(times, &|_| true).map_err(told)?
         }
     };
-    let colouring = replay.colouring(range, paint);
+    let coloring = replay.coloring(range, paint);
     let film = Some(Film {
         replay,
         times,
         range,
     });
-    let mut coloured = Coloured { colouring, film };
-    let (table, legend) = coloured.picture(0)?;
-    (coloured.colouring.table, coloured.colouring.legend) = (table, legend);
-    Ok(coloured)
+    let mut colored = Colored { coloring, film };
+    let (table, legend) = colored.picture(0)?;
+    (colored.coloring.table, colored.coloring.legend) = (table, legend);
+    Ok(colored)
 }
 
 /// The whole message is the error's own: its source would be told twice.
@@ -160,15 +160,15 @@ fn stem(file: &str) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-fn by(what: ColorBy) -> ColourBy {
+fn by(what: ColorBy) -> ColorBy {
     match what {
         // Arguments have been checked: a value comes with a report.
-        ColorBy::Type | ColorBy::Value => ColourBy::Type,
-        ColorBy::Neurite => ColourBy::Neurite,
-        ColorBy::Section => ColourBy::Section,
-        ColorBy::Order => ColourBy::Order,
-        ColorBy::Radius => ColourBy::Radius,
-        ColorBy::Depth => ColourBy::Depth,
-        ColorBy::Neuron => ColourBy::Neuron,
+        ColorBy::Type | ColorBy::Value => ColorBy::Type,
+        ColorBy::Neurite => ColorBy::Neurite,
+        ColorBy::Section => ColorBy::Section,
+        ColorBy::Order => ColorBy::Order,
+        ColorBy::Radius => ColorBy::Radius,
+        ColorBy::Depth => ColorBy::Depth,
+        ColorBy::Neuron => ColorBy::Neuron,
     }
 }

@@ -4,7 +4,7 @@
 //! two points would show two of its compartments, and a section of one point its parent's. Values belong to
 //! places along a section, wherever the tracer clicked. **Practice.** Before such a cell is meshed, points
 //! are inserted on the straight line between two traced ones, with the radius between theirs, at the middle
-//! of each element; none where a traced point is there already. Colours then change half-way between two
+//! of each element; none where a traced point is there already. Colors then change half-way between two
 //! middles, which is where compartments meet.
 //!
 //! **Why not** a place along the section for each vertex, looked up in the shader: joints and somata have
