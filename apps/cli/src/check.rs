@@ -1,6 +1,6 @@
 //! `neurotess check`: what a mesh is and what is wrong with it.
 
-use neurotess::mesh::{self, Format, Place, ReadError, Report};
+use neurotess::mesh::{self, FilePosition, Format, ReadError, Report};
 use serde::Serialize;
 
 use crate::args::CheckArgs;
@@ -59,14 +59,14 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
 /// `FILE:LINE: what: what to do`
 fn named(file: &str, error: &ReadError) -> String {
     match error.place() {
-        Place::Line(line) => {
+        FilePosition::Line(line) => {
             let text = error.to_string();
             let what = text
                 .strip_prefix(&format!("line {line}: "))
                 .unwrap_or(&text);
             format!("{} {what}", place(file, Some(line as u64)))
         }
-        Place::Byte(_) | Place::File => match error {
+        FilePosition::Byte(_) | FilePosition::File => match error {
             ReadError::Io(e) => {
                 format!("{file}: cannot be read ({e}): check the path and its permissions")
             }

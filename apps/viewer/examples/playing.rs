@@ -22,7 +22,7 @@ use egui_kittest::Harness;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use egui_wgpu::RendererOptions;
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::coloring::{Cell, DECAY, Replay};
+use neurotess::coloring::{Cell, DECAY, Recording};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::{Command, Viewer, wgpu_setup};
@@ -72,7 +72,7 @@ fn read(circuit: &Path, report: &Path) {
         })
         .collect();
     let clock = Instant::now();
-    let replay = Replay::open(report, &circuit, &cells, &stand).unwrap();
+    let replay = Recording::open(report, &circuit, &cells, &stand).unwrap();
     let open = clock.elapsed();
     let clock = Instant::now();
     let range = replay.range(&|_| true).unwrap();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::coloring::{self, Cell, Coloring, Node, Paint, Replay, ReplayError};
+use neurotess::coloring::{self, Cell, ColorScheme, Coloring, Node, Recording, RecordingError};
 use neurotess::generate::generate;
 use neurotess::render::{ColorMap, Palette, Rgb};
 use rayon::prelude::*;
@@ -72,9 +72,9 @@ impl ColorKey {
 }
 
 /// The colors to choose from.
-pub(crate) fn paint(look: &Look) -> Paint {
+pub(crate) fn paint(look: &Look) -> ColorScheme {
     let background = Some(look.background);
-    Paint {
+    ColorScheme {
         palette: look.palette,
         background,
         scale: match look.trim_map {
@@ -102,7 +102,7 @@ pub(crate) struct Wish {
 pub(crate) struct Colored {
     pub(crate) coloring: Coloring,
     /// A recording with the range of its values.
-    pub(crate) replay: Option<(Arc<Replay>, [f32; 2])>,
+    pub(crate) replay: Option<(Arc<Recording>, [f32; 2])>,
     /// What could not be told by colors: what, and why.
     pub(crate) problem: Option<(String, String)>,
 }
@@ -214,7 +214,7 @@ impl Wish {
     fn by_attribute(
         &self,
         cells: &[Cell<'_>],
-        paint: &Paint,
+        paint: &ColorScheme,
     ) -> Result<Colored, (String, String)> {
         let node = |of: &Option<NodeOf>| of.and_then(|of| self.circuits.node(of));
         let neurons: Vec<Option<Node<'_>>> = self.neurons.iter().map(|n| node(&n.2)).collect();
@@ -230,7 +230,11 @@ impl Wish {
     }
 
     /// Of the first circuit that the recording fits.
-    fn by_value(&self, cells: &[Cell<'_>], paint: &Paint) -> Result<Colored, (String, String)> {
+    fn by_value(
+        &self,
+        cells: &[Cell<'_>],
+        paint: &ColorScheme,
+    ) -> Result<Colored, (String, String)> {
         let Some(report) = &self.report else {
             let why = "there is no report: open one (File, Open report)";
             return Err(("colors by value".into(), why.into()));
@@ -244,7 +248,7 @@ impl Wish {
                 .iter()
                 .map(|(source, _, of)| (*source, of.and_then(node)))
                 .collect();
-            match Replay::open(report, circuit, cells, &stand) {
+            match Recording::open(report, circuit, cells, &stand) {
                 Ok(replay) => return self.replayed(replay, paint).map_err(|e| (file, e)),
                 Err(e) => why = without(&file, &e.to_string()),
             }
@@ -252,8 +256,8 @@ impl Wish {
         Err((file, why))
     }
 
-    fn replayed(&self, replay: Replay, paint: &Paint) -> Result<Colored, String> {
-        let told = |e: ReplayError| without(&replay.file, &e.to_string());
+    fn replayed(&self, replay: Recording, paint: &ColorScheme) -> Result<Colored, String> {
+        let told = |e: RecordingError| without(&replay.file, &e.to_string());
         let all = replay.range(&|_| true).map_err(told)?;
         let range = paint.range.unwrap_or(all);
         let time = replay.time.nearest(self.time);

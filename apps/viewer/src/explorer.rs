@@ -8,7 +8,7 @@ use eframe::egui;
 use neurotess::coloring::Coloring;
 use neurotess::generate::Generated;
 use neurotess::render::{
-    DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Sketch, SketchNamer, SketchNames,
+    DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy, ProxyPickResolver, ProxyPickTargets,
 };
 
 use crate::scene::{self, Shown, Standing};
@@ -26,11 +26,11 @@ pub(crate) struct Explorer {
     budget: Option<u32>,
 }
 
-type Sketched = Result<(Exploration, Arc<[SketchNames]>), DeviceError>;
+type Sketched = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
 
 struct Made {
     maker: Exploration,
-    names: Arc<[SketchNames]>,
+    names: Arc<[ProxyPickTargets]>,
     key: Key,
     standing: Vec<Standing>,
 }
@@ -104,13 +104,13 @@ impl Explorer {
         self.making = Some((key.clone(), receiver));
         let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
         std::thread::spawn(move || {
-            let cells = key.meshes.iter().zip(&key.coloring.words);
-            let sketches: Vec<Sketch> = cells
-                .map(|(cell, words)| Sketch::new(&cell.mesh, words))
+            let cells = key.meshes.iter().zip(&key.coloring.color_keys);
+            let sketches: Vec<Proxy> = cells
+                .map(|(cell, words)| Proxy::new(&cell.mesh, words))
                 .collect();
             let made = Exploration::new(&gpu, 1).and_then(|mut maker| {
                 maker.add(&gpu, &sketches)?;
-                Ok((maker, sketches.iter().map(SketchNames::new).collect()))
+                Ok((maker, sketches.iter().map(ProxyPickTargets::new).collect()))
             });
             // Nobody waits for it if the window is closed.
             let _ = sender.send(made);
@@ -147,7 +147,7 @@ impl Explorer {
     }
 
     /// Who tells what ids of pictures of the sketch mean.
-    pub(crate) fn namer(&self) -> Option<SketchNamer> {
+    pub(crate) fn namer(&self) -> Option<ProxyPickResolver> {
         let made = self.made.as_ref()?;
         Some(made.maker.namer(Arc::clone(&made.names)))
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, PatchKind};
-use neurotess::render::{HOVERED, Id, Named, PICKED, Placement, SELECTED, Spot};
+use neurotess::render::{HOVERED, PICKED, PickHit, PickId, PickTarget, Placement, SELECTED};
 
 use crate::document::Document;
 use crate::sources::SectionFacts;
@@ -35,11 +35,11 @@ impl Picks {
     /// `name` tells what an id means.
     pub(crate) fn new(
         size: [u32; 2],
-        ids: &[Id],
-        mut name: impl FnMut(Id) -> Option<Seen>,
+        ids: &[PickId],
+        mut name: impl FnMut(PickId) -> Option<Seen>,
     ) -> Self {
         let mut seen = Vec::new();
-        let mut known: HashMap<Id, u32> = HashMap::from([([0; 2], 0)]);
+        let mut known: HashMap<PickId, u32> = HashMap::from([([0; 2], 0)]);
         let mut last = ([0; 2], 0);
         let index = ids.iter().map(|&id| {
             // Neighbors are mostly alike.
@@ -135,22 +135,22 @@ fn covers(
 }
 
 /// What a named patch is.
-pub(crate) fn seen(named: Named, mesh: &CoarseMesh, placement: &Placement) -> Option<Seen> {
+pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<Seen> {
     let (middle, tracing, soma) = match named.spot {
-        Spot::Patch(patch) => {
+        PickTarget::Patch(patch) => {
             let patch = mesh.patches.get(patch as usize)?;
             let corners = patch.corners.map(|v| &mesh.vertices[v as usize]);
             let sum: DVec3 = corners.iter().map(|v| v.position.as_dvec3()).sum();
             // The child's ring: a lateral patch belongs to the section that it leads to.
             (sum / 4.0, corners[2].tracing, patch.kind == PatchKind::Soma)
         }
-        Spot::Vertex(vertex) => {
+        PickTarget::Vertex(vertex) => {
             let vertex = mesh.vertices.get(vertex as usize)?;
             (vertex.position.as_dvec3(), vertex.tracing, false)
         }
-        Spot::Point(point) | Spot::Soma(point) => {
+        PickTarget::Point(point) | PickTarget::Soma(point) => {
             let traced = mesh.tracing.get(point as usize)?;
-            let soma = matches!(named.spot, Spot::Soma(_));
+            let soma = matches!(named.spot, PickTarget::Soma(_));
             (traced.center.as_dvec3(), point, soma)
         }
     };

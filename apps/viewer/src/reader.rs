@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use eframe::egui;
-use neurotess::coloring::Replay;
+use neurotess::coloring::Recording;
 use neurotess::render::InstanceValues;
 
 /// Pictures that are read ahead.
@@ -15,12 +15,12 @@ const MOST: usize = 64;
 /// Reads until it is dropped.
 pub(crate) struct Reader {
     shared: Arc<Shared>,
-    replay: Arc<Replay>,
+    replay: Arc<Recording>,
 }
 
 /// What values depend on, beside the frame.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Sight {
+pub(crate) struct CullView {
     /// By neuron: whether it shows.
     pub(crate) shows: Vec<bool>,
     /// Numbers at both ends of the color map.
@@ -37,7 +37,7 @@ struct Shared {
 
 #[derive(Default)]
 struct Inner {
-    sight: Option<Arc<Sight>>,
+    sight: Option<Arc<CullView>>,
     frame: u64,
     /// Frames from one picture to the next; 0: no more than one is wanted.
     stride: u64,
@@ -54,7 +54,7 @@ impl Shared {
 
 impl Reader {
     /// `ctx` is told when something is there.
-    pub(crate) fn new(replay: Arc<Replay>, ctx: &egui::Context) -> Self {
+    pub(crate) fn new(replay: Arc<Recording>, ctx: &egui::Context) -> Self {
         let shared = Arc::new(Shared::default());
         let (own, of, ctx) = (Arc::clone(&shared), Arc::clone(&replay), ctx.clone());
         std::thread::spawn(move || read(&own, &of, &ctx));
@@ -62,7 +62,7 @@ impl Reader {
     }
 
     /// What it reads.
-    pub(crate) fn replay(&self) -> &Arc<Replay> {
+    pub(crate) fn replay(&self) -> &Arc<Recording> {
         &self.replay
     }
 
@@ -72,7 +72,7 @@ impl Reader {
         &self,
         frame: u64,
         stride: u64,
-        sight: &Sight,
+        sight: &CullView,
     ) -> Option<Arc<InstanceValues>> {
         let mut inner = self.shared.lock();
         if inner.sight.as_deref() != Some(sight) {
@@ -101,7 +101,7 @@ impl Drop for Reader {
 
 impl Inner {
     /// The frame to read next: the one that shows, then those that will.
-    fn next(&self, frames: u64) -> Option<(u64, Arc<Sight>)> {
+    fn next(&self, frames: u64) -> Option<(u64, Arc<CullView>)> {
         let sight = self.sight.as_ref()?;
         let ahead = if self.stride > 0 { AHEAD } else { 0 };
         let wanted = (0..=ahead).map(|i| {
@@ -129,7 +129,7 @@ impl Inner {
     }
 }
 
-fn read(shared: &Shared, replay: &Replay, ctx: &egui::Context) {
+fn read(shared: &Shared, replay: &Recording, ctx: &egui::Context) {
     let frames = replay.time.frames;
     loop {
         let mut inner = shared.lock();
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     fn inner(frame: u64, stride: u64, ready: &[u64]) -> Inner {
-        let sight = Sight {
+        let sight = CullView {
             shows: vec![true],
             range: [0.0, 1.0],
             decay: 5.0,

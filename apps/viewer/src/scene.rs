@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use neurotess::coloring::{Coloring, Replay};
+use neurotess::coloring::{Coloring, Recording};
 use neurotess::generate::{GenerateOptions, Generated};
 use neurotess::morphology::Morphology;
 use neurotess::render::{
-    Adaptive, Ball, Clip, ColorTable, DeviceError, FAINT, Gpu, Instance, Legend, MARKED,
-    Placement, Refining, Scene, SceneError, Template, TemplateId, Templates, WITHOUT_NEURITES,
-    WITHOUT_SOMA,
+    Adaptive, AdaptiveSettings, BoundingSphere, Clip, ColorTable, DeviceError, GHOSTED, Gpu,
+    HIGHLIGHTED, Instance, Legend, Placement, Scene, SceneError, Template, TemplateId, Templates,
+    WITHOUT_NEURITES, WITHOUT_SOMA,
 };
 use thiserror::Error;
 
@@ -56,7 +56,7 @@ pub(crate) struct Shown {
     pub(crate) table: ColorTable,
     pub(crate) legend: Legend,
     /// A recording, with the range of all its values.
-    pub(crate) replay: Option<(Arc<Replay>, [f32; 2])>,
+    pub(crate) replay: Option<(Arc<Recording>, [f32; 2])>,
 }
 
 impl Shown {
@@ -129,10 +129,10 @@ pub(crate) fn templates(
 ) -> Result<Templates, DeviceError> {
     let list: Vec<Template<'_>> = sources
         .iter()
-        .zip(&coloring.words)
+        .zip(&coloring.color_keys)
         .map(|(source, words)| Template {
             mesh: &source.generated.mesh,
-            words,
+            color_keys: words,
             values: &[],
         })
         .collect();
@@ -157,7 +157,12 @@ pub(crate) fn instances(standing: &[Standing]) -> Vec<Instance> {
 pub(crate) fn maker(gpu: &Gpu, shown: &Shown, sub_pixels: u32) -> Result<Adaptive, BuildError> {
     let templates = templates(gpu, &shown.sources, &shown.coloring)?;
     let scene = Scene::new(templates, instances(&shown.instances))?;
-    Ok(Adaptive::new(gpu, scene, Refining::default(), sub_pixels)?)
+    Ok(Adaptive::new(
+        gpu,
+        scene,
+        AdaptiveSettings::default(),
+        sub_pixels,
+    )?)
 }
 
 /// States of all neurons, as the shading wants them.
@@ -171,12 +176,12 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
     };
     let state = |selected: bool| {
         let marked = if selected && look.mark_selected {
-            MARKED
+            HIGHLIGHTED
         } else {
             0
         };
         let faint = if any && !selected && look.faint_others {
-            FAINT
+            GHOSTED
         } else {
             0
         };
@@ -189,16 +194,16 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
 pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
     neurotess::render::Look {
         light: look.light.light(),
-        wire: if look.wires { WIRE } else { 0.0 },
+        wire: if look.wireframe { WIRE } else { 0.0 },
         clip: None,
-        marked: (SELECTION, 0.75),
-        faint: look.faint.clamp(0.0, 1.0),
+        highlighted: (SELECTION, 0.75),
+        ghosted: look.faint.clamp(0.0, 1.0),
         contrast: Some(look.background),
     }
 }
 
 /// The plane of the cut through what shows.
-pub(crate) fn clip(look: &Look, balls: &[Ball]) -> Option<Clip> {
+pub(crate) fn clip(look: &Look, balls: &[BoundingSphere]) -> Option<Clip> {
     let cut = look.cut?;
     let (low, high) = extent(balls);
     let mut normal = DVec3::ZERO;

@@ -328,7 +328,7 @@ mod tests {
         state.run(Command::SetRing(id, 0, Some(1.25)));
         state.run(Command::SetRing(id, 3, Some(0.0)));
         let mut look = state.document.look.clone();
-        look.color_by = ColorBy::Depth;
+        look.color_by = ColorBy::PathDistance;
         look.light = Lighting::From {
             right: 30.0,
             up: -10.5,

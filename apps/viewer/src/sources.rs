@@ -11,7 +11,7 @@ use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{Generated, generate};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::{Measures, Morphology, shape};
-use neurotess::render::{Ball, Placement, bounds, merged};
+use neurotess::render::{BoundingSphere, Placement, bounds, merged};
 use neurotess::synth::{self, Kind};
 use walkdir::WalkDir;
 
@@ -43,10 +43,10 @@ pub struct Source {
     pub warnings: Vec<Remark>,
     /// When the file was written last; none: a sample.
     pub written: Option<SystemTime>,
-    /// Balls around the mesh (µm).
-    pub balls: Vec<Ball>,
+    /// Bounding spheres around the mesh (µm).
+    pub balls: Vec<BoundingSphere>,
     /// A few that hold them, for scenes of many neurons.
-    pub few_balls: Vec<Ball>,
+    pub few_balls: Vec<BoundingSphere>,
     /// Its file has changed since, or is gone.
     pub stale: Option<Stale>,
     /// By section: length (µm) and branch order.
@@ -108,7 +108,7 @@ pub struct SectionFacts {
     pub length: f64,
     /// Forks between the neurite's start and it.
     pub order: u32,
-    /// Way (µm) from the neurite's start to its end.
+    /// Distance along the path (µm) from the neurite's start to its end.
     pub path: f64,
     /// Number of the neurite, from 0.
     pub neurite: u32,
@@ -127,7 +127,7 @@ impl Source {
 }
 
 /// All balls around a mesh, and a few that hold them.
-fn balls(mesh: &CoarseMesh) -> (Vec<Ball>, Vec<Ball>) {
+fn balls(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSphere>) {
     let all = bounds(mesh);
     let few = merged(&all, FEW_BALLS);
     (all, few)
@@ -421,7 +421,7 @@ pub fn stale(file: &Path, written: Option<SystemTime>) -> Option<Stale> {
 }
 
 /// Corners of the box (µm) around balls.
-pub fn extent(balls: &[Ball]) -> (DVec3, DVec3) {
+pub fn extent(balls: &[BoundingSphere]) -> (DVec3, DVec3) {
     let corners = balls.iter().map(|&(c, r)| (c - r, c + r));
     corners
         .reduce(|(low, high), (a, b)| (low.min(a), high.max(b)))

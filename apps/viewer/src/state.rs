@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use neurotess::render::{Ball, Placement, Side};
+use neurotess::render::{BoundingSphere, Placement, Side};
 
 use crate::circuits::Circuits;
 use crate::command::{Ask, Command, Tab, Toggles};
@@ -377,7 +377,7 @@ impl State {
         document::grid(&self.document.neurons, &extents)
     }
 
-    fn balls_of(&self, source: SourceId, placement: Placement) -> Vec<Ball> {
+    fn balls_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
         let many = self.document.neurons.len() >= MANY;
         let balls = self.sources.get(source).map_or(&[][..], |s| match many {
             true => &s.few_balls,
@@ -390,7 +390,7 @@ impl State {
     }
 
     /// Balls (µm) around what shows and is wanted.
-    pub fn balls(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<Ball> {
+    pub fn balls(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
         let neurons = self.document.neurons.iter().zip(self.placements());
         neurons
             .filter(|(n, _)| !n.hidden && wanted(n))
@@ -400,7 +400,7 @@ impl State {
 
     /// Balls (µm) at the tracing points of what shows and is wanted: tighter than [`State::balls`], to
     /// frame it. Of many neurons a few balls each.
-    pub fn outline(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<Ball> {
+    pub fn outline(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
         let neurons = self.document.neurons.iter().zip(self.placements());
         let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && wanted(n)).collect();
         if shown.len() >= MANY {

@@ -1,7 +1,7 @@
 //! From where one looks, and how one gets elsewhere. Angles are radians, lengths µm.
 
 use glam::{DMat3, DQuat, DVec3};
-use neurotess::render::{Ball, Camera, DEFAULT_FOV, Side};
+use neurotess::render::{BoundingSphere, Camera, DEFAULT_FOV, Side};
 use serde::{Deserialize, Serialize};
 
 /// Free on each side of what is fitted, of the picture's width and height: as `neurotess render` has it.
@@ -115,7 +115,7 @@ impl View {
 
     /// Looks at a ball from where one looks now, as near as it fits with some room.
     #[must_use]
-    pub fn focused(&self, (center, radius): Ball) -> Self {
+    pub fn focused(&self, (center, radius): BoundingSphere) -> Self {
         let camera = self.camera();
         let [_, up, backward] = camera.axes();
         let distance = 1.3 * radius.max(1e-3) / (camera.fov() / 2.0).sin();
@@ -124,7 +124,7 @@ impl View {
 
     /// From a side, all in the picture.
     #[must_use]
-    pub fn fitted(&self, side: Side, y_down: bool, aspect: f64, balls: &[Ball]) -> Self {
+    pub fn fitted(&self, side: Side, y_down: bool, aspect: f64, balls: &[BoundingSphere]) -> Self {
         let fov = self.camera().fov();
         let side = if y_down { below(side) } else { side };
         let Ok(camera) = Camera::fit(side, fov, aspect.max(1e-3), MARGIN, balls) else {
@@ -192,7 +192,7 @@ fn below(side: Side) -> Side {
 }
 
 /// A fitted camera turns around the middle of what it sees, not around what happens to lie nearest.
-fn middle(camera: &Camera, balls: &[Ball]) -> DVec3 {
+fn middle(camera: &Camera, balls: &[BoundingSphere]) -> DVec3 {
     let depths = balls
         .iter()
         .map(|&(c, r)| (camera.depth(c) - r, camera.depth(c) + r));

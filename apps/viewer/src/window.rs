@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use eframe::egui::{self, ViewportBuilder};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use neurotess::render::{DeviceError, choose_adapter, device_descriptor};
+use neurotess::render::{DeviceError, device_descriptor, select_adapter};
 use thiserror::Error;
 
 use crate::app::{Hears, Viewer, lost};
@@ -124,7 +124,7 @@ pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -
     setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
         let fits = |a: &&wgpu::Adapter| surface.is_none_or(|s| a.is_surface_supported(s));
         let fitting: Vec<wgpu::Adapter> = adapters.iter().filter(fits).cloned().collect();
-        choose_adapter(&fitting, wanted.as_deref()).map_err(|e| {
+        select_adapter(&fitting, wanted.as_deref()).map_err(|e| {
             let why = e.to_string();
             *refused.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.clone());
             why

@@ -162,8 +162,7 @@ impl Worker {
                     scope.spawn(move || {
                         loop {
                             let index = next.fetch_add(1, Ordering::Relaxed);
-                            let Some(file) = files.get(index).filter(|_| !job.is_canceled())
-                            else {
+                            let Some(file) = files.get(index).filter(|_| !job.is_canceled()) else {
                                 break;
                             };
                             let soma = somata.iter().find(|(path, _)| path == file);

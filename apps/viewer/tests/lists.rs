@@ -162,7 +162,7 @@ fn the_legend_is_that_of_the_picture() {
     let Some(mut window) = many(3) else { return };
     let before = viewer(&mut window).stage.legend().clone();
     let look = Look {
-        color_by: ColorBy::Depth,
+        color_by: ColorBy::PathDistance,
         ..state(&mut window).document.look.clone()
     };
     state(&mut window).run(Command::SetLook(Box::new(look)));

@@ -200,7 +200,7 @@ fn every_edit_can_be_undone_and_done_again() {
             place: 0.5,
             flipped: false,
         }),
-        wires: true,
+        wireframe: true,
         ..Look::default()
     };
     let detail = Detail {
@@ -613,13 +613,13 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     assert!(neurites.count() > 10, "{parts:?}");
     // With wires the explorer cannot: coarser, and said.
     let mut look = state(&mut window).document.look.clone();
-    look.wires = true;
+    look.wireframe = true;
     run(&mut window, Command::SetLook(Box::new(look.clone())));
     assert!(matches!(
         state(&mut window).counters.lowered,
         Some(Lowered::Error(_))
     ));
-    look.wires = false;
+    look.wireframe = false;
     run(&mut window, Command::SetLook(Box::new(look)));
     // Alone, it is whole again, and so are the words.
     run(&mut window, Command::Select(vec![1], false));

@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // As a view does it: the elements of some whole neurons, near one another or not.
         for (what, step) in [("of neighbors", 1), ("of neurons all over", 100)] {
             let nodes = (0..1000).map(|n| n * step);
-            let wanted: Vec<u64> = nodes.flat_map(|n| values.elements_of(n)).collect();
+            let wanted: Vec<u64> = nodes.flat_map(|n| values.compartment_range(n)).collect();
             for frame in [3, 4] {
                 let clock = Instant::now();
                 let read = values.values(frame, &wanted)?;

@@ -8,9 +8,9 @@ use crate::{Attribute, Circuit, NodeRef};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Groups {
     /// Distinct values over all populations, sorted; numbers as text. Nodes without a value come last,
-    /// as the empty word, if there are such.
-    pub words: Vec<String>,
-    /// Place in `words` by population and row.
+    /// as the empty text, if there are such.
+    pub texts: Vec<String>,
+    /// Place in `texts` by population and row.
     rows: Vec<Vec<u32>>,
 }
 
@@ -21,7 +21,7 @@ impl Groups {
             .populations
             .iter()
             .map(|population| match population.attributes.get(attribute) {
-                Some(Attribute::Words { library, indices }) => (library.clone(), indices.clone()),
+                Some(Attribute::Text { library, indices }) => (library.clone(), indices.clone()),
                 Some(Attribute::Numbers(values)) => numbers(values),
                 None if attribute == "population" => {
                     (vec![population.name.clone()], vec![0; population.len()])
@@ -29,29 +29,29 @@ impl Groups {
                 None => (vec![], vec![Attribute::NONE; population.len()]),
             })
             .collect();
-        let mut words: Vec<String> = columns.iter().flat_map(|(w, _)| w.clone()).collect();
-        words.sort_by(|a, b| natural(a, b));
-        words.dedup();
+        let mut texts: Vec<String> = columns.iter().flat_map(|(w, _)| w.clone()).collect();
+        texts.sort_by(|a, b| natural(a, b));
+        texts.dedup();
         let none = columns
             .iter()
             .any(|(_, rows)| rows.contains(&Attribute::NONE));
-        let last = words.len() as u32;
-        let place: BTreeMap<&str, u32> = words.iter().map(String::as_str).zip(0..).collect();
+        let last = texts.len() as u32;
+        let place: BTreeMap<&str, u32> = texts.iter().map(String::as_str).zip(0..).collect();
         let rows = columns
             .iter()
             .map(|(library, rows)| {
-                let places: Vec<u32> = library.iter().map(|word| place[word.as_str()]).collect();
+                let places: Vec<u32> = library.iter().map(|text| place[text.as_str()]).collect();
                 let of = |&row: &u32| places.get(row as usize).copied().unwrap_or(last);
                 rows.iter().map(of).collect()
             })
             .collect();
         if none {
-            words.push(String::new());
+            texts.push(String::new());
         }
-        Self { words, rows }
+        Self { texts, rows }
     }
 
-    /// The place of a node's value in [`Groups::words`].
+    /// The place of a node's value in [`Groups::texts`].
     ///
     /// # Panics
     /// If the node is not of the circuit.
@@ -60,7 +60,7 @@ impl Groups {
     }
 }
 
-/// Distinct numbers as words, and the place of each.
+/// Distinct numbers as texts, and the place of each.
 fn numbers(values: &[f64]) -> (Vec<String>, Vec<u32>) {
     let mut distinct: Vec<f64> = values.iter().copied().filter(|v| !v.is_nan()).collect();
     distinct.sort_by(f64::total_cmp);
@@ -73,7 +73,7 @@ fn numbers(values: &[f64]) -> (Vec<String>, Vec<u32>) {
     (distinct.iter().map(f64::to_string).collect(), rows)
 }
 
-/// The order of words for people: numbers by value and before words, words by letters.
+/// The order of texts for people: numbers by value and before texts, texts by letters.
 pub fn natural(a: &str, b: &str) -> std::cmp::Ordering {
     match (a.parse::<f64>(), b.parse::<f64>()) {
         (Ok(x), Ok(y)) => x.total_cmp(&y).then_with(|| a.cmp(b)),

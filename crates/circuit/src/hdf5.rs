@@ -24,8 +24,8 @@ pub(crate) struct Store {
 pub(crate) enum Column {
     /// Numbers.
     Numbers(Vec<f64>),
-    /// Words, each as its place in a list.
-    Words {
+    /// Text, each as its place in a list.
+    Text {
         library: Vec<String>,
         indices: Vec<u32>,
     },
@@ -196,7 +196,7 @@ impl Store {
         rows.map_err(|e| self.fault(path, hdf5(&e)))
     }
 
-    /// A dataset of numbers, strings or an enumeration. `library`: path of the words that its numbers
+    /// A dataset of numbers, strings or an enumeration. `library`: path of the texts that its numbers
     /// stand for, where there are such.
     pub(crate) fn column(&self, path: &str, library: &str) -> Result<Column, CircuitError> {
         let datatype = self.dataset(path)?.datatype();
@@ -205,26 +205,26 @@ impl Store {
             return self.coded(path, &enumeration(&datatype));
         }
         if is_string(&datatype) {
-            return self.words(path);
+            return self.texts(path);
         }
         if self.has(library) {
-            let words = self.strings(library)?;
-            return self.coded(path, &(0..).zip(words).collect());
+            let texts = self.strings(library)?;
+            return self.coded(path, &(0..).zip(texts).collect());
         }
         Ok(Column::Numbers(self.reals(path)?))
     }
 
     /// Strings, each distinct one kept once: a million of four letters are not a million allocations.
-    fn words(&self, path: &str) -> Result<Column, CircuitError> {
+    fn texts(&self, path: &str) -> Result<Column, CircuitError> {
         let rows = self.rows(path)?;
         let dataset = self.dataset(path)?;
         let mut distinct = Distinct::default();
-        let visited = dataset.visit_vlen_strings(self.payload(), |word| distinct.push(word));
+        let visited = dataset.visit_vlen_strings(self.payload(), |text| distinct.push(text));
         if visited.is_err() {
             // Strings of a fixed length; or whatever is wrong, told again.
             distinct = Distinct::default();
-            for word in self.strings(path)? {
-                distinct.push(&word);
+            for text in self.strings(path)? {
+                distinct.push(&text);
             }
         }
         let Distinct {
@@ -234,7 +234,7 @@ impl Store {
             let (found, expected) = (vec![indices.len() as u64], format!("[{rows}]"));
             return Err(self.fault(path, Fault::Shape { found, expected }));
         }
-        Ok(Column::Words { library, indices })
+        Ok(Column::Text { library, indices })
     }
 
     fn strings(&self, path: &str) -> Result<Vec<String>, CircuitError> {
@@ -251,8 +251,8 @@ impl Store {
         VlenStringReadOptions::new().with_max_payload_bytes(most)
     }
 
-    /// Words by their numbers; a number without a word stands for itself.
-    fn coded(&self, path: &str, words: &HashMap<i64, String>) -> Result<Column, CircuitError> {
+    /// Text by their numbers; a number without a text stands for itself.
+    fn coded(&self, path: &str, texts: &HashMap<i64, String>) -> Result<Column, CircuitError> {
         let codes = self.wholes(path)?;
         let mut library: Vec<String> = Vec::new();
         let mut places: HashMap<i64, u32> = HashMap::new();
@@ -261,15 +261,15 @@ impl Store {
         for code in codes {
             if code != last.0 || indices.is_empty() {
                 let place = *places.entry(code).or_insert_with(|| {
-                    let word = words.get(&code).cloned();
-                    library.push(word.unwrap_or_else(|| code.to_string()));
+                    let text = texts.get(&code).cloned();
+                    library.push(text.unwrap_or_else(|| code.to_string()));
                     library.len() as u32 - 1
                 });
                 last = (code, place);
             }
             indices.push(last.1);
         }
-        Ok(Column::Words { library, indices })
+        Ok(Column::Text { library, indices })
     }
 
     /// A text attribute of a dataset or a group.
@@ -332,7 +332,7 @@ fn enumeration(datatype: &Datatype) -> HashMap<i64, String> {
     names
 }
 
-/// Words without their repetitions, in the order of their first appearance.
+/// Text without their repetitions, in the order of their first appearance.
 #[derive(Default)]
 struct Distinct {
     places: HashMap<String, u32>,
@@ -341,13 +341,13 @@ struct Distinct {
 }
 
 impl Distinct {
-    fn push(&mut self, word: &str) {
-        let place = match self.places.get(word) {
+    fn push(&mut self, text: &str) {
+        let place = match self.places.get(text) {
             Some(&place) => place,
             None => {
                 let place = self.library.len() as u32;
-                self.library.push(word.into());
-                self.places.insert(word.into(), place);
+                self.library.push(text.into());
+                self.places.insert(text.into(), place);
                 place
             }
         };

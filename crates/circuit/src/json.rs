@@ -78,7 +78,7 @@ impl<'a> Json<'a> {
         self.value.as_f64().ok_or_else(|| self.wrong("a number"))
     }
 
-    /// Elements of a list.
+    /// Compartments of a list.
     pub(crate) fn items(&self) -> Result<Vec<Self>, CircuitError> {
         let list = self.value.as_array().ok_or_else(|| self.wrong("a list"))?;
         let item = |(index, value)| Self {

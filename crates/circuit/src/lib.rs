@@ -77,7 +77,7 @@ pub use model::{Attribute, Circuit, Instance, NodeRef, Population};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;
 pub use report::{
-    Compartment, Place, Recording, Report, ReportKind, ReportPopulation, SectionOrder,
+    Compartment, Location, RecordingFile, Report, ReportKind, ReportPopulation, SectionOrder,
     SpikePopulation, Spikes, TimeAxis, is_recording,
 };
 pub use scene::color;

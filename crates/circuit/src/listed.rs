@@ -71,10 +71,10 @@ pub(crate) fn circuit(
     names.sort_unstable();
     names.dedup();
     let attributes = names.into_iter().map(|name| {
-        let words = cells
+        let texts = cells
             .iter()
             .map(|c| c.attributes.get(name).map(String::as_str));
-        (name.to_owned(), column(words))
+        (name.to_owned(), column(texts))
     });
     let population = Population {
         name: "cells".into(),
@@ -100,16 +100,16 @@ pub(crate) fn circuit(
     }
 }
 
-fn column<'a>(words: impl Iterator<Item = Option<&'a str>>) -> Attribute {
+fn column<'a>(texts: impl Iterator<Item = Option<&'a str>>) -> Attribute {
     let mut library: Vec<String> = Vec::new();
     let mut places: HashMap<&str, u32> = HashMap::new();
-    let mut place = |word: Option<&'a str>| match word {
+    let mut place = |text: Option<&'a str>| match text {
         None => Attribute::NONE,
-        Some(word) => *places.entry(word).or_insert_with(|| {
-            library.push(word.into());
+        Some(text) => *places.entry(text).or_insert_with(|| {
+            library.push(text.into());
             library.len() as u32 - 1
         }),
     };
-    let indices = words.map(&mut place).collect();
-    Attribute::Words { library, indices }
+    let indices = texts.map(&mut place).collect();
+    Attribute::Text { library, indices }
 }

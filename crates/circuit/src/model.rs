@@ -35,7 +35,7 @@ pub struct Circuit {
 pub struct Population {
     /// Its name.
     pub name: String,
-    /// The configuration's word for it: `biophysical`, `virtual`, …; empty where it has none.
+    /// The configuration's text for it: `biophysical`, `virtual`, …; empty where it has none.
     pub kind: String,
     /// Ids that the file gives its nodes: 0, 1, 2, … if it gives none.
     pub ids: Vec<u64>,
@@ -58,9 +58,9 @@ pub struct Population {
 pub enum Attribute {
     /// Numbers; NaN where there is none.
     Numbers(Vec<f64>),
-    /// Words, each as its place in a list of distinct ones.
-    Words {
-        /// Distinct words in the order of their first appearance.
+    /// Text, each as its place in a list of distinct ones.
+    Text {
+        /// Distinct texts in the order of their first appearance.
         library: Vec<String>,
         /// Places in `library`; [`Attribute::NONE`] where there is none.
         indices: Vec<u32>,
@@ -68,14 +68,14 @@ pub enum Attribute {
 }
 
 impl Attribute {
-    /// The index of no word.
+    /// The index of no text.
     pub const NONE: u32 = u32::MAX;
 
-    /// The word of a row, if this is a column of words and the row has one.
-    pub fn word(&self, row: usize) -> Option<&str> {
+    /// The text of a row, if this is a column of texts and the row has one.
+    pub fn text(&self, row: usize) -> Option<&str> {
         match self {
             Self::Numbers(_) => None,
-            Self::Words { library, indices } => {
+            Self::Text { library, indices } => {
                 let place = *indices.get(row)?;
                 library.get(place as usize).map(String::as_str)
             }
@@ -86,7 +86,7 @@ impl Attribute {
     pub fn number(&self, row: usize) -> Option<f64> {
         match self {
             Self::Numbers(values) => values.get(row).copied().filter(|v| !v.is_nan()),
-            Self::Words { .. } => None,
+            Self::Text { .. } => None,
         }
     }
 }
@@ -117,7 +117,7 @@ pub struct Instance {
     pub scale: f64,
     /// Whether the soma's center is moved to the origin first.
     pub recentered: bool,
-    /// Cells of one group have one color: place in [`Groups::words`]; 0 without a grouping.
+    /// Cells of one group have one color: place in [`Groups::texts`]; 0 without a grouping.
     pub group: u32,
 }
 

@@ -43,9 +43,9 @@ enum Choice {
 
 #[derive(Debug)]
 enum Rule {
-    /// One of these words or numbers.
+    /// One of these texts or numbers.
     OneOf(Vec<String>, Vec<f64>),
-    /// Words that match from end to end.
+    /// Text that match from end to end.
     Matches(Regex),
     /// Numbers on one side of another.
     Compares(Compare, f64),
@@ -203,10 +203,10 @@ fn rows<'a>(
     (0..n as u32).filter(holds)
 }
 
-/// A rule made ready for a column: words are judged once each.
+/// A rule made ready for a column: texts are judged once each.
 enum Test<'a> {
     All(bool),
-    Words(&'a [u32], Vec<bool>),
+    Text(&'a [u32], Vec<bool>),
     Numbers(Box<dyn Fn(usize) -> f64 + 'a>, &'a Rule),
     Ids(&'a [u64], BTreeSet<u64>, &'a Rule),
 }
@@ -228,9 +228,9 @@ impl<'a> Test<'a> {
             Of::Attribute(Attribute::Numbers(values)) => {
                 Self::Numbers(Box::new(move |row| values[row]), rule)
             }
-            Of::Attribute(Attribute::Words { library, indices }) => {
-                let holds = library.iter().map(|word| rule.holds_for_word(word));
-                Self::Words(indices, holds.collect())
+            Of::Attribute(Attribute::Text { library, indices }) => {
+                let holds = library.iter().map(|text| rule.holds_for_word(text));
+                Self::Text(indices, holds.collect())
             }
         }
     }
@@ -238,7 +238,7 @@ impl<'a> Test<'a> {
     fn holds(&self, row: usize) -> bool {
         match self {
             Self::All(holds) => *holds,
-            Self::Words(indices, holds) => {
+            Self::Text(indices, holds) => {
                 holds.get(indices[row] as usize).copied().unwrap_or(false)
             }
             Self::Numbers(value, rule) => rule.holds_for_number(value(row)),
@@ -252,17 +252,17 @@ impl Rule {
     fn read(json: &Json) -> Result<Self, CircuitError> {
         match json.value {
             Value::Array(_) => {
-                let (mut words, mut numbers) = (Vec::new(), Vec::new());
+                let (mut texts, mut numbers) = (Vec::new(), Vec::new());
                 for item in json.items()? {
                     match item.value {
-                        Value::String(word) => words.push(word.clone()),
+                        Value::String(text) => texts.push(text.clone()),
                         Value::Number(_) => numbers.push(item.real()?),
                         _ => return Err(item.wrong("a string or a number")),
                     }
                 }
-                Ok(Self::OneOf(words, numbers))
+                Ok(Self::OneOf(texts, numbers))
             }
-            Value::String(word) => Ok(Self::OneOf(vec![word.clone()], vec![])),
+            Value::String(text) => Ok(Self::OneOf(vec![text.clone()], vec![])),
             Value::Bool(yes) => Ok(Self::OneOf(vec![yes.to_string()], vec![f64::from(*yes)])),
             Value::Number(_) => Ok(Self::OneOf(vec![], vec![json.real()?])),
             Value::Object(_) => {
@@ -298,24 +298,24 @@ impl Rule {
         Ok(Self::Compares(compare, operand.real()?))
     }
 
-    fn holds_for_word(&self, word: &str) -> bool {
+    fn holds_for_word(&self, text: &str) -> bool {
         match self {
-            Self::OneOf(words, numbers) => {
-                let number = || word.parse::<f64>();
-                words.iter().any(|w| w == word)
+            Self::OneOf(texts, numbers) => {
+                let number = || text.parse::<f64>();
+                texts.iter().any(|w| w == text)
                     || !numbers.is_empty() && number().is_ok_and(|n| numbers.contains(&n))
             }
-            Self::Matches(regex) => regex.is_match(word),
-            Self::Compares(..) => word.parse().is_ok_and(|n| self.holds_for_number(n)),
-            Self::All(rules) => rules.iter().all(|rule| rule.holds_for_word(word)),
+            Self::Matches(regex) => regex.is_match(text),
+            Self::Compares(..) => text.parse().is_ok_and(|n| self.holds_for_number(n)),
+            Self::All(rules) => rules.iter().all(|rule| rule.holds_for_word(text)),
         }
     }
 
     fn holds_for_number(&self, number: f64) -> bool {
         match self {
-            Self::OneOf(words, numbers) => {
-                let word = || number.to_string();
-                numbers.contains(&number) || !words.is_empty() && words.contains(&word())
+            Self::OneOf(texts, numbers) => {
+                let text = || number.to_string();
+                numbers.contains(&number) || !texts.is_empty() && texts.contains(&text())
             }
             Self::Matches(regex) => regex.is_match(&number.to_string()),
             Self::Compares(compare, limit) => match compare {

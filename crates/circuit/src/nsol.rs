@@ -151,12 +151,12 @@ impl Scan<'_> {
                     self.repeated += 1;
                     return Ok(());
                 }
-                let words = [
+                let texts = [
                     ("layer", "layer"),
                     ("morphologicalType", "morphological_type"),
                     ("functionalType", "functional_type"),
                 ];
-                let words = words
+                let texts = texts
                     .into_iter()
                     .filter_map(|(key, name)| Some((name, attribute(element, key)?)));
                 let place = [("column", &self.column), ("minicolumn", &self.minicolumn)];
@@ -166,7 +166,7 @@ impl Scan<'_> {
                     placement: Cell::PLACED_AT_ORIGIN,
                     recentered: false,
                     file: None,
-                    attributes: words.chain(place).collect(),
+                    attributes: texts.chain(place).collect(),
                 });
             }
             "transform" if !empty => self.numbers = Some(String::new()),
@@ -263,9 +263,9 @@ mod tests {
         let cells = &circuit.populations[0];
         assert_eq!(cells.ids, [0, 7]);
         assert_eq!(cells.positions[1], DVec3::new(0.0, 40.0, 0.0));
-        assert_eq!(cells.attributes["layer"].word(0), Some("2"));
-        assert_eq!(cells.attributes["column"].word(1), Some("3"));
-        assert_eq!(cells.attributes["layer"].word(1), None);
+        assert_eq!(cells.attributes["layer"].text(0), Some("2"));
+        assert_eq!(cells.attributes["column"].text(1), Some("3"));
+        assert_eq!(cells.attributes["layer"].text(1), None);
         let codes: Vec<_> = circuit.warnings.iter().map(|w| (w.code, w.count)).collect();
         assert_eq!(codes, [("gid_repeated", 1), ("morphology_missing", 2)]);
     }

@@ -173,19 +173,19 @@ impl Entry {
         if let Some(text) = self.color.as_ref().filter(|text| color(text).is_none()) {
             return Err(no_color(file, key("color"), text.clone()));
         }
-        let words = [
+        let texts = [
             ("name", self.name.as_ref()),
             ("group", self.group.as_ref()),
             ("color", self.color.as_ref().or(of_group)),
         ];
-        let words = words.into_iter();
+        let texts = texts.into_iter();
         Ok(Cell {
             id: self.id.unwrap_or(index as u64),
             placement: (position, rotation, scale),
             recentered: self.recenter,
             file: Some(folder.join(&self.file)),
-            attributes: words
-                .filter_map(|(name, word)| Some((name, word?.clone())))
+            attributes: texts
+                .filter_map(|(name, text)| Some((name, text?.clone())))
                 .collect(),
         })
     }
@@ -238,7 +238,7 @@ scale = 2
         );
         assert_eq!(cells.positions[0], DVec3::new(1.0, 2.5, 3.0));
         assert!((cells.rotations[0] * DVec3::Z).distance(DVec3::X) < 1e-12);
-        let colors = [0, 1].map(|row| cells.attributes["color"].word(row).and_then(color));
+        let colors = [0, 1].map(|row| cells.attributes["color"].text(row).and_then(color));
         assert_eq!(colors, [Some([0, 0x72, 0xb2]), Some([255, 0, 0])]);
     }
 

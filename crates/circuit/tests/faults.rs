@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hdf5_pure::FileBuilder;
-use neurotess_circuit::{Circuit, Recording, Report, Selection, Spikes};
+use neurotess_circuit::{Circuit, RecordingFile, Report, Selection, Spikes};
 use tempfile::TempDir;
 
 const CELL: &str = "1 1 0 0 0 5 -1\n2 3 9 0 0 1 1\n3 3 30 0 0 1 2\n";
@@ -389,7 +389,10 @@ fn reports_are_refused_with_file_and_dataset() {
         );
         // As many pointers as nodes: the end is the data's.
         let short = Report::open(report(folder.path(), &[0, 3], &ids, &time, old));
-        assert_eq!(short.expect("a report").populations[0].elements_of(1), 3..5);
+        assert_eq!(
+            short.expect("a report").populations[0].compartment_range(1),
+            3..5
+        );
     }
     type Case<'a> = (&'a [u64], &'a [u32], &'a [f64], &'a str);
     let cases: [Case; 7] = [
@@ -442,13 +445,13 @@ fn reports_are_refused_with_file_and_dataset() {
         assert!(error.contains(&format!("report.h5: {expected}")), "{error}");
     }
     let nodes = circuit(CONFIG, &Columns::good());
-    let error = Recording::open(nodes.0.path().join("nodes.h5")).expect_err("no report");
+    let error = RecordingFile::open(nodes.0.path().join("nodes.h5")).expect_err("no report");
     assert!(
         error
             .to_string()
             .contains("nodes.h5: neither a report nor spikes")
     );
-    assert!(Recording::open(folder.path().join("gone.h5")).is_err());
+    assert!(RecordingFile::open(folder.path().join("gone.h5")).is_err());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use hdf5_pure::FileBuilder;
 use neurotess_circuit::{Circuit, NodeSets, Report, Selection};
 use proptest::prelude::*;
 
-/// Words that configurations are made of, so that random ones reach deep.
+/// Text that configurations are made of, so that random ones reach deep.
 const KEYS: [&str; 14] = [
     "manifest",
     "$A",
@@ -133,7 +133,7 @@ proptest! {
         if let Ok(report) = Report::open(&path) {
             let values = &report.populations[0];
             for index in 0..values.nodes.len() {
-                let wanted: Vec<u64> = values.elements_of(index).rev().collect();
+                let wanted: Vec<u64> = values.compartment_range(index).rev().collect();
                 let compartments = values.compartments(index).expect("they are there");
                 prop_assert_eq!(compartments.len(), wanted.len());
                 if frames > 0 {
@@ -166,7 +166,7 @@ proptest! {
         fs::write(&path, bytes).expect("written");
         if let Ok(report) = Report::open(&path) {
             let values = &report.populations[0];
-            let all: Vec<u64> = (0..values.elements().min(100)).collect();
+            let all: Vec<u64> = (0..values.compartment_count().min(100)).collect();
             values.values(0, &all).ok();
         }
     }

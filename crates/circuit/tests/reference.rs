@@ -64,7 +64,7 @@ fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
                 "{file} {row}: {rotation} {expected}"
             );
             let morphology = found.attributes.get("morphology");
-            let name = morphology.and_then(|attribute| attribute.word(row));
+            let name = morphology.and_then(|attribute| attribute.text(row));
             assert_eq!(name, node["morphology"].as_str(), "{file} {row}");
         }
     }
@@ -80,7 +80,7 @@ fn a_blue_brain_circuit_opens_whole() {
     assert_eq!((circuit.n_neurons(), circuit.templates.len()), (2, 1));
     let nodes = &circuit.populations[0];
     assert_eq!(nodes.kind, "biophysical");
-    assert_eq!(nodes.attributes["etype"].word(1), Some("dSTUT"));
+    assert_eq!(nodes.attributes["etype"].text(1), Some("dSTUT"));
     let edges = &circuit.edges[0];
     assert_eq!((edges.count, edges.source.as_str()), (4, "nodeA"));
     let synapses = edges.synapses().expect("synapses");
@@ -112,7 +112,7 @@ fn types_give_what_nodes_do_not_have() {
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     assert_eq!((circuit.n_neurons(), circuit.templates.len()), (5, 5));
     let ei = &circuit.populations[0].attributes["ei"];
-    assert_eq!([0, 3].map(|row| ei.word(row)), [Some("e"), Some("i")]);
+    assert_eq!([0, 3].map(|row| ei.text(row)), [Some("e"), Some("i")]);
     let selection = Selection {
         node_set: Some("biophys_cells".into()),
         region: Some((DVec3::splat(-1.0), DVec3::new(1.0, 300.0, 1.0))),
@@ -141,7 +141,7 @@ fn groups_that_lack_what_others_have_are_read() {
     let nodes = &circuit.populations[0];
     // Rows of group 1 override the type's model.
     let models: Vec<_> = (0..4)
-        .map(|row| nodes.attributes["model_type"].word(row))
+        .map(|row| nodes.attributes["model_type"].text(row))
         .collect();
     assert_eq!(
         models,
@@ -152,7 +152,7 @@ fn groups_that_lack_what_others_have_are_read() {
             Some("virtual")
         ]
     );
-    assert!(matches!(nodes.attributes["mtype"], Attribute::Words { .. }));
+    assert!(matches!(nodes.attributes["mtype"], Attribute::Text { .. }));
     // morph_B, C and D are not there; the nodes of morph_A show.
     let missing = circuit
         .warnings

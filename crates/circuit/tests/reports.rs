@@ -2,7 +2,7 @@
 
 mod shared;
 
-use neurotess_circuit::{Recording, Report, ReportKind, Spikes};
+use neurotess_circuit::{RecordingFile, Report, ReportKind, Spikes};
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {
@@ -32,7 +32,7 @@ fn reports_have_the_values_of_the_reference() {
                 &values.name
             };
             let expected = &reference[format!("sonata/{file}")][format!("report:{name}")];
-            let shape = [values.time.frames, values.elements()];
+            let shape = [values.time.frames, values.compartment_count()];
             assert_eq!(
                 shape.map(Some),
                 [0, 1].map(|i| expected["shape"][i].as_u64()),
@@ -42,9 +42,9 @@ fn reports_have_the_values_of_the_reference() {
             let ids = expected["node_ids"].as_array().expect("ids");
             let ids: Vec<u64> = ids.iter().filter_map(Value::as_u64).collect();
             assert_eq!(values.nodes, ids);
-            let first = values.elements_of(1).start;
+            let first = values.compartment_range(1).start;
             assert_eq!(Some(first), expected["index_pointers"][1].as_u64());
-            let all: Vec<u64> = (0..values.elements()).collect();
+            let all: Vec<u64> = (0..values.compartment_count()).collect();
             let begin = values.values(0, &all[..2]).expect("values");
             for (i, value) in begin.iter().enumerate() {
                 let expected = number(&expected["frame0_first"][i]) as f32;
@@ -109,7 +109,7 @@ fn spikes_of_both_makers_are_read() {
         [0.2, 0.4, 0.6000000000000001, 0.7000000000000001, 0.8]
     );
     let path = sonata.join("allen/5_cells_iclamp/output/spikes.h5");
-    let Ok(Recording::Spikes(allen)) = Recording::open(path) else {
+    let Ok(RecordingFile::Spikes(allen)) = RecordingFile::open(path) else {
         panic!("no spikes");
     };
     let spikes = &allen.populations[0];

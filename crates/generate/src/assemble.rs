@@ -10,7 +10,7 @@ use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
 use crate::fork;
 use crate::frame;
 use crate::joint::Joint;
-use crate::skeleton::{Children, NONE, Node, Root, Skeleton};
+use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::soma::SomaSurface;
 
 /// Four vertices, counter-clockwise about the path's direction.
@@ -166,7 +166,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn tracing(&mut self, node: u32, role: Role) -> u32 {
-        let Node {
+        let SkeletonNode {
             center,
             radius,
             sample,
@@ -330,7 +330,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn own_ring(&mut self, node: u32, role: Role, tangent: DVec3, frame: DVec3) -> Ring {
-        let Node { center, radius, .. } = *self.skeleton.node(node);
+        let SkeletonNode { center, radius, .. } = *self.skeleton.node(node);
         let tracing = self.tracing(node, role);
         self.mesh.tracing[tracing as usize].tangent = tangent.as_vec3();
         let side = tangent.cross(frame);

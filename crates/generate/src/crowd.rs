@@ -9,7 +9,7 @@ use std::collections::{BTreeSet, HashMap};
 use glam::DVec3;
 
 use crate::joint::plane;
-use crate::skeleton::{Children, NONE, Node, Root, Skeleton};
+use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
 /// Least angle about the joint's normal between two of four or more neighbors (radians).
@@ -50,7 +50,7 @@ pub(crate) fn split_crowded_forks(skeleton: &mut Skeleton, warnings: &mut Warnin
 
 /// Nodes with the lists of their children, which change together and here alone.
 struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<SkeletonNode>,
     /// Of the nodes that there were, as long as nothing in `changed` stands for it.
     before: Children,
     changed: HashMap<u32, Vec<u32>>,
@@ -148,25 +148,18 @@ impl Tree {
     fn branch_off(&mut self, fork: u32, neighbors: &[u32], directions: &[DVec3]) -> u32 {
         let at = self.nodes[fork as usize];
         let distance = |&n: &u32| self.nodes[n as usize].center.distance(at.center);
-        let shortest = neighbors
-            .iter()
-            .map(distance)
-            .fold(f64::INFINITY, f64::min);
+        let shortest = neighbors.iter().map(distance).fold(f64::INFINITY, f64::min);
         let mean = directions.iter().sum::<DVec3>().try_normalize();
         let towards = mean.unwrap_or(directions[0]);
         let new = self.nodes.len() as u32;
         let between = neighbors[0] == at.parent;
-        self.nodes.push(Node {
+        self.nodes.push(SkeletonNode {
             center: at.center + towards * (1.2 * at.radius).min(0.4 * shortest),
             parent: if between { at.parent } else { fork },
             root: Root::Free,
             ..at
         });
-        let moved = if between {
-            &neighbors[1..]
-        } else {
-            neighbors
-        };
+        let moved = if between { &neighbors[1..] } else { neighbors };
         for &node in moved {
             self.nodes[node as usize].parent = new;
         }

@@ -29,7 +29,7 @@ use neurotess_mesh::{CoarseMesh, Vertex};
 use neurotess_morphology::Morphology;
 
 use assemble::Assembly;
-use rings::Wishes;
+use rings::RingRequests;
 use skeleton::Skeleton;
 use warning::Warnings;
 
@@ -44,7 +44,7 @@ pub struct Generated {
     pub rings: Vec<FirstRing>,
     /// What was mended, counted by cause.
     pub warnings: Vec<Warning>,
-    /// Seconds spent in somata (solve and seats).
+    /// Seconds spent in somata (solve and insertion_quads).
     pub soma_seconds: f64,
 }
 
@@ -92,12 +92,18 @@ pub fn generate(
     prepare::mend_radii(&mut skeleton, &mut warnings);
     error::check_coordinates(morphology, &skeleton, &mut warnings)?;
     prepare::merge_coincident(&mut skeleton, &mut warnings);
-    let mut balls = somata::balls(morphology, &skeleton, options, &mut warnings);
-    prepare::leave_out_inside(&mut skeleton, &balls, &mut warnings);
-    stems::gather(&mut skeleton, &balls, &mut warnings);
+    let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);
+    prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
+    stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
     let clock = Instant::now();
-    let wishes = Wishes::new(morphology, options);
-    let built = somata::build(&mut skeleton, &mut balls, &wishes, options, &mut warnings);
+    let requests = RingRequests::new(morphology, options);
+    let built = somata::build(
+        &mut skeleton,
+        &mut soma_spheres,
+        &requests,
+        options,
+        &mut warnings,
+    );
     let soma_seconds = clock.elapsed().as_secs_f64();
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
@@ -107,18 +113,18 @@ pub fn generate(
     thin::space_points(&mut skeleton, &mut warnings);
     crowd::split_crowded_forks(&mut skeleton, &mut warnings);
     fork::clear_the_way(&mut skeleton, &mut warnings);
-    let orientations = uncross::uncross_rings(&mut skeleton, &balls, &mut warnings);
+    let orientations = uncross::uncross_rings(&mut skeleton, &soma_spheres, &mut warnings);
 
     let mut assembly = Assembly::new(&skeleton, &orientations);
-    let seats = somata::ring_nodes(&skeleton, morphology.somata.len());
+    let insertion_quads = somata::ring_nodes(&skeleton, morphology.somata.len());
     let mut somata = Vec::new();
-    for (index, (soma, nodes)) in built.somata.iter().zip(seats).enumerate() {
-        if let (Some(soma), Some(ball)) = (soma, balls[index]) {
+    for (index, (soma, nodes)) in built.somata.iter().zip(insertion_quads).enumerate() {
+        if let (Some(soma), Some(soma_sphere)) = (soma, soma_spheres[index]) {
             let sample = morphology.somata[index]
                 .samples
                 .first()
                 .map_or(-1, |s| s.id);
-            assembly.soma(&soma.surface, ball.center, sample, &nodes);
+            assembly.soma(&soma.surface, soma_sphere.center, sample, &nodes);
             somata.push(soma.report);
         }
     }

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use crate::skeleton::{NONE, Node, Root, Skeleton};
+use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
 /// Radius (µm) of last resort.
@@ -121,7 +121,7 @@ pub(crate) fn merge_coincident(skeleton: &mut Skeleton, warnings: &mut Warnings)
 
 /// A soma's sphere as the neurites meet it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ball {
+pub(crate) struct SomaSphere {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
     /// Farthest distance of a first ring, in radii.
@@ -132,7 +132,7 @@ pub(crate) struct Ball {
 /// outside goes too, as its ring would cut the soma; its branches become neurites.
 pub(crate) fn leave_out_inside(
     skeleton: &mut Skeleton,
-    balls: &[Option<Ball>],
+    soma_spheres: &[Option<SomaSphere>],
     warnings: &mut Warnings,
 ) {
     let children = skeleton.children();
@@ -148,17 +148,18 @@ pub(crate) fn leave_out_inside(
             _ if node.parent != NONE => leading[node.parent as usize],
             _ => None,
         };
-        let Some((soma, ball)) = soma.and_then(|s| Some((s, balls[s as usize]?))) else {
+        let Some((soma, soma_sphere)) = soma.and_then(|s| Some((s, soma_spheres[s as usize]?)))
+        else {
             continue;
         };
-        let distance = node.center.distance(ball.center);
+        let distance = node.center.distance(soma_sphere.center);
         let fork = children.of(i as u32).len() > 1;
         let margin = if fork {
-            node.radius.min(0.5 * ball.radius)
+            node.radius.min(0.5 * soma_sphere.radius)
         } else {
-            0.02 * ball.radius
+            0.02 * soma_sphere.radius
         };
-        if distance < ball.radius + margin {
+        if distance < soma_sphere.radius + margin {
             keep[i] = false;
             leading[i] = Some(soma);
             dropped_roots += usize::from(children.of(i as u32).is_empty());
@@ -195,7 +196,7 @@ pub(crate) fn lengthen_single_points(skeleton: &mut Skeleton, warnings: &mut War
         let node = nodes[i as usize];
         let half = DVec3::Y * (0.5 * node.radius);
         nodes[i as usize].center -= half;
-        nodes.push(Node {
+        nodes.push(SkeletonNode {
             center: node.center + half,
             parent: i,
             ..node

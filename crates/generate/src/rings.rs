@@ -13,8 +13,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use neurotess_morphology::{Morphology, shape};
 
-use crate::prepare::Ball;
-use crate::skeleton::{Children, NONE, Node, Root, Skeleton};
+use crate::prepare::SomaSphere;
+use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 use crate::{GenerateOptions, SomaMethod};
 
@@ -27,7 +27,7 @@ const LEAST_WAY: f64 = 1.5;
 const LEAST_OUTWARDS: f64 = 0.5;
 
 /// Where first rings are asked to be.
-pub(crate) struct Wishes<'a> {
+pub(crate) struct RingRequests<'a> {
     /// Number of each section's neurite.
     neurites: Vec<u32>,
     positions: &'a BTreeMap<u32, f64>,
@@ -35,7 +35,7 @@ pub(crate) struct Wishes<'a> {
     heard: bool,
 }
 
-impl<'a> Wishes<'a> {
+impl<'a> RingRequests<'a> {
     pub(crate) fn new(morphology: &Morphology, options: &'a GenerateOptions) -> Self {
         Self {
             neurites: shape::neurites(morphology),
@@ -45,17 +45,17 @@ impl<'a> Wishes<'a> {
     }
 
     /// Number of a node's neurite.
-    pub(crate) fn neurite(&self, node: &Node) -> u32 {
+    pub(crate) fn neurite(&self, node: &SkeletonNode) -> u32 {
         self.neurites[(node.section - 1) as usize]
     }
 
-    fn of(&self, node: &Node) -> Option<f64> {
-        let wish = self.positions.get(&self.neurite(node));
-        let wish = wish.filter(|wish| self.heard && wish.is_finite());
-        wish.map(|wish| wish.clamp(0.0, 2.0))
+    fn of(&self, node: &SkeletonNode) -> Option<f64> {
+        let request = self.positions.get(&self.neurite(node));
+        let request = request.filter(|request| self.heard && request.is_finite());
+        request.map(|request| request.clamp(0.0, 2.0))
     }
 
-    /// Number of wishes that no ring has heard.
+    /// Number of requests that no ring has heard.
     pub(crate) fn unused(&self, given: &[Given]) -> usize {
         let heard = given.iter().filter(|g| g.asked.is_some());
         let heard: BTreeSet<u32> = heard.map(|g| g.neurite).collect();
@@ -85,11 +85,11 @@ impl Given {
 }
 
 /// Gives every neurite of a soma its first ring: the skeleton with them. `farthest`, by soma: radii from
-/// its center beyond which no wish is heard.
+/// its center beyond which no request is heard.
 pub(crate) fn insert(
     skeleton: &Skeleton,
-    balls: &[Option<Ball>],
-    wishes: &Wishes<'_>,
+    soma_spheres: &[Option<SomaSphere>],
+    requests: &RingRequests<'_>,
     farthest: &[f64],
     warnings: &mut Warnings,
 ) -> (Skeleton, Vec<Given>) {
@@ -100,11 +100,14 @@ pub(crate) fn insert(
         let Root::Soma(soma) = node.root else {
             continue;
         };
-        let Some(ball) = balls[soma as usize].filter(|_| node.parent == NONE) else {
+        let Some(soma_sphere) = soma_spheres[soma as usize].filter(|_| node.parent == NONE) else {
             continue;
         };
-        let stem = Stem::new(skeleton, children, i as u32, ball);
-        let site = stem.site(wishes.of(node), farthest[soma as usize] * ball.radius);
+        let stem = Stem::new(skeleton, children, i as u32, soma_sphere);
+        let site = stem.site(
+            requests.of(node),
+            farthest[soma as usize] * soma_sphere.radius,
+        );
         let mut here = i as u32;
         while here != site.next {
             passed[here as usize] = true;
@@ -112,7 +115,7 @@ pub(crate) fn insert(
         }
         sites.insert(site.next, Site { soma, ..site });
     }
-    place(skeleton, balls, wishes, &sites, &passed, warnings)
+    place(skeleton, soma_spheres, requests, &sites, &passed, warnings)
 }
 
 /// Where a ring goes.
@@ -133,7 +136,7 @@ struct Stem<'a> {
     skeleton: &'a Skeleton,
     children: &'a Children,
     root: u32,
-    ball: Ball,
+    soma_sphere: SomaSphere,
     /// From the soma's center to the first point.
     direction: DVec3,
     distance: f64,
@@ -141,13 +144,18 @@ struct Stem<'a> {
 }
 
 impl<'a> Stem<'a> {
-    fn new(skeleton: &'a Skeleton, children: &'a Children, root: u32, ball: Ball) -> Self {
-        let offset = skeleton.node(root).center - ball.center;
+    fn new(
+        skeleton: &'a Skeleton,
+        children: &'a Children,
+        root: u32,
+        soma_sphere: SomaSphere,
+    ) -> Self {
+        let offset = skeleton.node(root).center - soma_sphere.center;
         Self {
             skeleton,
             children,
             root,
-            ball,
+            soma_sphere,
             direction: offset.try_normalize().unwrap_or(DVec3::Y),
             distance: offset.length(),
             branches: children.of(root).len(),
@@ -156,28 +164,28 @@ impl<'a> Stem<'a> {
 
     /// Way (µm) from position 0 to 1.
     fn gap(&self) -> f64 {
-        (self.distance - self.ball.radius).max(1e-6 * self.ball.radius)
+        (self.distance - self.soma_sphere.radius).max(1e-6 * self.soma_sphere.radius)
     }
 
     fn usual(&self) -> Site {
-        let reach = self.ball.reach * self.ball.radius;
+        let reach = self.soma_sphere.reach * self.soma_sphere.radius;
         match self.branches {
             1 if self.distance <= reach => self.at_node(self.root, 1.0),
             0 if self.distance <= reach => self.on_ray(self.distance),
             0 | 1 => self.on_ray(reach),
-            _ => self.on_ray(reach.min(self.ball.radius + 0.4 * self.gap())),
+            _ => self.on_ray(reach.min(self.soma_sphere.radius + 0.4 * self.gap())),
         }
     }
 
-    /// `farthest`: distance (µm) from the soma's center beyond which no wish is heard.
+    /// `farthest`: distance (µm) from the soma's center beyond which no request is heard.
     fn site(&self, asked: Option<f64>, farthest: f64) -> Site {
         let usual = self.usual();
         let Some(asked) = asked else {
             return usual;
         };
         let farther = asked > usual.position + 1e-6;
-        let at = self.ball.radius + asked.min(1.0) * self.gap();
-        let site = if farther && farthest <= self.ball.radius + usual.position * self.gap() {
+        let at = self.soma_sphere.radius + asked.min(1.0) * self.gap();
+        let site = if farther && farthest <= self.soma_sphere.radius + usual.position * self.gap() {
             usual
         } else if farther && farthest < at {
             self.on_ray(self.before_fork(farthest))
@@ -205,10 +213,10 @@ impl<'a> Stem<'a> {
     }
 
     fn on_ray(&self, at: f64) -> Site {
-        let center = self.ball.center + self.direction * at;
+        let center = self.soma_sphere.center + self.direction * at;
         Site {
             own: Some((center, self.skeleton.node(self.root).radius)),
-            ..self.at_node(self.root, (at - self.ball.radius) / self.gap())
+            ..self.at_node(self.root, (at - self.soma_sphere.radius) / self.gap())
         }
     }
 
@@ -217,13 +225,13 @@ impl<'a> Stem<'a> {
         let free = self.distance - LEAST_WAY * self.skeleton.node(self.root).radius;
         match self.branches {
             0 | 1 => at,
-            _ => at.min(free.max(self.ball.radius + 0.4 * self.gap())),
+            _ => at.min(free.max(self.soma_sphere.radius + 0.4 * self.gap())),
         }
     }
 
     /// Beyond the first point, but not up to the next fork or end, nor where the path turns back.
     fn on_path(&self, position: f64, farthest: f64) -> Site {
-        let unit = self.gap().max(LEAST_BEYOND * self.ball.radius);
+        let unit = self.gap().max(LEAST_BEYOND * self.soma_sphere.radius);
         let wanted = (position - 1.0) * unit;
         let mut left = wanted.min(self.free_way(wanted, farthest));
         let reached = 1.0 + left / unit;
@@ -260,7 +268,7 @@ impl<'a> Stem<'a> {
             if way > wanted + LEAST_WAY * thickest {
                 return way;
             }
-            let from = node.center - self.ball.center;
+            let from = node.center - self.soma_sphere.center;
             let step = self.skeleton.node(next).center - node.center;
             let outwards = step.normalize_or_zero().dot(from.normalize_or_zero());
             if outwards < LEAST_OUTWARDS {
@@ -285,14 +293,14 @@ fn until(from: DVec3, step: DVec3, far: f64) -> f64 {
 
 fn place(
     skeleton: &Skeleton,
-    balls: &[Option<Ball>],
-    wishes: &Wishes<'_>,
+    soma_spheres: &[Option<SomaSphere>],
+    requests: &RingRequests<'_>,
     sites: &BTreeMap<u32, Site>,
     passed: &[bool],
     warnings: &mut Warnings,
 ) -> (Skeleton, Vec<Given>) {
     let children = skeleton.children();
-    let mut nodes: Vec<Node> = Vec::with_capacity(skeleton.nodes().len() + sites.len());
+    let mut nodes: Vec<SkeletonNode> = Vec::with_capacity(skeleton.nodes().len() + sites.len());
     let mut new_index = vec![NONE; skeleton.nodes().len()];
     let mut given = Vec::with_capacity(sites.len());
     for (i, node) in skeleton.nodes().iter().enumerate() {
@@ -306,22 +314,22 @@ fn place(
         node.root = Root::Free;
         if let Some(site) = sites.get(&(i as u32)) {
             given.push(Given {
-                neurite: wishes.neurite(&node),
+                neurite: requests.neurite(&node),
                 soma: site.soma,
                 node: nodes.len() as u32,
                 position: site.position,
                 asked: site.asked,
                 farther: site.farther,
-                reach: balls[site.soma as usize].map_or(0.0, |ball| {
+                reach: soma_spheres[site.soma as usize].map_or(0.0, |soma_sphere| {
                     let ring = site.own.map_or(node.center, |(center, _)| center);
-                    ring.distance(ball.center) / ball.radius
+                    ring.distance(soma_sphere.center) / soma_sphere.radius
                 }),
             });
             match site.own {
                 None => node.root = Root::Insertion(site.soma),
                 Some((center, radius)) => {
                     let parent = nodes.len() as u32;
-                    nodes.push(Node {
+                    nodes.push(SkeletonNode {
                         center,
                         radius,
                         parent: NONE,
@@ -329,11 +337,11 @@ fn place(
                         ..node
                     });
                     node.parent = parent;
-                    if let Some(ball) = balls[site.soma as usize] {
+                    if let Some(soma_sphere) = soma_spheres[site.soma as usize] {
                         bridge(
                             &mut node,
                             center,
-                            ball,
+                            soma_sphere,
                             children.of(i as u32).is_empty(),
                             warnings,
                         );
@@ -348,8 +356,16 @@ fn place(
 }
 
 /// The way from a ring of our own to the first traced point.
-fn bridge(node: &mut Node, ring: DVec3, ball: Ball, only: bool, warnings: &mut Warnings) {
-    let direction = (ring - ball.center).try_normalize().unwrap_or(DVec3::Y);
+fn bridge(
+    node: &mut SkeletonNode,
+    ring: DVec3,
+    soma_sphere: SomaSphere,
+    only: bool,
+    warnings: &mut Warnings,
+) {
+    let direction = (ring - soma_sphere.center)
+        .try_normalize()
+        .unwrap_or(DVec3::Y);
     if only && node.center.distance(ring) < node.radius {
         node.center = ring + direction * node.radius;
         warnings.add(
@@ -357,8 +373,8 @@ fn bridge(node: &mut Node, ring: DVec3, ball: Ball, only: bool, warnings: &mut W
             Some(node.sample),
             "neurite of one point on the soma: lengthened by its radius",
         );
-    } else if node.center.distance(ball.center) > 2.0 * ball.radius
-        && node.center.distance(ring) > 0.5 * ball.radius
+    } else if node.center.distance(soma_sphere.center) > 2.0 * soma_sphere.radius
+        && node.center.distance(ring) > 0.5 * soma_sphere.radius
     {
         warnings.add(
             "far_from_soma",

@@ -13,7 +13,7 @@ pub(crate) const NONE: u32 = u32::MAX;
 
 /// A point on its way to become a tracing point. µm, relative to the morphology's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Node {
+pub(crate) struct SkeletonNode {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
     /// Index of the parent, [`NONE`] for a root.
@@ -46,7 +46,7 @@ pub(crate) enum Root {
 /// or a radius, may change under the lists through [`shapes`](Skeleton::shapes).
 #[derive(Debug, Default)]
 pub(crate) struct Skeleton {
-    nodes: Vec<Node>,
+    nodes: Vec<SkeletonNode>,
     /// Made when first asked for.
     children: OnceCell<Children>,
 }
@@ -59,7 +59,7 @@ pub(crate) struct Children {
 }
 
 impl Children {
-    fn list(nodes: &[Node]) -> Self {
+    fn list(nodes: &[SkeletonNode]) -> Self {
         let mut start = vec![0_u32; nodes.len() + 1];
         for node in nodes.iter().filter(|n| n.parent != NONE) {
             start[node.parent as usize + 1] += 1;
@@ -88,10 +88,10 @@ impl Children {
 }
 
 /// Nodes whose links stay as they are.
-pub(crate) struct Shapes<'a>(&'a mut [Node]);
+pub(crate) struct Shapes<'a>(&'a mut [SkeletonNode]);
 
 impl Shapes<'_> {
-    pub(crate) fn node(&self, index: u32) -> &Node {
+    pub(crate) fn node(&self, index: u32) -> &SkeletonNode {
         &self.0[index as usize]
     }
 
@@ -129,7 +129,7 @@ impl Skeleton {
             for point in section.range() {
                 let traced = morphology.points[point];
                 new_index[point] = nodes.len() as u32;
-                nodes.push(Node {
+                nodes.push(SkeletonNode {
                     center: traced.position.as_dvec3(),
                     radius: f64::from(traced.radius),
                     parent,
@@ -145,18 +145,18 @@ impl Skeleton {
     }
 
     /// A skeleton of nodes whose parents stand before them.
-    pub(crate) fn from_nodes(nodes: Vec<Node>) -> Self {
+    pub(crate) fn from_nodes(nodes: Vec<SkeletonNode>) -> Self {
         Self {
             nodes,
             children: OnceCell::new(),
         }
     }
 
-    pub(crate) fn nodes(&self) -> &[Node] {
+    pub(crate) fn nodes(&self) -> &[SkeletonNode] {
         &self.nodes
     }
 
-    pub(crate) fn node(&self, index: u32) -> &Node {
+    pub(crate) fn node(&self, index: u32) -> &SkeletonNode {
         &self.nodes[index as usize]
     }
 
@@ -172,13 +172,13 @@ impl Skeleton {
     }
 
     /// Nodes to add to and to link anew; lists of children are made again afterwards.
-    pub(crate) fn links(&mut self) -> &mut Vec<Node> {
+    pub(crate) fn links(&mut self) -> &mut Vec<SkeletonNode> {
         self.children.take();
         &mut self.nodes
     }
 
     /// Nodes and lists of children, for whoever changes both together.
-    pub(crate) fn take_apart(&mut self) -> (Vec<Node>, Children) {
+    pub(crate) fn take_apart(&mut self) -> (Vec<SkeletonNode>, Children) {
         let nodes = std::mem::take(&mut self.nodes);
         let children = self.children.take();
         let children = children.unwrap_or_else(|| Children::list(&nodes));
@@ -214,7 +214,7 @@ impl Skeleton {
             };
             if keep {
                 stands_for.push((kept as u32, Root::Free));
-                self.nodes[kept] = Node {
+                self.nodes[kept] = SkeletonNode {
                     parent,
                     root,
                     ..node
@@ -255,7 +255,7 @@ impl Skeleton {
                 NONE => NONE,
                 parent => new_index[parent as usize],
             };
-            Node { parent, ..node }
+            SkeletonNode { parent, ..node }
         };
         let nodes = order.iter().map(moved).collect();
         *self = Self::from_nodes(nodes);

@@ -5,21 +5,21 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 use neurotess_morphology::{Morphology, Soma};
 
-use crate::prepare::Ball;
-use crate::rings::{self, Given, Wishes};
-use crate::skeleton::{Node, Root, Skeleton};
-use crate::soma::seats::Insertion;
+use crate::prepare::SomaSphere;
+use crate::rings::{self, Given, RingRequests};
+use crate::skeleton::{Root, Skeleton, SkeletonNode};
+use crate::soma::insertion_quads::Insertion;
 use crate::soma::{self, SomaRequest, SomaSurface};
 use crate::warning::Warnings;
 use crate::{FirstRing, GenerateOptions, SomaMethod, SomaReport};
 
 /// The sphere of each soma that is to be meshed.
-pub(crate) fn balls(
+pub(crate) fn soma_spheres(
     morphology: &Morphology,
     skeleton: &Skeleton,
     options: &GenerateOptions,
     warnings: &mut Warnings,
-) -> Vec<Option<Ball>> {
+) -> Vec<Option<SomaSphere>> {
     let starts = starts(skeleton, morphology.somata.len());
     let reach = match options.soma {
         SomaMethod::Fem => FEM_REACH,
@@ -27,7 +27,7 @@ pub(crate) fn balls(
         SomaMethod::Profile => PROFILE_REACH,
         SomaMethod::None => return vec![None; morphology.somata.len()],
     };
-    let ball = |(index, soma): (usize, &Soma)| {
+    let soma_sphere = |(index, soma): (usize, &Soma)| {
         let mut radius = f64::from(soma.radius);
         if !(radius.is_finite() && radius > 0.0) {
             radius = radius_from_neurites(skeleton, &starts[index], soma.center.as_dvec3());
@@ -37,13 +37,18 @@ pub(crate) fn balls(
                 "soma has no radius: taken from where its neurites start",
             );
         }
-        Some(Ball {
+        Some(SomaSphere {
             center: soma.center.as_dvec3(),
             radius: radius * options.soma_scale,
             reach,
         })
     };
-    morphology.somata.iter().enumerate().map(ball).collect()
+    morphology
+        .somata
+        .iter()
+        .enumerate()
+        .map(soma_sphere)
+        .collect()
 }
 
 /// Farthest first ring of an elastic soma, in radii: beyond, the pull inverts tetrahedra. Chosen by
@@ -89,8 +94,8 @@ pub(crate) struct BuiltSoma {
 /// Shares of the way from the sphere to the farthest first ring that are tried in turn until the
 /// surface has no fold: close neurites that pull far out would make spikes through one another.
 const REACHES: [f64; 5] = [1.0, 0.6, 0.35, 0.15, 0.03];
-/// Radii of the soma beyond which no ring goes by wish where the surface does not stand what is asked
-/// for. The same for all wishes, so that a ring that is asked farther and farther out comes to a stop.
+/// Radii of the soma beyond which no ring goes by request where the surface does not stand what is asked
+/// for. The same for all requests, so that a ring that is asked farther and farther out comes to a stop.
 const FARTHEST: [f64; 14] = [
     1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.2, 2.4, 2.7, 3.0, 3.5, 4.0, 5.0,
 ];
@@ -98,7 +103,7 @@ const FARTHEST: [f64; 14] = [
 /// What is tried for a soma.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
-    /// Farthest rings by wish (radii of the soma).
+    /// Farthest rings by request (radii of the soma).
     farthest: f64,
     /// Of [`FARTHEST`], those that may serve, while one is looked for.
     search: Option<(usize, usize)>,
@@ -115,31 +120,41 @@ pub(crate) struct Built {
 /// Gives every neurite of a soma its first ring and rebuilds the somata.
 pub(crate) fn build(
     skeleton: &mut Skeleton,
-    balls: &mut [Option<Ball>],
-    wishes: &Wishes<'_>,
+    soma_spheres: &mut [Option<SomaSphere>],
+    requests: &RingRequests<'_>,
     options: &GenerateOptions,
     warnings: &mut Warnings,
 ) -> Built {
-    let farthest: Vec<f64> = balls.iter().map(|b| b.map_or(1.0, |b| b.reach)).collect();
-    let mut trials = vec![Trial::new(); balls.len()];
+    let farthest: Vec<f64> = soma_spheres
+        .iter()
+        .map(|b| b.map_or(1.0, |b| b.reach))
+        .collect();
+    let mut trials = vec![Trial::new(); soma_spheres.len()];
     loop {
         let mut said = warnings.clone();
         let limits: Vec<f64> = trials.iter().map(|t| t.farthest).collect();
-        let (mut tried, given) = rings::insert(skeleton, balls, wishes, &limits, &mut said);
-        let nodes = ring_nodes(&tried, balls.len());
-        let wished = farthest_wishes(&given, balls.len());
-        let somata: Vec<Option<BuiltSoma>> = (balls.iter().zip(nodes).zip(&trials))
-            .map(|((ball, nodes), trial)| {
-                Some(build_one(&mut tried, (*ball)?, &nodes, options, trial))
+        let (mut tried, given) =
+            rings::insert(skeleton, soma_spheres, requests, &limits, &mut said);
+        let nodes = ring_nodes(&tried, soma_spheres.len());
+        let wished = farthest_requests(&given, soma_spheres.len());
+        let somata: Vec<Option<BuiltSoma>> = (soma_spheres.iter().zip(nodes).zip(&trials))
+            .map(|((soma_sphere, nodes), trial)| {
+                Some(build_one(
+                    &mut tried,
+                    (*soma_sphere)?,
+                    &nodes,
+                    options,
+                    trial,
+                ))
             })
             .collect();
         let mut again = false;
         for (index, soma) in somata.iter().enumerate() {
-            let (Some(ball), Some(soma)) = (&mut balls[index], soma) else {
+            let (Some(soma_sphere), Some(soma)) = (&mut soma_spheres[index], soma) else {
                 continue;
             };
             if trials[index].go_on(soma.surface.sound(), wished[index], farthest[index]) {
-                ball.reach = 1.0 + (farthest[index] - 1.0) * REACHES[trials[index].reach];
+                soma_sphere.reach = 1.0 + (farthest[index] - 1.0) * REACHES[trials[index].reach];
                 again = true;
             }
         }
@@ -147,16 +162,18 @@ pub(crate) fn build(
             continue;
         }
         (somata.iter().flatten()).for_each(|soma| warn(&soma.surface, &mut said));
-        warn_of_rings(&given, &trials, wishes, &mut said);
-        let rings = given.iter().filter_map(|g| first_ring(&tried, g, balls));
+        warn_of_rings(&given, &trials, requests, &mut said);
+        let rings = given
+            .iter()
+            .filter_map(|g| first_ring(&tried, g, soma_spheres));
         let rings = rings.collect();
         (*skeleton, *warnings) = (tried, said);
         return Built { somata, rings };
     }
 }
 
-/// Per soma: radii of the farthest ring that is there by wish alone.
-fn farthest_wishes(given: &[Given], somata: usize) -> Vec<Option<f64>> {
+/// Per soma: radii of the farthest ring that is there by request alone.
+fn farthest_requests(given: &[Given], somata: usize) -> Vec<Option<f64>> {
     let mut farthest: Vec<Option<f64>> = vec![None; somata];
     for ring in given.iter().filter(|g| g.farther) {
         let most = &mut farthest[ring.soma as usize];
@@ -175,7 +192,7 @@ impl Trial {
     }
 
     /// Whether there is something else to try. `wished`: radii of the farthest ring that is there by
-    /// wish alone. `most`: farthest of those that nobody asked for.
+    /// request alone. `most`: farthest of those that nobody asked for.
     fn go_on(&mut self, sound: bool, wished: Option<f64>, most: f64) -> bool {
         match self.search {
             None if sound => return false,
@@ -202,7 +219,7 @@ impl Trial {
             return true;
         }
         self.search = None;
-        // Without any wish that is too far, the rings that nobody asked for have their turn.
+        // Without any request that is too far, the rings that nobody asked for have their turn.
         let best = low.checked_sub(1).map_or(0.0, |best| FARTHEST[best]);
         let known = sound && self.farthest == best;
         self.farthest = best;
@@ -216,20 +233,29 @@ impl Trial {
     }
 }
 
-/// A ring where it is in the end; none: its neurite found no seat.
-fn first_ring(skeleton: &Skeleton, given: &Given, balls: &[Option<Ball>]) -> Option<FirstRing> {
+/// A ring where it is in the end; none: its neurite found no insertion_quad.
+fn first_ring(
+    skeleton: &Skeleton,
+    given: &Given,
+    soma_spheres: &[Option<SomaSphere>],
+) -> Option<FirstRing> {
     let node = skeleton.node(given.node);
-    let ball = balls[given.soma as usize]?;
+    let soma_sphere = soma_spheres[given.soma as usize]?;
     (node.root == Root::Insertion(given.soma)).then(|| FirstRing {
         neurite: given.neurite,
         position: given.position,
         center: node.center,
-        outwards: (node.center - ball.center).normalize_or(DVec3::Y),
+        outwards: (node.center - soma_sphere.center).normalize_or(DVec3::Y),
         radius: node.radius,
     })
 }
 
-fn warn_of_rings(given: &[Given], trials: &[Trial], wishes: &Wishes<'_>, warnings: &mut Warnings) {
+fn warn_of_rings(
+    given: &[Given],
+    trials: &[Trial],
+    requests: &RingRequests<'_>,
+    warnings: &mut Warnings,
+) {
     warnings.add_many(
         "ring_nearer",
         trials.iter().filter(|t| t.reach > 0).count(),
@@ -243,7 +269,7 @@ fn warn_of_rings(given: &[Given], trials: &[Trial], wishes: &Wishes<'_>, warning
     );
     warnings.add_many(
         "ring_unused",
-        wishes.unused(given),
+        requests.unused(given),
         "no neurite of this number has a first ring: its position is not used",
     );
 }
@@ -261,18 +287,18 @@ pub(crate) fn ring_nodes(skeleton: &Skeleton, somata: usize) -> Vec<Vec<u32>> {
 
 fn build_one(
     skeleton: &mut Skeleton,
-    ball: Ball,
+    soma_sphere: SomaSphere,
     nodes: &[u32],
     options: &GenerateOptions,
     trial: &Trial,
 ) -> BuiltSoma {
     let insertions: Vec<Insertion> = nodes
         .iter()
-        .map(|&n| insertion(skeleton.node(n), &ball))
+        .map(|&n| insertion(skeleton.node(n), &soma_sphere))
         .collect();
     let request = SomaRequest {
-        center: ball.center,
-        radius: ball.radius,
+        center: soma_sphere.center,
+        radius: soma_sphere.radius,
         method: options.soma,
         poisson: options.poisson,
         kind: options.sphere,
@@ -285,13 +311,13 @@ fn build_one(
         },
     };
     let mut surface = soma::rebuild(&request, &insertions);
-    keep_seated(skeleton, &mut surface, nodes, &ball);
-    let report = measure(&surface, ball.radius);
+    keep_seated(skeleton, &mut surface, nodes, &soma_sphere);
+    let report = measure(&surface, soma_sphere.radius);
     BuiltSoma { surface, report }
 }
 
-fn insertion(node: &Node, ball: &Ball) -> Insertion {
-    let offset = node.center - ball.center;
+fn insertion(node: &SkeletonNode, soma_sphere: &SomaSphere) -> Insertion {
+    let offset = node.center - soma_sphere.center;
     Insertion {
         direction: offset.try_normalize().unwrap_or(DVec3::Y),
         distance: offset.length(),
@@ -299,8 +325,13 @@ fn insertion(node: &Node, ball: &Ball) -> Insertion {
     }
 }
 
-/// Puts the rings' nodes where the soma has them. Neurites without a seat become free.
-fn keep_seated(skeleton: &mut Skeleton, surface: &mut SomaSurface, nodes: &[u32], ball: &Ball) {
+/// Puts the rings' nodes where the soma has them. Neurites without a insertion_quad become free.
+fn keep_seated(
+    skeleton: &mut Skeleton,
+    surface: &mut SomaSurface,
+    nodes: &[u32],
+    soma_sphere: &SomaSphere,
+) {
     let (mut shapes, _) = skeleton.shapes();
     let dropped: BTreeSet<usize> = surface.dropped.iter().copied().collect();
     let (mut rings, mut insertions) = (Vec::new(), Vec::new());
@@ -310,7 +341,7 @@ fn keep_seated(skeleton: &mut Skeleton, surface: &mut SomaSurface, nodes: &[u32]
             shapes.set_root(node, Root::Free);
             continue;
         }
-        let center = ball.center + insertion.direction * insertion.distance;
+        let center = soma_sphere.center + insertion.direction * insertion.distance;
         shapes.set_center(node, center);
         shapes.set_radius(node, insertion.radius);
         rings.push(surface.rings[slot]);
@@ -331,12 +362,12 @@ fn warn(surface: &SomaSurface, warnings: &mut Warnings) {
         "neurites crowd on the soma: the first ring was moved aside",
     );
     warnings.add_many(
-        "seat_far",
+        "insertion_quad_far",
         surface.misfits,
         "no free place on the soma within 1.5 quads of a neurite: the surface was warped towards it",
     );
     warnings.add_many(
-        "no_seat",
+        "no_insertion_quad",
         surface.dropped.len(),
         "more neurites than the soma has places for: left unattached",
     );

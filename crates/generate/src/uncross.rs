@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use crate::prepare::Ball;
+use crate::prepare::SomaSphere;
 use crate::skeleton::{Children, NONE, Root, Skeleton};
 use crate::warning::Warnings;
 
@@ -22,11 +22,11 @@ const MOST_MOVED: f64 = 2.0;
 /// of every node that is left, along the path.
 pub(crate) fn uncross_rings(
     skeleton: &mut Skeleton,
-    balls: &[Option<Ball>],
+    soma_spheres: &[Option<SomaSphere>],
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
     let children = skeleton.children();
-    let mut work = Work::new(skeleton, children, balls);
+    let mut work = Work::new(skeleton, children, soma_spheres);
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -82,7 +82,7 @@ pub(crate) fn uncross_rings(
 struct Work<'a> {
     skeleton: &'a Skeleton,
     children: &'a Children,
-    balls: &'a [Option<Ball>],
+    soma_spheres: &'a [Option<SomaSphere>],
     keep: Vec<bool>,
     parent: Vec<u32>,
     /// The only child, or [`NONE`] at forks and ends.
@@ -92,7 +92,11 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(skeleton: &'a Skeleton, children: &'a Children, balls: &'a [Option<Ball>]) -> Self {
+    fn new(
+        skeleton: &'a Skeleton,
+        children: &'a Children,
+        soma_spheres: &'a [Option<SomaSphere>],
+    ) -> Self {
         let count = skeleton.nodes().len();
         let only = |i: u32| match children.of(i) {
             [only] => *only,
@@ -101,7 +105,7 @@ impl<'a> Work<'a> {
         let mut work = Self {
             skeleton,
             children,
-            balls,
+            soma_spheres,
             keep: vec![true; count],
             parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
             child: (0..count as u32).map(only).collect(),
@@ -121,8 +125,8 @@ impl<'a> Work<'a> {
     fn orientation(&self, i: u32) -> DVec3 {
         let node = self.skeleton.node(i);
         if let Root::Insertion(soma) = node.root
-            && let Some(ball) = self.balls[soma as usize]
-            && let Some(outwards) = (node.center - ball.center).try_normalize()
+            && let Some(soma_sphere) = self.soma_spheres[soma as usize]
+            && let Some(outwards) = (node.center - soma_sphere.center).try_normalize()
         {
             return outwards;
         }

@@ -94,7 +94,7 @@ fn assert_sound(generated: &Generated, what: &str) {
         "{what}: {shape:?}"
     );
     assert_eq!(shape.euler, 2 * shape.components as i64, "{what}");
-    for bad in ["soma_folded", "soma_inverted", "no_seat"] {
+    for bad in ["soma_folded", "soma_inverted", "no_insertion_quad"] {
         assert_eq!(count(generated, bad), 0, "{what}: {bad}");
     }
 }
@@ -204,7 +204,7 @@ fn a_ring_that_goes_too_far_comes_to_a_stop() {
 }
 
 #[test]
-fn wishes_that_nobody_hears_are_told() {
+fn requests_that_nobody_hears_are_told() {
     let star = star();
     assert_eq!(
         count(&with(&star, &[(9, 1.0), (1, f64::NAN)]), "ring_unused"),

@@ -179,7 +179,10 @@ fn crowded_and_thick_neurites_fold_nothing() {
             !codes.contains(&"soma_folded"),
             "radius {radius}: {codes:?}"
         );
-        assert!(!codes.contains(&"no_seat"), "radius {radius}: {codes:?}");
+        assert!(
+            !codes.contains(&"no_insertion_quad"),
+            "radius {radius}: {codes:?}"
+        );
     }
 }
 

@@ -44,7 +44,7 @@ pub use format::{Format, UnknownFormat};
 pub use intersect::{Search, search_self_intersections, self_intersections};
 pub use measure::{Measure, measure, measure_surface};
 pub use placed::Placed;
-pub use read::{Place, ReadError, read, read_as, read_bytes};
+pub use read::{FilePosition, ReadError, read, read_as, read_bytes};
 pub use surface::{Faces, Surface, SurfaceMesh, SurfaceVertex};
 pub use topology::{Topology, topology};
 pub use weld::merge_identical;

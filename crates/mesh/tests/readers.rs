@@ -3,7 +3,7 @@
 mod shapes;
 
 use glam::DVec3;
-use neurotess_mesh::{Format, Place, ReadError, SurfaceMesh, check, read, read_bytes};
+use neurotess_mesh::{FilePosition, Format, ReadError, SurfaceMesh, check, read, read_bytes};
 use shapes::{torus, written};
 
 fn parse(text: &str, format: Format) -> SurfaceMesh {
@@ -73,29 +73,32 @@ fn ply_header_that_lies_is_cut_off() {
 fn faults_name_their_place() {
     let wrong = PLY.replace("1 1 0 255", "1 one 0 255");
     let error = fault(wrong.as_bytes(), Format::Ply);
-    assert_eq!(error.place(), Place::Line(15));
+    assert_eq!(error.place(), FilePosition::Line(15));
     assert_eq!(error.to_string(), "line 15: 'one': expected a number");
     let error = fault(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", Format::Obj);
     assert!(matches!(
         error,
         ReadError::BadIndex {
-            at: Place::Line(4),
+            at: FilePosition::Line(4),
             index: 3,
             vertices: 3
         }
     ));
     assert_eq!(
         fault(b"v 0 0 0\nf 0 1 2\n", Format::Obj).place(),
-        Place::Line(2)
+        FilePosition::Line(2)
     );
     assert_eq!(
         fault(b"v 0 0 0\nf 1 1\n", Format::Obj).place(),
-        Place::Line(2)
+        FilePosition::Line(2)
     );
-    assert_eq!(fault(b"v nan 0 0\n", Format::Obj).place(), Place::Line(1));
+    assert_eq!(
+        fault(b"v nan 0 0\n", Format::Obj).place(),
+        FilePosition::Line(1)
+    );
     assert_eq!(
         fault(b"OFF\n9999999999999 0 0\n0 0 0\n", Format::Off).place(),
-        Place::Line(3)
+        FilePosition::Line(3)
     );
 }
 
@@ -150,7 +153,7 @@ fn stl_text_and_counts_that_lie() {
         ReadError::Truncated { .. }
     ));
     bytes[80..84].copy_from_slice(&1u32.to_le_bytes());
-    assert_eq!(fault(&bytes, Format::Stl).place(), Place::Byte(80));
+    assert_eq!(fault(&bytes, Format::Stl).place(), FilePosition::Byte(80));
     // A binary file may begin as text does.
     let mut bytes = written(&torus(5, 4, DVec3::ZERO), Format::Stl);
     bytes[..5].copy_from_slice(b"solid");

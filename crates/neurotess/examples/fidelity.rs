@@ -18,7 +18,7 @@ use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, PatchKind, Role, Surface, SurfaceMesh, self_intersections};
 use neurotess::morphology::{Morphology, shape};
-use neurotess::refine::{Levels, RefineOptions, Refinement};
+use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 
 #[expect(clippy::print_stdout, reason = "this is its output")]
 fn main() {
@@ -40,7 +40,7 @@ fn row(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let generated = generate(&morphology, &GenerateOptions::default()).expect("meshed");
     let refinement = Refinement::new(
         &generated.mesh,
-        &Levels::Homogeneous(4),
+        LodCriterion::Homogeneous(4),
         &RefineOptions::default(),
     );
     let surface = SurfaceMesh::collect(&refinement);

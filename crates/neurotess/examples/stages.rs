@@ -10,7 +10,7 @@ use std::time::Instant;
 use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{Faces, Surface};
-use neurotess::refine::{Levels, RefineOptions, Refinement};
+use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 
 #[expect(clippy::print_stdout, reason = "this is its output")]
 fn main() {
@@ -47,10 +47,10 @@ fn stages(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
         let again = generate(&morphology, &generate_options).expect("meshed");
         soma_ms = soma_ms.min(again.soma_seconds * 1e3);
     });
-    let levels = Levels::Homogeneous(4);
+    let levels = LodCriterion::Homogeneous(4);
     let mut triangles = 0;
     let refine_ms = best(3, || {
-        let refinement = Refinement::new(&generated.mesh, &levels, &RefineOptions::default());
+        let refinement = Refinement::new(&generated.mesh, levels, &RefineOptions::default());
         triangles = refinement.triangle_count();
         let (mut vertices, mut faces) = (Vec::new(), Faces::default());
         for block in 0..refinement.vertex_blocks() {

@@ -1,19 +1,19 @@
-//! What colors tell: a word for every tracing point, the table of colors and the legend.
+//! What colors tell: a color_key for every tracing point, the table of colors and the legend.
 //!
 //! Words belong to a cell, whatever shows it. What differs from neuron to neuron of one cell is in the
 //! table's values: a color for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
-//! ([`Replay`]).
+//! ([`Recording`]).
 
 mod by_node;
+mod compartments;
 mod cut;
-mod elements;
-mod moment;
-mod replay;
+mod recording;
+mod report_frame;
 
 pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
 pub use cut::{cuts, with_middles};
-pub use moment::Moment;
-pub use replay::{DECAY, Replay, ReplayError};
+pub use recording::{DECAY, Recording, RecordingError};
+pub use report_frame::ReportFrame;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -32,11 +32,11 @@ pub enum ColorBy {
     /// Neighboring sections differ.
     Section,
     /// Number of forks from the neurite's start.
-    Order,
+    BranchOrder,
     /// Radius (µm).
     Radius,
-    /// Way along the neurite from its start (µm).
-    Depth,
+    /// Distance along the neurite from its start (µm).
+    PathDistance,
     /// Every cell its own.
     Neuron,
 }
@@ -56,8 +56,8 @@ pub struct Cell<'c> {
 #[derive(Clone, Debug)]
 pub struct Coloring {
     /// By cell and tracing point.
-    pub words: Vec<Vec<u32>>,
-    /// What words mean.
+    pub color_keys: Vec<Vec<u32>>,
+    /// What color_keys mean.
     pub table: ColorTable,
     /// What colors mean.
     pub legend: Legend,
@@ -65,7 +65,7 @@ pub struct Coloring {
 
 /// The colors to choose from.
 #[derive(Clone, Debug)]
-pub struct Paint {
+pub struct ColorScheme {
     /// Of types and of what is merely told apart.
     pub palette: Palette,
     /// Behind everything: black is not drawn on black.
@@ -79,17 +79,17 @@ pub struct Paint {
 /// Color of what has no value: a gray that no scale has.
 pub const NOTHING: Rgb = [160; 3];
 
-impl Paint {
+impl ColorScheme {
     /// Words on the scale, from one number to another; the first category is for what has none.
     pub fn scaled(
         &self,
-        words: Vec<Vec<u32>>,
+        color_keys: Vec<Vec<u32>>,
         title: &str,
         unit: &str,
         range: [f32; 2],
     ) -> Coloring {
         Coloring {
-            words,
+            color_keys,
             legend: Legend::bar(title, unit, self.scale.clone(), range, false),
             table: ColorTable {
                 scale: self.scale.clone(),
@@ -108,25 +108,25 @@ impl Paint {
 }
 
 /// Chooses the colors.
-pub fn coloring(cells: &[Cell<'_>], by: ColorBy, paint: &Paint) -> Coloring {
+pub fn coloring(cells: &[Cell<'_>], by: ColorBy, scheme: &ColorScheme) -> Coloring {
     match by {
-        ColorBy::Type => by_type(cells, paint),
-        ColorBy::Neuron => by_neuron(cells, paint),
-        ColorBy::Neurite => told_apart(cells, paint, "neurite", shape::neurites),
-        ColorBy::Section => told_apart(cells, paint, "section", sections),
-        ColorBy::Order => measured(cells, paint, "branch order", "", |cell| {
+        ColorBy::Type => by_type(cells, scheme),
+        ColorBy::Neuron => by_neuron(cells, scheme),
+        ColorBy::Neurite => categorical(cells, scheme, "neurite", shape::neurites),
+        ColorBy::Section => categorical(cells, scheme, "section", sections),
+        ColorBy::BranchOrder => continuous(cells, scheme, "branch order", "", |cell| {
             let orders = shape::branch_orders(cell.morphology);
             of_sections(cell, |section| orders.get(section).map(|&o| o as f32))
         }),
-        ColorBy::Radius => measured(cells, paint, "radius", "µm", |cell| {
+        ColorBy::Radius => continuous(cells, scheme, "radius", "µm", |cell| {
             let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
             cell.mesh.tracing.iter().map(radius).collect()
         }),
-        ColorBy::Depth => measured(cells, paint, "path distance", "µm", depths),
+        ColorBy::PathDistance => continuous(cells, scheme, "path distance", "µm", path_distances),
     }
 }
 
-fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Coloring {
+fn by_type(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
     // The soma's points keep a type of their own whatever the file says.
     let kind = |point: &TracingPoint| match point.role {
         Role::Soma => NeuriteKind::SOMA.0,
@@ -139,16 +139,16 @@ fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Coloring {
     for (index, number) in kinds.values_mut().zip(0..) {
         *index = number;
     }
-    let words = |cell: &Cell<'_>| {
+    let color_keys = |cell: &Cell<'_>| {
         let points = cell.mesh.tracing.iter();
         points.map(|point| category(kinds[&kind(point)])).collect()
     };
-    let categories: Vec<Rgb> = kinds.keys().map(|&kind| paint.of_type(kind)).collect();
+    let categories: Vec<Rgb> = kinds.keys().map(|&kind| scheme.of_type(kind)).collect();
     let names = kinds
         .keys()
         .map(|&kind| NeuriteKind(kind).name().replace('_', " "));
     Coloring {
-        words: cells.iter().map(words).collect(),
+        color_keys: cells.iter().map(color_keys).collect(),
         legend: Legend::swatches("", categories.iter().copied().zip(names)),
         table: ColorTable {
             scale: Vec::new(),
@@ -158,29 +158,29 @@ fn by_type(cells: &[Cell<'_>], paint: &Paint) -> Coloring {
     }
 }
 
-fn by_neuron(cells: &[Cell<'_>], paint: &Paint) -> Coloring {
-    let words = |(cell, index)| {
+fn by_neuron(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
+    let color_keys = |(cell, index)| {
         let cell: &Cell<'_> = cell;
         vec![category(index); cell.mesh.tracing.len()]
     };
     let names: Vec<String> = cells.iter().map(|cell| cell.name.to_owned()).collect();
     listed(
-        cells.iter().zip(0..).map(words).collect(),
+        cells.iter().zip(0..).map(color_keys).collect(),
         &names,
         "neuron",
-        paint,
+        scheme,
     )
 }
 
 /// Things numbered from 0 on over all cells; somata have a color of their own.
-fn told_apart(
+fn categorical(
     cells: &[Cell<'_>],
-    paint: &Paint,
+    scheme: &ColorScheme,
     thing: &str,
     number: impl Fn(&Morphology) -> Vec<u32>,
 ) -> Coloring {
     let mut next = 0;
-    let mut words = Vec::new();
+    let mut color_keys = Vec::new();
     for cell in cells {
         let numbers = number(cell.morphology);
         let of_point = |point: &TracingPoint| {
@@ -189,34 +189,39 @@ fn told_apart(
             // 0 is the soma.
             number.map_or(category(0), |number| category(1 + next + number))
         };
-        words.push(cell.mesh.tracing.iter().map(of_point).collect());
+        color_keys.push(cell.mesh.tracing.iter().map(of_point).collect());
         next += numbers.iter().max().map_or(0, |most| most + 1);
     }
-    let soma = paint.of_type(1);
+    let soma = scheme.of_type(1);
     let names: Vec<String> = (1..=next).map(|n| format!("{thing} {n}")).collect();
-    let mut coloring = listed(words, &names, thing, paint);
+    let mut coloring = listed(color_keys, &names, thing, scheme);
     coloring.table.categories.insert(0, soma);
     coloring
 }
 
 /// Category i has the i-th distinct color and name.
-fn listed(words: Vec<Vec<u32>>, names: &[String], thing: &str, paint: &Paint) -> Coloring {
+fn listed(
+    color_keys: Vec<Vec<u32>>,
+    names: &[String],
+    thing: &str,
+    scheme: &ColorScheme,
+) -> Coloring {
     let categories: Vec<Rgb> = (0..names.len())
-        .map(|i| paint.palette.distinct(i))
+        .map(|i| scheme.palette.distinct(i))
         .collect();
     let mut entries: Vec<(Rgb, String)> = categories
         .iter()
         .copied()
         .zip(names.iter().cloned())
         .collect();
-    let title = if entries.len() > paint.palette.distinct_count() {
+    let title = if entries.len() > scheme.palette.distinct_count() {
         entries.clear();
         format!("{} {thing}s, colors repeat", names.len())
     } else {
         String::new()
     };
     Coloring {
-        words,
+        color_keys,
         legend: Legend::swatches(&title, entries),
         table: ColorTable {
             scale: Vec::new(),
@@ -231,9 +236,9 @@ fn sections(morphology: &Morphology) -> Vec<u32> {
 }
 
 /// Numbers on a scale; points without one have the soma's color.
-fn measured(
+fn continuous(
     cells: &[Cell<'_>],
-    paint: &Paint,
+    scheme: &ColorScheme,
     title: &str,
     unit: &str,
     values: impl Fn(&Cell<'_>) -> Vec<Option<f32>>,
@@ -252,27 +257,27 @@ fn measured(
     } else {
         (at(0.0), at(0.98))
     };
-    let [low, high] = paint.range.unwrap_or([low, high]);
+    let [low, high] = scheme.range.unwrap_or([low, high]);
     let high = if high > low { high } else { low + 1.0 };
-    let word = |value: &Option<f32>| match value {
+    let color_key = |value: &Option<f32>| match value {
         Some(value) => fraction((value - low) / (high - low)),
         None => category(0),
     };
-    let words = values
+    let color_keys = values
         .iter()
-        .map(|values| values.iter().map(word).collect());
+        .map(|values| values.iter().map(color_key).collect());
     Coloring {
-        words: words.collect(),
+        color_keys: color_keys.collect(),
         legend: Legend::bar(
             title,
             unit,
-            paint.scale.clone(),
+            scheme.scale.clone(),
             [low, high],
             at(1.0) > high,
         ),
         table: ColorTable {
-            scale: paint.scale.clone(),
-            categories: vec![paint.of_type(1)],
+            scale: scheme.scale.clone(),
+            categories: vec![scheme.of_type(1)],
             ..ColorTable::default()
         },
     }
@@ -286,8 +291,8 @@ fn of_sections(cell: &Cell<'_>, value: impl Fn(usize) -> Option<f32>) -> Vec<Opt
     cell.mesh.tracing.iter().map(of_point).collect()
 }
 
-/// Way (µm) along the neurite from its first point to each tracing point.
-pub fn depths(cell: &Cell<'_>) -> Vec<Option<f32>> {
+/// Distance along the path (µm) along the neurite from its first point to each tracing point.
+pub fn path_distances(cell: &Cell<'_>) -> Vec<Option<f32>> {
     let morphology = cell.morphology;
     let ends = shape::path_lengths(morphology);
     let mut of_sample: HashMap<i64, f32> = HashMap::new();

@@ -32,9 +32,9 @@
 //! assert!(shape.closed && shape.oriented && shape.euler == 2);
 //!
 //! // Refined to level 4: a surface that is made block by block when it is asked for.
-//! use neurotess::refine::{Levels, RefineOptions, Refinement};
+//! use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 //! let surface =
-//!     Refinement::new(&generated.mesh, &Levels::Homogeneous(4), &RefineOptions::default());
+//!     Refinement::new(&generated.mesh, LodCriterion::Homogeneous(4), &RefineOptions::default());
 //! let (volume, area) = surface.volume_and_area();
 //! assert!(volume > generated.somata[0].volume && area > 0.0);
 //!
@@ -49,7 +49,7 @@
 //!
 //! The **coarse mesh** is small and is what a renderer needs; the **surface** may be far larger than
 //! memory. For a surface as fine as an error asks for, use
-//! [`Levels::MaxError`](refine::Levels::MaxError). What is in doubt comes back as **warnings**, of
+//! [`LodCriterion::MaxError`](refine::LodCriterion::MaxError). What is in doubt comes back as **warnings**, of
 //! the reader and of the generator; libraries print nothing.
 //!
 //! # Where things are

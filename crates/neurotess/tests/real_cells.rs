@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, SphereKind, generate};
 use neurotess::mesh::{CoarseMesh, SurfaceMesh};
-use neurotess::refine::{Levels, RefineOptions, Refinement};
+use neurotess::refine::{Lod, LodCriterion, RefineOptions, Refinement};
 
 fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -32,14 +32,14 @@ fn all() -> Vec<PathBuf> {
     files
 }
 
-fn assert_closed(mesh: &CoarseMesh, levels: &Levels<'_>, what: &str) {
+fn assert_closed<'l>(mesh: &CoarseMesh, lod: impl Into<Lod<'l>>, what: &str) {
     let coarse = mesh.topology();
     assert!(
         coarse.closed && coarse.oriented && coarse.vertex_manifold,
         "{what}: {coarse:?}"
     );
     assert_eq!(coarse.euler, 2 * coarse.components as i64, "{what}");
-    let refinement = Refinement::new(mesh, levels, &RefineOptions::default());
+    let refinement = Refinement::new(mesh, lod, &RefineOptions::default());
     let surface = SurfaceMesh::collect(&refinement);
     let refined = surface.topology();
     assert!(
@@ -70,15 +70,15 @@ fn every_tracing_gives_a_closed_surface_without_folds_in_the_soma() {
         let huge = morphology.points.len() > 50_000;
         assert_closed(
             &generated.mesh,
-            &Levels::Homogeneous(if huge { 1 } else { 4 }),
+            LodCriterion::Homogeneous(if huge { 1 } else { 4 }),
             &name,
         );
         if !huge {
             let mixed: Vec<u8> = (0..generated.mesh.tracing.len())
                 .map(|i| [1, 3, 2, 6][i * 7 % 4])
                 .collect();
-            assert_closed(&generated.mesh, &Levels::PerPoint(&mixed), &name);
-            assert_closed(&generated.mesh, &Levels::MaxError(0.1), &name);
+            assert_closed(&generated.mesh, Lod::per_point(&mixed), &name);
+            assert_closed(&generated.mesh, LodCriterion::MaxError(0.1), &name);
         }
     }
 }
@@ -101,7 +101,7 @@ fn the_papers_sphere_serves_every_tracing_too() {
             ..GenerateOptions::default()
         };
         let generated = generate(&morphology, &options).expect("meshed");
-        assert_closed(&generated.mesh, &Levels::Homogeneous(2), &name);
+        assert_closed(&generated.mesh, LodCriterion::Homogeneous(2), &name);
     }
 }
 
@@ -141,7 +141,7 @@ fn first_rings_anywhere_fold_nothing() {
                         "{what}: {warning}"
                     );
                 }
-                assert_closed(&made.mesh, &Levels::Homogeneous(1), &what);
+                assert_closed(&made.mesh, LodCriterion::Homogeneous(1), &what);
             }
         }
     }

@@ -1,41 +1,41 @@
-//! The resident form of a coarse mesh, read: what shaders make of its words. Twin: template.wgsl.
+//! The resident form of a coarse mesh, read: what shaders make of its packed buffer. Twin: template.wgsl.
 //!
 //! | what | bytes | holds |
 //! | --- | --- | --- |
-//! | point | 16 | center in its ball (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), word (10), kind and run (3) |
-//! | ball, for 32 points | 20 | center, radius, the most that an edge bends |
-//! | loose vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
-//! | anchor | 32 | center, reach, radius, tangent, role, word |
-//! | patch of a soma | 6 | four loose vertices |
-//! | loose patch | 8 | four loose vertices, kind |
+//! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), color key (10), kind and run (3) |
+//! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
+//! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
+//! | anchor | 32 | center, reach, radius, tangent, role, color key |
+//! | patch of a soma | 6 | four explicit vertices |
+//! | explicit patch | 8 | four explicit vertices, kind |
 //! | cap | 4 | its ring |
 //!
 //! A point has a ring of its own, four vertices a quarter turn apart, and four lateral patches to the
 //! next: rings and lateral patches are derived from points alone. Joints, insertions and somata are
-//! loose vertices around anchors. Errors: at most 0.2 % of the radius for the center (a point for which
-//! the ball is too large becomes loose), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the
-//! turn; loose vertices: 2⁻¹⁶ of their distance from the anchor. All together under a hundredth of
+//! explicit vertices around anchors. Errors: at most 0.2 % of the radius for the center (a point for which
+//! the sphere is too large becomes explicit), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the
+//! turn; explicit vertices: 2⁻¹⁶ of their distance from the anchor. All together under a hundredth of
 //! the radius: `resident_form_is_within_a_hundredth_of_the_radius`.
 
 use glam::Vec3;
 use neurotess_mesh::Role;
 
-/// Points whose centers are relative to the same ball.
-pub const POINTS_OF_BALL: usize = 32;
-/// Words of a ball.
-pub(crate) const BALL_WORDS: usize = 5;
-/// Bit of a vertex that is loose.
-pub(crate) const LOOSE: u32 = 1 << 31;
+/// Points whose centers are relative to the same sphere.
+pub const POINTS_OF_SPHERE: usize = 32;
+/// u32s of a bounding sphere.
+pub(crate) const SPHERE_U32S: usize = 5;
+/// Bit of a vertex that is explicit.
+pub(crate) const EXPLICIT: u32 = 1 << 31;
 pub(crate) const POINT_KIND_SHIFT: u32 = 30;
-/// Kinds of a point: a ring of its own, the same at an end, a ring of loose vertices.
+/// Kinds of a point: a ring of its own, the same at an end, a ring of explicit vertices.
 pub(crate) const POINT_ORDINARY: u32 = 0;
 pub(crate) const POINT_END: u32 = 1;
-pub(crate) const POINT_LOOSE: u32 = 2;
+pub(crate) const POINT_EXPLICIT: u32 = 2;
 /// The tube narrows here.
 pub(crate) const POINT_NARROWS: u32 = 1 << 29;
 /// Lateral patches lead on to the next point.
 pub(crate) const POINT_GOES_ON: u32 = 1 << 28;
-/// Steps of a coordinate from one side of the ball's box to the other.
+/// Steps of a coordinate from one side of the sphere's box to the other.
 pub(crate) const POSITION_STEPS: f32 = ((1 << 20) - 1) as f32;
 /// Radii are floats of 5 bits of exponent, 2⁻¹⁶ to 2¹⁶ µm, and 11 of fraction.
 pub(crate) const RADIUS_BASE: u32 = 111 << 11;
@@ -63,8 +63,8 @@ pub(crate) fn to_octahedral(v: Vec3, most: f32) -> (u32, u32) {
         let side = |p: f32| if p >= 0.0 { 1.0 } else { -1.0 };
         (x, y) = ((1.0 - p.y.abs()) * side(p.x), (1.0 - p.x.abs()) * side(p.y));
     }
-    let word = |c: f32| ((c + 1.0) * 0.5 * most + 0.5).clamp(0.0, most) as u32;
-    (word(x), word(y))
+    let steps = |c: f32| ((c + 1.0) * 0.5 * most + 0.5).clamp(0.0, most) as u32;
+    (steps(x), steps(y))
 }
 
 /// Two directions that make a right-handed frame with a third: Duff et al., Building an orthonormal
@@ -129,23 +129,23 @@ pub(crate) fn slope(code: u32, narrows: bool) -> f32 {
     if narrows { -(root * root) } else { root * root }
 }
 
-/// A coordinate in a ball's box.
-pub(crate) fn from_ball(center: Vec3, ball_radius: f32, [x, y, z]: [u32; 3]) -> Vec3 {
-    let step = ball_radius * (2.0 / POSITION_STEPS);
-    let from_ball = Vec3::new(x as f32, y as f32, z as f32) * step - Vec3::splat(ball_radius);
-    center + from_ball
+/// A coordinate in a sphere's box.
+pub(crate) fn from_sphere(center: Vec3, sphere_radius: f32, [x, y, z]: [u32; 3]) -> Vec3 {
+    let step = sphere_radius * (2.0 / POSITION_STEPS);
+    let from_sphere = Vec3::new(x as f32, y as f32, z as f32) * step - Vec3::splat(sphere_radius);
+    center + from_sphere
 }
 
-pub(crate) fn to_ball(center: Vec3, ball_radius: f32, p: Vec3) -> [u32; 3] {
-    let step = ball_radius * (2.0 / POSITION_STEPS);
-    let place = (p - center + ball_radius) / step.max(f32::MIN_POSITIVE);
-    let word = |c: f32| (c + 0.5).clamp(0.0, POSITION_STEPS) as u32;
-    [word(place.x), word(place.y), word(place.z)]
+pub(crate) fn to_sphere(center: Vec3, sphere_radius: f32, p: Vec3) -> [u32; 3] {
+    let step = sphere_radius * (2.0 / POSITION_STEPS);
+    let place = (p - center + sphere_radius) / step.max(f32::MIN_POSITIVE);
+    let steps = |c: f32| (c + 0.5).clamp(0.0, POSITION_STEPS) as u32;
+    [steps(place.x), steps(place.y), steps(place.z)]
 }
 
 /// A number of 16 bits from −1 to 1.
-pub(crate) fn signed16(word: u32) -> f32 {
-    (word & 0xffff) as f32 * (2.0 / 65535.0) - 1.0
+pub(crate) fn signed16(bits: u32) -> f32 {
+    (bits & 0xffff) as f32 * (2.0 / 65535.0) - 1.0
 }
 
 pub(crate) fn to_signed16(value: f32) -> u32 {
@@ -154,7 +154,7 @@ pub(crate) fn to_signed16(value: f32) -> u32 {
 
 /// What a ring of its own is stored as.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OwnRing {
+pub(crate) struct ImplicitRing {
     pub(crate) tracing: u32,
     pub(crate) radius: u32,
     pub(crate) tangent: (u32, u32),
@@ -163,7 +163,7 @@ pub(crate) struct OwnRing {
     pub(crate) role: Role,
 }
 
-impl OwnRing {
+impl ImplicitRing {
     pub(crate) fn tangent(&self) -> Vec3 {
         octahedral(self.tangent.0, self.tangent.1, 511.0)
     }

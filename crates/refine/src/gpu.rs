@@ -10,14 +10,14 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use neurotess_mesh::{PatchKind, Role};
 
-use crate::ball::{SOMA_REACH, TUBE_REACH};
+use crate::bounding_sphere::{SOMA_REACH, TUBE_REACH};
 use crate::decode::{
-    BALL_WORDS, LOOSE, POINT_END, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_LOOSE, POINT_NARROWS,
-    POINTS_OF_BALL, POSITION_STEPS, RADIUS_BASE,
+    EXPLICIT, POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS,
+    POINTS_OF_SPHERE, POSITION_STEPS, RADIUS_BASE, SPHERE_U32S,
 };
 use crate::evaluate::MOST_SWAY;
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
-use crate::{Caps, Levels, Path, RefineOptions, View};
+use crate::{Caps, LodCriterion, LodView, Path, RefineOptions};
 
 /// Twin of `evaluate.rs`.
 pub const EVALUATE_WGSL: &str = include_str!("evaluate.wgsl");
@@ -41,10 +41,10 @@ const LEVELS_PIXEL_SIZE: u32 = 4;
 const LEVELS_PIXEL_ERROR: u32 = 5;
 
 /// Corners as they are resident, for whoever has no others: see [`compose`].
-pub const SOURCE_WGSL: &str = include_str!("source.wgsl");
+pub const CORNER_SOURCE_WGSL: &str = include_str!("corner_source.wgsl");
 
-/// A shader's whole text: constants, the twins, and what is its own, in which `Source`, `base_of` and
-/// `corner_of` say where patches have their corners from; [`SOURCE_WGSL`] is one such text.
+/// A shader's whole text: constants, the twins, and what is its own, in which `CornerSource`, `base_of` and
+/// `corner_of` say where patches have their corners from; [`CORNER_SOURCE_WGSL`] is one such text.
 pub fn compose(own: &[&str]) -> String {
     let mut text = prelude();
     for part in [EVALUATE_WGSL, LEVEL_WGSL, TEMPLATE_WGSL, PLAN_WGSL] {
@@ -67,15 +67,15 @@ pub fn prelude() -> String {
     whole("PATCH_LATERAL", PatchKind::Lateral as u32);
     whole("PATCH_CAP", PatchKind::Cap as u32);
     whole("PATCH_SOMA", PatchKind::Soma as u32);
-    whole("LOOSE", LOOSE);
+    whole("EXPLICIT", EXPLICIT);
     whole("POINT_KIND_SHIFT", POINT_KIND_SHIFT);
     whole("POINT_END", POINT_END);
-    whole("POINT_LOOSE", POINT_LOOSE);
+    whole("POINT_EXPLICIT", POINT_EXPLICIT);
     whole("POINT_NARROWS", POINT_NARROWS);
     whole("POINT_GOES_ON", POINT_GOES_ON);
-    whole("POINTS_OF_BALL", POINTS_OF_BALL as u32);
-    whole("PLACES_OF_BALL", 4 * POINTS_OF_BALL as u32);
-    whole("BALL_WORDS", BALL_WORDS as u32);
+    whole("POINTS_OF_SPHERE", POINTS_OF_SPHERE as u32);
+    whole("PATCHES_OF_SPHERE", 4 * POINTS_OF_SPHERE as u32);
+    whole("SPHERE_U32S", SPHERE_U32S as u32);
     whole("RADIUS_BASE", RADIUS_BASE);
     whole("ROLE_ORDINARY", Role::Ordinary as u32);
     whole("ROLE_END", Role::End as u32);
@@ -108,26 +108,26 @@ pub fn prelude() -> String {
     text
 }
 
-/// A [`View`] as shaders have it.
+/// A [`LodView`] as shaders have it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct GpuView {
-    /// See [`View`].
+pub struct GpuLodView {
+    /// See [`LodView`].
     pub eye: [f32; 3],
-    /// See [`View`].
+    /// See [`LodView`].
     pub slope: f32,
-    /// See [`View`].
+    /// See [`LodView`].
     pub forward: [f32; 3],
-    /// See [`View`].
+    /// See [`LodView`].
     pub flat: f32,
-    /// See [`View`].
+    /// See [`LodView`].
     pub near: f32,
     /// To a multiple of 16 bytes.
     pub pad: [f32; 3],
 }
 
-impl From<View> for GpuView {
-    fn from(view: View) -> Self {
+impl From<LodView> for GpuLodView {
+    fn from(view: LodView) -> Self {
         Self {
             eye: view.eye.to_array(),
             slope: view.slope,
@@ -139,10 +139,10 @@ impl From<View> for GpuView {
     }
 }
 
-/// [`Levels`] and [`RefineOptions`] as shaders have them; the view stands in a [`GpuView`].
+/// [`LodCriterion`] and [`RefineOptions`] as shaders have them; the view is a [`GpuLodView`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Criterion {
+pub struct GpuLodCriterion {
     /// Which.
     pub kind: u32,
     /// Level of those that have one.
@@ -155,16 +155,16 @@ pub struct Criterion {
     pub caps: u32,
 }
 
-impl Criterion {
-    /// Translates levels; those per point travel in the tracing points themselves.
-    pub fn new(levels: &Levels<'_>, options: &RefineOptions) -> Self {
-        let (kind, level, amount) = match *levels {
-            Levels::Homogeneous(level) => (LEVELS_HOMOGENEOUS, level, 0.0),
-            Levels::PerPoint(_) => (LEVELS_PER_POINT, 1, 0.0),
-            Levels::MaxError(error) => (LEVELS_MAX_ERROR, 1, error),
-            Levels::Distance { level, far, .. } => (LEVELS_DISTANCE, level, far),
-            Levels::PixelSize { pixels, .. } => (LEVELS_PIXEL_SIZE, 1, pixels),
-            Levels::PixelError { pixels, .. } => (LEVELS_PIXEL_ERROR, 1, pixels),
+impl GpuLodCriterion {
+    /// Translates a criterion; levels per point travel in the tracing points themselves.
+    pub fn new(criterion: LodCriterion, options: &RefineOptions) -> Self {
+        let (kind, level, amount) = match criterion {
+            LodCriterion::Homogeneous(level) => (LEVELS_HOMOGENEOUS, level, 0.0),
+            LodCriterion::PerPoint => (LEVELS_PER_POINT, 1, 0.0),
+            LodCriterion::MaxError(error) => (LEVELS_MAX_ERROR, 1, error),
+            LodCriterion::Distance { level, far } => (LEVELS_DISTANCE, level, far),
+            LodCriterion::PixelSize(pixels) => (LEVELS_PIXEL_SIZE, 1, pixels),
+            LodCriterion::PixelError(pixels) => (LEVELS_PIXEL_ERROR, 1, pixels),
         };
         Self {
             kind,
@@ -176,19 +176,7 @@ impl Criterion {
     }
 }
 
-impl Levels<'_> {
-    /// The view that levels are chosen from, if they depend on one.
-    pub fn view(&self) -> Option<View> {
-        match *self {
-            Levels::Distance { view, .. }
-            | Levels::PixelSize { view, .. }
-            | Levels::PixelError { view, .. } => Some(view),
-            Levels::Homogeneous(_) | Levels::PerPoint(_) | Levels::MaxError(_) => None,
-        }
-    }
-}
-
-impl View {
+impl LodView {
     /// A view without perspective whose pixels are `size` µm wide, of anything at the eye's depth
     /// or beyond.
     pub fn parallel(eye: Vec3, forward: Vec3, size: f32) -> Self {

@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use crate::evaluate::{Corner, EdgeKind, hermite_tangents, soma_controls};
-use crate::{Levels, Path, View};
+use crate::{Lod, LodCriterion, LodView, Path};
 
 /// Highest level.
 pub const HIGHEST_LEVEL: u32 = 64;
@@ -25,27 +25,36 @@ pub(crate) const STEEPEST: f32 = 3.6;
 
 /// Level of an edge between tracing points `ta` and `tb`.
 pub(crate) fn edge_level(
-    levels: &Levels<'_>,
+    lod: &Lod<'_>,
     path: Path,
     kind: EdgeKind,
     (a, ta): (&Corner, u32),
     (b, tb): (&Corner, u32),
 ) -> u32 {
-    let level = match levels {
-        Levels::Homogeneous(level) => *level,
-        Levels::PerPoint(levels) => {
-            let of = |t: u32| levels.get(t as usize).copied().map_or(1, u32::from);
+    let level = match lod.criterion {
+        LodCriterion::Homogeneous(level) => level,
+        LodCriterion::PerPoint => {
+            let of = |t: u32| {
+                lod.point_levels
+                    .get(t as usize)
+                    .copied()
+                    .map_or(1, u32::from)
+            };
             of(ta).max(of(tb))
         }
-        Levels::MaxError(error) => by_error(error.max(1e-6) * SHARE, path, kind, a, b),
-        Levels::Distance { view, level, far } => by_distance(view, *level, *far, a, b),
-        Levels::PixelSize { view, pixels } => {
-            let size = pixels * um_per_pixel(view, a, b);
+        LodCriterion::MaxError(error) => by_error(error.max(1e-6) * SHARE, path, kind, a, b),
+        LodCriterion::Distance { level, far } => by_distance(&lod.view, level, far, a, b),
+        LodCriterion::PixelSize(pixels) => {
+            let size = pixels * um_per_pixel(&lod.view, a, b);
             round_up((b.position - a.position).length() / size)
         }
-        Levels::PixelError { view, pixels } => {
-            by_error(pixels * um_per_pixel(view, a, b) * SHARE, path, kind, a, b)
-        }
+        LodCriterion::PixelError(pixels) => by_error(
+            pixels * um_per_pixel(&lod.view, a, b) * SHARE,
+            path,
+            kind,
+            a,
+            b,
+        ),
     };
     level.clamp(1, HIGHEST_LEVEL)
 }
@@ -69,13 +78,13 @@ pub(crate) fn bend(path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
 }
 
 /// The paper's importance, from the mean of the two ends.
-fn by_distance(view: &View, level: u32, far: f32, a: &Corner, b: &Corner) -> u32 {
+fn by_distance(view: &LodView, level: u32, far: f32, a: &Corner, b: &Corner) -> u32 {
     let importance = |k: &Corner| (1.0 - (k.center - view.eye).length() / far).clamp(0.0, 1.0);
     (level as f32 * 0.5 * (importance(a) + importance(b)) + 0.5) as u32
 }
 
 /// Size (µm) of a pixel at the nearer end of an edge.
-fn um_per_pixel(view: &View, a: &Corner, b: &Corner) -> f32 {
+fn um_per_pixel(view: &LodView, a: &Corner, b: &Corner) -> f32 {
     let depth = |k: &Corner| view.forward.dot(k.center - view.eye) - k.offset.length();
     let nearer = depth(a).min(depth(b)).max(view.near);
     view.slope * nearer + view.flat

@@ -3,7 +3,7 @@
 // Called by the shader that decides levels and by the one of the parity test.
 // Rust twin: level.rs. Constants come from the prelude (gpu.rs).
 
-struct View {
+struct LodView {
     eye: vec3<f32>,
     slope: f32,
     forward: vec3<f32>,
@@ -12,7 +12,7 @@ struct View {
 }
 
 // Who chooses levels: `kind` is a LEVELS_ constant, `amount` its length or number of pixels.
-struct Criterion {
+struct LodCriterion {
     kind: u32,
     level: u32,
     amount: f32,
@@ -22,8 +22,8 @@ struct Criterion {
 
 // Level of an edge; `value_a` and `value_b` are the users' levels at its tracing points.
 fn edge_level(
-    levels: Criterion,
-    view: View,
+    levels: LodCriterion,
+    view: LodView,
     kind: u32,
     a: Corner,
     value_a: u32,
@@ -57,7 +57,7 @@ fn edge_level(
 
 // The level of the edges of a ring of a point's own: a circle, whose quarters are all alike. `value`: the
 // user's level. What edge_level gives, up to rounding.
-fn ring_level(levels: Criterion, view: View, center: vec3<f32>, radius: f32, value: u32) -> u32 {
+fn ring_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f32, value: u32) -> u32 {
     let nearest = max(dot(view.forward, center - view.eye) - radius, view.near);
     let pixel = view.slope * nearest + view.flat;
     var level = levels.level;
@@ -85,8 +85,8 @@ fn ring_level(levels: Criterion, view: View, center: vec3<f32>, radius: f32, val
     return clamp(level, 1u, HIGHEST_LEVEL);
 }
 
-// The level of all edges within a ball that bend by at most `bend`, or 0 where each must be asked.
-fn ball_level(levels: Criterion, view: View, center: vec3<f32>, radius: f32, bend: f32) -> u32 {
+// The level of all edges within a sphere that bend by at most `bend`, or 0 where each must be asked.
+fn sphere_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f32, bend: f32) -> u32 {
     switch (levels.kind) {
         case LEVELS_PER_POINT, LEVELS_PIXEL_SIZE: {
             return 0u;
@@ -131,21 +131,21 @@ fn second(p: vec3<f32>, q: vec3<f32>, r: vec3<f32>) -> f32 {
     return length(p - q * 2.0 + r) * 6.0;
 }
 
-fn importance(view: View, far: f32, k: Corner) -> f32 {
+fn importance(view: LodView, far: f32, k: Corner) -> f32 {
     return clamp(1.0 - length(k.center - view.eye) / far, 0.0, 1.0);
 }
 
 // The paper's importance, from the mean of the two ends.
-fn by_distance(view: View, level: u32, far: f32, a: Corner, b: Corner) -> u32 {
+fn by_distance(view: LodView, level: u32, far: f32, a: Corner, b: Corner) -> u32 {
     return u32(f32(level) * 0.5 * (importance(view, far, a) + importance(view, far, b)) + 0.5);
 }
 
-fn near_depth(view: View, k: Corner) -> f32 {
+fn near_depth(view: LodView, k: Corner) -> f32 {
     return dot(view.forward, k.center - view.eye) - length(k.offset);
 }
 
 // Size (micrometers) of a pixel at the nearer end of an edge.
-fn um_per_pixel(view: View, a: Corner, b: Corner) -> f32 {
+fn um_per_pixel(view: LodView, a: Corner, b: Corner) -> f32 {
     let nearer = max(min(near_depth(view, a), near_depth(view, b)), view.near);
     return view.slope * nearer + view.flat;
 }

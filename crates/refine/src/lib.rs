@@ -18,25 +18,25 @@
 //! mesh that they read ([`pack`]).
 #![forbid(unsafe_code)]
 
-mod ball;
+mod bounding_sphere;
 mod coarse_surface;
 mod decode;
 mod evaluate;
+mod explicit;
 pub mod gpu;
-mod heap;
 mod level;
-mod loose;
 mod options;
 mod pack;
+mod packed;
 mod plan;
 mod refinement;
 mod runs;
 
-pub use ball::{ball_around, patch_ball};
+pub use bounding_sphere::{patch_sphere, sphere_around};
 pub use coarse_surface::CoarseSurface;
-pub use decode::POINTS_OF_BALL;
+pub use decode::POINTS_OF_SPHERE;
 pub use level::HIGHEST_LEVEL;
-pub use options::{Caps, Levels, Path, RefineOptions, View};
-pub use pack::{PLACES_OF_BALL, Part, Places, dequantized, pack};
+pub use options::{Caps, Lod, LodCriterion, LodView, Path, RefineOptions};
+pub use pack::{MeshPart, PATCHES_OF_SPHERE, PartLayout, dequantized, pack};
 pub use plan::patch_triangles;
 pub use refinement::Refinement;

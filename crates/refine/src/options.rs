@@ -2,39 +2,119 @@
 
 use glam::Vec3;
 
-/// How finely each edge is refined.
+/// By what the level of an edge is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Levels<'a> {
+#[non_exhaustive]
+pub enum LodCriterion {
     /// The same level, 1 to 64, everywhere.
     Homogeneous(u32),
-    /// A level, 1 to 64, per tracing point of the mesh.
-    PerPoint(&'a [u8]),
+    /// The level, 1 to 64, that each tracing point was given: [`Lod::point_levels`].
+    PerPoint,
     /// As fine as keeps the surface within this distance (µm) of the level-64 surface.
     MaxError(f32),
-    /// García-Cantero et al. 2017: `level × clamp(1 − d / far, 0, 1)`, d the distance to the eye,
+    /// García-Cantero et al. 2017: `level × clamp(1 − d / far, 0, 1)`, d the distance (µm) to the eye,
     /// the mean of an edge's two ends.
     Distance {
-        /// From where.
-        view: View,
         /// Level at the eye, 1 to 64.
         level: u32,
         /// Distance (µm) from which on the level is 1.
         far: f32,
     },
     /// No piece of an edge longer than this many pixels.
-    PixelSize {
-        /// From where.
-        view: View,
-        /// Pixels.
-        pixels: f32,
-    },
-    /// As fine as keeps the surface within this many pixels of the level-64 surface.
-    PixelError {
-        /// From where.
-        view: View,
-        /// Pixels.
-        pixels: f32,
-    },
+    PixelSize(f32),
+    /// Within this many pixels of the level-64 surface.
+    PixelError(f32),
+}
+
+impl Default for LodCriterion {
+    /// Half a pixel: what no one sees.
+    fn default() -> Self {
+        Self::PixelError(0.5)
+    }
+}
+
+impl LodCriterion {
+    /// The same criterion in the coordinates of a template that is shown `scale` times its size.
+    pub fn scaled(self, scale: f64) -> Self {
+        let scale = scale as f32;
+        match self {
+            Self::MaxError(error) => Self::MaxError(error / scale),
+            Self::Distance { level, far } => Self::Distance {
+                level,
+                far: far / scale,
+            },
+            other => other,
+        }
+    }
+
+    /// The same criterion, `factor` times as coarse.
+    pub fn coarser(self, factor: f32) -> Self {
+        let level = |level: u32| ((level as f32 / factor).round() as u32).max(1);
+        match self {
+            Self::Homogeneous(l) => Self::Homogeneous(level(l)),
+            Self::PerPoint => Self::PerPoint,
+            Self::MaxError(error) => Self::MaxError(error * factor),
+            Self::Distance { level: l, far } => Self::Distance {
+                level: level(l),
+                far,
+            },
+            Self::PixelSize(pixels) => Self::PixelSize(pixels * factor),
+            Self::PixelError(pixels) => Self::PixelError(pixels * factor),
+        }
+    }
+
+    /// Whether levels depend on where one looks from: [`Lod::view`].
+    pub fn needs_view(self) -> bool {
+        match self {
+            Self::Distance { .. } | Self::PixelSize(_) | Self::PixelError(_) => true,
+            Self::Homogeneous(_) | Self::PerPoint | Self::MaxError(_) => false,
+        }
+    }
+}
+
+/// All that the levels of one mesh depend on.
+///
+/// ```
+/// use neurotess_refine::{LodCriterion};
+/// let everywhere: Lod<'_> = LodCriterion::Homogeneous(4).into();
+/// let levels = [1, 4, 16];
+/// let by_point = Lod::per_point(&levels);
+/// assert_eq!(everywhere.point_levels.len() + by_point.point_levels.len(), 3);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lod<'a> {
+    /// By what levels are chosen.
+    pub criterion: LodCriterion,
+    /// From where, in the mesh's own coordinates; read where [`LodCriterion::needs_view`].
+    pub view: LodView,
+    /// A level, 1 to 64, per tracing point; read by [`LodCriterion::PerPoint`]. Missing ones are 1.
+    pub point_levels: &'a [u8],
+}
+
+impl<'a> Lod<'a> {
+    /// Levels by a criterion, seen from here.
+    pub fn seen_from(criterion: LodCriterion, view: LodView) -> Self {
+        Self {
+            criterion,
+            view,
+            point_levels: &[],
+        }
+    }
+
+    /// A level, 1 to 64, per tracing point of the mesh.
+    pub fn per_point(point_levels: &'a [u8]) -> Self {
+        Self {
+            criterion: LodCriterion::PerPoint,
+            view: LodView::default(),
+            point_levels,
+        }
+    }
+}
+
+impl From<LodCriterion> for Lod<'_> {
+    fn from(criterion: LodCriterion) -> Self {
+        Self::seen_from(criterion, LodView::default())
+    }
 }
 
 /// What a level needs to know of a camera, in the mesh's own coordinates.
@@ -42,10 +122,10 @@ pub enum Levels<'a> {
 /// A pixel at depth z (µm along `forward` from `eye`, at least `near`) is `slope z + flat` µm wide:
 /// `flat` is 0 in perspective, `slope` 0 without.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct View {
+pub struct LodView {
     /// Position of the eye (µm).
     pub eye: Vec3,
-    /// Unit direction of sight.
+    /// Unit viewing direction.
     pub forward: Vec3,
     /// Growth of a pixel's size with the depth.
     pub slope: f32,

@@ -1,7 +1,7 @@
 //! The resident form of a coarse mesh, written: what goes to the GPU once. Its layout: decode.rs.
 //!
 //! A mesh is cut into **parts** where it would not fit. Vertices that two parts or two runs share are
-//! loose, and loose vertices keep the mesh's order, so that both sides of every edge have the same bits
+//! explicit, and explicit vertices keep the mesh's order, so that both sides of every edge have the same bits
 //! and run along it in the same direction: no crack opens.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,84 +9,94 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 
-use crate::ball::{ball_around, patch_ball};
-use crate::decode::{BALL_WORDS, OwnRing, POINTS_OF_BALL};
-use crate::heap::MOST_WORDS;
-use crate::loose::accurate;
+use crate::bounding_sphere::{patch_sphere, sphere_around};
+use crate::decode::{ImplicitRing, POINTS_OF_SPHERE, SPHERE_U32S};
+use crate::explicit::accurate;
+use crate::packed::MOST_COLOR_KEYS;
 use crate::plan::patch_bends;
-use crate::runs::{Run, find_runs, own_ring};
+use crate::runs::{Tube, find_runs, implicit_ring};
 
-/// Places of patches that a ball is for.
-pub const PLACES_OF_BALL: usize = 4 * POINTS_OF_BALL;
-/// Most loose vertices of a part: their numbers have 15 bits.
-const MOST_LOOSE: usize = 1 << 15;
+/// Patches that a bounding sphere is for.
+pub const PATCHES_OF_SPHERE: usize = 4 * POINTS_OF_SPHERE;
+/// Most explicit vertices of a part: their numbers have 15 bits.
+const MOST_EXPLICIT: usize = 1 << 15;
 /// Loose vertices whose numbers fit somata's patches: 12 bits.
-const FEW_LOOSE: usize = 1 << 12;
+const FEW_EXPLICIT: usize = 1 << 12;
 
-/// Where the arrays of a part begin in its heap, in words, and how many there are.
+/// Where the arrays of a part begin in its packed buffer, in u32s, and how many there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Places {
+pub struct PartLayout {
     /// Points.
     pub points: u32,
     /// Number of points.
     pub point_count: u32,
     /// Balls.
-    pub balls: u32,
+    pub spheres: u32,
     /// Loose vertices.
-    pub loose: u32,
+    pub explicit: u32,
     /// Anchors.
     pub anchors: u32,
     /// Somata's patches.
     pub soma: u32,
     /// Number of somata's patches.
     pub soma_count: u32,
-    /// Other loose patches.
+    /// Other explicit patches.
     pub quads: u32,
-    /// Number of other loose patches.
+    /// Number of other explicit patches.
     pub quad_count: u32,
     /// Caps.
     pub caps: u32,
-    /// Words.
-    pub words: u32,
+    /// Color keys.
+    pub color_keys: u32,
 }
 
 /// A piece of a coarse mesh that fits a device.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Part {
+pub struct MeshPart {
     /// All that is resident.
-    pub heap: Vec<u32>,
+    pub packed: Vec<u32>,
     /// Where what lies.
-    pub places: Places,
+    pub layout: PartLayout,
     /// By place: the mesh's patch, or `u32::MAX` where there is none.
     pub patches: Vec<u32>,
-    /// By number: the mesh's vertex that is loose.
-    pub loose: Vec<u32>,
-    /// Ball around each [`PLACES_OF_BALL`] patches, at any level (µm).
-    pub balls: Vec<(Vec3, f32)>,
+    /// By number: the mesh's vertex that is explicit.
+    pub explicit: Vec<u32>,
+    /// Bounding sphere around each [`PATCHES_OF_SPHERE`] patches, at any level (µm).
+    pub spheres: Vec<(Vec3, f32)>,
     /// By vertex of the mesh that is in this part: position and normal as shaders read them.
     pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
     /// By tracing point: center, radius and tangent as shaders read them.
     pub(crate) tracing: Vec<(u32, Vec3, f32, Vec3)>,
 }
 
-impl Part {
+impl MeshPart {
     /// Bytes by the name of what they hold.
     pub fn bytes(&self) -> Vec<(&'static str, u64)> {
-        let p = &self.places;
+        let p = &self.layout;
         let names = [
             "points",
-            "balls",
-            "loose_vertices",
+            "spheres",
+            "explicit_vertices",
             "anchors",
             "soma_patches",
-            "loose_patches",
+            "explicit_patches",
             "caps",
-            "words",
+            "color_keys",
         ];
         let starts = [
-            p.points, p.balls, p.loose, p.anchors, p.soma, p.quads, p.caps, p.words,
+            p.points,
+            p.spheres,
+            p.explicit,
+            p.anchors,
+            p.soma,
+            p.quads,
+            p.caps,
+            p.color_keys,
         ];
-        let ends = starts[1..].iter().copied().chain([self.heap.len() as u32]);
+        let ends = starts[1..]
+            .iter()
+            .copied()
+            .chain([self.packed.len() as u32]);
         let sizes = starts
             .iter()
             .zip(ends)
@@ -95,38 +105,43 @@ impl Part {
     }
 }
 
-/// Packs a mesh into parts of at most `most_places` places for patches. `words`: one per tracing point
+/// Packs a mesh into parts of at most `most_patches` patches, counting those that stay empty. `color_keys`: one per tracing point
 /// for the renderer; `values`: one level per tracing point. Missing ones are 0 and 1.
 ///
-/// A soma has the word of its first vertex. A part's points have at most 1,024 different words. Where all
-/// words below 2³¹ are numbers below 2²⁰, a mesh with more of them has more parts; else, they are shares of
+/// A soma has the color key of its first vertex. A part's points have at most 1,024 different color keys. Where all
+/// color keys below 2³¹ are numbers below 2²⁰, a mesh with more of them has more parts; else, they are shares of
 /// a scale, and lose their lowest bits.
-pub fn pack(mesh: &CoarseMesh, words: &[u32], values: &[u8], most_places: usize) -> Vec<Part> {
-    let packer = Packer::new(mesh, words, values);
-    let piles = packer.piles(most_places.max(4 * PLACES_OF_BALL));
-    let mut parts: Vec<Part> = piles.iter().map(|pile| packer.part(pile)).collect();
+pub fn pack(
+    mesh: &CoarseMesh,
+    color_keys: &[u32],
+    values: &[u8],
+    most_patches: usize,
+) -> Vec<MeshPart> {
+    let packer = Packer::new(mesh, color_keys, values);
+    let piles = packer.piles(most_patches.max(4 * PATCHES_OF_SPHERE));
+    let mut parts: Vec<MeshPart> = piles.iter().map(|pile| packer.part(pile)).collect();
     write_bends(mesh, &mut parts);
     parts
 }
 
-/// Tells every ball how much the edges of its patches bend, as shaders read them.
-fn write_bends(mesh: &CoarseMesh, parts: &mut [Part]) {
+/// Tells every sphere how much the edges of its patches bend, as shaders read them.
+fn write_bends(mesh: &CoarseMesh, parts: &mut [MeshPart]) {
     let bends = patch_bends(&dequantized(mesh, parts));
     for part in parts {
-        let first = part.places.balls as usize;
-        for (ball, patches) in part.patches.chunks(PLACES_OF_BALL).enumerate() {
+        let first = part.layout.spheres as usize;
+        for (sphere, patches) in part.patches.chunks(PATCHES_OF_SPHERE).enumerate() {
             let there = patches
                 .iter()
                 .filter_map(|&patch| bends.get(patch as usize));
             // Devices round the last bits otherwise.
             let bend = there.copied().fold(0.0, f32::max) * 1.001 + 1e-12;
-            part.heap[first + BALL_WORDS * ball + BALL_WORDS - 1] = bend.to_bits();
+            part.packed[first + SPHERE_U32S * sphere + SPHERE_U32S - 1] = bend.to_bits();
         }
     }
 }
 
 /// The mesh as shaders read it: the same patches, with positions, radii and directions rounded.
-pub fn dequantized(mesh: &CoarseMesh, parts: &[Part]) -> CoarseMesh {
+pub fn dequantized(mesh: &CoarseMesh, parts: &[MeshPart]) -> CoarseMesh {
     let mut rounded = mesh.clone();
     for part in parts {
         for &(vertex, position, normal) in &part.vertices {
@@ -141,7 +156,7 @@ pub fn dequantized(mesh: &CoarseMesh, parts: &[Part]) -> CoarseMesh {
     rounded
 }
 
-/// Words below are taken for numbers if all are.
+/// Color keys below are taken for numbers if all are.
 const MOST_NUMBERS: u32 = 1 << 20;
 
 /// What goes into one part.
@@ -153,19 +168,19 @@ pub(crate) struct Pile {
 
 pub(crate) struct Packer<'m> {
     pub(crate) mesh: &'m CoarseMesh,
-    words: &'m [u32],
+    color_keys: &'m [u32],
     values: &'m [u8],
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<Tube>,
     pub(crate) others: Vec<usize>,
     /// By vertex.
-    pub(crate) loose: Vec<bool>,
+    pub(crate) explicit: Vec<bool>,
 }
 
 impl<'m> Packer<'m> {
-    fn new(mesh: &'m CoarseMesh, words: &'m [u32], values: &'m [u8]) -> Self {
+    fn new(mesh: &'m CoarseMesh, color_keys: &'m [u32], values: &'m [u8]) -> Self {
         let (mut runs, others) = find_runs(mesh);
-        // Runs that are near one another share a ball: it is small, and its points are accurate.
-        let middle = |run: &Run| {
+        // Runs that are near one another share a sphere: it is small, and its points are accurate.
+        let middle = |run: &Tube| {
             let ring = run.rings[run.rings.len() / 2];
             mesh.tracing[mesh.vertices[ring[0] as usize].tracing as usize].center
         };
@@ -178,13 +193,13 @@ impl<'m> Packer<'m> {
         runs.sort_by_key(|run| morton((middle(run) - low) / (high - low).max_element().max(1e-6)));
         let mut packer = Self {
             mesh,
-            words,
+            color_keys,
             values,
             runs,
             others,
-            loose: vec![false; mesh.vertices.len()],
+            explicit: vec![false; mesh.vertices.len()],
         };
-        packer.find_loose();
+        packer.find_explicit();
         packer
     }
 
@@ -197,38 +212,49 @@ impl<'m> Packer<'m> {
     }
 
     /// Runs and other patches by part, in the mesh's order.
-    pub(crate) fn piles(&self, most_places: usize) -> Vec<Pile> {
+    pub(crate) fn piles(&self, most_patches: usize) -> Vec<Pile> {
         let mut piles = vec![Pile::default()];
-        let (mut places, mut loose) = (PLACES_OF_BALL, 0);
+        let (mut patches, mut explicit) = (PATCHES_OF_SPHERE, 0);
         let exact = self.has_numbers();
         let mut numbers = BTreeSet::new();
-        let mut room = |piles: &mut Vec<Pile>, more: usize, more_loose: usize, words: &[u32]| {
-            places += more;
-            loose += more_loose;
-            numbers.extend(words);
-            if places > most_places || loose > MOST_LOOSE || exact && numbers.len() > MOST_WORDS {
-                piles.push(Pile::default());
-                (places, loose) = (PLACES_OF_BALL + more, more_loose);
-                numbers = words.iter().copied().collect();
-            }
-            piles.len() - 1
-        };
+        let mut room =
+            |piles: &mut Vec<Pile>, more: usize, more_explicit: usize, color_keys: &[u32]| {
+                patches += more;
+                explicit += more_explicit;
+                numbers.extend(color_keys);
+                if patches > most_patches
+                    || explicit > MOST_EXPLICIT
+                    || exact && numbers.len() > MOST_COLOR_KEYS
+                {
+                    piles.push(Pile::default());
+                    (patches, explicit) = (PATCHES_OF_SPHERE + more, more_explicit);
+                    numbers = color_keys.iter().copied().collect();
+                }
+                piles.len() - 1
+            };
         for (i, run) in self.runs.iter().enumerate() {
-            let used = run.rings.iter().filter(|ring| self.loose[ring[0] as usize]);
-            let most = run.rings.len() + POINTS_OF_BALL;
+            let used = run
+                .rings
+                .iter()
+                .filter(|ring| self.explicit[ring[0] as usize]);
+            let most = run.rings.len() + POINTS_OF_SPHERE;
             let tracing = |ring: &[u32; 4]| self.mesh.vertices[ring[0] as usize].tracing;
-            let words: Vec<u32> = run.rings.iter().map(|r| self.word(tracing(r))).collect();
-            let pile = room(&mut piles, 4 * most, 4 * used.count(), &words);
+            let color_keys: Vec<u32> = run
+                .rings
+                .iter()
+                .map(|r| self.color_key(tracing(r)))
+                .collect();
+            let pile = room(&mut piles, 4 * most, 4 * used.count(), &color_keys);
             piles[pile].runs.push(i);
         }
         for &other in &self.others {
             let corners = self.mesh.patches[other].corners;
-            if self.loose[corners[0] as usize] {
+            if self.explicit[corners[0] as usize] {
                 let pile = room(&mut piles, 1, 4, &[]);
                 piles[pile].others.push(other);
             }
         }
-        // A cap of an own ring goes where its ring is.
+        // A cap of an implicit ring goes where its ring is.
         let mut owner = BTreeMap::new();
         for (p, pile) in piles.iter().enumerate() {
             for &run in &pile.runs {
@@ -240,7 +266,7 @@ impl<'m> Packer<'m> {
         }
         for &other in &self.others {
             let corners = self.mesh.patches[other].corners;
-            if !self.loose[corners[0] as usize] {
+            if !self.explicit[corners[0] as usize] {
                 let first = corners.into_iter().min().unwrap_or(0);
                 if let Some(&pile) = owner.get(&first) {
                     piles[pile].others.push(other);
@@ -257,7 +283,7 @@ impl<'m> Packer<'m> {
         for run in pile.runs.iter().map(|&run| &self.runs[run]) {
             if self.strays(&slots, run) {
                 slots.resize(
-                    slots.len().next_multiple_of(POINTS_OF_BALL),
+                    slots.len().next_multiple_of(POINTS_OF_SPHERE),
                     Slot::default(),
                 );
             }
@@ -270,20 +296,20 @@ impl<'m> Packer<'m> {
             }
         }
         slots.resize(
-            slots.len().next_multiple_of(POINTS_OF_BALL),
+            slots.len().next_multiple_of(POINTS_OF_SPHERE),
             Slot::default(),
         );
         slots
     }
 
-    /// Whether a run had better begin with a ball of its own: a place left empty costs a fifth of what a
-    /// ring costs that is loose because its ball is too large.
-    fn strays(&self, slots: &[Slot], run: &Run) -> bool {
-        let begun = slots.len() % POINTS_OF_BALL;
+    /// Whether a run had better begin with a sphere of its own: a place left empty costs a fifth of what a
+    /// ring costs that is explicit because its sphere is too large.
+    fn strays(&self, slots: &[Slot], run: &Tube) -> bool {
+        let begun = slots.len() % POINTS_OF_SPHERE;
         if begun == 0 {
             return false;
         }
-        let free = POINTS_OF_BALL - begun;
+        let free = POINTS_OF_SPHERE - begun;
         let before = slots[slots.len() - begun..]
             .iter()
             .filter_map(|slot| slot.ring);
@@ -291,30 +317,30 @@ impl<'m> Packer<'m> {
         let centers = rings
             .iter()
             .map(|ring| (self.center(ring[0]), 4.0 * self.radius(ring[0])));
-        let ball = widened(ball_around(centers)).1;
+        let sphere = widened(sphere_around(centers)).1;
         let inaccurate = rings
             .iter()
-            .filter(|ring| !accurate(ball, self.radius(ring[0])));
+            .filter(|ring| !accurate(sphere, self.radius(ring[0])));
         5 * inaccurate.count() > free
     }
 
-    pub(crate) fn ball(&self, slots: &[Slot]) -> (Vec3, f32) {
+    pub(crate) fn sphere(&self, slots: &[Slot]) -> (Vec3, f32) {
         let patches = slots
             .iter()
             .filter_map(|slot| slot.patch)
             .flat_map(|patch| patch..patch + 4);
-        let patches = patches.map(|patch| patch_ball(self.mesh, &self.mesh.patches[patch]));
+        let patches = patches.map(|patch| patch_sphere(self.mesh, &self.mesh.patches[patch]));
         let centers = slots.iter().filter_map(|slot| slot.ring);
         let centers = centers.map(|ring| (self.center(ring[0]), 0.0));
-        widened(ball_around(patches.chain(centers)))
+        widened(sphere_around(patches.chain(centers)))
     }
 
-    fn part(&self, pile: &Pile) -> Part {
+    fn part(&self, pile: &Pile) -> MeshPart {
         let slots = self.rings(pile);
         let (others, caps): (Vec<usize>, Vec<usize>) = pile
             .others
             .iter()
-            .partition(|&&other| self.loose[self.mesh.patches[other].corners[0] as usize]);
+            .partition(|&&other| self.explicit[self.mesh.patches[other].corners[0] as usize]);
         let corners = |patches: &[usize]| -> Vec<u32> {
             let patches = patches
                 .iter()
@@ -322,37 +348,37 @@ impl<'m> Packer<'m> {
             patches.flatten().collect()
         };
         let rings = slots.iter().filter_map(|slot| slot.ring).flatten();
-        let mut loose: Vec<u32> = rings.chain(corners(&others)).collect();
-        loose.retain(|&v| self.loose[v as usize]);
-        loose.sort_unstable();
-        loose.dedup();
-        let few = loose.get(FEW_LOOSE).copied().unwrap_or(u32::MAX);
+        let mut explicit: Vec<u32> = rings.chain(corners(&others)).collect();
+        explicit.retain(|&v| self.explicit[v as usize]);
+        explicit.sort_unstable();
+        explicit.dedup();
+        let few = explicit.get(FEW_EXPLICIT).copied().unwrap_or(u32::MAX);
         let (soma, quads): (Vec<usize>, Vec<usize>) = others.into_iter().partition(|&other| {
             let patch = &self.mesh.patches[other];
             patch.kind == PatchKind::Soma && patch.corners.iter().all(|&v| v < few)
         });
         self.write(&Contents {
             slots,
-            loose,
+            explicit,
             soma,
             quads,
             caps,
         })
     }
 
-    pub(crate) fn own(&self, ring: [u32; 4]) -> Option<OwnRing> {
-        let own = !self.loose[ring[0] as usize];
-        own.then(|| own_ring(self.mesh, ring)).flatten()
+    pub(crate) fn implicit(&self, ring: [u32; 4]) -> Option<ImplicitRing> {
+        let implicit = !self.explicit[ring[0] as usize];
+        implicit.then(|| implicit_ring(self.mesh, ring)).flatten()
     }
 
-    pub(crate) fn word(&self, tracing: u32) -> u32 {
-        self.words.get(tracing as usize).copied().unwrap_or(0)
+    pub(crate) fn color_key(&self, tracing: u32) -> u32 {
+        self.color_keys.get(tracing as usize).copied().unwrap_or(0)
     }
 
-    /// Whether words are numbers, of which no bit may be lost, and not shares of a scale.
+    /// Whether color keys are numbers, of which no bit may be lost, and not shares of a scale.
     fn has_numbers(&self) -> bool {
-        let mut words = self.words.iter();
-        words.all(|&word| !(MOST_NUMBERS..1 << 31).contains(&word))
+        let mut color_keys = self.color_keys.iter();
+        color_keys.all(|key| !(MOST_NUMBERS..1 << 31).contains(key))
     }
 
     pub(crate) fn level(&self, tracing: u32) -> u32 {
@@ -368,10 +394,10 @@ pub(crate) struct Slot {
     pub(crate) patch: Option<usize>,
 }
 
-/// What goes into one part, in its order: patches by index, loose vertices sorted.
+/// What goes into one part, in its order: patches by index, explicit vertices sorted.
 pub(crate) struct Contents {
     pub(crate) slots: Vec<Slot>,
-    pub(crate) loose: Vec<u32>,
+    pub(crate) explicit: Vec<u32>,
     pub(crate) soma: Vec<usize>,
     pub(crate) quads: Vec<usize>,
     pub(crate) caps: Vec<usize>,

@@ -8,7 +8,7 @@ use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
 
 use crate::evaluate::{Corner, EdgeKind, SIDES};
 use crate::level::{HIGHEST_LEVEL, bend, edge_level};
-use crate::{Caps, Levels, Path, RefineOptions};
+use crate::{Caps, Lod, Path, RefineOptions};
 
 /// An edge of the coarse mesh.
 #[derive(Clone, Copy, Debug)]
@@ -41,14 +41,14 @@ pub(crate) struct Grid {
 }
 
 impl Plan {
-    pub(crate) fn new(mesh: &CoarseMesh, levels: &Levels<'_>, options: &RefineOptions) -> Self {
+    pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
         let (mut edges, patch_edges) = find_edges(mesh);
         let mut next = mesh.vertices.len() as u32;
         for edge in &mut edges {
             let ends = [edge.from, edge.to]
                 .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
             let [(a, ta), (b, tb)] = &ends;
-            edge.level = edge_level(levels, options.path, edge.kind, (a, *ta), (b, *tb)) as u8;
+            edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u8;
             edge.first = next;
             next += u32::from(edge.level) - 1;
         }

@@ -2,7 +2,7 @@
 //
 // Called by everything that evaluates patches. Rust twin: plan.rs; where that numbers the vertices of
 // the whole surface, this evaluates one vertex of one patch's grid, which is the same point. Its corners
-// come from a Source: the resident data (source.wgsl), or what a renderer made of them.
+// come from a CornerSource: the resident data (corner_source.wgsl), or what a renderer made of them.
 
 // A side of a patch as an edge in its own direction.
 struct Side {
@@ -57,7 +57,7 @@ fn patch_side(base: Base, p: Patch, index: u32) -> Side {
 }
 
 // Levels of the four sides. A loop, so that one piece of code decides for both faces of an edge.
-fn side_levels(base: Base, p: Patch, levels: Criterion, view: View) -> vec4<u32> {
+fn side_levels(base: Base, p: Patch, levels: LodCriterion, view: LodView) -> vec4<u32> {
     var found = vec4<u32>(1u);
     for (var index = 0u; index < 4u; index += 1u) {
         let s = patch_side(base, p, index);
@@ -95,9 +95,9 @@ fn snap(i: u32, n: u32, level: u32) -> u32 {
 
 // Vertex at column i and row j of a patch's grid. On a side it is that of the side's edge.
 fn grid_vertex(
-    source: Source,
+    source: CornerSource,
     p: Patch,
-    options: Criterion,
+    options: LodCriterion,
     levels: vec4<u32>,
     grid: Grid,
     i: u32,
@@ -136,7 +136,7 @@ fn grid_vertex(
 }
 
 // Vertex k of an edge of `level` parts, both ends included.
-fn edge_vertex(source: Source, options: Criterion, s: Side, k: u32, level: u32) -> SurfacePoint {
+fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, level: u32) -> SurfacePoint {
     if (k == 0u) {
         return coarse_vertex(source, s.start);
     }
@@ -169,7 +169,7 @@ fn edge_vertex(source: Source, options: Criterion, s: Side, k: u32, level: u32) 
     return SurfacePoint(jet.position, normal, axis, radius, nearest);
 }
 
-fn coarse_vertex(source: Source, vertex: u32) -> SurfacePoint {
+fn coarse_vertex(source: CornerSource, vertex: u32) -> SurfacePoint {
     let k = corner_of(source, vertex);
     if (k.role == ROLE_SOMA) {
         return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex);
@@ -178,9 +178,9 @@ fn coarse_vertex(source: Source, vertex: u32) -> SurfacePoint {
 }
 
 fn inner_vertex(
-    source: Source,
+    source: CornerSource,
     p: Patch,
-    options: Criterion,
+    options: LodCriterion,
     grid: Grid,
     i: u32,
     j: u32,
@@ -226,7 +226,7 @@ fn first_of_soma(shape: PatchShape, p: Patch, otherwise: u32) -> u32 {
     return otherwise;
 }
 
-fn patch_shape(source: Source, p: Patch) -> PatchShape {
+fn patch_shape(source: CornerSource, p: Patch) -> PatchShape {
     return PatchShape(
         p.kind,
         corner_of(source, p.corners.x),
@@ -234,14 +234,14 @@ fn patch_shape(source: Source, p: Patch) -> PatchShape {
         corner_of(source, p.corners.z),
         corner_of(source, p.corners.w),
         vec4<u32>(
-            side_word(patch_side(base_of(source), p, 0u)),
-            side_word(patch_side(base_of(source), p, 1u)),
-            side_word(patch_side(base_of(source), p, 2u)),
-            side_word(patch_side(base_of(source), p, 3u)),
+            side_bits(patch_side(base_of(source), p, 0u)),
+            side_bits(patch_side(base_of(source), p, 1u)),
+            side_bits(patch_side(base_of(source), p, 2u)),
+            side_bits(patch_side(base_of(source), p, 3u)),
         ),
     );
 }
 
-fn side_word(s: Side) -> u32 {
+fn side_bits(s: Side) -> u32 {
     return select(s.kind, s.kind | SIDE_REVERSED, s.reversed);
 }

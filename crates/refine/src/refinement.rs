@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
 use crate::plan::{Edge, Grid, Plan};
-use crate::{Levels, RefineOptions};
+use crate::{Lod, RefineOptions};
 
 /// A coarse mesh with levels. Holds no refined vertex: a [`Surface`] whose blocks are evaluated when
 /// they are asked for, so memory does not grow with the level.
@@ -24,12 +24,12 @@ const BLOCK: usize = 4096;
 impl<'m> Refinement<'m> {
     /// Plans the refinement of a closed mesh.
     ///
-    /// Levels outside 1 to 64 are clamped. [`Levels::PerPoint`] takes missing points as level 1.
-    pub fn new(mesh: &'m CoarseMesh, levels: &Levels<'_>, options: &RefineOptions) -> Self {
+    /// Levels outside 1 to 64 are clamped. Missing [`Lod::point_levels`] are 1.
+    pub fn new<'l>(mesh: &'m CoarseMesh, lod: impl Into<Lod<'l>>, options: &RefineOptions) -> Self {
         Self {
             mesh,
             options: *options,
-            plan: Plan::new(mesh, levels, options),
+            plan: Plan::new(mesh, &lod.into(), options),
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 
-use crate::decode::{OwnRing, to_octahedral, to_radius, to_slope, to_turn};
+use crate::decode::{ImplicitRing, to_octahedral, to_radius, to_slope, to_turn};
 
 /// Most segments of a run; longer ones are cut.
 const MOST_SEGMENTS: usize = 1 << 14;
@@ -12,14 +12,14 @@ const MOST_APART: f32 = 0.0095;
 
 /// Rings that lateral patches lead along, four patches from each to the next.
 #[derive(Clone, Debug)]
-pub(crate) struct Run {
+pub(crate) struct Tube {
     pub(crate) first_patch: usize,
     pub(crate) rings: Vec<[u32; 4]>,
 }
 
 /// All runs, and the patches that belong to none.
-pub(crate) fn find_runs(mesh: &CoarseMesh) -> (Vec<Run>, Vec<usize>) {
-    let mut runs: Vec<Run> = Vec::new();
+pub(crate) fn find_runs(mesh: &CoarseMesh) -> (Vec<Tube>, Vec<usize>) {
+    let mut runs: Vec<Tube> = Vec::new();
     let mut others = Vec::new();
     let mut i = 0;
     while i < mesh.patches.len() {
@@ -28,7 +28,7 @@ pub(crate) fn find_runs(mesh: &CoarseMesh) -> (Vec<Run>, Vec<usize>) {
             i += 1;
             continue;
         };
-        let goes_on = |run: &Run| {
+        let goes_on = |run: &Tube| {
             let segments = run.rings.len() - 1;
             run.first_patch + 4 * segments == i
                 && run.rings[segments] == ring
@@ -36,7 +36,7 @@ pub(crate) fn find_runs(mesh: &CoarseMesh) -> (Vec<Run>, Vec<usize>) {
         };
         match runs.last_mut().filter(|run| goes_on(run)) {
             Some(run) => run.rings.push(next),
-            None => runs.push(Run {
+            None => runs.push(Tube {
                 first_patch: i,
                 rings: vec![ring, next],
             }),
@@ -61,7 +61,7 @@ fn tube(mesh: &CoarseMesh, first: usize) -> Option<([u32; 4], [u32; 4])> {
 }
 
 /// A ring as a circle around its tracing point, if it is one.
-pub(crate) fn own_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<OwnRing> {
+pub(crate) fn implicit_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<ImplicitRing> {
     let vertices = [0, 1, 2, 3].map(|k: usize| &mesh.vertices[ring[k] as usize]);
     let tracing = vertices[0].tracing;
     let point = &mesh.tracing[tracing as usize];
@@ -70,7 +70,7 @@ pub(crate) fn own_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<OwnRing> {
         return None;
     }
     let (x, y) = to_octahedral(point.tangent, 511.0);
-    let mut own = OwnRing {
+    let mut implicit = ImplicitRing {
         tracing,
         radius: to_radius(point.radius)?,
         tangent: (x, y),
@@ -79,16 +79,16 @@ pub(crate) fn own_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<OwnRing> {
         role: point.role,
     };
     let offset = vertices[0].position - point.center;
-    own.turn = to_turn(own.tangent(), offset.normalize_or(Vec3::X));
+    implicit.turn = to_turn(implicit.tangent(), offset.normalize_or(Vec3::X));
     let normal = vertices[0].normal;
     let out = offset.normalize_or(normal);
-    own.slope = to_slope(-normal.dot(point.tangent) / normal.dot(out).max(1e-3));
+    implicit.slope = to_slope(-normal.dot(point.tangent) / normal.dot(out).max(1e-3));
     let near = (0..4).all(|k| {
-        let apart = own
+        let apart = implicit
             .corner(point.center, k as u32)
             .0
             .distance(vertices[k].position);
         apart <= MOST_APART * point.radius
     });
-    near.then_some(own)
+    near.then_some(implicit)
 }

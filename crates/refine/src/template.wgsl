@@ -3,47 +3,47 @@
 // Called by everything that evaluates patches. This is the only file that knows the layout: another
 // layout is another file with the same functions. Rust twin: decode.rs; pack.rs writes it.
 
-// Where the arrays of a part begin in the heap, in words.
+// Where the arrays of a part begin in the packed buffer, in u32s.
 struct Base {
-    // Four words each; PATCHES_OF_POINT lateral patches from each to the next.
+    // Four u32s each; PATCHES_OF_POINT lateral patches from each to the next.
     points: u32,
     point_count: u32,
-    // A ball for every POINTS_OF_BALL points, BALL_WORDS each.
-    balls: u32,
-    // Three words each.
-    loose: u32,
-    // Eight words each.
+    // A sphere for every POINTS_OF_SPHERE points, SPHERE_U32S each.
+    spheres: u32,
+    // Three u32s each.
+    explicit_vertices: u32,
+    // Eight u32s each.
     anchors: u32,
-    // Somata's patches, three words for two.
+    // Somata's patches, three u32s for two.
     soma: u32,
     soma_count: u32,
-    // Two words each.
+    // Two u32s each.
     quads: u32,
     quad_count: u32,
-    // One word each.
+    // One u32 each.
     caps: u32,
-    words: u32,
+    color_keys: u32,
 }
 
 // A patch by its kind and the vertices at its corners. A vertex is a corner of a point's own ring,
-// four times the point plus the corner, or, with LOOSE, a loose vertex.
+// four times the point plus the corner, or, with EXPLICIT, an explicit vertex.
 struct Patch {
     kind: u32,
     corners: vec4<u32>,
 }
 
-@group(0) @binding(0) var<storage, read> heap: array<u32>;
+@group(0) @binding(0) var<storage, read> packed: array<u32>;
 
-fn point_words(base: Base, point: u32) -> vec4<u32> {
+fn packed_point(base: Base, point: u32) -> vec4<u32> {
     let at = base.points + 4u * point;
-    return vec4<u32>(heap[at], heap[at + 1u], heap[at + 2u], heap[at + 3u]);
+    return vec4<u32>(packed[at], packed[at + 1u], packed[at + 2u], packed[at + 3u]);
 }
 
 // Vertices of the ring at a point, four of them.
-fn ring_of(point: u32, words: vec4<u32>) -> vec4<u32> {
-    if ((words.y >> POINT_KIND_SHIFT) == POINT_LOOSE) {
-        return vec4<u32>(words.x & 0xffffu, words.x >> 16u, words.z & 0xffffu, words.z >> 16u)
-            | vec4<u32>(LOOSE);
+fn ring_of(point: u32, point_bits: vec4<u32>) -> vec4<u32> {
+    if ((point_bits.y >> POINT_KIND_SHIFT) == POINT_EXPLICIT) {
+        return vec4<u32>(point_bits.x & 0xffffu, point_bits.x >> 16u, point_bits.z & 0xffffu, point_bits.z >> 16u)
+            | vec4<u32>(EXPLICIT);
     }
     return vec4<u32>(4u * point) + vec4<u32>(0u, 1u, 2u, 3u);
 }
@@ -55,47 +55,47 @@ fn patch_is_tube(base: Base, index: u32) -> bool {
         return false;
     }
     let at = base.points + 4u * point + 1u;
-    return (heap[at] >> POINT_KIND_SHIFT) != POINT_LOOSE
-        && (heap[at + 4u] >> POINT_KIND_SHIFT) != POINT_LOOSE;
+    return (packed[at] >> POINT_KIND_SHIFT) != POINT_EXPLICIT
+        && (packed[at + 4u] >> POINT_KIND_SHIFT) != POINT_EXPLICIT;
 }
 
 // Whether there is a patch at a place: a run's last point has none after it.
 fn patch_exists(base: Base, index: u32) -> bool {
     let point = index / 4u;
-    return point >= base.point_count || (heap[base.points + 4u * point + 1u] & POINT_GOES_ON) != 0u;
+    return point >= base.point_count || (packed[base.points + 4u * point + 1u] & POINT_GOES_ON) != 0u;
 }
 
 fn patch_at(base: Base, index: u32) -> Patch {
     if (index < 4u * base.point_count) {
         let point = index / 4u;
         let k = index & 3u;
-        let ring = ring_of(point, point_words(base, point));
-        let next = ring_of(point + 1u, point_words(base, point + 1u));
+        let ring = ring_of(point, packed_point(base, point));
+        let next = ring_of(point + 1u, packed_point(base, point + 1u));
         let after = (k + 1u) & 3u;
         return Patch(PATCH_LATERAL, vec4<u32>(ring[k], ring[after], next[after], next[k]));
     }
     let soma = index - 4u * base.point_count;
     if (soma < base.soma_count) {
-        // 48 bits: four loose vertices of 12.
+        // 48 bits: four explicit vertices of 12.
         let at = base.soma + 3u * soma / 2u;
         let odd = (soma & 1u) * 16u;
-        let x = heap[at];
-        let y = heap[at + 1u];
+        let x = packed[at];
+        let y = packed[at + 1u];
         let low = select(x, (x >> 16u) | (y << 16u), odd != 0u);
         let high = (y >> odd) & 0xffffu;
         let corners = vec4<u32>(
             low & 0xfffu, (low >> 12u) & 0xfffu, (low >> 24u) | ((high & 0xfu) << 8u), high >> 4u);
-        return Patch(PATCH_SOMA, corners | vec4<u32>(LOOSE));
+        return Patch(PATCH_SOMA, corners | vec4<u32>(EXPLICIT));
     }
     let quad = soma - base.soma_count;
     if (quad < base.quad_count) {
-        let x = heap[base.quads + 2u * quad];
-        let y = heap[base.quads + 2u * quad + 1u];
+        let x = packed[base.quads + 2u * quad];
+        let y = packed[base.quads + 2u * quad + 1u];
         let corners = vec4<u32>(x & 0xffffu, x >> 16u, y & 0xffffu, y >> 16u);
         let kind = (corners.x >> 15u) | ((corners.y >> 15u) << 1u);
-        return Patch(kind, (corners & vec4<u32>(0x7fffu)) | vec4<u32>(LOOSE));
+        return Patch(kind, (corners & vec4<u32>(0x7fffu)) | vec4<u32>(EXPLICIT));
     }
-    let packed = heap[base.caps + quad - base.quad_count];
+    let packed = packed[base.caps + quad - base.quad_count];
     let first = 4u * (packed >> 1u);
     if ((packed & 1u) != 0u) {
         return Patch(PATCH_CAP, vec4<u32>(first) + vec4<u32>(3u, 2u, 1u, 0u));
@@ -118,24 +118,24 @@ fn octahedral(x: u32, y: u32, most: f32) -> vec3<f32> {
     return normalize_or(v, vec3<f32>(0.0, 0.0, 1.0));
 }
 
-fn point_center(base: Base, point: u32, words: vec4<u32>) -> vec3<f32> {
-    let at = base.balls + BALL_WORDS * (point / POINTS_OF_BALL);
-    let radius = bitcast<f32>(heap[at + 3u]);
+fn point_center(base: Base, point: u32, point_bits: vec4<u32>) -> vec3<f32> {
+    let at = base.spheres + SPHERE_U32S * (point / POINTS_OF_SPHERE);
+    let radius = bitcast<f32>(packed[at + 3u]);
     let step = radius * (2.0 / POSITION_STEPS);
-    let x = words.x & 0xfffffu;
-    let y = (words.x >> 20u) | ((words.y & 0xffu) << 12u);
-    let z = (words.y >> 8u) & 0xfffffu;
-    let from_ball = vec3<f32>(f32(x), f32(y), f32(z)) * step - vec3<f32>(radius);
-    let ball = vec3<f32>(
-        bitcast<f32>(heap[at]),
-        bitcast<f32>(heap[at + 1u]),
-        bitcast<f32>(heap[at + 2u]),
+    let x = point_bits.x & 0xfffffu;
+    let y = (point_bits.x >> 20u) | ((point_bits.y & 0xffu) << 12u);
+    let z = (point_bits.y >> 8u) & 0xfffffu;
+    let from_sphere = vec3<f32>(f32(x), f32(y), f32(z)) * step - vec3<f32>(radius);
+    let sphere = vec3<f32>(
+        bitcast<f32>(packed[at]),
+        bitcast<f32>(packed[at + 1u]),
+        bitcast<f32>(packed[at + 2u]),
     );
-    return ball + from_ball;
+    return sphere + from_sphere;
 }
 
-fn point_radius(words: vec4<u32>) -> f32 {
-    return bitcast<f32>(((words.z & 0xffffu) + RADIUS_BASE) << 12u);
+fn point_radius(point_bits: vec4<u32>) -> f32 {
+    return bitcast<f32>(((point_bits.z & 0xffffu) + RADIUS_BASE) << 12u);
 }
 
 // Corner k of the ring at a point, relative to the center: a quarter turn about the tangent each.
@@ -168,7 +168,7 @@ fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
 }
 
 // A point with a ring of its own.
-struct OwnRing {
+struct ImplicitRing {
     center: vec3<f32>,
     radius: f32,
     tangent: vec3<f32>,
@@ -179,8 +179,8 @@ struct OwnRing {
 
 // How fast the radius of a point with a ring of its own grows, as five bits: the root, and whether it
 // narrows.
-fn slope_bits(words: vec4<u32>) -> u32 {
-    return ((words.w >> 18u) & 0xfu) | select(0u, 16u, (words.y & POINT_NARROWS) != 0u);
+fn slope_bits(point_bits: vec4<u32>) -> u32 {
+    return ((point_bits.w >> 18u) & 0xfu) | select(0u, 16u, (point_bits.y & POINT_NARROWS) != 0u);
 }
 
 fn slope_of_bits(bits: u32) -> f32 {
@@ -188,18 +188,18 @@ fn slope_of_bits(bits: u32) -> f32 {
     return select(root * root, -(root * root), (bits & 16u) != 0u);
 }
 
-fn own_ring(base: Base, point: u32, words: vec4<u32>) -> OwnRing {
-    return OwnRing(
-        point_center(base, point, words),
-        point_radius(words),
-        octahedral(words.w & 0x1ffu, (words.w >> 9u) & 0x1ffu, 511.0),
-        slope_of_bits(slope_bits(words)),
-        (words.z >> 16u) & 0x3ffu,
-        select(ROLE_ORDINARY, ROLE_END, (words.y >> POINT_KIND_SHIFT) == POINT_END),
+fn implicit_ring(base: Base, point: u32, point_bits: vec4<u32>) -> ImplicitRing {
+    return ImplicitRing(
+        point_center(base, point, point_bits),
+        point_radius(point_bits),
+        octahedral(point_bits.w & 0x1ffu, (point_bits.w >> 9u) & 0x1ffu, 511.0),
+        slope_of_bits(slope_bits(point_bits)),
+        (point_bits.z >> 16u) & 0x3ffu,
+        select(ROLE_ORDINARY, ROLE_END, (point_bits.y >> POINT_KIND_SHIFT) == POINT_END),
     );
 }
 
-fn ring_corner(ring: OwnRing, k: u32) -> Corner {
+fn ring_corner(ring: ImplicitRing, k: u32) -> Corner {
     let direction = ring_direction(ring.tangent, ring.turn, k);
     let position = ring.center + direction * ring.radius;
     let offset = position - ring.center;
@@ -218,34 +218,34 @@ fn ring_corner(ring: OwnRing, k: u32) -> Corner {
 
 fn own_corner(base: Base, vertex: u32) -> Corner {
     let point = vertex >> 2u;
-    return ring_corner(own_ring(base, point, point_words(base, point)), vertex & 3u);
+    return ring_corner(implicit_ring(base, point, packed_point(base, point)), vertex & 3u);
 }
 
-fn anchor_of(base: Base, loose: u32) -> u32 {
-    return base.anchors + 8u * (heap[base.loose + 3u * (loose & ~LOOSE) + 1u] >> 16u);
+fn anchor_of(base: Base, vertex: u32) -> u32 {
+    return base.anchors + 8u * (packed[base.explicit_vertices + 3u * (vertex & ~EXPLICIT) + 1u] >> 16u);
 }
 
 // A number of 16 bits from -1 to 1.
-fn signed16(word: u32) -> f32 {
-    return f32(word & 0xffffu) * (2.0 / 65535.0) - 1.0;
+fn signed16(bits: u32) -> f32 {
+    return f32(bits & 0xffffu) * (2.0 / 65535.0) - 1.0;
 }
 
-fn loose_corner(base: Base, vertex: u32) -> Corner {
-    let at = base.loose + 3u * (vertex & ~LOOSE);
-    let x = heap[at];
-    let y = heap[at + 1u];
-    let z = heap[at + 2u];
+fn explicit_corner(base: Base, vertex: u32) -> Corner {
+    let at = base.explicit_vertices + 3u * (vertex & ~EXPLICIT);
+    let x = packed[at];
+    let y = packed[at + 1u];
+    let z = packed[at + 2u];
     let anchor = anchor_of(base, vertex);
     let center = vec3<f32>(
-        bitcast<f32>(heap[anchor]),
-        bitcast<f32>(heap[anchor + 1u]),
-        bitcast<f32>(heap[anchor + 2u]),
+        bitcast<f32>(packed[anchor]),
+        bitcast<f32>(packed[anchor + 1u]),
+        bitcast<f32>(packed[anchor + 2u]),
     );
-    let reach = bitcast<f32>(heap[anchor + 3u]);
+    let reach = bitcast<f32>(packed[anchor + 3u]);
     let position = center + vec3<f32>(signed16(x), signed16(x >> 16u), signed16(y)) * reach;
     let offset = position - center;
     let normal = octahedral(z & 0xfffu, (z >> 12u) & 0xfffu, 4095.0);
-    let direction = heap[anchor + 5u];
+    let direction = packed[anchor + 5u];
     let tangent = octahedral(direction & 0xffffu, direction >> 16u, 65535.0);
     return Corner(
         position,
@@ -254,51 +254,51 @@ fn loose_corner(base: Base, vertex: u32) -> Corner {
         offset,
         normalize_or(offset, normal),
         tangent,
-        bitcast<f32>(heap[anchor + 4u]),
-        heap[anchor + 6u],
+        bitcast<f32>(packed[anchor + 4u]),
+        packed[anchor + 6u],
     );
 }
 
 fn corner(base: Base, vertex: u32) -> Corner {
-    if ((vertex & LOOSE) != 0u) {
-        return loose_corner(base, vertex);
+    if ((vertex & EXPLICIT) != 0u) {
+        return explicit_corner(base, vertex);
     }
     return own_corner(base, vertex);
 }
 
 // What tells tracing points apart.
 fn tracing_of(base: Base, vertex: u32) -> u32 {
-    if ((vertex & LOOSE) != 0u) {
-        return anchor_of(base, vertex) | LOOSE;
+    if ((vertex & EXPLICIT) != 0u) {
+        return anchor_of(base, vertex) | EXPLICIT;
     }
     return vertex >> 2u;
 }
 
 fn role_of(base: Base, vertex: u32) -> u32 {
-    if ((vertex & LOOSE) != 0u) {
-        return heap[anchor_of(base, vertex) + 6u];
+    if ((vertex & EXPLICIT) != 0u) {
+        return packed[anchor_of(base, vertex) + 6u];
     }
-    let kind = heap[base.points + 4u * (vertex >> 2u) + 1u] >> POINT_KIND_SHIFT;
+    let kind = packed[base.points + 4u * (vertex >> 2u) + 1u] >> POINT_KIND_SHIFT;
     return select(ROLE_ORDINARY, ROLE_END, kind == POINT_END);
 }
 
 // The user's level at a vertex.
 fn value_of(base: Base, vertex: u32) -> u32 {
-    if ((vertex & LOOSE) != 0u) {
-        return heap[base.loose + 3u * (vertex & ~LOOSE) + 2u] >> 24u;
+    if ((vertex & EXPLICIT) != 0u) {
+        return packed[base.explicit_vertices + 3u * (vertex & ~EXPLICIT) + 2u] >> 24u;
     }
-    return (heap[base.points + 4u * (vertex >> 2u) + 2u] >> 26u) + 1u;
+    return (packed[base.points + 4u * (vertex >> 2u) + 2u] >> 26u) + 1u;
 }
 
-// The renderer's word of a point with a ring of its own.
-fn point_word(base: Base, words: vec4<u32>) -> u32 {
-    return heap[base.words + (words.w >> 22u)];
+// The color key of a point with an implicit ring.
+fn point_color_key(base: Base, point_bits: vec4<u32>) -> u32 {
+    return packed[base.color_keys + (point_bits.w >> 22u)];
 }
 
 // What the renderer put beside a vertex's tracing point: its color.
-fn word_of(base: Base, vertex: u32) -> u32 {
-    if ((vertex & LOOSE) != 0u) {
-        return heap[anchor_of(base, vertex) + 7u];
+fn color_key_of(base: Base, vertex: u32) -> u32 {
+    if ((vertex & EXPLICIT) != 0u) {
+        return packed[anchor_of(base, vertex) + 7u];
     }
-    return heap[base.words + (heap[base.points + 4u * (vertex >> 2u) + 3u] >> 22u)];
+    return packed[base.color_keys + (packed[base.points + 4u * (vertex >> 2u) + 3u] >> 22u)];
 }

@@ -4,7 +4,7 @@ mod common;
 use common::{Twig, assert_closed, grow};
 use neurotess_generate::{GenerateOptions, SomaMethod, generate};
 use neurotess_mesh::{PatchKind, Surface, SurfaceMesh};
-use neurotess_refine::{Caps, CoarseSurface, Levels, Path, RefineOptions, Refinement};
+use neurotess_refine::{Caps, CoarseSurface, Lod, LodCriterion, Path, RefineOptions, Refinement};
 use proptest::prelude::*;
 
 fn twig() -> impl Strategy<Value = Twig> {
@@ -26,13 +26,13 @@ fn twig() -> impl Strategy<Value = Twig> {
         })
 }
 
-fn refined(
+fn refined<'l>(
     mesh: &neurotess_mesh::CoarseMesh,
-    levels: &Levels<'_>,
+    lod: impl Into<Lod<'l>>,
     options: &RefineOptions,
     what: &str,
 ) -> SurfaceMesh {
-    let refinement = Refinement::new(mesh, levels, options);
+    let refinement = Refinement::new(mesh, lod, options);
     let surface = SurfaceMesh::collect(&refinement);
     assert_eq!(surface.vertices.len(), refinement.vertex_count(), "{what}");
     assert_eq!(
@@ -77,14 +77,14 @@ proptest! {
             caps: if flat { Caps::Flat } else { Caps::Round },
             quads,
         };
-        refined(mesh, &Levels::Homogeneous(1), &options, "level 1");
-        refined(mesh, &Levels::Homogeneous(3), &options, "level 3");
+        refined(mesh, LodCriterion::Homogeneous(1), &options, "level 1");
+        refined(mesh, LodCriterion::Homogeneous(3), &options, "level 3");
         // Neighbors as unlike as 1 and 64.
         let mixed: Vec<u8> = (0..mesh.tracing.len() as u64)
             .map(|i| [1, 2, 3, 5, 8, 17][((seed ^ (i * 0x9e37_79b9)) >> 7) as usize % 6])
             .collect();
-        refined(mesh, &Levels::PerPoint(&mixed), &options, "mixed levels");
-        refined(mesh, &Levels::MaxError(0.05), &options, "by error");
+        refined(mesh, Lod::per_point(&mixed), &options, "mixed levels");
+        refined(mesh, LodCriterion::MaxError(0.05), &options, "by error");
     }
 }
 
@@ -187,7 +187,7 @@ fn levels_1_and_64_side_by_side_are_closed() {
         .collect();
     refined(
         &mesh,
-        &Levels::PerPoint(&levels),
+        Lod::per_point(&levels),
         &RefineOptions::default(),
         "1 and 64",
     );

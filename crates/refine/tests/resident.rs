@@ -7,7 +7,8 @@ use glam::Vec3;
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role, SurfaceMesh, TracingPoint, Vertex};
 use neurotess_refine::{
-    Levels, PLACES_OF_BALL, Part, RefineOptions, Refinement, ball_around, dequantized, pack,
+    LodCriterion, MeshPart, PATCHES_OF_SPHERE, RefineOptions, Refinement, dequantized, pack,
+    sphere_around,
 };
 use proptest::prelude::*;
 
@@ -27,12 +28,12 @@ fn tree(twigs: u64, points: usize, radius: f32) -> CoarseMesh {
         .mesh
 }
 
-fn assert_complete(mesh: &CoarseMesh, parts: &[Part]) {
+fn assert_complete(mesh: &CoarseMesh, parts: &[MeshPart]) {
     let mut found = vec![0; mesh.patches.len()];
     for part in parts {
         assert_eq!(
-            part.balls.len(),
-            part.patches.len().div_ceil(PLACES_OF_BALL)
+            part.spheres.len(),
+            part.patches.len().div_ceil(PATCHES_OF_SPHERE)
         );
         for &patch in part.patches.iter().filter(|&&patch| patch != u32::MAX) {
             found[patch as usize] += 1;
@@ -55,10 +56,12 @@ fn largest_move(mesh: &CoarseMesh, rounded: &CoarseMesh) -> f32 {
     vertices.chain(centers).fold(0.0, f32::max)
 }
 
-/// Words of the points of each part.
-fn words_of(parts: &[Part]) -> Vec<&[u32]> {
-    let words = parts.iter().map(|p| &p.heap[p.places.words as usize..]);
-    words.collect()
+/// Color keys of the points of each part.
+fn color_keys_of(parts: &[MeshPart]) -> Vec<&[u32]> {
+    let keys = parts
+        .iter()
+        .map(|p| &p.packed[p.layout.color_keys as usize..]);
+    keys.collect()
 }
 
 #[test]
@@ -69,16 +72,16 @@ fn numbers_keep_all_their_bits_and_shares_of_a_scale_the_highest() {
     let numbers: Vec<u32> = (0..points).collect();
     let parts = pack(&mesh, &numbers, &[], 1 << 20);
     assert_complete(&mesh, &parts);
-    let words = words_of(&parts);
-    assert!(words.iter().all(|list| list.len() <= 1024));
-    let odd = words.concat().iter().filter(|&word| word % 2 == 1).count();
-    // Of the others rings are loose: they have a word to themselves.
+    let keys = color_keys_of(&parts);
+    assert!(keys.iter().all(|list| list.len() <= 1024));
+    let odd = keys.concat().iter().filter(|&key| key % 2 == 1).count();
+    // Of the others rings are explicit: they have a key to themselves.
     assert!(odd as u32 > points * 2 / 5, "{odd} of {points}");
     let shares: Vec<u32> = numbers.iter().map(|n| n << 16).collect();
     let parts = pack(&mesh, &shares, &[], 1 << 20);
-    let words = words_of(&parts);
-    assert_eq!(words.len(), 1, "parts");
-    assert!((512..=1024).contains(&words[0].len()), "{}", words[0].len());
+    let keys = color_keys_of(&parts);
+    assert_eq!(keys.len(), 1, "parts");
+    assert!((512..=1024).contains(&keys[0].len()), "{}", keys[0].len());
 }
 
 #[test]
@@ -103,7 +106,11 @@ fn parts_are_closed_together() {
         assert_complete(&mesh, &parts);
         let rounded = dequantized(&mesh, &parts);
         assert!(largest_move(&mesh, &rounded) < 0.01);
-        let refined = Refinement::new(&rounded, &Levels::Homogeneous(3), &RefineOptions::default());
+        let refined = Refinement::new(
+            &rounded,
+            LodCriterion::Homogeneous(3),
+            &RefineOptions::default(),
+        );
         assert_closed(&SurfaceMesh::collect(&refined), "rounded");
         parts.len()
     });
@@ -115,29 +122,30 @@ fn parts_are_closed_together() {
 }
 
 #[test]
-fn balls_hold_their_patches_at_any_level() {
+fn spheres_hold_their_patches_at_any_level() {
     for (radius, level) in [(0.4, 2), (1.5, 9), (0.1, 5)] {
         let mesh = tree(30, 5, radius);
         let parts = pack(&mesh, &[], &[], usize::MAX);
         let rounded = dequantized(&mesh, &parts);
         let refined = Refinement::new(
             &rounded,
-            &Levels::Homogeneous(level),
+            LodCriterion::Homogeneous(level),
             &RefineOptions::default(),
         );
         for part in &parts {
-            let (center, whole) = ball_around(part.balls.iter().copied());
-            for (patches, &(middle, reach)) in part.patches.chunks(PLACES_OF_BALL).zip(&part.balls)
+            let (center, whole) = sphere_around(part.spheres.iter().copied());
+            for (patches, &(middle, reach)) in
+                part.patches.chunks(PATCHES_OF_SPHERE).zip(&part.spheres)
             {
                 assert!(middle.distance(center) + reach <= whole * 1.000_1);
                 for &patch in patches.iter().filter(|&&patch| patch != u32::MAX) {
                     let (own, radius) =
-                        neurotess_refine::patch_ball(&rounded, &rounded.patches[patch as usize]);
+                        neurotess_refine::patch_sphere(&rounded, &rounded.patches[patch as usize]);
                     let (nx, ny) = refined.patch_grid(patch as usize);
                     for (i, j) in (0..=nx).flat_map(|i| (0..=ny).map(move |j| (i, j))) {
                         let p = refined.grid_vertex(patch as usize, i, j).position;
-                        assert!(p.distance(middle) <= reach, "outside the ball of many");
-                        assert!(p.distance(own) <= radius, "outside its own ball");
+                        assert!(p.distance(middle) <= reach, "outside the sphere of many");
+                        assert!(p.distance(own) <= radius, "outside its own sphere");
                     }
                 }
             }
@@ -150,7 +158,7 @@ fn a_cell_of_two_thousand_points_takes_24_bytes_a_point() {
     let mesh = tree(80, 28, 0.5);
     let points = mesh.tracing.iter().filter(|t| t.role != Role::Soma).count();
     let parts = pack(&mesh, &[1, 2, 3], &[], usize::MAX);
-    let bytes: usize = parts.iter().map(|part| 4 * part.heap.len()).sum();
+    let bytes: usize = parts.iter().map(|part| 4 * part.packed.len()).sum();
     let each = bytes as f64 / points as f64;
     println!(
         "{points} points, {each:.2} bytes each: {:?}",
@@ -162,7 +170,7 @@ fn a_cell_of_two_thousand_points_takes_24_bytes_a_point() {
 
 #[test]
 fn a_mesh_of_any_patches_is_packed() {
-    // Two lateral patches that are no tube, one soma patch, a cap: all loose.
+    // Two lateral patches that are no tube, one soma patch, a cap: all explicit.
     let mut mesh = CoarseMesh::default();
     for i in 0..12_u8 {
         let at = f32::from(i);

@@ -1,11 +1,11 @@
 //! The shaders' text is valid in every language, and its structs are ours.
 mod languages;
 
-use neurotess_refine::gpu::{self, Criterion, GpuView};
+use neurotess_refine::gpu::{self, GpuLodCriterion, GpuLodView};
 
 /// Uses every twin, so that no function escapes translation.
 const ENTRY: &str = "
-struct Asked { view: View, levels: Criterion, base: Base }
+struct Asked { view: LodView, levels: LodCriterion, base: Base }
 @group(0) @binding(1) var<storage, read> asked: Asked;
 @group(0) @binding(2) var<storage, read_write> out: array<SurfacePoint>;
 @compute @workgroup_size(64)
@@ -19,29 +19,29 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 
 #[test]
 fn twins_are_valid_in_every_language() {
-    languages::check("twins", &gpu::compose(&[gpu::SOURCE_WGSL, ENTRY]));
+    languages::check("twins", &gpu::compose(&[gpu::CORNER_SOURCE_WGSL, ENTRY]));
 }
 
 #[test]
 fn structs_have_one_layout() {
-    let module = languages::check("twins", &gpu::compose(&[gpu::SOURCE_WGSL, ENTRY]));
+    let module = languages::check("twins", &gpu::compose(&[gpu::CORNER_SOURCE_WGSL, ENTRY]));
     assert_layout!(
         &module,
-        "Criterion",
-        Criterion,
+        "LodCriterion",
+        GpuLodCriterion,
         [kind, level, amount, path, caps]
     );
-    let (fields, size) = languages::fields(&module, "View");
+    let (fields, size) = languages::fields(&module, "LodView");
     let names: Vec<&str> = fields.iter().map(|(name, ..)| name.as_str()).collect();
     assert_eq!(names, ["eye", "slope", "forward", "flat", "near"]);
-    assert_eq!(size, size_of::<GpuView>());
+    assert_eq!(size, size_of::<GpuLodView>());
     let offsets: Vec<usize> = fields.iter().map(|&(_, offset, _)| offset).collect();
     let ours = [
-        std::mem::offset_of!(GpuView, eye),
-        std::mem::offset_of!(GpuView, slope),
-        std::mem::offset_of!(GpuView, forward),
-        std::mem::offset_of!(GpuView, flat),
-        std::mem::offset_of!(GpuView, near),
+        std::mem::offset_of!(GpuLodView, eye),
+        std::mem::offset_of!(GpuLodView, slope),
+        std::mem::offset_of!(GpuLodView, forward),
+        std::mem::offset_of!(GpuLodView, flat),
+        std::mem::offset_of!(GpuLodView, near),
     ];
     assert_eq!(offsets, ours);
 }

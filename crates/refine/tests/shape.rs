@@ -5,7 +5,7 @@ use common::{Twig, grow};
 use glam::Vec3;
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh};
-use neurotess_refine::{Levels, Path, RefineOptions, Refinement};
+use neurotess_refine::{LodCriterion, Path, RefineOptions, Refinement};
 
 fn cell(seed: u64) -> CoarseMesh {
     let twigs: Vec<Twig> = [(0, 6), (0, 5), (1, 4), (3, 3)]
@@ -25,12 +25,12 @@ fn cell(seed: u64) -> CoarseMesh {
         .mesh
 }
 
-fn surface(mesh: &CoarseMesh, levels: Levels<'_>, path: Path) -> SurfaceMesh {
+fn surface(mesh: &CoarseMesh, lod: LodCriterion, path: Path) -> SurfaceMesh {
     let options = RefineOptions {
         path,
         ..RefineOptions::default()
     };
-    SurfaceMesh::collect(&Refinement::new(mesh, &levels, &options))
+    SurfaceMesh::collect(&Refinement::new(mesh, lod, &options))
 }
 
 /// Distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
@@ -101,9 +101,9 @@ fn farthest(fine: &SurfaceMesh, coarse: &SurfaceMesh) -> f32 {
 fn adaptive_error_is_kept() {
     for seed in [1, 2, 3] {
         let mesh = cell(seed);
-        let finest = surface(&mesh, Levels::Homogeneous(64), Path::Hermite);
+        let finest = surface(&mesh, LodCriterion::Homogeneous(64), Path::Hermite);
         for error in [0.2, 0.05, 0.01] {
-            let adaptive = surface(&mesh, Levels::MaxError(error), Path::Hermite);
+            let adaptive = surface(&mesh, LodCriterion::MaxError(error), Path::Hermite);
             let measured = farthest(&finest, &adaptive);
             assert!(
                 measured <= error,
@@ -117,7 +117,7 @@ fn adaptive_error_is_kept() {
 #[test]
 fn rings_are_circles_of_the_traced_radius() {
     let mesh = cell(5);
-    let refined = surface(&mesh, Levels::Homogeneous(8), Path::Hermite);
+    let refined = surface(&mesh, LodCriterion::Homogeneous(8), Path::Hermite);
     let mut checked = 0;
     for tracing in mesh.tracing.iter().filter(|t| t.role == Role::Ordinary) {
         // Vertices in the ring's plane and near its center are the ring's.
@@ -138,7 +138,7 @@ fn rings_are_circles_of_the_traced_radius() {
 #[test]
 fn normals_are_those_of_the_surface() {
     let mesh = cell(7);
-    let refined = surface(&mesh, Levels::Homogeneous(16), Path::Hermite);
+    let refined = surface(&mesh, LodCriterion::Homogeneous(16), Path::Hermite);
     let mut faces = vec![Vec3::ZERO; refined.vertices.len()];
     for t in &refined.faces.triangles {
         let [a, b, c] = t.map(|i| refined.vertices[i as usize].position);
@@ -183,7 +183,7 @@ fn smooth_neurite_has_the_area_of_its_frusta() {
         path: Path::Linear,
         ..RefineOptions::default()
     };
-    let refinement = Refinement::new(&mesh, &Levels::Homogeneous(8), &options);
+    let refinement = Refinement::new(&mesh, LodCriterion::Homogeneous(8), &options);
     let (volume, area) = refinement.volume_and_area();
     let (mut frusta_volume, mut frusta_area) = (0.0, 0.0);
     let cap = |r: f64| {

@@ -1,27 +1,27 @@
 //! The shaders of pictures are valid in every language, and their structs are ours.
 
 use crate::assert_layout;
-use crate::finish::{Finish, Last, finish_text};
-use crate::ids::ids_text;
-use crate::prerefined::{Placement, StoredVertex, WGSL};
-use crate::present::{Present, mask_text};
-use crate::refiner::Refiner;
-use crate::shade::{Shade, Way, shader_text};
 use crate::shader_tests::languages;
+use crate::shading::finish::{Finish, Last, finish_text};
+use crate::shading::ids::ids_text;
+use crate::shading::present::{Present, mask_text};
+use crate::shading::shade::{PipelineKey, Shade, shader_text};
+use crate::sources::adaptive::refiner::Refiner;
+use crate::sources::prerefined::{Placement, StoredVertex, WGSL};
 
 #[test]
 fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
     for samples in [1, 4] {
         for barycentric in [false, true] {
-            let maker = format!("const BARYCENTRIC: bool = {barycentric};\n{WGSL}");
+            let source = format!("const BARYCENTRIC: bool = {barycentric};\n{WGSL}");
             let module = languages::check(
                 "shade",
                 &shader_text(
-                    &maker,
-                    Way {
+                    &source,
+                    PipelineKey {
                         samples,
                         valued: samples > 1,
-                        ..Way::default()
+                        ..PipelineKey::default()
                     },
                 ),
             );
@@ -48,9 +48,9 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                     colors,
                     valued,
                     shift,
-                    faint,
+                    ghosted,
                     clip,
-                    marked,
+                    highlighted,
                     jitter,
                     batch,
                     pad,
@@ -61,7 +61,7 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
                 &module,
                 "StoredVertex",
                 StoredVertex,
-                [x, y, z, radius, normal, word]
+                [x, y, z, radius, normal, color_key]
             );
             assert_layout!(
                 &module,
@@ -97,14 +97,14 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_layouts() {
 
 #[test]
 fn window_shaders_are_valid_in_every_language_and_have_our_layouts() {
-    let id = include_str!("surface_id.wgsl");
+    let id = include_str!("sources/adaptive/surface_id.wgsl");
     for shader in 0..Refiner::SHADERS {
         languages::check("ids", &ids_text(&Refiner::vertex_wgsl(shader), id));
     }
     for samples in [1, 4] {
         languages::check("mask of a draft", &mask_text(samples));
     }
-    let module = languages::check("present", include_str!("present.wgsl"));
+    let module = languages::check("present", include_str!("shading/present.wgsl"));
     assert_layout!(
         &module,
         "Present",

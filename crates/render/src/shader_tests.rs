@@ -4,12 +4,12 @@
 pub(crate) mod languages;
 
 use crate::assert_layout;
-use crate::expand::{ExpandedVertex, Wanted, expand_wgsl};
-use crate::grids::Bucket;
-use crate::passes::modules;
-use crate::refiner::DrawIndexed;
-use crate::refining::{Base, BatchWords, FrameWords, Placed};
-use crate::work::CoarsePoint;
+use crate::sources::adaptive::expand::{ExpandedVertex, GridPoint, expand_wgsl};
+use crate::sources::adaptive::grids::Bucket;
+use crate::sources::adaptive::passes::modules;
+use crate::sources::adaptive::refiner::DrawIndexed;
+use crate::sources::adaptive::settings::{Base, BatchUniforms, FrameUniforms, Placed};
+use crate::sources::adaptive::work::CoarsePoint;
 
 #[test]
 fn shaders_are_valid_in_every_language_and_have_our_layouts() {
@@ -19,13 +19,21 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         &coarse,
         "CoarsePoint",
         CoarsePoint,
-        [x, y, z, radius, low, high, word, instance]
+        [x, y, z, radius, low, high, color_key, instance]
     );
     assert_layout!(
         &decide,
         "Frame",
-        FrameWords,
-        [planes, slope, flat, smallest, wires, first_loose, levels]
+        FrameUniforms,
+        [
+            planes,
+            slope,
+            flat,
+            smallest,
+            wireframe,
+            first_explicit,
+            levels
+        ]
     );
     assert_layout!(
         &decide,
@@ -34,15 +42,15 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         [
             points,
             point_count,
-            balls,
-            loose,
+            spheres,
+            explicit_vertices,
             anchors,
             soma,
             soma_count,
             quads,
             quad_count,
             caps,
-            words
+            color_keys
         ]
     );
     assert_layout!(
@@ -62,14 +70,14 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
             patches,
             instance,
             state,
-            first_loose
+            first_explicit
         ]
     );
     assert_layout!(
         &decide,
         "Batch",
-        BatchWords,
-        [first, placed, slots, clusters, sections, loose]
+        BatchUniforms,
+        [first, placed, slots, clusters, sections, explicit_vertices]
     );
     let expand = languages::check("expand", &expand_wgsl());
     for module in [&scan, &list, &expand] {
@@ -92,11 +100,11 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
             first_instance
         ]
     );
-    assert_layout!(&expand, "Wanted", Wanted, [slot, word, i, j]);
+    assert_layout!(&expand, "GridPoint", GridPoint, [slot, decided, i, j]);
     assert_layout!(
         &expand,
         "SurfaceVertex",
         ExpandedVertex,
-        [position, normal, axis, radius, word, instance, grid]
+        [position, normal, axis, radius, color_key, instance, grid]
     );
 }

@@ -6,14 +6,14 @@ use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface};
-use neurotess_refine::{Levels, RefineOptions, Refinement};
+use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_render::{
-    Adaptive, Camera, Choice, ColorTable, Gpu, Image, Instance, Occlusion, Painted, Palette,
-    PictureOptions, Placement, Prerefined, Refining, Scene, SceneError, Template, TemplateId,
-    Templates, VertexMaker, category, paint,
+    Adaptive, AdaptiveSettings, Camera, ColorTable, Gpu, Image, Instance, Occlusion, Palette,
+    PictureOptions, Placement, Prerefined, PrerefinedSurface, Scene, SceneError, Template,
+    TemplateId, Templates, VertexSource, category, paint,
 };
 
-fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, size: [u32; 2]) -> Image {
+fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, size: [u32; 2]) -> Image {
     let options = PictureOptions {
         size,
         samples: 4,
@@ -25,7 +25,7 @@ fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, size: [u32; 
         ..ColorTable::default()
     };
     let mut whole = Image::default();
-    paint(gpu, maker, camera, 0.1, &table, &options, |_, band| {
+    paint(gpu, source, camera, 0.1, &table, &options, |_, band| {
         whole = band;
         Ok::<(), std::convert::Infallible>(())
     })
@@ -33,32 +33,37 @@ fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, size: [u32; 
     whole
 }
 
-fn words(mesh: &CoarseMesh) -> Vec<u32> {
+fn color_keys(mesh: &CoarseMesh) -> Vec<u32> {
     mesh.tracing
         .iter()
         .map(|t| category(u32::from(t.kind == 1)))
         .collect()
 }
 
-fn adaptive(gpu: &Gpu, meshes: &[CoarseMesh], instances: &[Instance], choice: Choice) -> Adaptive {
-    let words: Vec<Vec<u32>> = meshes.iter().map(words).collect();
+fn adaptive(
+    gpu: &Gpu,
+    meshes: &[CoarseMesh],
+    instances: &[Instance],
+    lod: LodCriterion,
+) -> Adaptive {
+    let color_keys: Vec<Vec<u32>> = meshes.iter().map(color_keys).collect();
     let list: Vec<Template<'_>> = meshes
         .iter()
-        .zip(&words)
-        .map(|(mesh, words)| Template {
+        .zip(&color_keys)
+        .map(|(mesh, color_keys)| Template {
             mesh,
-            words,
+            color_keys,
             values: &[],
         })
         .collect();
     let mut templates = Templates::new();
     templates.add(gpu, &list).expect("uploaded");
     let scene = Scene::new(templates, instances.to_vec()).expect("a scene");
-    let refining = Refining {
-        choice,
-        ..Refining::default()
+    let settings = AdaptiveSettings {
+        lod,
+        ..AdaptiveSettings::default()
     };
-    Adaptive::new(gpu, scene, refining, 1).expect("a maker")
+    Adaptive::new(gpu, scene, settings, 1).expect("a source")
 }
 
 fn before(mesh: &CoarseMesh, distance: f64) -> Camera {
@@ -74,19 +79,19 @@ fn a_picture_is_that_of_the_stored_surface() {
     let camera = before(&mesh, 2.5);
     let mut stored = Prerefined::new(
         &gpu,
-        &[Painted {
+        &[PrerefinedSurface {
             mesh: &mesh,
-            words: &words(&mesh),
+            color_keys: &color_keys(&mesh),
         }],
-        |_| Levels::Homogeneous(4),
+        |_| LodCriterion::Homogeneous(4).into(),
         &RefineOptions::default(),
         false,
     )
     .expect("stored");
     let wanted = picture(&gpu, &mut stored, &camera, [320, 240]);
     let instance = Instance::new(TemplateId(0));
-    let mut maker = adaptive(&gpu, &[mesh], &[instance], Choice::Homogeneous(4));
-    let found = picture(&gpu, &mut maker, &camera, [320, 240]);
+    let mut source = adaptive(&gpu, &[mesh], &[instance], LodCriterion::Homogeneous(4));
+    let found = picture(&gpu, &mut source, &camera, [320, 240]);
     let differing = wanted
         .pixels
         .chunks(4)
@@ -114,19 +119,19 @@ fn statistics_are_those_of_the_stored_surface_and_memory_of_the_coarse_one() {
     for level in [1, 5, 64] {
         let meshes = std::slice::from_ref(&mesh);
         let instance = Instance::new(TemplateId(0));
-        let mut maker = adaptive(&gpu, meshes, &[instance], Choice::Homogeneous(level));
-        picture(&gpu, &mut maker, &camera, [64, 48]);
-        let stats = maker.stats(&gpu).expect("statistics");
+        let mut source = adaptive(&gpu, meshes, &[instance], LodCriterion::Homogeneous(level));
+        picture(&gpu, &mut source, &camera, [64, 48]);
+        let stats = source.stats(&gpu).expect("statistics");
         let stored = Refinement::new(
             &mesh,
-            &Levels::Homogeneous(level),
+            LodCriterion::Homogeneous(level),
             &RefineOptions::default(),
         );
         assert_eq!(stats.triangles, stored.triangle_count() as u64);
         assert_eq!(stats.patches, mesh.patches.len() as u64);
         assert_eq!(stats.patches_drawn, stats.patches);
         assert_eq!(stats.level_histogram[level as usize], 4 * stats.patches);
-        bytes.push(maker.bytes());
+        bytes.push(source.bytes());
     }
     assert_eq!(bytes[0], bytes[1]);
     assert_eq!(bytes[0], bytes[2]);
@@ -149,9 +154,9 @@ fn a_soma_alone_is_a_disk_and_a_point_alone_a_short_tube() {
         let camera = before(&mesh, 4.0);
         let meshes = std::slice::from_ref(&mesh);
         let instance = Instance::new(TemplateId(0));
-        let choice = Choice::PixelError(0.25);
-        let mut maker = adaptive(&gpu, meshes, &[instance], choice);
-        let image = picture(&gpu, &mut maker, &camera, [size, size]);
+        let lod = LodCriterion::PixelError(0.25);
+        let mut source = adaptive(&gpu, meshes, &[instance], lod);
+        let image = picture(&gpu, &mut source, &camera, [size, size]);
         let drawn = image
             .pixels
             .chunks(4)
@@ -180,18 +185,18 @@ fn nothing_at_all_is_a_picture_of_the_background() {
     };
     for (meshes, instances) in [(vec![], vec![]), (vec![mesh.clone()], vec![hidden])] {
         for size in [[1, 1], [40, 30]] {
-            let mut maker = adaptive(&gpu, &meshes, &instances, Choice::default());
-            let image = picture(&gpu, &mut maker, &camera, size);
+            let mut source = adaptive(&gpu, &meshes, &instances, LodCriterion::default());
+            let image = picture(&gpu, &mut source, &camera, size);
             assert_eq!(image.pixels.len(), 4 * (size[0] * size[1]) as usize);
             assert!(image.pixels.iter().all(|&byte| byte == 255));
-            assert_eq!(maker.stats(&gpu).expect("statistics").patches_drawn, 0);
+            assert_eq!(source.stats(&gpu).expect("statistics").patches_drawn, 0);
         }
     }
     let mut empty = adaptive(
         &gpu,
         &[CoarseMesh::default()],
         &[Instance::new(TemplateId(0))],
-        Choice::default(),
+        LodCriterion::default(),
     );
     assert!(
         picture(&gpu, &mut empty, &camera, [8, 8])
@@ -207,8 +212,8 @@ fn one_pixel_shows_what_fills_it() {
     let mesh = smooth_cell(2);
     let camera = Camera::new(DVec3::Z * 8.0, DVec3::ZERO, DVec3::Y, 0.1).expect("a camera");
     let instance = Instance::new(TemplateId(0));
-    let mut maker = adaptive(&gpu, &[mesh], &[instance], Choice::default());
-    let image = picture(&gpu, &mut maker, &camera, [1, 1]);
+    let mut source = adaptive(&gpu, &[mesh], &[instance], LodCriterion::default());
+    let image = picture(&gpu, &mut source, &camera, [1, 1]);
     assert!(image.at(0, 0)[0] < 200, "{:?}", image.pixels);
 }
 
@@ -216,12 +221,12 @@ fn one_pixel_shows_what_fills_it() {
 fn impossible_instances_are_errors() {
     let Some(gpu) = gpu() else { return };
     let mesh = cell(5, 8);
-    let words = words(&mesh);
+    let color_keys = color_keys(&mesh);
     let scene = |instance: Instance| {
         let mut templates = Templates::new();
         let template = Template {
             mesh: &mesh,
-            words: &words,
+            color_keys: &color_keys,
             values: &[],
         };
         templates.add(&gpu, &[template]).expect("uploaded");
@@ -275,10 +280,10 @@ fn scenes_beyond_a_million_patches_are_drawn_in_rounds() {
         })
         .collect();
     let camera = Camera::new(away + DVec3::Z * 300.0, away, DVec3::Y, 0.9).expect("a camera");
-    let mut maker = adaptive(&gpu, &[mesh], &instances, Choice::PixelError(4.0));
-    let image = picture(&gpu, &mut maker, &camera, [64, 64]);
+    let mut source = adaptive(&gpu, &[mesh], &instances, LodCriterion::PixelError(4.0));
+    let image = picture(&gpu, &mut source, &camera, [64, 64]);
     assert!(image.pixels.chunks(4).any(|p| p[0] < 128));
-    let stats = maker.stats(&gpu).expect("statistics");
+    let stats = source.stats(&gpu).expect("statistics");
     assert!(stats.patches > 1 << 20);
     // All lie in the cone of sight, all but a few as large as nothing.
     assert!(stats.patches_drawn > 1 << 20, "{stats:?}");

@@ -6,16 +6,17 @@ mod draw;
 use common::{Random, extent, gpu, random_values, smooth_cell};
 use draw::{BACK, BACKGROUND, Drawer, FRONT};
 use neurotess_mesh::CoarseMesh;
+use neurotess_refine::LodCriterion;
 use neurotess_refine::{Caps, Path};
 use neurotess_render::{
-    Camera, Choice, Gpu, Instance, Refiner, Refining, Scene, Template, Templates,
+    AdaptiveSettings, Camera, Gpu, Instance, Refiner, Scene, Template, Templates,
 };
 
 fn scene(gpu: &Gpu, mesh: &CoarseMesh, values: &[u8]) -> Scene {
     let mut templates = Templates::new();
     let template = Template {
         mesh,
-        words: &[],
+        color_keys: &[],
         values,
     };
     let ids = templates.add(gpu, &[template]).expect("uploaded");
@@ -35,19 +36,19 @@ fn outside(mesh: &CoarseMesh, random: &mut Random) -> (Camera, f64) {
     (camera, distance * 0.01)
 }
 
-fn refining(trial: usize, random: &mut Random) -> Refining {
-    let choice = match trial % 8 {
-        0 => Choice::PixelError(random.real(0.1, 8.0) as f32),
-        1 => Choice::PixelSize(random.real(2.0, 60.0) as f32),
-        2 => Choice::Distance {
+fn settings(trial: usize, random: &mut Random) -> AdaptiveSettings {
+    let lod = match trial % 8 {
+        0 => LodCriterion::PixelError(random.real(0.1, 8.0) as f32),
+        1 => LodCriterion::PixelSize(random.real(2.0, 60.0) as f32),
+        2 => LodCriterion::Distance {
             level: 30,
             far: 100.0,
         },
-        _ => Choice::PerPoint,
+        _ => LodCriterion::PerPoint,
     };
     let either = |random: &mut Random| random.whole(2) == 0;
-    Refining {
-        choice,
+    AdaptiveSettings {
+        lod,
         path: if either(random) {
             Path::Linear
         } else {
@@ -59,14 +60,14 @@ fn refining(trial: usize, random: &mut Random) -> Refining {
             Caps::Round
         },
         smallest: 0.0,
-        wires: trial % 2 == 1,
+        wireframe: trial % 2 == 1,
     }
 }
 
 /// Pixels of front and back faces in pictures of random cells at random levels.
-fn count(gpu: &Gpu, maker: &dyn Fn(usize) -> String, cells: u64, trials: usize) -> (usize, usize) {
+fn count(gpu: &Gpu, source: &dyn Fn(usize) -> String, cells: u64, trials: usize) -> (usize, usize) {
     let mut refiner = Refiner::new(gpu).expect("a refiner");
-    let drawer = Drawer::new(gpu, &refiner, maker, "sides", [256, 256]);
+    let drawer = Drawer::new(gpu, &refiner, source, "sides", [256, 256]);
     let mut random = Random(5);
     let (mut front, mut back) = (0, 0);
     for seed in 0..cells {
@@ -74,10 +75,10 @@ fn count(gpu: &Gpu, maker: &dyn Fn(usize) -> String, cells: u64, trials: usize) 
         for trial in 0..trials {
             let values = random_values(&mesh, random.whole(1 << 40));
             let scene = scene(gpu, &mesh, &values);
-            let refining = refining(trial, &mut random);
+            let settings = settings(trial, &mut random);
             for _ in 0..2 {
                 let (camera, near) = outside(&mesh, &mut random);
-                let pixels = drawer.draw(gpu, &mut refiner, &scene, &camera, near, &refining);
+                let pixels = drawer.draw(gpu, &mut refiner, &scene, &camera, near, &settings);
                 for pixel in &pixels {
                     assert!([FRONT, BACK, BACKGROUND].contains(pixel), "{pixel:?}");
                     front += usize::from(*pixel == FRONT);
@@ -110,7 +111,7 @@ fn an_edge_whose_faces_disagree_is_found() {
         ),
         ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 2),
     ] {
-        let maker = |drawn: usize| {
+        let source = |drawn: usize| {
             let text = Refiner::vertex_wgsl(drawn);
             assert!(text.contains(honest), "{honest}");
             if drawn == shader {
@@ -119,7 +120,7 @@ fn an_edge_whose_faces_disagree_is_found() {
                 text
             }
         };
-        let (_, back) = count(&gpu, &maker, 1, 8);
+        let (_, back) = count(&gpu, &source, 1, 8);
         assert!(back > 10, "{honest}: {back}");
     }
 }

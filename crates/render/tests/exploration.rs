@@ -9,9 +9,9 @@ use common::{Random, cell, extent, gpu, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{
-    Adaptive, Asked, Camera, ColorTable, Exploration, ExplorationError, Frame, Gpu, Image,
-    Instance, MOST_BUDGET, Occlusion, PictureOptions, Placement, Refining, Scene, Sketch, Template,
-    TemplateId, Templates, Tile, VertexMaker, asked, paint,
+    Adaptive, AdaptiveSettings, Camera, ColorTable, Exploration, ExplorationError, Frame, Gpu,
+    Image, Instance, LodRequest, MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene,
+    Template, TemplateId, Templates, Tile, VertexSource, lod_requests, paint,
 };
 use pictured::{CELL, by_type, mesh};
 
@@ -48,11 +48,11 @@ fn places(random: &mut Random, count: usize, templates: usize, edge: f64) -> Vec
     (0..count).map(|_| place(random)).collect()
 }
 
-fn explored(gpu: &Gpu, sketches: &[Sketch], instances: Vec<Instance>) -> Exploration {
-    let mut maker = Exploration::new(gpu, 1).expect("a maker");
-    maker.add(gpu, sketches).expect("uploaded");
-    maker.set_instances(gpu, instances).expect("instances");
-    maker
+fn explored(gpu: &Gpu, proxies: &[Proxy], instances: Vec<Instance>) -> Exploration {
+    let mut source = Exploration::new(gpu, 1).expect("a source");
+    source.add(gpu, proxies).expect("uploaded");
+    source.set_instances(gpu, instances).expect("instances");
+    source
 }
 
 fn any_camera(random: &mut Random, reach: f64) -> Camera {
@@ -67,22 +67,25 @@ fn any_camera(random: &mut Random, reach: f64) -> Camera {
 fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
     let Some(gpu) = gpu() else { return };
     let mut random = Random(5);
-    let sketches: Vec<Sketch> = (0..3).map(|i| Sketch::new(&cell(i, 30), &[])).collect();
+    let proxies: Vec<Proxy> = (0..3).map(|i| Proxy::new(&cell(i, 30), &[])).collect();
     for (count, edge) in [(1, 1.0), (7, 100.0), (300, 800.0)] {
-        let instances = places(&mut random, count, sketches.len(), edge);
-        let mut maker = explored(&gpu, &sketches, instances);
+        let instances = places(&mut random, count, proxies.len(), edge);
+        let mut source = explored(&gpu, &proxies, instances);
         for budget in [0, 1, 2, 3, 10, 100, 1000, 12_345, 100_000, MOST_BUDGET] {
-            maker.set_budget(budget);
+            source.set_budget(budget);
             for _ in 0..4 {
                 let camera = any_camera(&mut random, edge + 60.0);
-                maker
+                source
                     .prepare(&gpu, &frame(camera, 400, 300))
                     .expect("prepared");
-                let stats = maker.stats(&gpu).expect("counted");
+                let stats = source.stats(&gpu).expect("counted");
                 assert!(stats.triangles <= u64::from(budget), "{stats:?}");
                 assert_eq!(stats.all_instances, count as u64);
                 if stats.wanted <= u64::from(budget) {
-                    assert_eq!(stats.triangles, stats.wanted, "all that is asked for");
+                    assert_eq!(
+                        stats.triangles, stats.wanted,
+                        "all that is lod_requests for"
+                    );
                 } else if budget >= 10_000 {
                     // What is left of a budget is less than the class that did not fit.
                     assert!(5 * stats.triangles >= 3 * u64::from(budget), "{stats:?}");
@@ -96,31 +99,31 @@ fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
 fn what_is_drawn_is_what_is_worth_most() {
     let Some(gpu) = gpu() else { return };
     let mut random = Random(11);
-    let sketches: Vec<Sketch> = (0..2).map(|i| Sketch::new(&cell(i, 40), &[])).collect();
-    let instances = places(&mut random, 40, sketches.len(), 300.0);
-    let mut maker = explored(&gpu, &sketches, instances.clone());
+    let proxies: Vec<Proxy> = (0..2).map(|i| Proxy::new(&cell(i, 40), &[])).collect();
+    let instances = places(&mut random, 40, proxies.len(), 300.0);
+    let mut source = explored(&gpu, &proxies, instances.clone());
     let (mut compared, mut off) = (0, 0);
     for budget in [500, 5000, 60_000, MOST_BUDGET] {
-        maker.set_budget(budget);
+        source.set_budget(budget);
         for _ in 0..4 {
             let frame = frame(any_camera(&mut random, 300.0), 500, 300);
-            maker.prepare(&gpu, &frame).expect("prepared");
-            let shown = maker.shown(&gpu).expect("read back");
+            source.prepare(&gpu, &frame).expect("prepared");
+            let shown = source.shown(&gpu).expect("read back");
             let mut shown = shown
                 .iter()
-                .map(|s| ((s.instance, s.run), s.quads))
+                .map(|s| ((s.instance, s.chunk), s.quads))
                 .peekable();
             let (mut least, mut most) = (f64::MAX, f64::MIN);
             for (i, instance) in (0..).zip(&instances) {
-                let sketch = &sketches[instance.template.0 as usize];
-                let runs = asked(sketch, &instance.placement, &frame, 1, i);
+                let proxy = &proxies[instance.template.0 as usize];
+                let runs = lod_requests(proxy, &instance.placement, &frame, 1, i);
                 for (run, steps) in (0..).zip(runs) {
                     let there = shown.next_if(|&(at, _)| at == (i, run));
                     let quads = there.map_or(0, |(_, quads)| quads);
                     compared += 1;
                     match drawn_steps(&steps, quads) {
                         Some(drawn) => {
-                            let class = |step: &Asked| step.class;
+                            let class = |step: &LodRequest| step.class;
                             least = steps[..drawn].iter().map(class).fold(least, f64::min);
                             most = steps[drawn..].iter().map(class).fold(most, f64::max);
                         }
@@ -141,7 +144,7 @@ fn what_is_drawn_is_what_is_worth_most() {
 }
 
 /// How many steps make these quads.
-fn drawn_steps(steps: &[Asked], quads: u32) -> Option<usize> {
+fn drawn_steps(steps: &[LodRequest], quads: u32) -> Option<usize> {
     let mut sum = 0;
     let sums = steps.iter().map(|step| {
         sum += step.quads;
@@ -151,7 +154,7 @@ fn drawn_steps(steps: &[Asked], quads: u32) -> Option<usize> {
     sums.position(|sum| sum == quads)
 }
 
-fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, table: &ColorTable) -> Image {
+fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, table: &ColorTable) -> Image {
     let options = PictureOptions {
         size: [320, 240],
         samples: 16,
@@ -163,7 +166,7 @@ fn picture(gpu: &Gpu, maker: &mut dyn VertexMaker, camera: &Camera, table: &Colo
         whole = band;
         Ok::<(), Infallible>(())
     };
-    paint(gpu, maker, camera, 1.0, table, &options, take).expect("painted");
+    paint(gpu, source, camera, 1.0, table, &options, take).expect("painted");
     whole
 }
 
@@ -180,21 +183,21 @@ fn ink(image: &Image) -> Vec<f64> {
     tiles
 }
 
-/// Both makers of one scene.
+/// Both sources of one scene.
 fn both(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Instance]) -> (Adaptive, Exploration) {
-    let (words, _) = by_type(mesh);
+    let (color_keys, _) = by_type(mesh);
     let mut templates = Templates::new();
     let template = Template {
         mesh,
-        words: &words,
+        color_keys: &color_keys,
         values: &[],
     };
     templates.add(gpu, &[template]).expect("uploaded");
     let scene = Scene::new(templates, instances.to_vec()).expect("a scene");
-    let adaptive = Adaptive::new(gpu, scene, Refining::default(), 2).expect("a maker");
-    let mut maker = explored(gpu, &[Sketch::new(mesh, &words)], instances.to_vec());
-    maker.set_sub_pixels(2);
-    (adaptive, maker)
+    let adaptive = Adaptive::new(gpu, scene, AdaptiveSettings::default(), 2).expect("a source");
+    let mut source = explored(gpu, &[Proxy::new(mesh, &color_keys)], instances.to_vec());
+    source.set_sub_pixels(2);
+    (adaptive, source)
 }
 
 #[test]
@@ -205,13 +208,13 @@ fn nothing_vanishes_near_or_far() {
     let mut random = Random(2);
     for (count, edge) in [(1, 1.0), (40, 250.0)] {
         let instances = places(&mut random, count, 1, edge);
-        let (mut adaptive, mut maker) = both(&gpu, &mesh, &instances);
-        maker.set_budget(2_000_000);
+        let (mut adaptive, mut source) = both(&gpu, &mesh, &instances);
+        source.set_budget(2_000_000);
         for distance in [60.0, 200.0, 600.0, 2000.0] {
             let eye = DVec3::new(0.3, 0.5, 1.0).normalize_or(DVec3::Z) * (distance + edge);
             let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
             let wanted = ink(&picture(&gpu, &mut adaptive, &camera, &table));
-            let found = ink(&picture(&gpu, &mut maker, &camera, &table));
+            let found = ink(&picture(&gpu, &mut source, &camera, &table));
             let all: f64 = wanted.iter().sum();
             let change = found.iter().sum::<f64>() / all - 1.0;
             let off: f64 = wanted.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
@@ -231,10 +234,10 @@ fn somata_are_seen_from_any_distance() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh("1 1 0 0 0 6 -1\n");
     let (_, table) = by_type(&mesh);
-    let (_, mut maker) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
+    let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
     for distance in [30.0, 300.0, 3e3, 3e4, 3e5, 3e6] {
         let camera = Camera::new(DVec3::Z * distance, DVec3::ZERO, DVec3::Y, 0.7).expect("one");
-        let found: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+        let found: f64 = ink(&picture(&gpu, &mut source, &camera, &table))
             .iter()
             .sum();
         // Black on white: a pixel's worth of light, were it spread over four.
@@ -247,7 +250,7 @@ fn the_place_in_the_world_does_not_matter() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
     let (_, table) = by_type(&mesh);
-    let (_, mut maker) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
+    let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
     let mut at = |place: DVec3| {
         let instance = Instance {
             placement: Placement {
@@ -256,10 +259,10 @@ fn the_place_in_the_world_does_not_matter() {
             },
             ..Instance::new(TemplateId(0))
         };
-        maker.set_instances(&gpu, vec![instance]).expect("placed");
+        source.set_instances(&gpu, vec![instance]).expect("placed");
         let eye = place + DVec3::new(3.0, 4.0, 60.0);
         let camera = Camera::new(eye, place, DVec3::Y, 0.7).expect("a camera");
-        picture(&gpu, &mut maker, &camera, &table)
+        picture(&gpu, &mut source, &camera, &table)
     };
     let here = at(DVec3::ZERO);
     let there = at(DVec3::new(1e6 + 0.123, -2e6, 3e6));
@@ -275,15 +278,15 @@ fn a_slow_camera_sees_nothing_pop() {
     let mesh = smooth_cell(3);
     let (_, table) = by_type(&mesh);
     let instances = places(&mut Random(4), 30, 1, 200.0);
-    let (mut adaptive, mut maker) = both(&gpu, &mesh, &instances);
-    let worst = |maker: &mut dyn VertexMaker| {
+    let (mut adaptive, mut source) = both(&gpu, &mesh, &instances);
+    let worst = |source: &mut dyn VertexSource| {
         let frames: Vec<Image> = (0..9)
             .map(|i| {
                 let t = f64::from(i);
                 let eye = DVec3::new((0.0005 * t).sin(), 0.3, (0.0005 * t).cos());
                 let eye = eye * 420.0 * 0.999_f64.powf(t);
                 let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-                picture(&gpu, maker, &camera, &table)
+                picture(&gpu, source, &camera, &table)
             })
             .collect();
         let change = |pair: &[Image]| {
@@ -293,10 +296,10 @@ fn a_slow_camera_sees_nothing_pop() {
         frames.windows(2).map(change).fold(0.0, f64::max)
     };
     let reference = worst(&mut adaptive);
-    maker.set_budget(1_000_000);
-    let all = worst(&mut maker) / reference;
-    maker.set_budget(4_000);
-    let few = worst(&mut maker) / reference;
+    source.set_budget(1_000_000);
+    let all = worst(&mut source) / reference;
+    source.set_budget(4_000);
+    let few = worst(&mut source) / reference;
     println!("changes: {all:.3} of the refined surface's; within a small budget {few:.3}");
     assert!(all < 1.15, "{all}");
     assert!(few < 1.3, "{few}");
@@ -308,17 +311,17 @@ fn what_passes_beside_the_eye_takes_no_budget() {
     let mesh = cell(7, 60);
     let (_, table) = by_type(&mesh);
     let instances = places(&mut Random(6), 300, 1, 250.0);
-    let (_, mut maker) = both(&gpu, &mesh, &instances);
+    let (_, mut source) = both(&gpu, &mesh, &instances);
     let camera = Camera::new(DVec3::Z * 20.0, DVec3::ZERO, DVec3::Y, 0.9).expect("a camera");
-    maker.set_budget(MOST_BUDGET);
-    let all: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+    source.set_budget(MOST_BUDGET);
+    let all: f64 = ink(&picture(&gpu, &mut source, &camera, &table))
         .iter()
         .sum();
-    maker.set_budget(40_000);
-    let found: f64 = ink(&picture(&gpu, &mut maker, &camera, &table))
+    source.set_budget(40_000);
+    let found: f64 = ink(&picture(&gpu, &mut source, &camera, &table))
         .iter()
         .sum();
-    let stats = maker.stats(&gpu).expect("counted");
+    let stats = source.stats(&gpu).expect("counted");
     println!("{:.3} of the ink, {stats:?}", found / all);
     assert!(stats.wanted > 10 * stats.budget && found > 0.8 * all);
 }
@@ -326,72 +329,72 @@ fn what_passes_beside_the_eye_takes_no_budget() {
 #[test]
 fn instances_hide_and_come_back() {
     let Some(gpu) = gpu() else { return };
-    let sketch = Sketch::new(&cell(1, 20), &[]);
+    let proxy = Proxy::new(&cell(1, 20), &[]);
     let mut random = Random(8);
     let instances = places(&mut random, 5, 1, 100.0);
-    let mut maker = explored(&gpu, &[sketch], instances);
+    let mut source = explored(&gpu, &[proxy], instances);
     let camera = Camera::new(DVec3::Z * 500.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-    let seen = |maker: &mut Exploration| {
-        maker
+    let seen = |source: &mut Exploration| {
+        source
             .prepare(&gpu, &frame(camera, 300, 300))
             .expect("prepared");
-        let shown = maker.shown(&gpu).expect("read back");
+        let shown = source.shown(&gpu).expect("read back");
         let mut instances: Vec<u32> = shown.iter().map(|piece| piece.instance).collect();
         instances.dedup();
         instances
     };
-    assert_eq!(seen(&mut maker), [0, 1, 2, 3, 4]);
-    maker.set_hidden(0, true);
-    maker.set_hidden(3, true);
-    assert_eq!(seen(&mut maker), [1, 2, 4]);
-    maker.set_hidden(3, false);
-    maker.set_state(1, 7);
-    assert_eq!(seen(&mut maker), [1, 2, 3, 4]);
-    assert_eq!(maker.instances()[1].state, 7);
+    assert_eq!(seen(&mut source), [0, 1, 2, 3, 4]);
+    source.set_hidden(0, true);
+    source.set_hidden(3, true);
+    assert_eq!(seen(&mut source), [1, 2, 4]);
+    source.set_hidden(3, false);
+    source.set_state(1, 7);
+    assert_eq!(seen(&mut source), [1, 2, 3, 4]);
+    assert_eq!(source.instances()[1].state, 7);
     for i in 0..5 {
-        maker.set_hidden(i, true);
+        source.set_hidden(i, true);
     }
-    assert!(seen(&mut maker).is_empty());
+    assert!(seen(&mut source).is_empty());
     // Another template while it is in use.
-    let ids = maker
-        .add(&gpu, &[Sketch::new(&cell(2, 10), &[])])
+    let ids = source
+        .add(&gpu, &[Proxy::new(&cell(2, 10), &[])])
         .expect("uploaded");
     assert_eq!(ids, [TemplateId(1)]);
-    maker
+    source
         .set_instances(&gpu, vec![Instance::new(ids[0])])
         .expect("placed");
-    assert_eq!(seen(&mut maker), [0]);
+    assert_eq!(seen(&mut source), [0]);
 }
 
 #[test]
 fn templates_are_recolored_in_place() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
-    let (words, table) = by_type(&mesh);
-    let plain = vec![words[0]; words.len()];
+    let (color_keys, table) = by_type(&mesh);
+    let plain = vec![color_keys[0]; color_keys.len()];
     let camera = Camera::new(DVec3::Z * 120.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-    // From one word to many, which needs room, and back; beside another template.
-    let mut sketches = [Sketch::new(&mesh, &plain), Sketch::new(&mesh, &words)];
-    let mut maker = explored(&gpu, &sketches, vec![Instance::new(TemplateId(0))]);
-    let before = picture(&gpu, &mut maker, &camera, &table);
-    sketches[0].set_words(&words);
-    maker
-        .recolor(&gpu, TemplateId(0), &sketches[0])
+    // From one color key to many, which needs room, and back; beside another template.
+    let mut proxies = [Proxy::new(&mesh, &plain), Proxy::new(&mesh, &color_keys)];
+    let mut source = explored(&gpu, &proxies, vec![Instance::new(TemplateId(0))]);
+    let before = picture(&gpu, &mut source, &camera, &table);
+    proxies[0].set_color_keys(&color_keys);
+    source
+        .recolor(&gpu, TemplateId(0), &proxies[0])
         .expect("recolored");
-    let colored = picture(&gpu, &mut maker, &camera, &table);
+    let colored = picture(&gpu, &mut source, &camera, &table);
     assert_ne!(before, colored);
-    maker
+    source
         .set_instances(&gpu, vec![Instance::new(TemplateId(1))])
         .expect("placed");
-    assert_eq!(colored, picture(&gpu, &mut maker, &camera, &table));
-    maker
+    assert_eq!(colored, picture(&gpu, &mut source, &camera, &table));
+    source
         .set_instances(&gpu, vec![Instance::new(TemplateId(0))])
         .expect("placed");
-    sketches[0].set_words(&plain);
-    maker
-        .recolor(&gpu, TemplateId(0), &sketches[0])
+    proxies[0].set_color_keys(&plain);
+    source
+        .recolor(&gpu, TemplateId(0), &proxies[0])
         .expect("recolored");
-    assert_eq!(before, picture(&gpu, &mut maker, &camera, &table));
+    assert_eq!(before, picture(&gpu, &mut source, &camera, &table));
 }
 
 #[test]
@@ -402,25 +405,29 @@ fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
         scale: vec![[0; 3]],
         ..ColorTable::default()
     };
-    let mut maker = Exploration::new(&gpu, 1).expect("a maker");
+    let mut source = Exploration::new(&gpu, 1).expect("a source");
     assert!(
-        ink(&picture(&gpu, &mut maker, &camera, &table))
+        ink(&picture(&gpu, &mut source, &camera, &table))
             .iter()
             .all(|&i| i == 0.0)
     );
-    let none = Sketch::new(&CoarseMesh::default(), &[]);
-    let soma = Sketch::new(&mesh("1 1 0 0 0 6 -1\n"), &[]);
-    let free = Sketch::new(&mesh("1 3 0 0 0 1 -1\n2 3 5 0 0 1 1\n"), &[]);
+    let none = Proxy::new(&CoarseMesh::default(), &[]);
+    let soma = Proxy::new(&mesh("1 1 0 0 0 6 -1\n"), &[]);
+    let free = Proxy::new(&mesh("1 3 0 0 0 1 -1\n2 3 5 0 0 1 1\n"), &[]);
     assert_eq!(
-        (none.balls().len(), soma.balls().len(), free.balls().len()),
+        (
+            none.spheres().len(),
+            soma.spheres().len(),
+            free.spheres().len()
+        ),
         (0, 1, 1)
     );
-    let ids = maker.add(&gpu, &[none, soma, free]).expect("uploaded");
+    let ids = source.add(&gpu, &[none, soma, free]).expect("uploaded");
     for (id, drawn) in ids.iter().zip([false, true, true]) {
-        maker
+        source
             .set_instances(&gpu, vec![Instance::new(*id)])
             .expect("placed");
-        let found = ink(&picture(&gpu, &mut maker, &camera, &table))
+        let found = ink(&picture(&gpu, &mut source, &camera, &table))
             .iter()
             .sum::<f64>();
         assert_eq!(found > 0.0, drawn, "{id:?}");
@@ -431,8 +438,8 @@ fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
             near,
             ..frame(camera, 100, 100)
         };
-        maker.prepare(&gpu, &frame).expect("prepared");
-        let stats = maker.stats(&gpu).expect("counted");
+        source.prepare(&gpu, &frame).expect("prepared");
+        let stats = source.stats(&gpu).expect("counted");
         assert!(stats.triangles <= stats.budget);
     }
     let nowhere = Instance {
@@ -443,10 +450,10 @@ fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
         ..Instance::new(ids[1])
     };
     for wrong in [nowhere, Instance::new(TemplateId(9))] {
-        let refused = maker.set_instances(&gpu, vec![wrong]);
+        let refused = source.set_instances(&gpu, vec![wrong]);
         assert!(matches!(refused, Err(ExplorationError::Scene(_))));
     }
-    assert_eq!(maker.instances().len(), 1, "those before stay");
+    assert_eq!(source.instances().len(), 1, "those before stay");
 }
 
 #[test]
@@ -468,24 +475,24 @@ fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
         swc += &format!("{} 3 {x:.3} {y:.3} {z:.3} 0.4 {parent}\n", i + 2);
     }
     let mesh = mesh(&swc);
-    let sketch = Sketch::new(&mesh, &[]);
+    let proxy = Proxy::new(&mesh, &[]);
     let (_, reach) = extent(&mesh);
     let resident = |count: usize| {
         let instances = places(&mut Random(1), count, 1, 4.0 * reach);
-        let mut maker = explored(&gpu, std::slice::from_ref(&sketch), instances);
+        let mut source = explored(&gpu, std::slice::from_ref(&proxy), instances);
         let camera = Camera::new(DVec3::Z * 9e3, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-        maker
+        source
             .prepare(&gpu, &frame(camera, 300, 300))
             .expect("prepared");
-        let bytes = maker.bytes().iter().map(|(_, bytes)| bytes).sum::<u64>();
-        (bytes, maker.bytes_per_point())
+        let bytes = source.bytes().iter().map(|(_, bytes)| bytes).sum::<u64>();
+        (bytes, source.bytes_per_point())
     };
     let (few, per_point) = resident(20_000);
     let (many, _) = resident(40_000);
     let per_instance = (many - few) as f64 / 20_000.0;
     println!(
         "{per_point:.1} bytes a point of {}, {per_instance:.1} an instance",
-        sketch.point_count()
+        proxy.point_count()
     );
     assert!(per_point < 16.0, "{per_point}");
     assert!(per_instance < 128.0, "{per_instance}");

@@ -19,7 +19,7 @@ use neurotess_render::{
     Camera, ColorMap, Image, Legend, Light, Look, Occlusion, Overlay, OverlayOptions,
     PictureOptions, PngWriter, Side, fraction,
 };
-use pictured::{balls, explored, gpu, mesh, picture, picture_of};
+use pictured::{explored, gpu, mesh, picture, picture_of, spheres};
 
 /// Greatest mean difference of blurred channels, of 255.
 const MEAN: f64 = 1.0;
@@ -51,7 +51,7 @@ fn small() -> PictureOptions {
 fn a_whole_cell_in_the_colors_of_its_types() {
     let Some(gpu) = gpu() else { return };
     let cell = sample("pyramidal.swc");
-    let fit = Camera::fit(Side::Front, 0.35, 150.0 / 200.0, 0.04, &balls(&cell));
+    let fit = Camera::fit(Side::Front, 0.35, 150.0 / 200.0, 0.04, &spheres(&cell));
     let options = PictureOptions {
         size: [150, 200],
         ..small()
@@ -102,7 +102,7 @@ fn a_wireframe_on_black() {
     let (eye, target) = (DVec3::new(9.0, 6.0, 40.0), DVec3::ZERO);
     let camera = Camera::new(eye, target, DVec3::Y, 0.4).expect("a camera");
     compare(
-        "wires",
+        "wireframe",
         &picture(&gpu, &sample("granule.swc"), &camera, &options),
     );
 }
@@ -116,18 +116,18 @@ fn a_scale_with_its_legend_on_nothing() {
         .iter()
         .map(|t| t.center.length())
         .fold(0.0, f32::max);
-    let words: Vec<u32> = cell
+    let color_keys: Vec<u32> = cell
         .tracing
         .iter()
         .map(|t| fraction(t.center.length() / reach))
         .collect();
     let scale = ColorMap::Viridis.scale();
-    let camera = Camera::fit(Side::Iso, 0.4, 200.0 / 150.0, 0.04, &balls(&cell)).expect("fits");
+    let camera = Camera::fit(Side::Iso, 0.4, 200.0 / 150.0, 0.04, &spheres(&cell)).expect("fits");
     let options = PictureOptions {
         background: None,
         ..small()
     };
-    let mut image = picture_of(&gpu, &cell, &words, &scale, &camera, &options);
+    let mut image = picture_of(&gpu, &cell, &color_keys, &scale, &camera, &options);
     let overlay = Overlay::new(
         &OverlayOptions {
             legend: Some(Legend::bar("distance", "µm", scale, [0.0, reach], false)),
@@ -136,7 +136,7 @@ fn a_scale_with_its_legend_on_nothing() {
         },
         options.size,
         &[camera],
-        &balls(&cell),
+        &spheres(&cell),
     );
     overlay.lay_on(0, &mut image);
     compare("scale", &image);

@@ -3,21 +3,23 @@ mod pictured;
 
 use glam::{DQuat, DVec3};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+use neurotess_refine::LodCriterion;
 use neurotess_render::{
-    Adaptive, Camera, Choice, Clip, Exploration, Gpu, Image, Instance, Live, Look, Named, OUTLINED,
-    Occlusion, Outlines, PictureOptions, Placement, Refining, Scene, Shot, Sketch, SketchNames,
-    Spot, Steps, Template, Templates, VertexMaker, WITHOUT_NEURITES, WITHOUT_SOMA, paint,
+    Adaptive, AdaptiveSettings, Camera, Clip, Exploration, Gpu, Image, Instance, Look, OUTLINED,
+    Occlusion, Outlines, PickHit, PickTarget, PictureOptions, Placement, ProgressiveRenderer,
+    Proxy, ProxyPickTargets, Scene, Steps, Template, Templates, VertexSource, ViewParams,
+    WITHOUT_NEURITES, WITHOUT_SOMA, paint,
 };
-use pictured::{CELL, balls, by_type, camera, gpu, mesh};
+use pictured::{CELL, by_type, camera, gpu, mesh, spheres};
 
 const SIZE: [u32; 2] = [200, 260];
 
-fn maker(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Placement]) -> Adaptive {
-    let (words, _) = by_type(mesh);
+fn source(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Placement]) -> Adaptive {
+    let (color_keys, _) = by_type(mesh);
     let mut templates = Templates::new();
     let template = Template {
         mesh,
-        words: &words,
+        color_keys: &color_keys,
         values: &[],
     };
     let ids = templates.add(gpu, &[template]).expect("uploaded");
@@ -26,14 +28,14 @@ fn maker(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Placement]) -> Adaptive {
         ..Instance::new(ids[0])
     });
     let scene = Scene::new(templates, instances.collect()).expect("a scene");
-    Adaptive::new(gpu, scene, Refining::default(), 1).expect("a maker")
+    Adaptive::new(gpu, scene, AdaptiveSettings::default(), 1).expect("a source")
 }
 
-fn shot(mesh: &CoarseMesh) -> Shot {
+fn shot(mesh: &CoarseMesh) -> ViewParams {
     let camera = camera(mesh, SIZE);
-    Shot {
+    ViewParams {
         camera,
-        near: camera.near(&balls(mesh)),
+        near: camera.near(&spheres(mesh)),
         size: SIZE,
         look: Look::default(),
         occlusion: Occlusion::Fit,
@@ -42,14 +44,14 @@ fn shot(mesh: &CoarseMesh) -> Shot {
     }
 }
 
-fn live(gpu: &Gpu, mesh: &CoarseMesh) -> Live {
-    let mut live = Live::new(gpu);
+fn live(gpu: &Gpu, mesh: &CoarseMesh) -> ProgressiveRenderer {
+    let mut live = ProgressiveRenderer::new(gpu);
     live.set_colors(by_type(mesh).1);
     live
 }
 
 /// The texture's pixels; their width must be a multiple of 64.
-fn pixels(gpu: &Gpu, live: &Live) -> Image {
+fn pixels(gpu: &Gpu, live: &ProgressiveRenderer) -> Image {
     let texture = live.texture().expect("a picture");
     let (width, height) = (texture.width(), texture.height());
     let row = (4 * width).next_multiple_of(256);
@@ -87,10 +89,16 @@ fn pixels(gpu: &Gpu, live: &Live) -> Image {
     image
 }
 
-fn picture(gpu: &Gpu, live: &mut Live, maker: &mut Adaptive, shot: Shot, steps: Steps) -> Image {
+fn picture(
+    gpu: &Gpu,
+    live: &mut ProgressiveRenderer,
+    source: &mut Adaptive,
+    shot: ViewParams,
+    steps: Steps,
+) -> Image {
     live.begin(shot, steps);
     while live.progress().is_some() {
-        live.slice(gpu, maker).expect("drawn");
+        live.slice(gpu, source).expect("drawn");
     }
     pixels(gpu, live)
 }
@@ -107,9 +115,14 @@ fn difference(a: &Image, b: &Image) -> f64 {
     sum as f64 / a.pixels.len() as f64
 }
 
-fn named(gpu: &Gpu, live: &mut Live, maker: &mut Adaptive, shot: &Shot) -> Vec<Option<Named>> {
-    live.identify(gpu, maker, shot).expect("drawn");
-    let namer = maker.namer();
+fn named(
+    gpu: &Gpu,
+    live: &mut ProgressiveRenderer,
+    source: &mut Adaptive,
+    shot: &ViewParams,
+) -> Vec<Option<PickHit>> {
+    live.identify(gpu, source, shot).expect("drawn");
+    let namer = source.namer();
     gpu.wait().expect("done");
     let (size, ids) = live.ids().expect("no fault").expect("arrived");
     assert_eq!(size, shot.size);
@@ -118,15 +131,15 @@ fn named(gpu: &Gpu, live: &mut Live, maker: &mut Adaptive, shot: &Shot) -> Vec<O
 }
 
 /// Whether a soma is named.
-fn is_soma(mesh: &CoarseMesh, name: &Named) -> bool {
+fn is_soma(mesh: &CoarseMesh, name: &PickHit) -> bool {
     match name.spot {
-        Spot::Patch(patch) => mesh.patches[patch as usize].kind == PatchKind::Soma,
-        Spot::Vertex(vertex) => {
+        PickTarget::Patch(patch) => mesh.patches[patch as usize].kind == PatchKind::Soma,
+        PickTarget::Vertex(vertex) => {
             let tracing = mesh.vertices[vertex as usize].tracing;
             mesh.tracing[tracing as usize].role == Role::Soma
         }
-        Spot::Point(_) => false,
-        Spot::Soma(_) => true,
+        PickTarget::Point(_) => false,
+        PickTarget::Soma(_) => true,
     }
 }
 
@@ -135,7 +148,7 @@ fn a_picture_at_rest_is_as_a_saved_one() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
     let shot = shot(&mesh);
-    let mut made = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut made = source(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
     let steps = Steps {
         steps: 4,
@@ -177,7 +190,7 @@ fn a_picture_at_rest_is_as_a_saved_one() {
 fn slices_change_nothing() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
-    let mut made = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut made = source(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
     let mut with = |slices| {
         let steps = Steps { steps: 4, slices };
@@ -188,11 +201,11 @@ fn slices_change_nothing() {
 }
 
 #[test]
-fn a_choice_that_is_kept_changes_nothing() {
+fn a_lod_that_is_kept_changes_nothing() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
-    let mut anew = maker(&gpu, &mesh, &[Placement::default()]);
-    let mut kept = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut anew = source(&gpu, &mesh, &[Placement::default()]);
+    let mut kept = source(&gpu, &mesh, &[Placement::default()]);
     kept.set_keeping(true);
     let mut live = live(&gpu, &mesh);
     let steps = Steps {
@@ -201,23 +214,23 @@ fn a_choice_that_is_kept_changes_nothing() {
     };
     let mut turned = shot(&mesh);
     turned.camera = turned.camera.turned(0.7);
-    let coarse = Refining {
-        choice: Choice::Homogeneous(1),
-        ..Refining::default()
+    let coarse = AdaptiveSettings {
+        lod: LodCriterion::Homogeneous(1),
+        ..AdaptiveSettings::default()
     };
     let moved = Placement {
         translation: DVec3::Y * 4.0,
         ..Placement::default()
     };
-    // Another view, another way of refining, another scene, ids between: each is noticed.
+    // Another view, another way of settings, another scene, ids between: each is noticed.
     for change in 0..4 {
-        for maker in [&mut anew, &mut kept] {
+        for source in [&mut anew, &mut kept] {
             match change {
-                2 => maker.set_refining(coarse),
+                2 => source.set_settings(coarse),
                 3 => {
-                    let (templates, mut instances) = maker.take_scene().into_parts();
+                    let (templates, mut instances) = source.take_scene().into_parts();
                     instances[0].placement = moved;
-                    maker.set_scene(Scene::new(templates, instances).expect("a scene"));
+                    source.set_scene(Scene::new(templates, instances).expect("a scene"));
                 }
                 _ => {}
             }
@@ -236,7 +249,7 @@ fn a_choice_that_is_kept_changes_nothing() {
 fn a_draft_shows_the_same_cell() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
-    let mut made = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut made = source(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
     let fine = picture(
         &gpu,
@@ -276,11 +289,11 @@ fn drafts_have_outlines_round_what_is_outlined() {
     };
     // The picture's middle is at -9 µm.
     let both = [aside(-23.0), aside(5.0)];
-    let mut refined = maker(&gpu, &mesh, &both);
-    let (words, _) = by_type(&mesh);
-    let mut explored = Exploration::new(&gpu, 1).expect("a maker");
+    let mut refined = source(&gpu, &mesh, &both);
+    let (color_keys, _) = by_type(&mesh);
+    let mut explored = Exploration::new(&gpu, 1).expect("a source");
     let ids = explored
-        .add(&gpu, &[Sketch::new(&mesh, &words)])
+        .add(&gpu, &[Proxy::new(&mesh, &color_keys)])
         .expect("added");
     let instance = |&placement: &Placement| Instance {
         placement,
@@ -295,20 +308,20 @@ fn drafts_have_outlines_round_what_is_outlined() {
         selected: orange,
         ..Outlines::default()
     };
-    let makers: [&mut dyn VertexMaker; 2] = [&mut refined, &mut explored];
-    for (which, maker) in makers.into_iter().enumerate() {
+    let sources: [&mut dyn VertexSource; 2] = [&mut refined, &mut explored];
+    for (which, source) in sources.into_iter().enumerate() {
         let mut live = live(&gpu, &mesh);
         live.set_outlines(&gpu, outlines, None);
         let mut drawn = |states: [u32; 2]| {
             live.set_states(states.to_vec());
-            live.draft(&gpu, maker, &shot(&mesh)).expect("drawn");
+            live.draft(&gpu, source, &shot(&mesh)).expect("drawn");
             of_color(&pixels(&gpu, &live), orange)
         };
-        assert_eq!(drawn([0, 0]), [0, 0], "maker {which}");
+        assert_eq!(drawn([0, 0]), [0, 0], "source {which}");
         let [left, right] = drawn([0, OUTLINED]);
-        assert!(left == 0 && right > 100, "maker {which}: {left} {right}");
+        assert!(left == 0 && right > 100, "source {which}: {left} {right}");
         let [left, right] = drawn([OUTLINED, 0]);
-        assert!(left > 100 && right == 0, "maker {which}: {left} {right}");
+        assert!(left > 100 && right == 0, "source {which}: {left} {right}");
     }
 }
 
@@ -316,7 +329,7 @@ fn drafts_have_outlines_round_what_is_outlined() {
 fn levels_frozen_for_the_same_camera_change_nothing() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
-    let mut made = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut made = source(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
     let shot = shot(&mesh);
     let steps = Steps {
@@ -324,12 +337,12 @@ fn levels_frozen_for_the_same_camera_change_nothing() {
         slices: 1,
     };
     let free = picture(&gpu, &mut live, &mut made, shot, steps);
-    let turned = Shot {
+    let turned = ViewParams {
         camera: shot.camera.turned(0.5),
         ..shot
     };
     let other = picture(&gpu, &mut live, &mut made, turned, steps);
-    let frozen = Shot {
+    let frozen = ViewParams {
         frozen: Some((shot.camera.turned(0.5), shot.near)),
         ..shot
     };
@@ -351,7 +364,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
         rotation: DQuat::from_rotation_y(0.3),
         ..Placement::default()
     };
-    let mut made = maker(&gpu, &mesh, &[Placement::default(), aside]);
+    let mut made = source(&gpu, &mesh, &[Placement::default(), aside]);
     let mut live = live(&gpu, &mesh);
     let shot = shot(&mesh);
     let names = named(&gpu, &mut live, &mut made, &shot);
@@ -377,12 +390,12 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
         let [x, y] = [pixel % SIZE[0] as usize, pixel / SIZE[0] as usize].map(|n| n as f64);
         // Of a flat patch a vertex is named: one of its corners, however long it is.
         let corners: Vec<_> = match name.spot {
-            Spot::Patch(patch) => mesh.patches[patch as usize].corners.to_vec(),
-            Spot::Vertex(vertex) => {
+            PickTarget::Patch(patch) => mesh.patches[patch as usize].corners.to_vec(),
+            PickTarget::Vertex(vertex) => {
                 let around = mesh.patches.iter().filter(|p| p.corners.contains(&vertex));
                 around.flat_map(|p| p.corners).collect()
             }
-            Spot::Point(_) | Spot::Soma(_) => panic!("names of exploration"),
+            PickTarget::Point(_) | PickTarget::Soma(_) => panic!("names of exploration"),
         };
         let corners = corners.iter().map(|&v| &mesh.vertices[v as usize]);
         let reach: Vec<[f64; 2]> = corners
@@ -409,7 +422,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
 fn states_and_cuts_leave_out_what_they_say() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
-    let mut made = maker(&gpu, &mesh, &[Placement::default()]);
+    let mut made = source(&gpu, &mesh, &[Placement::default()]);
     let mut live = live(&gpu, &mesh);
     let mut kinds = |state: u32, clip: Option<Clip>| {
         live.set_states(vec![state]);
@@ -443,15 +456,15 @@ fn a_replaced_template_shows_its_new_mesh() {
     let Some(gpu) = gpu() else { return };
     let first = mesh(CELL);
     let thick = mesh(&CELL.replace("0 0 0 5 -1", "0 0 0 8 -1"));
-    let mut made = maker(&gpu, &first, &[Placement::default()]);
+    let mut made = source(&gpu, &first, &[Placement::default()]);
     let mut live = live(&gpu, &first);
-    let seen = |names: Vec<Option<Named>>| names.iter().flatten().count();
+    let seen = |names: Vec<Option<PickHit>>| names.iter().flatten().count();
     let before = seen(named(&gpu, &mut live, &mut made, &shot(&first)));
     let mut scene = made.take_scene();
-    let words = by_type(&thick).0;
+    let color_keys = by_type(&thick).0;
     let template = Template {
         mesh: &thick,
-        words: &words,
+        color_keys: &color_keys,
         values: &[],
     };
     let id = scene.instances()[0].template;
@@ -467,11 +480,11 @@ fn a_replaced_template_shows_its_new_mesh() {
 fn nothing_is_drawn_of_an_empty_scene() {
     let Some(gpu) = gpu() else { return };
     let scene = Scene::new(Templates::new(), Vec::new()).expect("empty");
-    let mut made = Adaptive::new(&gpu, scene, Refining::default(), 1).expect("a maker");
+    let mut made = Adaptive::new(&gpu, scene, AdaptiveSettings::default(), 1).expect("a source");
     let mesh = mesh(CELL);
     let mut live = live(&gpu, &mesh);
     let camera = Camera::new(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.5).expect("a camera");
-    let shot = Shot {
+    let shot = ViewParams {
         camera,
         near: 0.1,
         size: [1, 1],
@@ -501,17 +514,15 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
             ..Placement::default()
         },
     ];
-    let mut refined = maker(&gpu, &mesh, &both);
+    let mut refined = source(&gpu, &mesh, &both);
     let mut live = live(&gpu, &mesh);
     let shot = shot(&mesh);
     let patches = named(&gpu, &mut live, &mut refined, &shot);
-    let sketch = Sketch::new(&mesh, &[]);
-    let names = [SketchNames::default(), SketchNames::new(&sketch)];
-    let mut explored = Exploration::new(&gpu, 1).expect("a maker");
+    let proxy = Proxy::new(&mesh, &[]);
+    let names = [ProxyPickTargets::default(), ProxyPickTargets::new(&proxy)];
+    let mut explored = Exploration::new(&gpu, 1).expect("a source");
     // Of another template before it there are runs too.
-    let ids = explored
-        .add(&gpu, &[sketch.clone(), sketch])
-        .expect("added");
+    let ids = explored.add(&gpu, &[proxy.clone(), proxy]).expect("added");
     let instance = |&placement: &Placement| Instance {
         placement,
         ..Instance::new(ids[1])
@@ -523,21 +534,21 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
     gpu.wait().expect("done");
     let (_, ids) = live.ids().expect("no fault").expect("arrived");
     let pieces = ids.into_iter().map(|id| namer.name(id));
-    let section = |name: &Named| match name.spot {
+    let section = |name: &PickHit| match name.spot {
         _ if is_soma(&mesh, name) => 0,
-        Spot::Point(point) | Spot::Soma(point) => mesh.tracing[point as usize].section,
-        Spot::Patch(patch) => {
+        PickTarget::Point(point) | PickTarget::Soma(point) => mesh.tracing[point as usize].section,
+        PickTarget::Patch(patch) => {
             let corner = mesh.patches[patch as usize].corners[2];
             mesh.tracing[mesh.vertices[corner as usize].tracing as usize].section
         }
-        Spot::Vertex(vertex) => {
+        PickTarget::Vertex(vertex) => {
             mesh.tracing[mesh.vertices[vertex as usize].tracing as usize].section
         }
     };
     let known = patches.iter().filter(|name| name.is_some()).count();
     let both = patches.iter().zip(pieces);
     let both: Vec<_> = both.filter_map(|(a, b)| Some(((*a)?, b?))).collect();
-    let same = |(a, b): &&(Named, Named)| a.instance == b.instance && section(a) == section(b);
+    let same = |(a, b): &&(PickHit, PickHit)| a.instance == b.instance && section(a) == section(b);
     let same = both.iter().filter(same).count();
     println!("{known} pixels, {} in both, {same} the same", both.len());
     assert!(known > 1000 && 10 * both.len() > 9 * known);

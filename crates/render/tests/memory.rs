@@ -7,16 +7,16 @@ use common::trees::{Twig, grow};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface};
-use neurotess_refine::{Levels, RefineOptions, Refinement};
+use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_render::{Gpu, Template, Templates};
 
 /// Bytes per point, and how many points.
 fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
     // As many colors as coloring by section needs.
-    let words: Vec<u32> = mesh.tracing.iter().map(|t| t.section as u32).collect();
+    let color_keys: Vec<u32> = mesh.tracing.iter().map(|t| t.section as u32).collect();
     let template = Template {
         mesh,
-        words: &words,
+        color_keys: &color_keys,
         values: &[],
     };
     let mut templates = Templates::new();
@@ -82,7 +82,7 @@ fn a_cell_of_live_mesh_s_size_takes_less() {
     for level in 1..=6 {
         let stored = Refinement::new(
             &mesh,
-            &Levels::Homogeneous(level),
+            LodCriterion::Homogeneous(level),
             &RefineOptions::default(),
         );
         let bytes = 24 * stored.vertex_count() + 12 * stored.triangle_count();

@@ -4,29 +4,30 @@ mod common;
 use common::{Random, cell, extent, gpu, look, random_values, sight};
 use glam::{DQuat, DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, PatchKind};
-use neurotess_refine::{Caps, Path, Refinement, dequantized, pack};
+use neurotess_refine::LodCriterion;
+use neurotess_refine::{Caps, Lod, Path, Refinement, dequantized, pack};
 use neurotess_render::{
-    Choice, Chosen, ExpandedVertex, Gpu, Instance, Placement, Refiner, Refining, Scene, Sight,
-    Template, Templates, Wanted, decide,
+    AdaptiveSettings, CullView, ExpandedVertex, Gpu, GridPoint, Instance, Placement, Refiner,
+    Scene, SelectedPatch, Template, Templates, decide,
 };
 
-const CHOICES: [Choice; 6] = [
-    Choice::Homogeneous(5),
-    Choice::PerPoint,
-    Choice::MaxError(0.02),
-    Choice::Distance {
+const CHOICES: [LodCriterion; 6] = [
+    LodCriterion::Homogeneous(5),
+    LodCriterion::PerPoint,
+    LodCriterion::MaxError(0.02),
+    LodCriterion::Distance {
         level: 40,
         far: 150.0,
     },
-    Choice::PixelSize(3.0),
-    Choice::PixelError(0.5),
+    LodCriterion::PixelSize(3.0),
+    LodCriterion::PixelError(0.5),
 ];
 
 fn scene(gpu: &Gpu, mesh: &CoarseMesh, values: &[u8], placements: &[Placement]) -> Scene {
-    let words: Vec<u32> = (0..mesh.tracing.len() as u32).collect();
+    let color_keys: Vec<u32> = (0..mesh.tracing.len() as u32).collect();
     let template = Template {
         mesh,
-        words: &words,
+        color_keys: &color_keys,
         values,
     };
     let mut templates = Templates::new();
@@ -43,20 +44,20 @@ fn choose(
     gpu: &Gpu,
     refiner: &mut Refiner,
     scene: &Scene,
-    sight: &Sight,
-    refining: &Refining,
-    wanted: impl Fn(&Chosen) -> Vec<Wanted>,
-) -> Vec<(Chosen, Vec<ExpandedVertex>)> {
+    sight: &CullView,
+    settings: &AdaptiveSettings,
+    wanted: impl Fn(&SelectedPatch) -> Vec<GridPoint>,
+) -> Vec<(SelectedPatch, Vec<ExpandedVertex>)> {
     let plan = refiner
-        .prepare(gpu, scene, sight, refining)
+        .prepare(gpu, scene, sight, settings)
         .expect("prepared");
     let mut all = Vec::new();
     for batch in &plan.batches {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         refiner.choose(scene, &mut encoder, Some(batch), None);
         gpu.queue.submit([encoder.finish()]);
-        let chosen = refiner.read_chosen(gpu, scene, batch).expect("chosen");
-        let lists: Vec<Vec<Wanted>> = chosen.iter().map(&wanted).collect();
+        let chosen = refiner.read_selected(gpu, scene, batch).expect("chosen");
+        let lists: Vec<Vec<GridPoint>> = chosen.iter().map(&wanted).collect();
         let flat = lists.concat();
         let made = refiner.expand(gpu, batch, &flat).expect("made");
         let mut made = made.into_iter();
@@ -83,21 +84,21 @@ fn decisions_are_the_reference_s() {
             translation: random.direction() * 40.0,
         });
         let scene = scene(&gpu, &mesh, &values, &placements);
-        for choice in CHOICES {
+        for lod in CHOICES {
             for distance in [0.1, 0.5, 3.0, 200.0] {
-                let refining = Refining {
-                    choice,
+                let settings = AdaptiveSettings {
+                    lod,
                     smallest: if random.whole(2) == 0 { 0.0 } else { 2.0 },
-                    ..Refining::default()
+                    ..AdaptiveSettings::default()
                 };
                 let camera = look(&mesh, &mut random, distance);
                 let sight = sight(&camera, 640, 480);
-                let all = choose(&gpu, &mut refiner, &scene, &sight, &refining, |_| {
+                let all = choose(&gpu, &mut refiner, &scene, &sight, &settings, |_| {
                     Vec::new()
                 });
                 let wanted = placements
                     .iter()
-                    .map(|placement| decide(&mesh, &values, placement, &sight, &refining));
+                    .map(|placement| decide(&mesh, &values, placement, &sight, &settings));
                 let wanted: Vec<Vec<Option<[u32; 4]>>> = wanted.collect();
                 let mut found = vec![vec![None; mesh.patches.len()]; placements.len()];
                 for (chosen, _) in &all {
@@ -117,7 +118,7 @@ fn decisions_are_the_reference_s() {
     }
     println!("{patches} decisions, {culled} culled, {differing} differing");
     assert!(culled > patches / 10 && culled < patches * 9 / 10);
-    // The two devices round the last bits of distances differently: where a ball touches a plane or a
+    // The two devices round the last bits of distances differently: where a sphere touches a plane or a
     // level is about to change, one may fall to the other side.
     assert!(
         differing * 20_000 <= patches,
@@ -126,14 +127,19 @@ fn decisions_are_the_reference_s() {
 }
 
 /// Every place of a patch's grid, or some of a large one.
-fn places(chosen: &Chosen, caps: Caps) -> Vec<Wanted> {
+fn places(chosen: &SelectedPatch, caps: Caps) -> Vec<GridPoint> {
     let (nx, ny, _) = neurotess_refine::patch_triangles(chosen.kind, caps, chosen.levels);
     let step = |n: u32| (n / 8).max(1);
     let mut wanted = Vec::new();
     for j in (0..=ny).filter(|j| j % step(ny) == 0 || *j + 1 >= ny) {
         for i in (0..=nx).filter(|i| i % step(nx) == 0 || *i + 1 >= nx) {
-            let Chosen { slot, word, .. } = *chosen;
-            wanted.push(Wanted { slot, word, i, j });
+            let SelectedPatch { slot, decided, .. } = *chosen;
+            wanted.push(GridPoint {
+                slot,
+                decided,
+                i,
+                j,
+            });
         }
     }
     wanted
@@ -159,23 +165,27 @@ fn vertices_are_the_reference_s() {
         let camera =
             neurotess_render::Camera::new(camera, middle, DVec3::Y, 0.7).expect("a camera");
         let sight = sight(&camera, 900, 900);
-        for choice in CHOICES {
+        for lod in CHOICES {
             let (path, caps) = match random.whole(3) {
                 0 => (Path::Linear, Caps::Flat),
                 1 => (Path::Linear, Caps::Round),
                 _ => (Path::Hermite, Caps::Round),
             };
-            let refining = Refining {
-                choice,
+            let settings = AdaptiveSettings {
+                lod,
                 path,
                 caps,
-                ..Refining::default()
+                ..AdaptiveSettings::default()
             };
             let view = sight.local_view(&Placement::default(), mesh.origin);
-            let levels = choice.levels(view, &values);
-            let refinement = Refinement::new(&rounded, &levels, &refining.options());
-            let wanted = |chosen: &Chosen| places(chosen, caps);
-            let all = choose(&gpu, &mut refiner, &scene, &sight, &refining, wanted);
+            let lod = Lod {
+                criterion: lod,
+                view,
+                point_levels: &values,
+            };
+            let refinement = Refinement::new(&rounded, lod, &settings.options());
+            let wanted = |chosen: &SelectedPatch| places(chosen, caps);
+            let all = choose(&gpu, &mut refiner, &scene, &sight, &settings, wanted);
             assert_eq!(
                 all.len(),
                 mesh.patches.len(),
@@ -200,7 +210,7 @@ fn vertices_are_the_reference_s() {
                         let apart = (vertex.radius - reference.radius).abs();
                         assert!(apart <= 1e-5 * reference.radius, "radius");
                     }
-                    let point = &mesh.tracing[vertex.word as usize];
+                    let point = &mesh.tracing[vertex.color_key as usize];
                     assert_eq!(point.sample, reference.point, "{chosen:?} {wanted:?}");
                 }
             }

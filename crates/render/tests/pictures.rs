@@ -1,4 +1,4 @@
-//! What pictures must hold whatever they look like. Skipped, with a word, where no adapter is.
+//! What pictures must hold whatever they look like. Skipped, with a color key, where no adapter is.
 
 mod pictured;
 
@@ -69,20 +69,20 @@ fn tiles_fit_together() {
 #[test]
 fn bounds_hold_the_refined_surface() {
     let mesh = mesh(CELL);
-    let balls = neurotess_render::bounds(&mesh);
-    let levels = neurotess_refine::Levels::Homogeneous(9);
+    let spheres = neurotess_render::bounds(&mesh);
+    let levels = neurotess_refine::LodCriterion::Homogeneous(9);
     let options = neurotess_refine::RefineOptions::default();
-    let refined = neurotess_refine::Refinement::new(&mesh, &levels, &options);
+    let refined = neurotess_refine::Refinement::new(&mesh, levels, &options);
     let surface = neurotess_mesh::SurfaceMesh::collect(&refined);
     for vertex in &surface.vertices {
         let p = mesh.origin + vertex.position.as_dvec3();
         assert!(
-            balls
+            spheres
                 .iter()
                 .any(|&(center, radius)| p.distance(center) <= radius)
         );
     }
-    let mean = balls.iter().map(|&(_, radius)| radius).sum::<f64>() / balls.len() as f64;
+    let mean = spheres.iter().map(|&(_, radius)| radius).sum::<f64>() / spheres.len() as f64;
     assert!(mean < 30.0, "of little use: {mean}");
 }
 
@@ -189,7 +189,7 @@ fn thin_neurites_neither_vanish_nor_shimmer() {
 }
 
 #[test]
-fn light_occlusion_and_wires_change_the_picture() {
+fn light_occlusion_and_wireframe_change_the_picture() {
     let Some(gpu) = gpu() else { return };
     let mesh = mesh(CELL);
     let plain = small([200, 160]);

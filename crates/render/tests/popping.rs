@@ -1,21 +1,22 @@
 //! Nothing pops: when the camera moves, the picture changes as that of the finest surface does.
 //!
 //! Levels are whole numbers and jump. What a jump moves on the screen is bounded by the error that was
-//! asked for, half a pixel by default: less than what shows. So there is neither hysteresis nor
+//! lod_requests for, half a pixel by default: less than what shows. So there is neither hysteresis nor
 //! morphing, and a picture depends on its camera alone. Here a camera moves slowly, and what changes
 //! from frame to frame is compared with what changes on the level-64 surface.
 mod common;
 
 use common::{gpu, smooth_cell};
 use glam::DVec3;
+use neurotess_refine::LodCriterion;
 use neurotess_render::{
-    Adaptive, Camera, Choice, ColorTable, Gpu, Image, Instance, Occlusion, PictureOptions,
-    Refining, Scene, Template, Templates, paint,
+    Adaptive, AdaptiveSettings, Camera, ColorTable, Gpu, Image, Instance, Occlusion,
+    PictureOptions, Scene, Template, Templates, paint,
 };
 
 const FRAMES: usize = 10;
 
-fn frames(gpu: &Gpu, maker: &mut Adaptive) -> Vec<Image> {
+fn frames(gpu: &Gpu, source: &mut Adaptive) -> Vec<Image> {
     let options = PictureOptions {
         size: [200, 150],
         samples: 16,
@@ -33,7 +34,7 @@ fn frames(gpu: &Gpu, maker: &mut Adaptive) -> Vec<Image> {
         let eye = DVec3::new((0.0005 * t).sin(), 0.3, (0.0005 * t).cos()) * distance;
         let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
         let mut whole = Image::default();
-        paint(gpu, maker, &camera, 1.0, &table, &options, |_, band| {
+        paint(gpu, source, &camera, 1.0, &table, &options, |_, band| {
             whole = band;
             Ok::<(), std::convert::Infallible>(())
         })
@@ -60,32 +61,32 @@ fn a_slow_camera_sees_no_level_change() {
     let mut templates = Templates::new();
     let template = Template {
         mesh: &mesh,
-        words: &[],
+        color_keys: &[],
         values: &[],
     };
     let ids = templates.add(&gpu, &[template]).expect("uploaded");
     let scene = Scene::new(templates, vec![Instance::new(ids[0])]).expect("a scene");
-    let mut maker = Adaptive::new(&gpu, scene, Refining::default(), 1).expect("a maker");
-    let mut sequence = |choice| {
-        maker.set_refining(Refining {
-            choice,
-            ..Refining::default()
+    let mut source = Adaptive::new(&gpu, scene, AdaptiveSettings::default(), 1).expect("a source");
+    let mut sequence = |lod| {
+        source.set_settings(AdaptiveSettings {
+            lod,
+            ..AdaptiveSettings::default()
         });
-        frames(&gpu, &mut maker)
+        frames(&gpu, &mut source)
     };
-    let reference = sequence(Choice::Homogeneous(32));
+    let reference = sequence(LodCriterion::Homogeneous(32));
     let reference = changes(&reference);
-    let worst = |choice| {
-        let changes = changes(&sequence(choice));
+    let worst = |lod| {
+        let changes = changes(&sequence(lod));
         let ratios = changes
             .iter()
             .zip(&reference)
             .map(|(found, wanted)| found / wanted);
-        println!("{choice:?}: {changes:.3?}");
+        println!("{lod:?}: {changes:.3?}");
         ratios.fold(0.0, f64::max)
     };
     println!("level 32: {reference:.3?}");
-    let [half, coarse] = [0.5, 8.0].map(Choice::PixelError).map(worst);
+    let [half, coarse] = [0.5, 8.0].map(LodCriterion::PixelError).map(worst);
     println!("{half} {coarse}");
     // What changes anyway hides a step of a seventh of it; the measure tells popping where it is.
     assert!(half < 1.15, "{half}");

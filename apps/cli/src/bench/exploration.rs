@@ -1,7 +1,8 @@
 //! Frames of exploration and of adaptive refinement, while the camera turns.
 
+use neurotess::refine::LodCriterion;
 use neurotess::render::{
-    Choice, ColorTable, Exploration, Frame, FrameTime, Gpu, Meter, Refining, Sketch, VertexMaker,
+    AdaptiveSettings, ColorTable, Exploration, Frame, FrameTime, Gpu, Meter, Proxy, VertexSource,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -65,9 +66,9 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
     let gpu = Gpu::open(args.adapter.as_deref())?;
     let neurons = scenes::neurons(args.distinct, args.points);
     let clock = std::time::Instant::now();
-    let sketches: Vec<Sketch> = neurons
+    let sketches: Vec<Proxy> = neurons
         .par_iter()
-        .map(|neuron| Sketch::new(&neuron.mesh, &neuron.words))
+        .map(|neuron| Proxy::new(&neuron.mesh, &neuron.words))
         .collect();
     let sketch_ms = clock.elapsed().as_secs_f64() * 1e3;
     let mut maker = Exploration::new(&gpu, 1)?;
@@ -82,7 +83,7 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
         size: args.size.0,
         budget: args.budget,
         distinct: neurons.len(),
-        points: sketches.iter().map(Sketch::point_count).sum::<usize>() as f64
+        points: sketches.iter().map(Proxy::point_count).sum::<usize>() as f64
             / neurons.len() as f64,
         sketch_ms,
         upload_ms: clock.elapsed().as_secs_f64() * 1e3,
@@ -127,9 +128,9 @@ fn compare(
     colors: &ColorTable,
     frames: u32,
 ) -> anyhow::Result<()> {
-    let refining = Refining {
-        choice: Choice::PixelError(ERROR),
-        ..Refining::default()
+    let refining = AdaptiveSettings {
+        lod: LodCriterion::PixelError(ERROR),
+        ..AdaptiveSettings::default()
     };
     let mut maker = adaptive(gpu, neurons, scene, refining)?;
     let times = times(gpu, &mut maker, &scene.frame, colors, frames)?;
@@ -143,7 +144,7 @@ fn compare(
 /// Frames from a camera that turns, after one that is not counted.
 fn times(
     gpu: &Gpu,
-    maker: &mut dyn VertexMaker,
+    maker: &mut dyn VertexSource,
     frame: &Frame,
     colors: &ColorTable,
     frames: u32,

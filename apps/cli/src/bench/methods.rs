@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, Surface};
-use neurotess::refine::{Levels, RefineOptions, Refinement};
+use neurotess::refine::{Lod, LodCriterion, RefineOptions, Refinement};
 use neurotess::render::{
-    Adaptive, Choice, ColorTable, FrameTime, Gpu, Instance, Meter, Painted, Place, Placement,
-    Prerefined, Refining, Scene as Placed, Template, TemplateId, Templates, VertexMaker,
+    Adaptive, AdaptiveSettings, ColorTable, FrameTime, Gpu, Instance, Meter, Place, Placement,
+    Prerefined, PrerefinedSurface, Scene as Placed, Template, TemplateId, Templates, VertexSource,
 };
 use serde::Serialize;
 
@@ -69,13 +69,14 @@ impl Drawing<'_> {
         if triangles * BYTES_OF_TRIANGLE > self.args.memory << 20 {
             return Ok(None);
         }
-        let painted: Vec<Painted<'_>> = self.neurons[..used].iter().map(Neuron::painted).collect();
+        let painted: Vec<PrerefinedSurface<'_>> =
+            self.neurons[..used].iter().map(Neuron::painted).collect();
         let places: Vec<Place> = scene
             .places
             .iter()
             .map(|&(mesh, translation)| Place { mesh, translation })
             .collect();
-        let levels = |_| Levels::Homogeneous(level);
+        let levels = |_| LodCriterion::Homogeneous(level).into();
         let options = RefineOptions::default();
         let mut maker = Prerefined::placed(self.gpu, &painted, &places, levels, &options, false)?;
         let times = self.times(&mut maker, scene)?;
@@ -103,22 +104,24 @@ impl Drawing<'_> {
                 mesh
             })
             .collect();
-        let painted: Vec<Painted<'_>> = scene
+        let painted: Vec<PrerefinedSurface<'_>> = scene
             .places
             .iter()
             .zip(&moved)
-            .map(|(&(neuron, _), mesh)| Painted {
+            .map(|(&(neuron, _), mesh)| PrerefinedSurface {
                 mesh,
-                words: &self.neurons[neuron].words,
+                color_keys: &self.neurons[neuron].words,
             })
             .collect();
         let frame = &scene.frame;
         let height = f64::from(frame.size[1]);
-        let levels = |mesh: usize| Levels::PixelError {
-            view: frame
-                .camera
-                .refine_view(moved[mesh].origin, height, frame.near),
-            pixels: self.args.pixels as f32,
+        let levels = |mesh: usize| {
+            Lod::seen_from(
+                LodCriterion::PixelError(self.args.pixels as f32),
+                frame
+                    .camera
+                    .refine_view(moved[mesh].origin, height, frame.near),
+            )
         };
         let options = RefineOptions::default();
         let mut maker = Prerefined::new(self.gpu, &painted, levels, &options, false)?;
@@ -138,7 +141,7 @@ impl Drawing<'_> {
 
     /// What draws a scene on the fly.
     pub(crate) fn on_the_fly(&self, scene: &Scene) -> anyhow::Result<Adaptive> {
-        adaptive(self.gpu, self.neurons, scene, Refining::default())
+        adaptive(self.gpu, self.neurons, scene, AdaptiveSettings::default())
     }
 
     /// Times a way of refining on the fly. `count`: whether triangles are counted, which reads lists
@@ -151,17 +154,17 @@ impl Drawing<'_> {
         count: bool,
     ) -> anyhow::Result<Row> {
         let level_of = level.unwrap_or(1);
-        let choice = match method {
-            Method::Homogeneous => Choice::Homogeneous(level_of),
-            Method::Adaptive => Choice::Distance {
+        let lod = match method {
+            Method::Homogeneous => LodCriterion::Homogeneous(level_of),
+            Method::Adaptive => LodCriterion::Distance {
                 level: level_of,
                 far: scene.far as f32,
             },
-            _ => Choice::PixelError(self.args.pixels as f32),
+            _ => LodCriterion::PixelError(self.args.pixels as f32),
         };
-        maker.set_refining(Refining {
-            choice,
-            ..Refining::default()
+        maker.set_settings(AdaptiveSettings {
+            lod,
+            ..AdaptiveSettings::default()
         });
         let times = self.times(maker, scene)?;
         let triangles = if count {
@@ -174,7 +177,7 @@ impl Drawing<'_> {
     }
 
     /// Times of some frames, after one that is not counted; of one only where it takes long.
-    fn times(&self, maker: &mut dyn VertexMaker, scene: &Scene) -> anyhow::Result<Vec<FrameTime>> {
+    fn times(&self, maker: &mut dyn VertexSource, scene: &Scene) -> anyhow::Result<Vec<FrameTime>> {
         let mut meter = Meter::new(self.gpu, maker, &self.colors)?;
         let first = meter.time(maker, &scene.frame)?;
         if first.waited_ms > 1e3 * self.args.patience {
@@ -191,7 +194,7 @@ pub(crate) fn adaptive(
     gpu: &Gpu,
     neurons: &[Neuron],
     scene: &Scene,
-    refining: Refining,
+    refining: AdaptiveSettings,
 ) -> anyhow::Result<Adaptive> {
     let used = neurons.len().min(scene.places.len());
     let list: Vec<Template<'_>> = neurons[..used].iter().map(Neuron::template).collect();
@@ -218,25 +221,25 @@ pub(crate) fn instances(scene: &Scene, ids: &[TemplateId]) -> Vec<Instance> {
 }
 
 impl Neuron {
-    fn painted(&self) -> Painted<'_> {
-        Painted {
+    fn painted(&self) -> PrerefinedSurface<'_> {
+        PrerefinedSurface {
             mesh: &self.mesh,
-            words: &self.words,
+            color_keys: &self.words,
         }
     }
 
     fn template(&self) -> Template<'_> {
         Template {
             mesh: &self.mesh,
-            words: &self.words,
+            color_keys: &self.words,
             values: &[],
         }
     }
 
     /// Triangles of a level.
     pub(crate) fn triangles(&self, level: u32) -> usize {
-        let levels = Levels::Homogeneous(level);
-        Refinement::new(&self.mesh, &levels, &RefineOptions::default()).triangle_count()
+        let lod = LodCriterion::Homogeneous(level);
+        Refinement::new(&self.mesh, lod, &RefineOptions::default()).triangle_count()
     }
 }
 

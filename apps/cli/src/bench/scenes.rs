@@ -3,7 +3,9 @@
 use glam::DVec3;
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
-use neurotess::render::{Ball, Camera, ColorTable, Frame, Palette, Side, Tile, bounds, category};
+use neurotess::render::{
+    BoundingSphere, Camera, ColorTable, Frame, Palette, Side, Tile, bounds, category,
+};
 use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 
@@ -18,7 +20,7 @@ const TYPES: i32 = 8;
 pub(crate) struct Neuron {
     pub(crate) mesh: CoarseMesh,
     pub(crate) words: Vec<u32>,
-    balls: Vec<Ball>,
+    balls: Vec<BoundingSphere>,
     /// What moves its soma to the origin (µm).
     to_origin: DVec3,
 }
@@ -87,7 +89,7 @@ impl Scene {
                 (neuron, DVec3::new(x, 0.0, z) + neurons[neuron].to_origin)
             })
             .collect();
-        let balls: Vec<Ball> = places
+        let balls: Vec<BoundingSphere> = places
             .iter()
             .flat_map(|&(neuron, translation)| {
                 let balls = neurons[neuron].balls.iter();
@@ -96,7 +98,7 @@ impl Scene {
             .collect();
         let aspect = f64::from(size[0]) / f64::from(size[1]);
         let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &balls)?;
-        let distance = |&(center, radius): &Ball| center.distance(camera.eye()) + radius;
+        let distance = |&(center, radius): &BoundingSphere| center.distance(camera.eye()) + radius;
         Ok(Self {
             frame: Frame {
                 camera,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use neurotess::circuit::{Circuit, Recording, ReportKind, TimeAxis};
+use neurotess::circuit::{Circuit, RecordingFile, ReportKind, TimeAxis};
 use serde::Serialize;
 
 use crate::info::{Entry, Failed};
@@ -115,7 +115,7 @@ fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
     let mut errors: Vec<String> = circuit.failures.iter().map(ToString::to_string).collect();
     let mut reports = Vec::new();
     for (name, path) in &circuit.reports {
-        match Recording::open(path) {
+        match RecordingFile::open(path) {
             Ok(recording) => reports.extend(report_infos(name, path, &recording)),
             Err(e) => {
                 reporter.failure(&Failure(e.to_string()));
@@ -162,10 +162,10 @@ fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
     }
 }
 
-fn report_infos(name: &str, path: &std::path::Path, recording: &Recording) -> Vec<ReportInfo> {
+fn report_infos(name: &str, path: &std::path::Path, recording: &RecordingFile) -> Vec<ReportInfo> {
     let file = path.display().to_string();
     match recording {
-        Recording::Report(report) => {
+        RecordingFile::Report(report) => {
             let values = report.populations.iter();
             let info = values.map(|values| {
                 let TimeAxis {
@@ -190,13 +190,13 @@ fn report_infos(name: &str, path: &std::path::Path, recording: &Recording) -> Ve
                     }),
                     units: Some(values.units.clone()),
                     n_nodes: Some(values.nodes.len()),
-                    n_elements: Some(values.elements()),
+                    n_elements: Some(values.compartment_count()),
                     n_spikes: None,
                 }
             });
             info.collect()
         }
-        Recording::Spikes(spikes) => {
+        RecordingFile::Spikes(spikes) => {
             let populations = spikes.populations.iter();
             let info = populations.map(|spikes| ReportInfo {
                 name: name.into(),

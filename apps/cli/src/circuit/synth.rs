@@ -169,7 +169,7 @@ fn report(made: &SyntheticCircuit) -> io::Result<(ReportLayout, Vec<f32>)> {
         .iter()
         .map(|&node| {
             let attribute = made.population.attributes.get("morphology");
-            let name = attribute.and_then(|names| names.word(node as usize));
+            let name = attribute.and_then(|names| names.text(node as usize));
             let cell = made.morphologies.iter().find(|m| Some(&*m.name) == name);
             let cell = cell.unwrap_or(&made.morphologies[0]);
             voltages(&synth::grow(&cell.options), node, &made.spikes)

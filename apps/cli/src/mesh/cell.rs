@@ -8,7 +8,7 @@ use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
 use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
-use neurotess::refine::{CoarseSurface, Levels, Refinement};
+use neurotess::refine::{CoarseSurface, LodCriterion, Refinement};
 use serde::Serialize;
 
 use super::observed::Observed;
@@ -54,7 +54,7 @@ pub(crate) struct Node {
 
 /// Where the time went.
 ///
-/// Refining and writing are one streamed pass over all threads: `refine` is the planning and what
+/// AdaptiveSettings and writing are one streamed pass over all threads: `refine` is the planning and what
 /// the blocks took, divided by the threads; `write` is the rest of the pass.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
@@ -174,7 +174,7 @@ pub(super) fn finish(
         triangles: written.triangles,
         quads: written.quads,
         closed: topology.closed,
-        // Refining divides faces and edges; the shape stays.
+        // AdaptiveSettings divides faces and edges; the shape stays.
         euler: topology.euler,
         components: topology.components,
         volume: measured.map(|(volume, _)| volume),
@@ -207,7 +207,7 @@ fn write(
     let coarse;
     let surface: &dyn Surface = match levels(recipe.fineness) {
         Some(levels) => {
-            refinement = Refinement::new(mesh, &levels, &recipe.refine);
+            refinement = Refinement::new(mesh, levels, &recipe.refine);
             &refinement
         }
         None => {
@@ -240,18 +240,18 @@ fn write(
     })
 }
 
-pub(super) fn levels(fineness: Fineness) -> Option<Levels<'static>> {
+pub(super) fn levels(fineness: Fineness) -> Option<LodCriterion> {
     match fineness {
         Fineness::Coarse => None,
-        Fineness::Level(level) => Some(Levels::Homogeneous(level)),
-        Fineness::MaxError(error) => Some(Levels::MaxError(error)),
+        Fineness::Level(level) => Some(LodCriterion::Homogeneous(level)),
+        Fineness::MaxError(error) => Some(LodCriterion::MaxError(error)),
     }
 }
 
 /// Volume and area of what was written.
 fn measure(mesh: &CoarseMesh, recipe: &Recipe) -> (f64, f64) {
     match levels(recipe.fineness) {
-        Some(levels) => Refinement::new(mesh, &levels, &recipe.refine).volume_and_area(),
+        Some(levels) => Refinement::new(mesh, levels, &recipe.refine).volume_and_area(),
         None => {
             let measure = mesh.measure();
             (measure.volume, measure.area)

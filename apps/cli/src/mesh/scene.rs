@@ -143,7 +143,7 @@ fn prepare_all(
 fn surface<'p>(prepared: &'p Prepared, recipe: &Recipe) -> Box<dyn Surface + 'p> {
     let mesh = prepared.mesh();
     match levels(recipe.fineness) {
-        Some(levels) => Box::new(Refinement::new(mesh, &levels, &recipe.refine)),
+        Some(levels) => Box::new(Refinement::new(mesh, levels, &recipe.refine)),
         None => Box::new(CoarseSurface::new(mesh, false)),
     }
 }

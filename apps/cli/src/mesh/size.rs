@@ -78,7 +78,7 @@ fn gigabytes(bytes: u64) -> String {
 mod tests {
     use neurotess::generate::{GenerateOptions, generate};
     use neurotess::mesh::write;
-    use neurotess::refine::{Levels, RefineOptions, Refinement};
+    use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
     use neurotess::synth::{Kind, Options, grow};
 
     use super::*;
@@ -98,7 +98,7 @@ mod tests {
                 quads: format.has_quads(),
                 ..RefineOptions::default()
             };
-            let surface = Refinement::new(&mesh, &Levels::Homogeneous(8), &options);
+            let surface = Refinement::new(&mesh, LodCriterion::Homogeneous(8), &options);
             let mut file = std::io::Cursor::new(Vec::new());
             write(&surface, format, &mut file).expect("written");
             let ratio = estimate(&surface, format) as f64 / file.into_inner().len() as f64;

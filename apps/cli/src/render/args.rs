@@ -238,7 +238,7 @@ impl RenderArgs {
 
     /// Whether colors tell numbers.
     pub(crate) fn is_number(&self) -> bool {
-        let by = [ColorBy::Order, ColorBy::Radius, ColorBy::Depth];
+        let by = [ColorBy::BranchOrder, ColorBy::Radius, ColorBy::PathDistance];
         let number = self.color_by.is_some_and(|what| by.contains(&what));
         number || self.report.is_some() || self.color_by_attribute.is_some()
     }
@@ -274,11 +274,13 @@ pub(crate) enum ColorBy {
     /// Neighboring sections differ
     Section,
     /// Number of forks from the neurite's start
-    Order,
+    #[value(name = "order", alias = "branch-order")]
+    BranchOrder,
     /// Radius (µm)
     Radius,
-    /// Way along the neurite from its start (µm)
-    Depth,
+    /// Distance along the neurite from its start (µm)
+    #[value(name = "depth", alias = "path-distance")]
+    PathDistance,
     /// Every input its own, and every cell of a circuit
     Neuron,
     /// Values of a --report

@@ -9,7 +9,7 @@ use neurotess::formats::{ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions};
 use neurotess::mesh::{CoarseMesh, TracingPoint};
 use neurotess::morphology::Morphology;
-use neurotess::render::Ball;
+use neurotess::render::BoundingSphere;
 
 use super::args::RenderArgs;
 use crate::info::{Entry, each};
@@ -104,8 +104,8 @@ fn warn(cell: &Cell, all: bool, reporter: &Reporter) {
     }
 }
 
-/// Balls around all that the cell's surface shows.
-pub(crate) fn balls(cell: &Cell) -> impl Iterator<Item = Ball> {
+/// Bounding spheres around all that the cell's surface shows.
+pub(crate) fn balls(cell: &Cell) -> impl Iterator<Item = BoundingSphere> {
     let origin = cell.mesh.origin;
     let used = cell
         .mesh

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use neurotess::coloring::{self, Cell, ColorBy, Coloring, DECAY, Paint, Replay, by_attribute};
+use neurotess::coloring::{self, Cell, ColorScheme, Coloring, DECAY, Recording, by_attribute};
 use neurotess::render::{ColorTable, Legend};
 
 use super::args::{ColorBy, RenderArgs};
@@ -21,7 +21,7 @@ pub(crate) struct Colored {
 
 /// A recording, and the time (ms) of each picture.
 struct Film {
-    replay: Replay,
+    replay: Recording,
     times: Vec<f64>,
     range: [f32; 2],
 }
@@ -56,7 +56,7 @@ pub(crate) fn colored(
     reporter: &Reporter,
 ) -> anyhow::Result<Colored> {
     let background = (!args.transparent).then_some(args.background.0);
-    let paint = Paint {
+    let paint = ColorScheme {
         palette: args.palette,
         background,
         scale: match background.filter(|_| args.trim_colormap) {
@@ -77,7 +77,7 @@ pub(crate) fn colored(
         .collect();
     if let (Some(report), Some(shown)) = (&args.report, shown) {
         let stand = shown.stand(places);
-        let replay = Replay::open(report, &shown.circuit, &cells, &stand).map_err(told)?;
+        let replay = Recording::open(report, &shown.circuit, &cells, &stand).map_err(told)?;
         return over_time(replay, args, &paint, reporter);
     }
     let coloring = match shown {
@@ -97,7 +97,7 @@ fn of_circuit(
     cells: &[Cell<'_>],
     shown: &Shown,
     args: &RenderArgs,
-    paint: &Paint,
+    paint: &ColorScheme,
 ) -> anyhow::Result<Option<Coloring>> {
     let neurons = shown.neurons();
     match (&args.color_by_attribute, args.color_by) {
@@ -114,9 +114,9 @@ fn of_circuit(
 
 /// Values of a recording: at one time, or of a series.
 fn over_time(
-    replay: Replay,
+    replay: Recording,
     args: &RenderArgs,
-    paint: &Paint,
+    paint: &ColorScheme,
     reporter: &Reporter,
 ) -> anyhow::Result<Colored> {
     let without = replay.without();
@@ -160,15 +160,15 @@ fn stem(file: &str) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-fn by(what: ColorBy) -> ColorBy {
+fn by(what: ColorBy) -> coloring::ColorBy {
     match what {
         // Arguments have been checked: a value comes with a report.
-        ColorBy::Type | ColorBy::Value => ColorBy::Type,
-        ColorBy::Neurite => ColorBy::Neurite,
-        ColorBy::Section => ColorBy::Section,
-        ColorBy::Order => ColorBy::Order,
-        ColorBy::Radius => ColorBy::Radius,
-        ColorBy::Depth => ColorBy::Depth,
-        ColorBy::Neuron => ColorBy::Neuron,
+        ColorBy::Type | ColorBy::Value => coloring::ColorBy::Type,
+        ColorBy::Neurite => coloring::ColorBy::Neurite,
+        ColorBy::Section => coloring::ColorBy::Section,
+        ColorBy::BranchOrder => coloring::ColorBy::BranchOrder,
+        ColorBy::Radius => coloring::ColorBy::Radius,
+        ColorBy::PathDistance => coloring::ColorBy::PathDistance,
+        ColorBy::Neuron => coloring::ColorBy::Neuron,
     }
 }

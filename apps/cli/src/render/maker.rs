@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use neurotess::refine::{Levels, RefineOptions};
+use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
-    Adaptive, Ball, Camera, Choice, DEFAULT_BUDGET, Exploration, ExplorationStats, Frame, Gpu,
-    Instance, Painted, PictureOptions, Placement, Prerefined, Refining, Scene, Sketch, Template,
-    Templates, Tile, VertexMaker,
+    Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
+    ExplorationStats, Frame, Gpu, Instance, PictureOptions, Placement, Prerefined,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, Tile, VertexSource,
 };
 use rayon::prelude::*;
 
@@ -81,19 +81,19 @@ impl Maker {
             colored,
             ..
         } = *sitting;
-        let choice = match mode(args)? {
+        let lod = match mode(args)? {
             LodArg::Prerefined => return stored(gpu, sitting),
-            LodArg::Homogeneous => Choice::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
-            LodArg::Adaptive => Choice::PixelError(args.error() as f32),
-            LodArg::Static => Choice::PixelError(0.5),
+            LodArg::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
+            LodArg::Adaptive => LodCriterion::PixelError(args.error() as f32),
+            LodArg::Static => LodCriterion::PixelError(0.5),
             LodArg::Exploration => return exploring(gpu, options, sitting),
         };
         let list: Vec<Template<'_>> = cells
             .iter()
-            .zip(&colored.coloring.words)
-            .map(|(cell, words)| Template {
+            .zip(&colored.coloring.color_keys)
+            .map(|(cell, color_keys)| Template {
                 mesh: &cell.mesh,
-                words,
+                color_keys,
                 values: &[],
             })
             .collect();
@@ -104,10 +104,10 @@ impl Maker {
             ..Instance::new(ids[cell])
         });
         let scene = Scene::new(templates, instances.collect())?;
-        let refining = Refining {
-            choice,
-            wires: args.wireframe,
-            ..Refining::default()
+        let refining = AdaptiveSettings {
+            lod,
+            wireframe: args.wireframe,
+            ..AdaptiveSettings::default()
         };
         let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
         maker.set_bounds(covering(cells, places));
@@ -115,7 +115,7 @@ impl Maker {
     }
 
     /// As the painter takes it.
-    pub(crate) fn as_maker(&mut self) -> &mut dyn VertexMaker {
+    pub(crate) fn as_maker(&mut self) -> &mut dyn VertexSource {
         match self {
             Self::Stored(maker) => maker.as_mut(),
             Self::OnTheFly(maker) => maker.as_mut(),
@@ -153,7 +153,7 @@ impl Maker {
                 maker.prepare(gpu, &whole(gpu, camera, near, options))?;
                 let stats = maker.stats(gpu)?;
                 Ok(Made {
-                    patches_drawn: stats.pieces,
+                    patches_drawn: stats.visible_chunks,
                     vertices: 2 * stats.triangles,
                     triangles: stats.triangles,
                     bytes: maker.bytes().into_iter().collect(),
@@ -190,10 +190,10 @@ fn exploring(gpu: &Gpu, options: &PictureOptions, sitting: &Sitting<'_>) -> anyh
         colored,
         ..
     } = *sitting;
-    let sketches: Vec<Sketch> = cells
+    let sketches: Vec<Proxy> = cells
         .par_iter()
-        .zip(&colored.coloring.words)
-        .map(|(cell, words)| Sketch::new(&cell.mesh, words))
+        .zip(&colored.coloring.color_keys)
+        .map(|(cell, words)| Proxy::new(&cell.mesh, words))
         .collect();
     let mut maker = Exploration::new(gpu, options.sub_pixels(gpu))?;
     maker.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
@@ -224,12 +224,12 @@ fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
             "--lod prerefined draws tracings where they are: circuits need another --lod",
         );
     }
-    let painted: Vec<Painted<'_>> = cells
+    let painted: Vec<PrerefinedSurface<'_>> = cells
         .iter()
-        .zip(&colored.coloring.words)
-        .map(|(cell, words)| Painted {
+        .zip(&colored.coloring.color_keys)
+        .map(|(cell, color_keys)| PrerefinedSurface {
             mesh: &cell.mesh,
-            words,
+            color_keys,
         })
         .collect();
     let levels = |cell: usize| levels(args, cells[cell], cameras, balls);
@@ -240,20 +240,25 @@ fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
 
 /// Levels of a cell: as told, or by the error that shows from the one camera; where it moves, from
 /// the nearest that anything seen ever is.
-fn levels(args: &RenderArgs, cell: &Cell, cameras: &[Camera], balls: &[Ball]) -> Levels<'static> {
+fn levels(
+    args: &RenderArgs,
+    cell: &Cell,
+    cameras: &[Camera],
+    balls: &[BoundingSphere],
+) -> Lod<'static> {
     let [width, height] = args.size.0.map(f64::from);
     let nearest = |camera: &Camera| camera.nearest_seen(width / height, balls);
     match (args.level, cameras) {
-        (Some(level), _) => Levels::Homogeneous(level),
-        (None, [camera]) => Levels::PixelError {
-            view: camera.refine_view(cell.mesh.origin, height, nearest(camera)),
-            pixels: args.error() as f32,
-        },
+        (Some(level), _) => LodCriterion::Homogeneous(level).into(),
+        (None, [camera]) => Lod::seen_from(
+            LodCriterion::PixelError(args.error() as f32),
+            camera.refine_view(cell.mesh.origin, height, nearest(camera)),
+        ),
         (None, _) => {
             let error =
                 |camera: &Camera| camera.pixel_slope(height) * nearest(camera) * args.error();
             let least = cameras.iter().map(error).fold(f64::MAX, f64::min);
-            Levels::MaxError(least as f32)
+            LodCriterion::MaxError(least as f32).into()
         }
     }
 }

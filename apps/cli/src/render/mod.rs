@@ -19,8 +19,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use neurotess::render::{
-    Ball, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions, PictureOptions,
-    Placement, PngWriter, Studio,
+    BoundingSphere, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions,
+    PictureOptions, Placement, PngWriter, StillRenderer,
 };
 
 use crate::info::Entry;
@@ -181,7 +181,7 @@ fn overlay(
     args: &RenderArgs,
     colored: &Colored,
     mut cameras: Vec<Camera>,
-    balls: &[Ball],
+    balls: &[BoundingSphere],
 ) -> (Overlay, Vec<Camera>) {
     let options = OverlayOptions {
         legend: (!args.no_legend).then(|| colored.coloring.legend.clone()),
@@ -209,7 +209,7 @@ struct Sitting<'a> {
     places: &'a [(usize, Placement)],
     colored: &'a Colored,
     cameras: &'a [Camera],
-    balls: &'a [Ball],
+    balls: &'a [BoundingSphere],
     overlay: &'a Overlay,
     files: &'a [PathBuf],
 }
@@ -239,7 +239,7 @@ fn draw(
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
     let mut maker = Maker::new(gpu, &options, sitting)?;
-    let mut studio = Studio::new();
+    let mut studio = StillRenderer::new();
     stages.end(Stage::Upload);
     let mut stats = Stats::new(gpu, places.len());
     let progress = Progress::new(reporter, files.len(), "pictures");

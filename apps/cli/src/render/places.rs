@@ -5,7 +5,7 @@ use std::path::Path;
 
 use neurotess::circuit::{Compartment, Instance, soma_center};
 use neurotess::coloring::cuts;
-use neurotess::render::{Ball, Placement, bounds, merged};
+use neurotess::render::{BoundingSphere, Placement, bounds, merged};
 use rayon::prelude::*;
 
 use super::args::RenderArgs;
@@ -157,22 +157,22 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
     })
 }
 
-/// Balls around all that is shown, to fit a camera to.
-pub(crate) fn balls(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
+/// Bounding spheres around all that is shown, to fit a camera to.
+pub(crate) fn balls(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<BoundingSphere> {
     if places.len() >= MANY {
         return covering(cells, places);
     }
-    let own: Vec<Vec<Ball>> = cells
+    let own: Vec<Vec<BoundingSphere>> = cells
         .iter()
         .map(|cell| cells::balls(cell).collect())
         .collect();
     placed(&own, places)
 }
 
-/// Balls that hold all surfaces, at any level.
-pub(crate) fn covering(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ball> {
+/// Bounding spheres that hold all surfaces, at any level.
+pub(crate) fn covering(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<BoundingSphere> {
     let of_cell = (MOST_BALLS / places.len().max(1)).max(FEWEST);
-    let own: Vec<Vec<Ball>> = cells
+    let own: Vec<Vec<BoundingSphere>> = cells
         .par_iter()
         .map(|cell| merged(&bounds(&cell.mesh), of_cell))
         .collect();
@@ -180,7 +180,7 @@ pub(crate) fn covering(cells: &[&Cell], places: &[(usize, Placement)]) -> Vec<Ba
 }
 
 /// Balls of cells where the cells stand.
-fn placed(own: &[Vec<Ball>], places: &[(usize, Placement)]) -> Vec<Ball> {
+fn placed(own: &[Vec<BoundingSphere>], places: &[(usize, Placement)]) -> Vec<BoundingSphere> {
     let at = |&(cell, placement): &(usize, Placement)| {
         let balls = own[cell].iter();
         balls.map(move |&(center, radius)| {

@@ -1,6 +1,6 @@
 //! From where: the camera that the options ask for, and its frames.
 
-use neurotess::render::{Ball, Camera, CameraError, Side};
+use neurotess::render::{BoundingSphere, Camera, CameraError, Side};
 
 use super::args::{RenderArgs, ViewArg};
 use crate::report::usage;
@@ -14,7 +14,7 @@ const MOST_BESIDE: f64 = 0.35;
 ///
 /// # Errors
 /// Wrong usage: a camera that sees nothing.
-pub(crate) fn cameras(args: &RenderArgs, balls: &[Ball]) -> anyhow::Result<Vec<Camera>> {
+pub(crate) fn cameras(args: &RenderArgs, balls: &[BoundingSphere]) -> anyhow::Result<Vec<Camera>> {
     let first = match camera(args, balls, [MARGIN; 4]) {
         Ok(camera) => camera,
         Err(e) => return usage(e.to_string()),
@@ -31,7 +31,7 @@ pub(crate) fn cameras(args: &RenderArgs, balls: &[Ball]) -> anyhow::Result<Vec<C
 
 /// The camera that leaves a share of the width free for the legend, on the left (negative) or the
 /// right; none where that is too much, or where the camera was told its place.
-pub(crate) fn beside(args: &RenderArgs, balls: &[Ball], share: f64) -> Option<Camera> {
+pub(crate) fn beside(args: &RenderArgs, balls: &[BoundingSphere], share: f64) -> Option<Camera> {
     if args.eye.is_some() || args.turntable || share.abs() > MOST_BESIDE {
         return None;
     }
@@ -44,7 +44,11 @@ pub(crate) fn beside(args: &RenderArgs, balls: &[Ball], share: f64) -> Option<Ca
     camera(args, balls, [left, right, MARGIN, MARGIN]).ok()
 }
 
-fn camera(args: &RenderArgs, balls: &[Ball], margins: [f64; 4]) -> Result<Camera, CameraError> {
+fn camera(
+    args: &RenderArgs,
+    balls: &[BoundingSphere],
+    margins: [f64; 4],
+) -> Result<Camera, CameraError> {
     let fov = args.fov.to_radians();
     let [width, height] = args.size.0.map(f64::from);
     let aspect = width / height;

@@ -77,7 +77,7 @@ fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
         "{}",
         run.stderr()
     );
-    // Named itself, such a file is a failure.
+    // PickHit itself, such a file is a failure.
     work.run("info cells/nodes.h5").exits(1);
 }
 

@@ -70,7 +70,7 @@ fn libsonata_reads_the_same_circuit() {
         let own = nodes.rotations[row];
         let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
         assert!(near(own.w, q[0]) && near(own.x, q[1]) && near(own.z, q[3]));
-        let word = |name: &str| nodes.attributes[name].word(row);
+        let word = |name: &str| nodes.attributes[name].text(row);
         assert_eq!(theirs["layer"][row].as_str(), word("layer"));
         assert_eq!(theirs["morphology"][row].as_str(), word("morphology"));
     }
@@ -93,7 +93,7 @@ fn libsonata_reads_the_same_circuit() {
     assert_eq!(numbers(&theirs["times"]), [time.start, time.end, time.step]);
     assert_eq!(theirs["units"][0].as_str(), Some(values.units.as_str()));
     let frame = time.frame_at(10.0).expect("a frame");
-    let all: Vec<u64> = (0..values.elements()).collect();
+    let all: Vec<u64> = (0..values.compartment_count()).collect();
     let own = values.values(frame, &all).expect("values");
     let frame = numbers(&theirs["frame"]);
     assert_eq!(frame.len(), own.len());

@@ -1,6 +1,6 @@
 //! How finely surfaces are drawn.
 
-use neurotess::render::Choice;
+use neurotess::refine::LodCriterion;
 use serde::{Deserialize, Serialize};
 
 /// How finely surfaces are drawn.
@@ -50,12 +50,12 @@ impl Default for Detail {
 }
 
 impl Detail {
-    pub(crate) fn choice(&self) -> Choice {
+    pub(crate) fn lod(&self) -> LodCriterion {
         match self.criterion {
-            Criterion::Error => Choice::PixelError(self.error.max(0.01)),
-            Criterion::Size => Choice::PixelSize(self.size.max(0.5)),
-            Criterion::Homogeneous => Choice::Homogeneous(self.level.clamp(1, 64)),
-            Criterion::Distance => Choice::Distance {
+            Criterion::Error => LodCriterion::PixelError(self.error.max(0.01)),
+            Criterion::Size => LodCriterion::PixelSize(self.size.max(0.5)),
+            Criterion::Homogeneous => LodCriterion::Homogeneous(self.level.clamp(1, 64)),
+            Criterion::Distance => LodCriterion::Distance {
                 level: self.level.clamp(1, 64),
                 far: self.far.max(1e-3),
             },

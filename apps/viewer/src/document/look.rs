@@ -36,7 +36,8 @@ pub struct Look {
     /// Whether corners darken one another.
     pub occlusion: bool,
     /// Triangles.
-    pub wires: bool,
+    #[serde(alias = "wires")]
+    pub wireframe: bool,
     /// What colors mean.
     pub legend: bool,
     /// A length to compare with.
@@ -65,9 +66,11 @@ pub enum ColorBy {
     Neuron,
     Neurite,
     Section,
-    Order,
+    #[serde(rename = "order", alias = "branchorder")]
+    BranchOrder,
     Radius,
-    Depth,
+    #[serde(rename = "depth", alias = "pathdistance")]
+    PathDistance,
     Attribute,
     Value,
 }
@@ -79,9 +82,9 @@ impl ColorBy {
         (Self::Neuron, "neuron"),
         (Self::Neurite, "neurite"),
         (Self::Section, "section"),
-        (Self::Order, "branch order"),
+        (Self::BranchOrder, "branch order"),
         (Self::Radius, "radius"),
-        (Self::Depth, "path distance"),
+        (Self::PathDistance, "path distance"),
         (Self::Attribute, "attribute"),
         (Self::Value, "values of a report"),
     ];
@@ -103,7 +106,10 @@ impl ColorBy {
 
     /// Whether it is a number, with a color map.
     pub fn is_number(self) -> bool {
-        matches!(self, Self::Order | Self::Radius | Self::Depth | Self::Value)
+        matches!(
+            self,
+            Self::BranchOrder | Self::Radius | Self::PathDistance | Self::Value
+        )
     }
 
     /// As the library has it; none: it is no matter of a tracing alone.
@@ -113,9 +119,9 @@ impl ColorBy {
             Self::Neuron => coloring::ColorBy::Neuron,
             Self::Neurite => coloring::ColorBy::Neurite,
             Self::Section => coloring::ColorBy::Section,
-            Self::Order => coloring::ColorBy::Order,
+            Self::BranchOrder => coloring::ColorBy::BranchOrder,
             Self::Radius => coloring::ColorBy::Radius,
-            Self::Depth => coloring::ColorBy::Depth,
+            Self::PathDistance => coloring::ColorBy::PathDistance,
             Self::Attribute | Self::Value => return None,
         })
     }
@@ -193,7 +199,7 @@ impl Default for Look {
             background: PAPER,
             light: Lighting::Soft,
             occlusion: true,
-            wires: false,
+            wireframe: false,
             legend: true,
             scale_bar: true,
             axes: true,

@@ -39,10 +39,10 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         {
             detail = usual;
         }
-        let mut wires = state.document.look.wires;
+        let mut wires = state.document.look.wireframe;
         if ui.checkbox(&mut wires, "Wireframe").changed() {
             let mut look = state.document.look.clone();
-            look.wires = wires;
+            look.wireframe = wires;
             state.asked.push(Command::SetLook(Box::new(look)));
         }
     });

@@ -23,7 +23,7 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     ui.checkbox(&mut look.legend, "Legend");
     ui.checkbox(&mut look.scale_bar, "Scale bar");
     ui.checkbox(&mut look.axes, "Axes");
-    ui.checkbox(&mut look.wires, "Wireframe")
+    ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
     heading(ui, "Selection");
     ui.checkbox(&mut look.mark_selected, "Color of its own");
@@ -206,8 +206,7 @@ fn range(state: &State, look: &mut Look, ui: &mut Ui) {
         }
     });
     ui.end_row();
-    if look.color_by == ColorBy::Value && state.playback.facts.as_ref().is_some_and(|f| f.spikes)
-    {
+    if look.color_by == ColorBy::Value && state.playback.facts.as_ref().is_some_and(|f| f.spikes) {
         ui.label("spikes fade in");
         let decay = field(ui, &mut look.decay, 0.1..=1000.0, 2, |field| {
             field.speed(0.1).suffix(" ms")

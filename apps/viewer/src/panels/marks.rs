@@ -15,14 +15,14 @@ use crate::state::{Part, Picked, State};
 const ROUND: usize = 48;
 
 /// From cells to points of the window.
-struct Sight<'a> {
+struct CullView<'a> {
     camera: Camera,
     rect: Rect,
     placement: &'a Placement,
     origin: DVec3,
 }
 
-impl Sight<'_> {
+impl CullView<'_> {
     fn at(&self, point: DVec3) -> Option<Pos2> {
         let place = self.placement.world_from_cell(self.origin + point);
         // Sixteenths of a point.
@@ -58,7 +58,7 @@ pub(super) fn rings(state: &State, rect: Rect, painter: &Painter) {
         if neuron.source != id || neuron.hidden {
             continue;
         }
-        let sight = Sight {
+        let sight = CullView {
             camera: state.view.camera(),
             rect,
             placement: &placement,
@@ -71,7 +71,7 @@ pub(super) fn rings(state: &State, rect: Rect, painter: &Painter) {
     }
 }
 
-fn circle(sight: &Sight<'_>, ring: &FirstRing, painter: &Painter) {
+fn circle(sight: &CullView<'_>, ring: &FirstRing, painter: &Painter) {
     let (across, along) = ring.outwards.any_orthonormal_pair();
     // Far away a ring is a dot that still can be found.
     let point = f64::from(sight.wide(ring.center, 1.0)).max(1e-9);
@@ -85,7 +85,7 @@ fn circle(sight: &Sight<'_>, ring: &FirstRing, painter: &Painter) {
 }
 
 /// An ellipse with these half axes.
-fn round(sight: &Sight<'_>, center: DVec3, [a, b]: [DVec3; 2], painter: &Painter) {
+fn round(sight: &CullView<'_>, center: DVec3, [a, b]: [DVec3; 2], painter: &Painter) {
     let at = |i: usize| {
         let angle = std::f64::consts::TAU * i as f64 / ROUND as f64;
         sight.at(center + a * angle.cos() + b * angle.sin())
@@ -115,7 +115,7 @@ pub(super) fn hovered(state: &State, rect: Rect, painter: &Painter) {
     ) else {
         return;
     };
-    let sight = Sight {
+    let sight = CullView {
         camera: state.view.camera(),
         rect,
         placement: &placement,
@@ -133,7 +133,7 @@ pub(super) fn hovered(state: &State, rect: Rect, painter: &Painter) {
     }
 }
 
-fn soma(sight: &Sight<'_>, source: &Source, painter: &Painter) {
+fn soma(sight: &CullView<'_>, source: &Source, painter: &Painter) {
     if let Some(soma) = source.morphology.soma() {
         let [right, up, _] = sight.camera.axes();
         let back = sight.placement.rotation.inverse();
@@ -144,7 +144,7 @@ fn soma(sight: &Sight<'_>, source: &Source, painter: &Painter) {
 }
 
 /// A line on both sides of each of a section's segments.
-fn beside(sight: &Sight<'_>, source: &Source, section: usize, painter: &Painter) {
+fn beside(sight: &CullView<'_>, source: &Source, section: usize, painter: &Painter) {
     let stroke = Stroke::new(1.0, hovered_color());
     let within = sight.rect.expand(20.0);
     let end = |p: &Point| {

@@ -8,11 +8,13 @@ use glam::DAffine3;
 use neurotess::generate::Generated;
 use neurotess::mesh::{self, Format, Placed, Surface};
 use neurotess::output::write_whole;
-use neurotess::refine::{Caps, CoarseSurface, Levels, Path as Course, RefineOptions, Refinement};
-use neurotess::render::{Choice, Placement};
+use neurotess::refine::{
+    Caps, CoarseSurface, Lod, LodCriterion, Path as Course, RefineOptions, Refinement,
+};
+use neurotess::render::Placement;
 
 use super::existing;
-use crate::document::{Criterion, Detail};
+use crate::document::Detail;
 use crate::view::View;
 use crate::worker::Job;
 
@@ -155,7 +157,7 @@ fn write_mesh(
     let (refinement, quads);
     let surface: &dyn Surface = match levels(options.fineness, plan, view, detail, height) {
         Some(levels) => {
-            refinement = Refinement::new(coarse, &levels, &refine);
+            refinement = Refinement::new(coarse, levels, &refine);
             &refinement
         }
         None => {
@@ -183,21 +185,17 @@ fn levels(
     view: &View,
     detail: &Detail,
     height: f64,
-) -> Option<Levels<'static>> {
+) -> Option<Lod<'static>> {
     match fineness {
         Fineness::Level(0) => None,
-        Fineness::Level(level) => Some(Levels::Homogeneous(level.min(64))),
-        Fineness::MaxError(error) => Some(Levels::MaxError(error.max(1e-4))),
+        Fineness::Level(level) => Some(LodCriterion::Homogeneous(level.min(64)).into()),
+        Fineness::MaxError(error) => Some(LodCriterion::MaxError(error.max(1e-4)).into()),
         Fineness::AsShown => {
             let camera = view.camera();
             let place = &plan.placement;
-            let sight = neurotess::render::Sight::new(&camera, 1, height.max(1.0) as u32, 1e-3);
+            let sight = neurotess::render::CullView::new(&camera, 1, height.max(1.0) as u32, 1e-3);
             let view = sight.local_view(place, plan.generated.mesh.origin);
-            let choice = Choice::scaled(detail.choice(), place.scale);
-            Some(match detail.criterion {
-                Criterion::Homogeneous => Levels::Homogeneous(detail.level.clamp(1, 64)),
-                _ => choice.levels(view, &[]),
-            })
+            Some(Lod::seen_from(detail.lod().scaled(place.scale), view))
         }
     }
 }

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use neurotess::output::{Output, OutputError};
+use neurotess::refine::LodCriterion;
 use neurotess::render::{
-    Ball, Camera, Choice, ColorTable, Gpu, Image, Legend, Occlusion, Overlay, OverlayOptions,
-    PictureError, PictureOptions, PngWriter, Refining, Studio, Watch,
+    AdaptiveSettings, BoundingSphere, Camera, ColorTable, Gpu, Image, Legend, Occlusion, Overlay,
+    OverlayOptions, PictureError, PictureOptions, PngWriter, StillRenderer, Watch,
 };
 
 use super::{Still, existing};
@@ -41,7 +42,7 @@ pub(crate) struct Scenery {
     pub(crate) shown: Shown,
     pub(crate) look: Look,
     pub(crate) states: Vec<u32>,
-    pub(crate) balls: Vec<Ball>,
+    pub(crate) balls: Vec<BoundingSphere>,
 }
 
 impl Scenery {
@@ -105,16 +106,16 @@ pub(crate) fn pictures(
     let picture = picture_options(scenery, options);
     let mut maker =
         scene::maker(gpu, &scenery.shown, picture.sub_pixels(gpu)).map_err(|e| e.to_string())?;
-    maker.set_refining(Refining {
-        choice: Choice::PixelError(0.25),
-        wires: picture.look.wire > 0.0,
+    maker.set_settings(AdaptiveSettings {
+        lod: LodCriterion::PixelError(0.25),
+        wireframe: picture.look.wire > 0.0,
         ..Default::default()
     });
     if let Some(still) = stills.first() {
         let tiles = picture.tiles(gpu, &still.view.camera());
         job.all.store(tiles * stills.len(), Ordering::Relaxed);
     }
-    let mut studio = Studio::new();
+    let mut studio = StillRenderer::new();
     studio.set_states(&scenery.states);
     studio.set_watch(Watch {
         tiles: Arc::clone(&job.done),

@@ -103,13 +103,13 @@ impl Stage {
         wish: &Wish,
     ) -> Result<(), DeviceError> {
         let colored = wish.colors(&sources);
-        let words = &colored.coloring.words;
+        let words = &colored.coloring.color_keys;
         let mut scene = self.maker.take_scene();
         let mut replaced = Ok(());
         for &place in changed {
             let template = Template {
                 mesh: &sources[place].generated.mesh,
-                words: &words[place],
+                color_keys: &words[place],
                 values: &[],
             };
             let id = TemplateId(place as u32);

@@ -1,7 +1,7 @@
 //! What a full picture may cost. Where refining everything would hold the window up, exploration draws the
 //! picture at rest too, with as many triangles as there is time for.
 
-use neurotess::render::{Shot, any_shows};
+use neurotess::render::{ViewParams, any_shows};
 
 use super::Stage;
 use super::rest::whole;
@@ -115,7 +115,12 @@ impl Stage {
     }
 
     /// Patches of all neurons of which something may show.
-    pub(super) fn patches_in(&self, state: &State, shot: &Shot, standing: &[Standing]) -> u64 {
+    pub(super) fn patches_in(
+        &self,
+        state: &State,
+        shot: &ViewParams,
+        standing: &[Standing],
+    ) -> u64 {
         let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
         let frame = whole(camera, near, shot.size);
         let shows = |standing: &&Standing| {
@@ -137,7 +142,7 @@ impl Stage {
     }
 
     /// Who draws the picture at rest.
-    pub(super) fn choose_full(&mut self, shot: &Shot) -> Full {
+    pub(super) fn choose_full(&mut self, shot: &ViewParams) -> Full {
         if !self.means.too_many(self.patches) {
             return Full::Refined;
         }
@@ -168,7 +173,7 @@ impl Stage {
 }
 
 /// Exploration knows neither grids nor another camera.
-pub(super) fn explorable(shot: &Shot) -> bool {
+pub(super) fn explorable(shot: &ViewParams) -> bool {
     shot.look.wire <= 0.0 && shot.frozen.is_none()
 }
 

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 use neurotess::render::{
-    Choice, DeviceError, OUTLINED, Occlusion, Outlines, Refining, Scene, Shot,
+    AdaptiveSettings, DeviceError, OUTLINED, Occlusion, Outlines, Scene, ViewParams,
 };
 
 use super::dear::explorable;
@@ -33,7 +33,7 @@ impl Stage {
             (camera, camera.near(&balls))
         });
         Drawn {
-            shot: Shot {
+            shot: ViewParams {
                 camera,
                 near: camera.near(&balls),
                 size,
@@ -118,12 +118,12 @@ impl Stage {
         if let Some(maker) = explorer {
             return self.live.draft(&self.gpu, maker, &shot);
         }
-        self.maker.set_refining(Refining {
+        self.maker.set_settings(AdaptiveSettings {
             // Nothing is left out that would show at rest: holes that come and go look broken.
-            choice: coarser(wanted.detail.choice(), self.coarser),
+            lod: wanted.detail.lod().coarser(self.coarser),
             smallest: wanted.detail.smallest,
-            wires: shot.look.wire > 0.0,
-            ..Refining::default()
+            wireframe: shot.look.wire > 0.0,
+            ..AdaptiveSettings::default()
         });
         if self.coarser > HALF_FROM {
             shot.size = shot.size.map(|n| n.div_ceil(2));
@@ -159,21 +159,5 @@ impl Stage {
         if self.frames.len() > FRAMES {
             self.frames.pop_front();
         }
-    }
-}
-
-/// The same choice, so much coarser.
-pub(super) fn coarser(choice: Choice, factor: f32) -> Choice {
-    let level = |level: u32| ((level as f32 / factor).round() as u32).max(1);
-    match choice {
-        Choice::PixelError(error) => Choice::PixelError(error * factor),
-        Choice::PixelSize(size) => Choice::PixelSize(size * factor),
-        Choice::MaxError(error) => Choice::MaxError(error * factor),
-        Choice::Homogeneous(l) => Choice::Homogeneous(level(l)),
-        Choice::Distance { level: l, far } => Choice::Distance {
-            level: level(l),
-            far,
-        },
-        Choice::PerPoint => Choice::PerPoint,
     }
 }

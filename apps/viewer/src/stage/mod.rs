@@ -17,7 +17,8 @@ use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::{
-    Adaptive, Camera, DeviceError, Gpu, InstanceValues, Legend, Live, Refining, Scene, Shot,
+    Adaptive, AdaptiveSettings, Camera, DeviceError, Gpu, InstanceValues, Legend,
+    ProgressiveRenderer, Scene, ViewParams,
 };
 
 use crate::colors::{ColorKey, paint};
@@ -36,7 +37,7 @@ use pointing::{MaskKey, Names};
 pub struct Stage {
     gpu: Arc<Gpu>,
     render: RenderState,
-    live: Live,
+    live: ProgressiveRenderer,
     maker: Adaptive,
     explorer: Explorer,
     /// Whether the last draft was the explorer's.
@@ -79,7 +80,7 @@ pub struct Stage {
 /// What a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
-    shot: Shot,
+    shot: ViewParams,
     detail: Detail,
     states: Vec<u32>,
     standing: Vec<Standing>,
@@ -105,8 +106,8 @@ impl Stage {
     /// The device refuses.
     pub fn new(render: RenderState) -> Result<Self, DeviceError> {
         let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
-        let live = Live::new(&gpu);
-        let mut maker = Adaptive::new(&gpu, Scene::default(), Refining::default(), 1)?;
+        let live = ProgressiveRenderer::new(&gpu);
+        let mut maker = Adaptive::new(&gpu, Scene::default(), AdaptiveSettings::default(), 1)?;
         let no_colors = coloring(&[], ColorBy::Type, &paint(&Look::default()));
         let shown = Shown::new(Vec::new(), Vec::new(), no_colors.into());
         let legend = shown.legend.clone();

@@ -9,7 +9,7 @@ use neurotess::render::ColorTable;
 use super::Stage;
 use crate::colors::{ColorKey, paint};
 use crate::playback::Facts;
-use crate::reader::{Reader, Sight};
+use crate::reader::{CullView, Reader};
 use crate::state::State;
 
 impl Stage {
@@ -74,7 +74,7 @@ impl Stage {
         let Some(frame) = state.playback.frame() else {
             return false;
         };
-        let sight = Sight {
+        let sight = CullView {
             shows: self.shown.instances.iter().map(|s| !s.hidden).collect(),
             range: facts.range,
             decay: state.document.look.decay,

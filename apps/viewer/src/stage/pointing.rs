@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{DeviceError, Id, Named, Namer, Outlines, Shot, SketchNamer};
+use neurotess::render::{
+    DeviceError, Outlines, PickHit, PickId, PickResolver, ProxyPickResolver, ViewParams,
+};
 
 use super::Stage;
 use crate::picks::{Picks, Seen, seen};
@@ -20,12 +22,12 @@ pub(crate) const OUTLINES: Outlines = Outlines {
 
 /// What ids mean.
 pub(super) enum Names {
-    Refined(Namer),
-    Explored(SketchNamer),
+    Refined(PickResolver),
+    Explored(ProxyPickResolver),
 }
 
 impl Names {
-    fn name(&self, id: Id) -> Option<Named> {
+    fn name(&self, id: PickId) -> Option<PickHit> {
         match self {
             Self::Refined(namer) => namer.name(id),
             Self::Explored(namer) => namer.name(id),
@@ -39,7 +41,7 @@ pub(super) struct MaskKey {
     hovered: Option<Picked>,
     picked: Option<Picked>,
     selected: Vec<usize>,
-    shot: Shot,
+    shot: ViewParams,
 }
 
 impl Stage {

@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{Camera, DeviceError, Frame, Refining, Shot, Steps, Tile, VertexMaker};
+use neurotess::render::{
+    AdaptiveSettings, Camera, DeviceError, Frame, Steps, Tile, VertexSource, ViewParams,
+};
 
 use super::dear::Full;
-use super::drafts::coarser;
 use super::pointing::Names;
 use super::{Rest, Stage};
 use crate::command::Tab;
@@ -55,17 +56,17 @@ impl Stage {
         Ok(())
     }
 
-    fn begin(&mut self, shot: Shot, detail: Detail) {
+    fn begin(&mut self, shot: ViewParams, detail: Detail) {
         self.full = self.choose_full(&shot);
-        let choice = match self.full {
-            Full::Coarser => coarser(detail.choice(), self.coarser),
-            Full::Refined | Full::Explored => detail.choice(),
+        let lod = match self.full {
+            Full::Coarser => detail.lod().coarser(self.coarser),
+            Full::Refined | Full::Explored => detail.lod(),
         };
-        self.maker.set_refining(Refining {
-            choice,
+        self.maker.set_settings(AdaptiveSettings {
+            lod,
             smallest: detail.smallest,
-            wires: shot.look.wire > 0.0,
-            ..Refining::default()
+            wireframe: shot.look.wire > 0.0,
+            ..AdaptiveSettings::default()
         });
         let steps = Steps {
             steps: 4,
@@ -77,7 +78,7 @@ impl Stage {
         self.rest = Rest::Slices;
     }
 
-    fn slice(&mut self, shot: Shot) -> Result<(), DeviceError> {
+    fn slice(&mut self, shot: ViewParams) -> Result<(), DeviceError> {
         if self.timed {
             self.learn();
             if self.full == Full::Refined && self.choose_full(&shot) != Full::Refined {
@@ -91,7 +92,7 @@ impl Stage {
         let asks = !self.live.shows_draft() && self.namer.is_none() && self.picks.is_none();
         self.timed = !asks;
         let budget = self.means.budget;
-        let maker: &mut dyn VertexMaker = match self.full {
+        let maker: &mut dyn VertexSource = match self.full {
             Full::Refined | Full::Coarser => &mut self.maker,
             Full::Explored => match self.explorer.maker(&self.gpu, &self.shown, budget) {
                 Some(maker) => maker,

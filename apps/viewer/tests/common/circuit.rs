@@ -31,7 +31,7 @@ pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, 
     write::spikes(std::slice::from_ref(&made.spikes), create("spikes.h5")).expect("written");
     let of_node = |node: &u64| {
         let names = &made.population.attributes["morphology"];
-        let name = names.word(*node as usize);
+        let name = names.text(*node as usize);
         let cell = made.morphologies.iter().find(|m| Some(&*m.name) == name);
         voltages(
             &grow(&cell.expect("a morphology").options),

@@ -1,8 +1,8 @@
 //! Some columns of one row of a table that may be larger than memory.
 //!
-//! hdf5-pure reads whole rows: 40 MB for a frame of 10⁷ elements, whatever of it is wanted. So where
+//! hdf5-pure reads whole rows: 40 MB for a frame of 10⁷ compartments, whatever of it is wanted. So where
 //! the numbers lie is asked of it once, and then only the chunks (or, without chunks, the runs of
-//! bytes) that hold wanted elements are read. Filters other than deflate and shuffle, and kinds of
+//! bytes) that hold wanted compartments are read. Filters other than deflate and shuffle, and kinds of
 //! index that cannot be listed, are left to hdf5-pure, whole rows at a time.
 
 use std::collections::{BTreeMap, HashMap};
@@ -71,7 +71,7 @@ struct Cache {
 
 /// Most bytes of chunks that are kept.
 const CACHE: usize = 64 << 20;
-/// Wanted elements that are no further apart than this are read at once: 4 kB, a page of a disk.
+/// Wanted compartments that are no further apart than this are read at once: 4 kB, a page of a disk.
 const GAP: u64 = 1024;
 /// Greatest chunk, by the format's own limit.
 const MAX_CHUNK: u64 = 1 << 32;
@@ -82,7 +82,7 @@ impl Table {
         let [rows, columns] = match store.shape(path)?[..] {
             [rows, columns] => [rows, columns],
             ref other => {
-                let (found, expected) = (other.to_vec(), "frames × elements".into());
+                let (found, expected) = (other.to_vec(), "frames × compartments".into());
                 return Err(store.fault(path, Fault::Shape { found, expected }));
             }
         };
@@ -121,7 +121,7 @@ impl Table {
     pub(crate) fn pick(&self, row: u64, columns: &[u64]) -> Result<Vec<f32>, CircuitError> {
         self.beyond("frame", row, self.rows)?;
         for &column in columns {
-            self.beyond("element", column, self.columns)?;
+            self.beyond("compartment", column, self.columns)?;
         }
         match (&self.access, self.number) {
             (Access::Contiguous(address), Some(number)) => {

@@ -1,11 +1,11 @@
-//! Reports of simulations: values of elements of neurons over time.
+//! Reports of simulations: values of compartments of neurons over time.
 //!
 //! **Theory.** SONATA's layout, and the older one without populations:
 //!
 //! ```text
-//! /report/<population>/data                       frames × elements, attribute units
+//! /report/<population>/data                       frames × compartments, attribute units
 //!                     /mapping/node_ids           (gids)
-//!                             /index_pointers     (index_pointer) n or n + 1: a node's first element
+//!                             /index_pointers     (index_pointer) n or n + 1: a node's first compartment
 //!                             /element_ids        (element_id) number of the section, 0 the soma
 //!                             /element_pos        optional: place along the section, 0 to 1
 //!                             /time               start, end (excluded), step
@@ -13,7 +13,7 @@
 //! ```
 //!
 //! **Practice.** Opening reads node ids and pointers. Elements and values are read when they are asked
-//! for, only where they are: a frame of some elements costs the chunks that hold them.
+//! for, only where they are: a frame of some compartments costs the chunks that hold them.
 
 mod axis;
 mod chunks;
@@ -25,7 +25,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub use axis::TimeAxis;
-pub use place::{Compartment, Place, SectionOrder};
+pub use place::{Compartment, Location, SectionOrder};
 pub use spikes::{SpikePopulation, Spikes};
 
 use crate::hdf5::Store;
@@ -34,14 +34,14 @@ use chunks::Table;
 
 /// A file that a simulation wrote.
 #[derive(Debug)]
-pub enum Recording {
+pub enum RecordingFile {
     /// Values of compartments or somata.
     Report(Report),
     /// Spikes.
     Spikes(Spikes),
 }
 
-impl Recording {
+impl RecordingFile {
     /// Opens a report or a file of spikes, whichever it is.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ pub struct Report {
 /// Whether a report has the whole neurons or their somata.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportKind {
-    /// One element per node.
+    /// One compartment per node.
     Soma,
     /// Some nodes have several.
     Compartment,
@@ -94,11 +94,11 @@ pub struct ReportPopulation {
     pub units: String,
     /// Ids of the nodes, in the file's order.
     pub nodes: Vec<u64>,
-    /// First element of each node, and the end of the last.
+    /// First compartment of each node, and the end of the last.
     pointers: Vec<u64>,
     rows: HashMap<u64, u32>,
     mapping: Store,
-    elements: String,
+    compartments: String,
     positions: Option<String>,
     table: Table,
 }
@@ -109,7 +109,7 @@ impl std::fmt::Debug for ReportPopulation {
             .field("name", &self.name)
             .field("time", &self.time)
             .field("nodes", &self.nodes.len())
-            .field("elements", &self.elements())
+            .field("compartments", &self.compartment_count())
             .finish_non_exhaustive()
     }
 }
@@ -160,12 +160,15 @@ impl ReportPopulation {
             nodes.len(),
             table.columns,
         )?;
-        let elements = find(&["element_ids", "element_id"])?;
+        let compartments = find(&["element_ids", "element_id"])?;
         let positions = find(&["element_pos"]).ok();
-        for mapped in [Some(&elements), positions.as_ref()].into_iter().flatten() {
+        for mapped in [Some(&compartments), positions.as_ref()]
+            .into_iter()
+            .flatten()
+        {
             let found = store.shape(mapped)?;
             if found != [table.columns] {
-                let expected = format!("[{}], one per element", table.columns);
+                let expected = format!("[{}], one per compartment", table.columns);
                 return Err(store.fault(mapped, Fault::Shape { found, expected }));
             }
             // A row of the table has as many numbers.
@@ -180,19 +183,19 @@ impl ReportPopulation {
             nodes,
             pointers,
             rows,
-            elements,
+            compartments,
             positions,
             table,
             mapping: store,
         })
     }
 
-    /// How many elements all nodes have.
-    pub fn elements(&self) -> u64 {
+    /// How many compartments all nodes have.
+    pub fn compartment_count(&self) -> u64 {
         self.table.columns
     }
 
-    /// Whether it has one element per node.
+    /// Whether it has one compartment per node.
     pub fn kind(&self) -> ReportKind {
         let one = |pair: &[u64]| pair[1] - pair[0] == 1;
         if self.pointers.windows(2).all(one) {
@@ -207,15 +210,15 @@ impl ReportPopulation {
         self.rows.get(&node).map(|&row| row as usize)
     }
 
-    /// Elements of the node of this index.
+    /// Compartments of the node of this index.
     ///
     /// # Panics
     /// If the index is not below the number of nodes.
-    pub fn elements_of(&self, index: usize) -> Range<u64> {
+    pub fn compartment_range(&self, index: usize) -> Range<u64> {
         self.pointers[index]..self.pointers[index + 1]
     }
 
-    /// Where on the neuron the elements of a node are, in the order of [`Self::elements_of`].
+    /// Where on the neuron the compartments of a node are, in the order of [`Self::compartment_range`].
     ///
     /// # Errors
     /// What is wrong with the file.
@@ -223,10 +226,10 @@ impl ReportPopulation {
     /// # Panics
     /// If the index is not below the number of nodes.
     pub fn compartments(&self, index: usize) -> Result<Vec<Compartment>, CircuitError> {
-        let Range { start, end } = self.elements_of(index);
+        let Range { start, end } = self.compartment_range(index);
         let sections = self
             .mapping
-            .naturals_of(&self.elements, start, end - start)?;
+            .naturals_of(&self.compartments, start, end - start)?;
         let positions = match &self.positions {
             Some(path) => Some(self.mapping.reals_of(path, start, end - start)?),
             None => None,
@@ -234,13 +237,13 @@ impl ReportPopulation {
         Ok(place::compartments(&sections, positions.as_deref()))
     }
 
-    /// Values of elements in a frame, in the order that they are asked for. Reads what holds them and
+    /// Values of compartments in a frame, in the order that they are asked for. Reads what holds them and
     /// nothing else.
     ///
     /// # Errors
-    /// [`Fault::Beyond`] for a frame or an element that does not exist; what is wrong with the file.
-    pub fn values(&self, frame: u64, elements: &[u64]) -> Result<Vec<f32>, CircuitError> {
-        self.table.pick(frame, elements)
+    /// [`Fault::Beyond`] for a frame or a compartment that does not exist; what is wrong with the file.
+    pub fn values(&self, frame: u64, compartments: &[u64]) -> Result<Vec<f32>, CircuitError> {
+        self.table.pick(frame, compartments)
     }
 
     /// The nodes of a circuit that the report is about, in the order of [`Self::nodes`].
@@ -249,7 +252,7 @@ impl ReportPopulation {
     /// [`Fault::OtherCircuit`] if the circuit does not have the population or some of the nodes.
     pub fn nodes_in(&self, circuit: &Circuit) -> Result<Vec<NodeRef>, CircuitError> {
         nodes_in(circuit, &self.name, &self.nodes)
-            .map_err(|fault| self.mapping.fault(&self.elements, fault))
+            .map_err(|fault| self.mapping.fault(&self.compartments, fault))
     }
 }
 
@@ -290,11 +293,11 @@ fn pointers(
     store: &Store,
     path: &str,
     nodes: usize,
-    elements: u64,
+    compartments: u64,
 ) -> Result<Vec<u64>, CircuitError> {
     let mut pointers = store.naturals(path)?;
     if pointers.len() == nodes {
-        pointers.push(elements);
+        pointers.push(compartments);
     }
     if pointers.len() != nodes + 1 {
         let found = vec![pointers.len() as u64];
@@ -303,8 +306,8 @@ fn pointers(
     }
     let mut from = 0;
     for (index, &value) in (0..).zip(&pointers) {
-        if value < from || value > elements {
-            let to = elements;
+        if value < from || value > compartments {
+            let to = compartments;
             return Err(store.fault(
                 path,
                 Fault::Pointer {

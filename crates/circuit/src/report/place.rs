@@ -1,14 +1,14 @@
-//! Where on a neuron an element of a report is.
+//! Where on a neuron a compartment of a report is.
 //!
 //! **Theory.** Reports number sections as NEURON does: 0 is the soma, then all sections of the axon,
 //! of the basal dendrites, of the apical ones, and of the rest, each kind in depth-first order (SONATA
 //! developer guide, "Section numbering"). A morphology may have its trees in another order; so the
-//! numbers are counted anew here. A section that is reported in `n` elements has them at
+//! numbers are counted anew here. A section that is reported in `n` compartments has them at
 //! (k + ½) / n of its length; `element_pos` says it otherwise.
 
 use neurotess_morphology::{Morphology, NeuriteKind, SectionId};
 
-/// An element: a piece of a section.
+/// A compartment: a piece of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compartment {
     /// The section's number in the report; 0 is the soma.
@@ -19,7 +19,7 @@ pub struct Compartment {
 
 /// A place on a morphology.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum Location {
     /// The soma.
     Soma,
     /// Along a section, from 0 at its start to 1 at its end.
@@ -46,13 +46,13 @@ impl SectionOrder {
         Self(order)
     }
 
-    /// The place of an element; `None` if the morphology has no such section.
-    pub fn place(&self, compartment: Compartment) -> Option<Place> {
+    /// The place of a compartment; `None` if the morphology has no such section.
+    pub fn place(&self, compartment: Compartment) -> Option<Location> {
         let Some(index) = compartment.section.checked_sub(1) else {
-            return Some(Place::Soma);
+            return Some(Location::Soma);
         };
         let section = self.0.get(usize::try_from(index).ok()?)?;
-        Some(Place::Section(*section, compartment.along))
+        Some(Location::Section(*section, compartment.along))
     }
 
     /// The sections in this order: the first has number 1.
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn elements_of_a_section_share_its_length() {
+    fn compartments_of_a_section_share_its_length() {
         let along = |sections: &[u64], positions: Option<&[f64]>| -> Vec<f32> {
             let all = compartments(sections, positions);
             all.iter().map(|c| c.along).collect()
@@ -101,10 +101,10 @@ mod tests {
             let along = 0.5;
             order.place(Compartment { section, along })
         };
-        assert_eq!(place(0), Some(Place::Soma));
+        assert_eq!(place(0), Some(Location::Soma));
         // The axon is the second tree of the file and the first of reports.
         let ids = [1, 2, 3].map(place);
-        let expected = [1, 2, 0].map(|id| Some(Place::Section(SectionId(id), 0.5)));
+        let expected = [1, 2, 0].map(|id| Some(Location::Section(SectionId(id), 0.5)));
         assert_eq!(ids, expected);
         assert_eq!(place(4), None);
         assert_eq!(order.sections()[2], SectionId(0));

@@ -5,7 +5,7 @@
 //!                    /node_id                 optional: 0 … n-1 without it
 //!                    /node_group_id, node_group_index   optional: all in group 0, in order
 //!                    /<group>/<attribute>     rows of the group, perhaps more than are used
-//!                    /<group>/@library/<attribute>   words that the attribute's numbers stand for
+//!                    /<group>/@library/<attribute>   texts that the attribute's numbers stand for
 //! ```
 //!
 //! An attribute of a group overrides that of the node's type.
@@ -141,7 +141,7 @@ impl<'a> Table<'a> {
         match self.attribute(attribute)? {
             None => Ok(None),
             Some(Attribute::Numbers(values)) => Ok(Some(values)),
-            Some(Attribute::Words { .. }) => {
+            Some(Attribute::Text { .. }) => {
                 let (found, expected) = ("text".into(), "numbers");
                 let fault = Fault::Type { found, expected };
                 Err(self.store.fault(&self.key(attribute), fault))
@@ -184,17 +184,17 @@ impl<'a> Table<'a> {
                 self.type_ids.iter().map(number).collect(),
             ));
         }
-        let mut library: Vec<String> = values.values().map(|&word| word.into()).collect();
+        let mut library: Vec<String> = values.values().map(|&text| text.into()).collect();
         library.sort();
         library.dedup();
-        let place = |(&id, &word): (&i64, &&str)| {
-            let place = library.binary_search_by(|w| w.as_str().cmp(word));
+        let place = |(&id, &text): (&i64, &&str)| {
+            let place = library.binary_search_by(|w| w.as_str().cmp(text));
             (id, place.map_or(Attribute::NONE, |p| p as u32))
         };
         let places: HashMap<i64, u32> = values.iter().map(place).collect();
         let index = |id| places.get(id).copied().unwrap_or(Attribute::NONE);
         let indices = self.type_ids.iter().map(index).collect();
-        Some(Attribute::Words { library, indices })
+        Some(Attribute::Text { library, indices })
     }
 
     /// Puts a group's rows over what is known already.
@@ -222,7 +222,7 @@ impl<'a> Table<'a> {
         let own = attribute(own);
         let mut base = base.unwrap_or_else(|| match own {
             Attribute::Numbers(_) => Attribute::Numbers(vec![f64::NAN; self.len()]),
-            Attribute::Words { .. } => Attribute::Words {
+            Attribute::Text { .. } => Attribute::Text {
                 library: vec![],
                 indices: vec![Attribute::NONE; self.len()],
             },
@@ -233,21 +233,21 @@ impl<'a> Table<'a> {
             }
             return Ok(base);
         }
-        let (mut library, mut indices) = words(base);
-        let (own_library, own_indices) = words(own);
+        let (mut library, mut indices) = texts(base);
+        let (own_library, own_indices) = texts(own);
         let mut places: Vec<u32> = Vec::with_capacity(own_library.len());
-        for word in own_library {
-            let known = library.iter().position(|other| *other == word);
+        for text in own_library {
+            let known = library.iter().position(|other| *other == text);
             places.push(known.unwrap_or(library.len()) as u32);
             if known.is_none() {
-                library.push(word);
+                library.push(text);
             }
         }
         for &(node, row) in pairs {
             let place = places.get(own_indices[row as usize] as usize);
             indices[node as usize] = place.copied().unwrap_or(Attribute::NONE);
         }
-        Ok(Attribute::Words { library, indices })
+        Ok(Attribute::Text { library, indices })
     }
 }
 
@@ -304,21 +304,21 @@ fn groups(store: &Store, path: &str, n: u64) -> Result<Vec<Group>, CircuitError>
 fn rows(column: &Column) -> usize {
     match column {
         Column::Numbers(values) => values.len(),
-        Column::Words { indices, .. } => indices.len(),
+        Column::Text { indices, .. } => indices.len(),
     }
 }
 
 fn attribute(column: Column) -> Attribute {
     match column {
         Column::Numbers(values) => Attribute::Numbers(values),
-        Column::Words { library, indices } => Attribute::Words { library, indices },
+        Column::Text { library, indices } => Attribute::Text { library, indices },
     }
 }
 
-/// Words of an attribute; numbers as text.
-fn words(attribute: Attribute) -> (Vec<String>, Vec<u32>) {
+/// Text of an attribute; numbers as text.
+fn texts(attribute: Attribute) -> (Vec<String>, Vec<u32>) {
     match attribute {
-        Attribute::Words { library, indices } => (library, indices),
+        Attribute::Text { library, indices } => (library, indices),
         Attribute::Numbers(values) => {
             let mut library = Vec::new();
             let mut places: HashMap<u64, u32> = HashMap::new();

@@ -240,8 +240,7 @@ fn morphologies(
     broken: &Broken,
     notes: &mut Notes,
 ) {
-    let Some(Attribute::Words { library, indices }) = population.attributes.get("morphology")
-    else {
+    let Some(Attribute::Text { library, indices }) = population.attributes.get("morphology") else {
         return;
     };
     let folders = &settings.morphologies;

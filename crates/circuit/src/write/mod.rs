@@ -9,8 +9,8 @@ use hdf5_pure::{AttrValue, FileBuilder, FinishedGroup, GroupBuilder};
 use crate::{Attribute, Population, SpikePopulation};
 pub use report::{ReportLayout, report};
 
-/// Writes a file of nodes: ids 0, 1, …; one group; words as numbers with their library. Rotations are
-/// quaternions of `f32`. Morphologies are the words of the attribute `morphology`.
+/// Writes a file of nodes: ids 0, 1, …; one group; texts as numbers with their library. Rotations are
+/// quaternions of `f32`. Morphologies are the texts of the attribute `morphology`.
 ///
 /// # Errors
 /// Those of the writer.
@@ -48,12 +48,12 @@ fn one(population: &Population, mut out: GroupBuilder) -> FinishedGroup {
             Attribute::Numbers(values) => {
                 group.create_dataset(name).with_f64_data(values);
             }
-            Attribute::Words {
-                library: words,
+            Attribute::Text {
+                library: texts,
                 indices,
             } => {
-                let words: Vec<&str> = words.iter().map(String::as_str).collect();
-                library.create_dataset(name).with_vlen_strings(&words);
+                let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+                library.create_dataset(name).with_vlen_strings(&texts);
                 group.create_dataset(name).with_u32_data(indices);
             }
         }
@@ -92,6 +92,6 @@ fn header(file: &mut FileBuilder) {
     file.set_attr("version", AttrValue::U32Array(vec![0, 1]));
 }
 
-fn text(word: &str) -> AttrValue {
-    AttrValue::VarLenString(word.into())
+fn text(text: &str) -> AttrValue {
+    AttrValue::VarLenString(text.into())
 }

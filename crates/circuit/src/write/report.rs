@@ -18,9 +18,9 @@ pub struct ReportLayout {
     pub units: String,
     /// Ids of the nodes, ascending.
     pub nodes: Vec<u64>,
-    /// Numbers of the sections of each node's elements; 0 is the soma.
+    /// Numbers of the sections of each node's compartments; 0 is the soma.
     pub sections: Vec<Vec<u32>>,
-    /// Frames and elements in a chunk; at most as many as there are.
+    /// Frames and compartments in a chunk; at most as many as there are.
     pub chunk: [u64; 2],
     /// Whether chunks are compressed.
     pub compressed: bool,
@@ -37,17 +37,21 @@ impl TimeAxis {
     }
 }
 
-/// Writes a report. `data`: frames × elements.
+/// Writes a report. `data`: frames × compartments.
 ///
 /// # Errors
 /// Those of the writer.
 ///
 /// # Panics
-/// If there are not as many values as frames and elements make.
+/// If there are not as many values as frames and compartments make.
 pub fn report(layout: &ReportLayout, data: &[f32], writer: impl Write) -> io::Result<()> {
     let sections: Vec<u32> = layout.sections.concat();
-    let (frames, elements) = (layout.time.frames, sections.len() as u64);
-    assert_eq!(data.len() as u64, frames * elements, "frames × elements");
+    let (frames, compartments) = (layout.time.frames, sections.len() as u64);
+    assert_eq!(
+        data.len() as u64,
+        frames * compartments,
+        "frames × compartments"
+    );
     let mut pointers = vec![0u64];
     for own in &layout.sections {
         pointers.push(pointers[pointers.len() - 1] + own.len() as u64);
@@ -57,10 +61,13 @@ pub fn report(layout: &ReportLayout, data: &[f32], writer: impl Write) -> io::Re
     let mut reports = file.create_group("report");
     let mut group = reports.create_group(&layout.population);
     let dataset = group.create_dataset("data");
-    let chunk = [layout.chunk[0].min(frames), layout.chunk[1].min(elements)];
+    let chunk = [
+        layout.chunk[0].min(frames),
+        layout.chunk[1].min(compartments),
+    ];
     dataset
         .with_f32_data(data)
-        .with_shape(&[frames, elements])
+        .with_shape(&[frames, compartments])
         .with_chunks(&chunk.map(|size| size.max(1)))
         .set_attr("units", text(&layout.units));
     if layout.compressed {

@@ -11,8 +11,8 @@
 //! A soma is accepted if it is star-shaped about its center (every quad faces outwards), which excludes folds and self-intersections alike.
 
 pub(crate) mod elasticity;
+pub(crate) mod insertion_quads;
 mod profile;
-pub(crate) mod seats;
 pub(crate) mod sphere;
 mod warp;
 
@@ -23,7 +23,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{SomaMethod, SphereKind};
 use elasticity::Elasticity;
-use seats::{Insertion, Seats};
+use insertion_quads::{Insertion, InsertionQuads};
 use sphere::Sphere;
 use warp::Warp;
 
@@ -47,7 +47,7 @@ pub(crate) struct SomaSurface {
     pub(crate) inverted: usize,
     /// Quads that face inwards; zero unless every remedy failed.
     pub(crate) folded: usize,
-    /// Neurites that found no seat at all.
+    /// Neurites that found no insertion_quad at all.
     pub(crate) dropped: Vec<usize>,
 }
 
@@ -98,12 +98,12 @@ pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurfac
         if smaller {
             insertions.iter_mut().for_each(|i| i.radius *= 0.7);
         }
-        let gap = seats::LEAST_GAP * f64::from(2_u32.pow(attempt));
-        let (shrunk, turned) = seats::make_room(&mut insertions, gap);
+        let gap = insertion_quads::LEAST_GAP * f64::from(2_u32.pow(attempt));
+        let (shrunk, turned) = insertion_quads::make_room(&mut insertions, gap);
         let shrunk = if smaller { wanted.len() } else { shrunk };
         let reference = reference(request.kind, level, request.poisson);
-        if let Some(seats) = seats::assign(&reference.sphere, &insertions) {
-            let mut surface = deform(request, &reference, &seats, &insertions);
+        if let Some(insertion_quads) = insertion_quads::assign(&reference.sphere, &insertions) {
+            let mut surface = deform(request, &reference, &insertion_quads, &insertions);
             (surface.shrunk, surface.turned) = (shrunk, turned);
             let last = attempt + 1 == request.attempts;
             let enough = !request.at_any_price || surface.folded == 0;
@@ -237,20 +237,24 @@ fn reference(kind: SphereKind, level: u32, poisson: f64) -> Arc<Reference> {
 fn deform(
     request: &SomaRequest,
     reference: &Reference,
-    seats: &Seats,
+    insertion_quads: &InsertionQuads,
     insertions: &[Insertion],
 ) -> SomaSurface {
     let sphere = &reference.sphere;
-    let warp = Flow::new(sphere, seats, insertions);
+    let warp = Flow::new(sphere, insertion_quads, insertions);
     let pulled = match request.method {
-        SomaMethod::Fem => pull(request, reference, seats, insertions),
+        SomaMethod::Fem => pull(request, reference, insertion_quads, insertions),
         SomaMethod::Sphere | SomaMethod::Profile | SomaMethod::None => sphere.nodes.clone(),
     };
     let mut nodes: Vec<DVec3> = pulled.iter().map(|&x| warp.apply(x)).collect();
     if request.method == SomaMethod::Profile {
         profile::apply(&mut nodes[..sphere.surface], request.radius, insertions);
     }
-    let rings: Vec<[u32; 4]> = seats.quads.iter().map(|&q| sphere.quads[q]).collect();
+    let rings: Vec<[u32; 4]> = insertion_quads
+        .quads
+        .iter()
+        .map(|&q| sphere.quads[q])
+        .collect();
     for (ring, goals) in rings.iter().zip(&warp.rings) {
         for (&vertex, &goal) in ring.iter().zip(goals) {
             nodes[vertex as usize] = goal / request.radius;
@@ -258,7 +262,7 @@ fn deform(
     }
     let taken: Vec<bool> = {
         let mut taken = vec![false; sphere.quads.len()];
-        seats.quads.iter().for_each(|&q| taken[q] = true);
+        insertion_quads.quads.iter().for_each(|&q| taken[q] = true);
         taken
     };
     let left = sphere
@@ -289,7 +293,7 @@ fn deform(
         insertions: insertions.to_vec(),
         shrunk: 0,
         turned: 0,
-        misfits: usize::from(seats.worst > 1.5 * width),
+        misfits: usize::from(insertion_quads.worst > 1.5 * width),
         inverted,
         folded,
         dropped: Vec::new(),
@@ -306,17 +310,17 @@ fn folded(nodes: &[DVec3], quad: [u32; 4]) -> bool {
     !first && !second
 }
 
-/// The elastic answer, on the canonical sphere of radius 1, to pulling each seat's corners out to
+/// The elastic answer, on the canonical sphere of radius 1, to pulling each insertion_quad's corners out to
 /// where its ring's corners are.
 fn pull(
     request: &SomaRequest,
     reference: &Reference,
-    seats: &Seats,
+    insertion_quads: &InsertionQuads,
     insertions: &[Insertion],
 ) -> Vec<DVec3> {
     let sphere = &reference.sphere;
     let mut prescribed = Vec::with_capacity(4 * insertions.len());
-    for (&quad, insertion) in seats.quads.iter().zip(insertions) {
+    for (&quad, insertion) in insertion_quads.quads.iter().zip(insertions) {
         let reach = insertion.distance.hypot(insertion.radius) / request.radius;
         for vertex in sphere.quads[quad] {
             prescribed.push((vertex, sphere.nodes[vertex as usize] * (reach - 1.0)));
@@ -345,11 +349,11 @@ struct Flow {
 const FLOW_STEPS: usize = 6;
 
 impl Flow {
-    fn new(sphere: &Sphere, seats: &Seats, insertions: &[Insertion]) -> Self {
+    fn new(sphere: &Sphere, insertion_quads: &InsertionQuads, insertions: &[Insertion]) -> Self {
         let (mut from, mut to, mut rings) = (Vec::new(), Vec::new(), Vec::new());
-        for (&quad, insertion) in seats.quads.iter().zip(insertions) {
+        for (&quad, insertion) in insertion_quads.quads.iter().zip(insertions) {
             let corners = sphere.quads[quad].map(|v| sphere.nodes[v as usize]);
-            let corners = warp::rotate(seats.rotation, corners);
+            let corners = warp::rotate(insertion_quads.rotation, corners);
             let goals = warp::ring_directions(insertion.direction, insertion.angle(), corners);
             from.extend(corners);
             to.extend(goals);
@@ -359,7 +363,7 @@ impl Flow {
         let width = 2.5 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
         let warp = Warp::new(&from, &to, width, FLOW_STEPS);
         Self {
-            rotation: seats.rotation,
+            rotation: insertion_quads.rotation,
             warp,
             rings,
         }

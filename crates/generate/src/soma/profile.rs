@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::seats::Insertion;
+use super::insertion_quads::Insertion;
 
 /// Share of R up to which the profile is the circle.
 const CIRCLE_TO: f64 = 0.7;

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn tetrahedra_fill_the_ball_and_meet_face_to_face() {
+    fn tetrahedra_fill_the_soma_sphere_and_meet_face_to_face() {
         for (kind, level) in [
             (SphereKind::Octahedron, 3),
             (SphereKind::Octahedron, 4),
@@ -288,8 +288,11 @@ mod tests {
             } else {
                 0.0
             };
-            let ball = 4.0 / 3.0 * std::f64::consts::PI * (1.0 - core);
-            assert!(total < ball && total > 0.93 * ball, "{total} of {ball}");
+            let soma_sphere = 4.0 / 3.0 * std::f64::consts::PI * (1.0 - core);
+            assert!(
+                total < soma_sphere && total > 0.93 * soma_sphere,
+                "{total} of {soma_sphere}"
+            );
         }
     }
 }

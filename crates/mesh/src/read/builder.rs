@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Place, ReadError, malformed};
+use super::{FilePosition, ReadError, malformed};
 use crate::{Faces, SurfaceMesh, SurfaceVertex};
 
 /// Collects vertices and faces.
@@ -14,7 +14,7 @@ pub(super) struct Builder {
     /// could name the same bytes again and again.
     limit: usize,
     /// The highest index that a face named.
-    highest: Option<(u32, Place)>,
+    highest: Option<(u32, FilePosition)>,
 }
 
 /// Coordinates beyond are refused, so that differences stay finite in 32 bits.
@@ -41,7 +41,7 @@ impl Builder {
     /// Adds a vertex; its position is `position`, the other attributes are those of `vertex`.
     pub(super) fn vertex(
         &mut self,
-        at: Place,
+        at: FilePosition,
         position: DVec3,
         vertex: SurfaceVertex,
     ) -> Result<(), ReadError> {
@@ -56,7 +56,7 @@ impl Builder {
     }
 
     /// Adds a face of three corners or more.
-    pub(super) fn face(&mut self, at: Place, corners: &[u32]) -> Result<(), ReadError> {
+    pub(super) fn face(&mut self, at: FilePosition, corners: &[u32]) -> Result<(), ReadError> {
         if let Some(&highest) = corners.iter().max()
             && self.highest.is_none_or(|(before, _)| highest > before)
         {
@@ -79,7 +79,7 @@ impl Builder {
         self.room(self.faces.triangles.len().max(self.faces.quads.len()), at)
     }
 
-    fn room(&self, count: usize, at: Place) -> Result<(), ReadError> {
+    fn room(&self, count: usize, at: FilePosition) -> Result<(), ReadError> {
         if count < self.limit {
             return Ok(());
         }

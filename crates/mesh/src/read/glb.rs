@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::builder::Builder;
 use super::lines::index;
-use super::{Place, ReadError, base64, malformed};
+use super::{FilePosition, ReadError, base64, malformed};
 use crate::{SurfaceMesh, SurfaceVertex};
 
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
@@ -16,8 +16,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
     } else {
         (bytes, None)
     };
-    let root: Value = serde_json::from_slice(json)
-        .map_err(|error| malformed(Place::Line(error.line()), format!("JSON ({error})"), "glTF"))?;
+    let root: Value = serde_json::from_slice(json).map_err(|error| {
+        malformed(
+            FilePosition::Line(error.line()),
+            format!("JSON ({error})"),
+            "glTF",
+        )
+    })?;
     let buffers = items(&root, "buffers")
         .iter()
         .enumerate()
@@ -46,7 +51,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
         };
         let length = u32::from_le_bytes([head[0], head[1], head[2], head[3]]) as usize;
         let cut = ReadError::Truncated {
-            at: Place::Byte(at),
+            at: FilePosition::Byte(at),
             what: "a chunk",
         };
         let data = rest.get(..length).ok_or(cut)?;
@@ -57,7 +62,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
     }
     let [json, binary] = found;
     Ok((
-        json.ok_or_else(|| malformed(Place::Byte(12), "a chunk", "JSON"))?,
+        json.ok_or_else(|| malformed(FilePosition::Byte(12), "a chunk", "JSON"))?,
         binary,
     ))
 }
@@ -77,13 +82,13 @@ fn data<'a>(buffer: &Value, binary: Option<&'a [u8]>) -> Result<Cow<'a, [u8]>, R
         );
         let remedy = "write the model as GLB, with its data inside";
         return Err(ReadError::Unsupported {
-            at: Place::File,
+            at: FilePosition::File,
             what,
             remedy,
         });
     };
     let decoded = base64::decode(text.as_bytes(), usize::MAX).map(Cow::Owned);
-    decoded.ok_or_else(|| malformed(Place::File, "a data URI", "base64"))
+    decoded.ok_or_else(|| malformed(FilePosition::File, "a data URI", "base64"))
 }
 
 struct Scene<'a> {
@@ -105,7 +110,11 @@ impl Scene<'_> {
             let node = item(nodes, number, "node")?;
             if std::mem::replace(&mut visited[number as usize], true) {
                 let found = format!("node {number} twice");
-                return Err(malformed(Place::File, found, "nodes that form trees"));
+                return Err(malformed(
+                    FilePosition::File,
+                    found,
+                    "nodes that form trees",
+                ));
             }
             let world_from_node = world_from_parent * parent_from_node(node);
             if let Some(number) = node["mesh"].as_u64() {
@@ -187,7 +196,7 @@ impl Scene<'_> {
                 section: section as i32,
                 radius: radius as f32,
             };
-            mesh.vertex(Place::File, position, vertex)?;
+            mesh.vertex(FilePosition::File, position, vertex)?;
         }
 
         let corners = match primitive["indices"].as_u64() {
@@ -200,10 +209,10 @@ impl Scene<'_> {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
             let mut corners = [0; 3];
             for (corner, number) in corners.iter_mut().zip([a, b, c]) {
-                let number = u64::from(index(number, Place::File)?) + first;
+                let number = u64::from(index(number, FilePosition::File)?) + first;
                 *corner = u32::try_from(number).unwrap_or(u32::MAX);
             }
-            mesh.face(Place::File, &corners)
+            mesh.face(FilePosition::File, &corners)
         };
         match mode {
             TRIANGLES => corners
@@ -240,7 +249,7 @@ impl Scene<'_> {
                 "write the model without sparse accessors",
             );
             return Err(ReadError::Unsupported {
-                at: Place::File,
+                at: FilePosition::File,
                 what: what.to_owned(),
                 remedy,
             });
@@ -251,7 +260,7 @@ impl Scene<'_> {
         let whole = |value: &Value| value.as_u64().unwrap_or(0) as usize;
         let (start, length) = (whole(&view["byteOffset"]), whole(&view["byteLength"]));
         let cut = ReadError::Truncated {
-            at: Place::File,
+            at: FilePosition::File,
             what: "a buffer view",
         };
         let data = buffer.get(start..start.saturating_add(length)).ok_or(cut)?;
@@ -263,7 +272,7 @@ impl Scene<'_> {
             5125 | 5126 => 4,
             _ => {
                 return Err(malformed(
-                    Place::File,
+                    FilePosition::File,
                     format!("component type {kind}"),
                     "5120–5126",
                 ));
@@ -275,7 +284,7 @@ impl Scene<'_> {
             stride if stride >= size => stride,
             stride => {
                 return Err(malformed(
-                    Place::File,
+                    FilePosition::File,
                     format!("stride {stride}"),
                     "a longer one",
                 ));
@@ -289,7 +298,7 @@ impl Scene<'_> {
         let held = (data.len() + stride - size) / stride;
         if held < count {
             return Err(ReadError::Truncated {
-                at: Place::File,
+                at: FilePosition::File,
                 what: "an accessor",
             });
         }
@@ -349,6 +358,6 @@ fn items<'a>(value: &'a Value, name: &str) -> &'a [Value] {
 fn item<'a>(list: &'a [Value], number: u64, what: &'static str) -> Result<&'a Value, ReadError> {
     list.get(number as usize).ok_or_else(|| {
         let found = format!("{what} {number} of {}", list.len());
-        malformed(Place::File, found, "one that is there")
+        malformed(FilePosition::File, found, "one that is there")
     })
 }

@@ -1,6 +1,6 @@
 //! Text by lines and words.
 
-use super::{Place, ReadError, malformed, shown};
+use super::{FilePosition, ReadError, malformed, shown};
 
 /// Lines of a file with their numbers.
 pub(super) struct Lines<'a> {
@@ -21,8 +21,8 @@ impl<'a> Lines<'a> {
     }
 
     /// The place of the last line given out.
-    pub(super) fn place(&self) -> Place {
-        Place::Line(self.number)
+    pub(super) fn place(&self) -> FilePosition {
+        FilePosition::Line(self.number)
     }
 }
 
@@ -53,13 +53,16 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// A number of a text.
-pub(super) fn number(word: Option<&[u8]>, at: Place) -> Result<f64, ReadError> {
+pub(super) fn number(word: Option<&[u8]>, at: FilePosition) -> Result<f64, ReadError> {
     let word = word.ok_or_else(|| malformed(at, "the line ends", "one more number"))?;
     fast_float2::parse(word).map_err(|_| malformed(at, shown(word), "a number"))
 }
 
 /// A whole number of a text.
-pub(super) fn whole<T: std::str::FromStr>(word: Option<&[u8]>, at: Place) -> Result<T, ReadError> {
+pub(super) fn whole<T: std::str::FromStr>(
+    word: Option<&[u8]>,
+    at: FilePosition,
+) -> Result<T, ReadError> {
     let word = word.ok_or_else(|| malformed(at, "the line ends", "one more whole number"))?;
     let parsed = std::str::from_utf8(word)
         .ok()
@@ -68,7 +71,7 @@ pub(super) fn whole<T: std::str::FromStr>(word: Option<&[u8]>, at: Place) -> Res
 }
 
 /// An index, from any number.
-pub(super) fn index(number: f64, at: Place) -> Result<u32, ReadError> {
+pub(super) fn index(number: f64, at: FilePosition) -> Result<u32, ReadError> {
     let index = number as u32;
     if f64::from(index) == number && index < u32::MAX {
         return Ok(index);

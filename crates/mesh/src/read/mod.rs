@@ -23,7 +23,7 @@ use crate::{Format, SurfaceMesh, UnknownFormat};
 
 /// Where in a file something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// A line, from 1 on.
     Line(usize),
     /// An offset in bytes.
@@ -45,7 +45,7 @@ pub enum ReadError {
     #[error("{at}: {found}: expected {expected}")]
     Malformed {
         /// Where.
-        at: Place,
+        at: FilePosition,
         /// What is there.
         found: String,
         /// What the format wants.
@@ -57,7 +57,7 @@ pub enum ReadError {
     )]
     Truncated {
         /// Where the data should be.
-        at: Place,
+        at: FilePosition,
         /// What is missing.
         what: &'static str,
     },
@@ -68,7 +68,7 @@ pub enum ReadError {
     )]
     BadIndex {
         /// The face.
-        at: Place,
+        at: FilePosition,
         /// The highest index.
         index: u32,
         /// How many vertices there are.
@@ -78,7 +78,7 @@ pub enum ReadError {
     #[error("{at}: {what} is not supported: {remedy}")]
     Unsupported {
         /// Where.
-        at: Place,
+        at: FilePosition,
         /// What is there.
         what: String,
         /// The way out.
@@ -88,9 +88,9 @@ pub enum ReadError {
 
 impl ReadError {
     /// Where in the file, if that is known.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> FilePosition {
         match self {
-            Self::Io(_) | Self::Format(_) => Place::File,
+            Self::Io(_) | Self::Format(_) => FilePosition::File,
             Self::Malformed { at, .. }
             | Self::Truncated { at, .. }
             | Self::BadIndex { at, .. }
@@ -99,7 +99,7 @@ impl ReadError {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -140,7 +140,7 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<SurfaceMesh, ReadError
 }
 
 /// A [`ReadError::Malformed`].
-fn malformed(at: Place, found: impl Into<String>, expected: &'static str) -> ReadError {
+fn malformed(at: FilePosition, found: impl Into<String>, expected: &'static str) -> ReadError {
     ReadError::Malformed {
         at,
         found: found.into(),

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::builder::Builder;
 use super::lines::{Lines, number, whole, words};
-use super::{Place, ReadError, malformed, shown};
+use super::{FilePosition, ReadError, malformed, shown};
 use crate::{SurfaceMesh, SurfaceVertex};
 
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
@@ -54,7 +54,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
 }
 
 /// `7`, `7/1`, `7//3`, `7/1/3`; from 1 on, or backwards from −1.
-fn corner(word: &[u8], vertices: usize, at: Place) -> Result<u32, ReadError> {
+fn corner(word: &[u8], vertices: usize, at: FilePosition) -> Result<u32, ReadError> {
     let position = word.split(|&byte| byte == b'/').next();
     let index: i64 = whole(position, at)?;
     let from_zero = if index < 0 {

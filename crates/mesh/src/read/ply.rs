@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::builder::Builder;
 use super::lines::{Lines, index, number, whole, words};
-use super::{Place, ReadError, malformed, shown};
+use super::{FilePosition, ReadError, malformed, shown};
 use crate::{SurfaceMesh, SurfaceVertex};
 
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
@@ -75,7 +75,7 @@ enum Kind {
 impl Header {
     fn read(lines: &mut Lines<'_>) -> Result<Self, ReadError> {
         if lines.next().map(<[u8]>::trim_ascii) != Some(b"ply") {
-            return Err(malformed(Place::Line(1), "the first line", "'ply'"));
+            return Err(malformed(FilePosition::Line(1), "the first line", "'ply'"));
         }
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
@@ -112,7 +112,7 @@ impl Header {
         })
     }
 
-    fn encoding(word: Option<&[u8]>, at: Place) -> Result<Encoding, ReadError> {
+    fn encoding(word: Option<&[u8]>, at: FilePosition) -> Result<Encoding, ReadError> {
         match word.unwrap_or_default() {
             b"ascii" => Ok(Encoding::Text),
             b"binary_little_endian" => Ok(Encoding::Little),
@@ -127,7 +127,10 @@ impl Header {
 }
 
 impl Property {
-    fn read<'a>(mut words: impl Iterator<Item = &'a [u8]>, at: Place) -> Result<Self, ReadError> {
+    fn read<'a>(
+        mut words: impl Iterator<Item = &'a [u8]>,
+        at: FilePosition,
+    ) -> Result<Self, ReadError> {
         let mut next = || words.next().unwrap_or_default();
         let first = next();
         let (list, kind) = if first == b"list" {
@@ -144,7 +147,7 @@ impl Property {
 }
 
 impl Kind {
-    fn read(word: &[u8], at: Place) -> Result<Self, ReadError> {
+    fn read(word: &[u8], at: FilePosition) -> Result<Self, ReadError> {
         Ok(match word {
             b"char" | b"int8" => Self::I8,
             b"uchar" | b"uint8" => Self::U8,
@@ -167,7 +170,7 @@ impl Kind {
 
 /// Numbers one after the other.
 trait Numbers {
-    fn place(&self) -> Place;
+    fn place(&self) -> FilePosition;
     fn next(&mut self, kind: Kind) -> Result<f64, ReadError>;
 }
 
@@ -181,7 +184,7 @@ impl Binary<'_> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], ReadError> {
         let found = self.bytes.get(self.at..).and_then(<[u8]>::first_chunk::<N>);
         let cut = ReadError::Truncated {
-            at: Place::Byte(self.at),
+            at: FilePosition::Byte(self.at),
             what: "the elements",
         };
         let mut bytes = *found.ok_or(cut)?;
@@ -194,8 +197,8 @@ impl Binary<'_> {
 }
 
 impl Numbers for Binary<'_> {
-    fn place(&self) -> Place {
-        Place::Byte(self.at)
+    fn place(&self) -> FilePosition {
+        FilePosition::Byte(self.at)
     }
 
     fn next(&mut self, kind: Kind) -> Result<f64, ReadError> {
@@ -220,7 +223,7 @@ struct Text<'a> {
 }
 
 impl Numbers for Text<'_> {
-    fn place(&self) -> Place {
+    fn place(&self) -> FilePosition {
         self.lines.place()
     }
 
@@ -264,7 +267,7 @@ fn rows(
         .collect();
     if vertex && !(0..3).all(|axis| slots.contains(&Some(axis))) {
         return Err(malformed(
-            Place::File,
+            FilePosition::File,
             "vertices without x, y or z",
             "these properties",
         ));
@@ -304,7 +307,7 @@ fn rows(
     Ok(())
 }
 
-fn push_vertex(mesh: &mut Builder, at: Place, slot: &[f64; 10]) -> Result<(), ReadError> {
+fn push_vertex(mesh: &mut Builder, at: FilePosition, slot: &[f64; 10]) -> Result<(), ReadError> {
     let [x, y, z, nx, ny, nz, kind, point, section, radius] = *slot;
     let vertex = SurfaceVertex {
         position: Vec3::ZERO,

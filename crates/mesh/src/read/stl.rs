@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::builder::Builder;
 use super::lines::{Lines, number, words};
-use super::{Place, ReadError, malformed, shown};
+use super::{FilePosition, ReadError, malformed, shown};
 use crate::{SurfaceMesh, SurfaceVertex};
 
 /// Bytes before the triangles.
@@ -24,16 +24,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
         Some(count) if fits => binary(bytes, count),
         _ if text => ascii(bytes),
         Some(count) if count * TRIANGLE > bytes.len() - HEADER => Err(ReadError::Truncated {
-            at: Place::Byte(80),
+            at: FilePosition::Byte(80),
             what: "the triangles",
         }),
         Some(count) => {
             let held = (bytes.len() - HEADER) / TRIANGLE;
             let found = format!("count {count}, but the file holds {held} triangles");
-            Err(malformed(Place::Byte(80), found, "the number of triangles"))
+            Err(malformed(
+                FilePosition::Byte(80),
+                found,
+                "the number of triangles",
+            ))
         }
         None => Err(malformed(
-            Place::Byte(0),
+            FilePosition::Byte(0),
             shown(bytes),
             "84 bytes of header or 'solid'",
         )),
@@ -53,7 +57,7 @@ fn binary(bytes: &[u8], count: usize) -> Result<SurfaceMesh, ReadError> {
         .take(count)
         .enumerate()
     {
-        let at = Place::Byte(HEADER + n * TRIANGLE);
+        let at = FilePosition::Byte(HEADER + n * TRIANGLE);
         let [normal, corners @ ..] = [0, 1, 2, 3].map(|row| {
             Vec3::from([0, 1, 2].map(|axis| {
                 let at = 12 * row + 4 * axis;
@@ -105,7 +109,12 @@ fn ascii(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
     })
 }
 
-fn push(mesh: &mut Builder, at: Place, normal: Vec3, corners: [DVec3; 3]) -> Result<(), ReadError> {
+fn push(
+    mesh: &mut Builder,
+    at: FilePosition,
+    normal: Vec3,
+    corners: [DVec3; 3],
+) -> Result<(), ReadError> {
     let first = mesh.vertex_count() as u32;
     for corner in corners {
         mesh.vertex(

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use super::builder::Builder;
 use super::lines::{index, number, words};
 use super::xml::{Tag, find};
-use super::{Place, ReadError, base64, malformed};
+use super::{FilePosition, ReadError, base64, malformed};
 use crate::{SurfaceMesh, SurfaceVertex};
 
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
@@ -48,7 +48,7 @@ struct Array<'a> {
 /// Numbers of an array.
 struct Numbers {
     values: Vec<f64>,
-    at: Place,
+    at: FilePosition,
 }
 
 impl<'a> File<'a> {
@@ -103,14 +103,19 @@ impl<'a> File<'a> {
         if known {
             Ok(file)
         } else {
-            Err(malformed(Place::File, "XML", "a VTK unstructured grid"))
+            Err(malformed(
+                FilePosition::File,
+                "XML",
+                "a VTK unstructured grid",
+            ))
         }
     }
 
     fn read_piece(&self, piece: &Piece<'_>, mesh: &mut Builder) -> Result<(), ReadError> {
         let numbers = |name: &str| piece.get(name).map(|array| self.numbers(array)).transpose();
         let need = |name: &'static str| {
-            numbers(name)?.ok_or_else(|| malformed(Place::File, "a piece without an array", name))
+            numbers(name)?
+                .ok_or_else(|| malformed(FilePosition::File, "a piece without an array", name))
         };
         let points = need("Points")?;
         let normals = numbers("PointData/Normals")?;
@@ -183,7 +188,7 @@ impl<'a> File<'a> {
     fn numbers(&self, array: &Array<'_>) -> Result<Numbers, ReadError> {
         let text_end = find(self.bytes, array.text, b"<").unwrap_or(self.bytes.len());
         let text = self.bytes.get(array.text..text_end).unwrap_or_default();
-        let at = Place::Byte(array.text);
+        let at = FilePosition::Byte(array.text);
         match array.format {
             "ascii" => {
                 let values = words(text)
@@ -201,7 +206,7 @@ impl<'a> File<'a> {
         }
     }
 
-    fn appended_numbers(&self, array: &Array<'_>, at: Place) -> Result<Numbers, ReadError> {
+    fn appended_numbers(&self, array: &Array<'_>, at: FilePosition) -> Result<Numbers, ReadError> {
         let (Some(appended), Some(offset)) = (&self.appended, array.offset) else {
             return Err(malformed(
                 at,
@@ -210,7 +215,7 @@ impl<'a> File<'a> {
             ));
         };
         let start = appended.start.saturating_add(offset);
-        let at = Place::Byte(start);
+        let at = FilePosition::Byte(start);
         let data = self.bytes.get(start..).unwrap_or_default();
         if appended.raw {
             self.decode(self.counted(data, at)?, array.kind, at)
@@ -220,7 +225,7 @@ impl<'a> File<'a> {
     }
 
     /// The bytes behind a count of bytes.
-    fn counted<'b>(&self, data: &'b [u8], at: Place) -> Result<&'b [u8], ReadError> {
+    fn counted<'b>(&self, data: &'b [u8], at: FilePosition) -> Result<&'b [u8], ReadError> {
         let width = if self.wide { 8 } else { 4 };
         let cut = || ReadError::Truncated {
             at,
@@ -236,7 +241,7 @@ impl<'a> File<'a> {
         data.get(..count).ok_or_else(cut)
     }
 
-    fn unpack(&self, text: &[u8], at: Place) -> Result<Vec<u8>, ReadError> {
+    fn unpack(&self, text: &[u8], at: FilePosition) -> Result<Vec<u8>, ReadError> {
         let length = text
             .iter()
             .position(|&byte| byte == b'<')
@@ -256,7 +261,7 @@ impl<'a> File<'a> {
         Ok(self.counted(&bytes, at)?.to_vec())
     }
 
-    fn decode(&self, bytes: &[u8], kind: &str, at: Place) -> Result<Numbers, ReadError> {
+    fn decode(&self, bytes: &[u8], kind: &str, at: FilePosition) -> Result<Numbers, ReadError> {
         macro_rules! numbers {
             ($kind:ty) => {
                 bytes
@@ -299,9 +304,9 @@ impl<'a> File<'a> {
 }
 
 fn unsupported(at: usize, what: &str, remedy: &'static str) -> ReadError {
-    unsupported_at(Place::Byte(at), what.to_owned(), remedy)
+    unsupported_at(FilePosition::Byte(at), what.to_owned(), remedy)
 }
 
-fn unsupported_at(at: Place, what: String, remedy: &'static str) -> ReadError {
+fn unsupported_at(at: FilePosition, what: String, remedy: &'static str) -> ReadError {
     ReadError::Unsupported { at, what, remedy }
 }

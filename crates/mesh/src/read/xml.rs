@@ -1,6 +1,6 @@
 //! As much XML as VTK's files use: tags with attributes.
 
-use super::{Place, ReadError, malformed};
+use super::{FilePosition, ReadError, malformed};
 
 /// A tag.
 pub(super) struct Tag<'a> {
@@ -19,7 +19,7 @@ impl<'a> Tag<'a> {
                 return Ok(None);
             };
             let cut = ReadError::Truncated {
-                at: Place::Byte(start),
+                at: FilePosition::Byte(start),
                 what: "a tag",
             };
             if bytes[start..].starts_with(b"<!--") {
@@ -33,7 +33,11 @@ impl<'a> Tag<'a> {
                 continue;
             }
             let Ok(inside) = std::str::from_utf8(inside) else {
-                return Err(malformed(Place::Byte(start), "a tag", "text in UTF-8"));
+                return Err(malformed(
+                    FilePosition::Byte(start),
+                    "a tag",
+                    "text in UTF-8",
+                ));
             };
             let inside = inside.strip_suffix('/').unwrap_or(inside);
             let (name, attributes) = inside

@@ -24,7 +24,7 @@ const JSON_START: u64 = 20;
 pub struct GlbNode {
     /// Its name in the file.
     pub name: String,
-    /// Place among the surfaces.
+    /// FilePosition among the surfaces.
     pub surface: usize,
     /// Rotation, uniform scale and translation (µm) of the surface's own coordinates.
     pub world_from_surface: DAffine3,

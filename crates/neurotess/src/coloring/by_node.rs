@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::{Cell, Coloring, NOTHING, Paint};
+use super::{Cell, ColorScheme, Coloring, NOTHING};
 use crate::circuit::{Attribute, Circuit, NodeRef, color, natural};
 use crate::render::{ColorTable, InstanceValues, Legend, Rgb};
 
@@ -32,10 +32,10 @@ impl<'c> Node<'c> {
     }
 
     /// What it has of an attribute; numbers as text.
-    pub fn word(&self, attribute: &str) -> Option<String> {
+    pub fn color_key(&self, attribute: &str) -> Option<String> {
         let row = self.node.row as usize;
         match self.attribute(attribute) {
-            Some(column @ Attribute::Words { .. }) => column.word(row).map(str::to_owned),
+            Some(column @ Attribute::Text { .. }) => column.text(row).map(str::to_owned),
             Some(column) => column.number(row).map(|number| number.to_string()),
             None if attribute == POPULATION => {
                 let populations = &self.circuit.populations;
@@ -74,9 +74,9 @@ pub fn attributes<'c>(circuits: impl IntoIterator<Item = &'c Circuit>) -> Vec<St
 }
 
 /// Every neuron its own color; `names`: of the neurons as they stand.
-pub fn each(cells: &[Cell<'_>], names: &[String], paint: &Paint) -> Coloring {
+pub fn each(cells: &[Cell<'_>], names: &[String], scheme: &ColorScheme) -> Coloring {
     let own: Vec<Option<usize>> = (0..names.len()).map(Some).collect();
-    told_apart(cells, &own, names, "neuron", paint)
+    categorical(cells, &own, names, "neuron", scheme)
 }
 
 /// Neurons of equal attribute have one color; numbers of more kinds than there are colors are on the
@@ -88,7 +88,7 @@ pub fn by_attribute(
     cells: &[Cell<'_>],
     neurons: &[Option<Node<'_>>],
     attribute: &str,
-    paint: &Paint,
+    scheme: &ColorScheme,
 ) -> Result<Coloring, NoAttribute> {
     // Of many neurons most are of the same few circuits.
     let mut circuits: Vec<&Circuit> = neurons.iter().flatten().map(|n| n.circuit).collect();
@@ -100,27 +100,27 @@ pub fn by_attribute(
             there,
         });
     }
-    let words: Vec<Option<String>> = neurons
+    let color_keys: Vec<Option<String>> = neurons
         .iter()
-        .map(|neuron| neuron.and_then(|node| node.word(attribute)))
+        .map(|neuron| neuron.and_then(|node| node.color_key(attribute)))
         .collect();
-    let mut names: Vec<String> = words.iter().flatten().cloned().collect();
+    let mut names: Vec<String> = color_keys.iter().flatten().cloned().collect();
     names.sort_by(|a, b| natural(a, b));
     names.dedup();
-    if names.len() > paint.palette.distinct_count() {
+    if names.len() > scheme.palette.distinct_count() {
         let number = |n: &Option<Node<'_>>| n.and_then(|node| node.number(attribute));
         let numbers: Vec<Option<f64>> = neurons.iter().map(number).collect();
-        let all = numbers.iter().zip(&words);
+        let all = numbers.iter().zip(&color_keys);
         if all.into_iter().all(|(n, w)| n.is_some() == w.is_some()) {
-            return Ok(on_scale(cells, &numbers, attribute, paint));
+            return Ok(on_scale(cells, &numbers, attribute, scheme));
         }
     }
     let place: BTreeMap<&str, usize> = names.iter().map(String::as_str).zip(0..).collect();
-    let own: Vec<Option<usize>> = words
+    let own: Vec<Option<usize>> = color_keys
         .iter()
-        .map(|word| word.as_deref().map(|word| place[word]))
+        .map(|color_key| color_key.as_deref().map(|color_key| place[color_key]))
         .collect();
-    Ok(told_apart(cells, &own, &names, attribute, paint))
+    Ok(categorical(cells, &own, &names, attribute, scheme))
 }
 
 /// The colors that a scene gives its cells; none if it gives no cell any.
@@ -129,8 +129,8 @@ pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colorin
     let mut names: BTreeMap<String, Rgb> = BTreeMap::new();
     let mut own = Vec::new();
     for neuron in neurons {
-        let word = |attribute| neuron.and_then(|node| node.word(attribute));
-        let rgb = word("color").as_deref().and_then(color);
+        let color_key = |attribute| neuron.and_then(|node| node.color_key(attribute));
+        let rgb = color_key("color").as_deref().and_then(color);
         own.push(rgb.map(|rgb| {
             let known = colors.iter().position(|&other| other == rgb);
             known.unwrap_or_else(|| {
@@ -138,7 +138,7 @@ pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colorin
                 colors.len() - 1
             })
         }));
-        if let (Some(rgb), Some(group)) = (rgb, word("group")) {
+        if let (Some(rgb), Some(group)) = (rgb, color_key("group")) {
             names.entry(group).or_insert(rgb);
         }
     }
@@ -147,15 +147,15 @@ pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colorin
     (!colors.is_empty()).then(|| painted(cells, &own, colors, legend))
 }
 
-fn told_apart(
+fn categorical(
     cells: &[Cell<'_>],
     own: &[Option<usize>],
     names: &[String],
     thing: &str,
-    paint: &Paint,
+    scheme: &ColorScheme,
 ) -> Coloring {
-    let count = names.len().min(paint.palette.distinct_count()).max(1);
-    let colors: Vec<Rgb> = (0..count).map(|i| paint.palette.distinct(i)).collect();
+    let count = names.len().min(scheme.palette.distinct_count()).max(1);
+    let colors: Vec<Rgb> = (0..count).map(|i| scheme.palette.distinct(i)).collect();
     let legend = if names.len() > count {
         let title = format!("{} {thing}s, colors repeat", names.len());
         Legend::swatches(&title, Vec::new())
@@ -181,7 +181,7 @@ fn painted(
         values.push(&[place.map_or(f32::NAN, |place| place as f32 / last)]);
     }
     Coloring {
-        words: first_values(cells),
+        color_keys: first_values(cells),
         legend,
         table: ColorTable {
             scale: colors,
@@ -195,7 +195,7 @@ fn on_scale(
     cells: &[Cell<'_>],
     numbers: &[Option<f64>],
     attribute: &str,
-    paint: &Paint,
+    scheme: &ColorScheme,
 ) -> Coloring {
     let (low, high) = numbers
         .iter()
@@ -203,14 +203,14 @@ fn on_scale(
         .fold((f64::MAX, f64::MIN), |(low, high), &n| {
             (low.min(n), high.max(n))
         });
-    let [low, high] = paint.range.unwrap_or([low as f32, high as f32]);
+    let [low, high] = scheme.range.unwrap_or([low as f32, high as f32]);
     let high = if high > low { high } else { low + 1.0 };
     let mut values = InstanceValues::default();
     for number in numbers {
         let share = |n: f64| ((n - f64::from(low)) / f64::from(high - low)) as f32;
         values.push(&[number.map_or(f32::NAN, share)]);
     }
-    let mut coloring = paint.scaled(first_values(cells), attribute, "", [low, high]);
+    let mut coloring = scheme.scaled(first_values(cells), attribute, "", [low, high]);
     coloring.table.values = values;
     coloring
 }
@@ -266,8 +266,8 @@ mod tests {
         values
     }
 
-    fn paint() -> Paint {
-        Paint {
+    fn scheme() -> ColorScheme {
+        ColorScheme {
             palette: Palette::NeuroM,
             background: None,
             scale: vec![[0; 3], [255; 3]],
@@ -276,13 +276,13 @@ mod tests {
     }
 
     #[test]
-    fn neurons_of_equal_words_have_one_color_and_those_without_none() {
+    fn neurons_of_equal_color_keys_have_one_color_and_those_without_none() {
         let library = vec!["b".to_owned(), "a".to_owned()];
         let indices = (0..30)
             .map(|i| if i == 3 { Attribute::NONE } else { i % 2 })
             .collect();
-        let circuit = circuit(vec![("kind", Attribute::Words { library, indices })]);
-        let coloring = by_attribute(&[], &neurons(&circuit), "kind", &paint()).expect("there");
+        let circuit = circuit(vec![("kind", Attribute::Text { library, indices })]);
+        let coloring = by_attribute(&[], &neurons(&circuit), "kind", &scheme()).expect("there");
         let share = |i: usize| match i {
             3 | 30 => f32::NAN,
             i => 1.0 - (i % 2) as f32,
@@ -296,7 +296,7 @@ mod tests {
             name("none", NOTHING),
         ];
         assert_eq!(coloring.legend, Legend::swatches("kind", expected));
-        let error = by_attribute(&[], &neurons(&circuit), "layer", &paint());
+        let error = by_attribute(&[], &neurons(&circuit), "layer", &scheme());
         assert_eq!(error.expect_err("none").there, ["kind", "population"]);
     }
 
@@ -307,8 +307,8 @@ mod tests {
         let circuit = circuit(vec![("depth", numbers(30)), ("layer", numbers(3))]);
         let neurons = neurons(&circuit);
         let coloring = |name, range| {
-            let paint = Paint { range, ..paint() };
-            by_attribute(&[], &neurons, name, &paint).expect("there")
+            let scheme = ColorScheme { range, ..scheme() };
+            by_attribute(&[], &neurons, name, &scheme).expect("there")
         };
         let shares = |high: f32| (0..30).map(move |i| i as f32 / high).chain([f32::NAN]);
         assert_eq!(coloring("depth", None).table.values, values(shares(29.0)));
@@ -320,11 +320,11 @@ mod tests {
     #[test]
     fn each_neuron_has_its_own_color() {
         let names: Vec<String> = (0..4).map(|i| format!("n{i}")).collect();
-        let four = each(&[], &names, &paint());
+        let four = each(&[], &names, &scheme());
         let shares = (0..4).map(|i| i as f32 / 3.0);
         assert_eq!(four.table.values, values(shares));
         assert_eq!(four.table.scale.len(), 4);
-        let one = each(&[], &names[..1], &paint());
+        let one = each(&[], &names[..1], &scheme());
         assert_eq!(one.table.values, values([0.0]));
     }
 
@@ -333,7 +333,7 @@ mod tests {
         let library = vec!["#102030".to_owned()];
         let indices = (0..30).map(|i| if i == 2 { 0 } else { Attribute::NONE });
         let indices = indices.collect();
-        let circuit = circuit(vec![("color", Attribute::Words { library, indices })]);
+        let circuit = circuit(vec![("color", Attribute::Text { library, indices })]);
         let given = given(&[], &neurons(&circuit)).expect("colors");
         assert_eq!(given.table.scale, [[16, 32, 48]]);
         let share = |i| if i == 2 { 0.0 } else { f32::NAN };

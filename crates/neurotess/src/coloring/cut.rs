@@ -1,10 +1,10 @@
-//! Room for values: a tracing gets a point at the middle of each element of a report.
+//! Room for values: a tracing gets a point at the middle of each compartment of a report.
 //!
 //! **Theory.** The membrane shows the value of the tracing point that it is nearest to, so a dendrite of
 //! two points would show two of its compartments, and a section of one point its parent's. Values belong to
 //! places along a section, wherever the tracer clicked. **Practice.** Before such a cell is meshed, points
 //! are inserted on the straight line between two traced ones, with the radius between theirs, at the middle
-//! of each element; none where a traced point is there already. Colors then change half-way between two
+//! of each compartment; none where a traced point is there already. Colors then change half-way between two
 //! middles, which is where compartments meet.
 //!
 //! **Why not** a place along the section for each vertex, looked up in the shader: joints and somata have
@@ -13,13 +13,15 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::circuit::{Circuit, CircuitError, Compartment, NodeRef, Place, Recording, SectionOrder};
+use crate::circuit::{
+    Circuit, CircuitError, Compartment, Location, NodeRef, RecordingFile, SectionOrder,
+};
 use crate::morphology::{Morphology, Point, SectionId, shape};
 
-/// A traced point this near to an element's middle, as a share of the element's length, will do.
+/// A traced point this near to a compartment's middle, as a share of the compartment's length, will do.
 const NEAR: f64 = 0.05;
 
-/// How cells are cut in a report: for each that a neuron with values shows, the elements of the first such
+/// How cells are cut in a report: for each that a neuron with values shows, the compartments of the first such
 /// neuron. `stand`: the cell that each neuron shows and its node. Empty for spikes.
 ///
 /// # Errors
@@ -30,7 +32,7 @@ pub fn cuts(
     stand: &[(usize, NodeRef)],
 ) -> Result<HashMap<usize, Vec<Compartment>>, CircuitError> {
     let mut cuts = HashMap::new();
-    let Recording::Report(report) = Recording::open(report)? else {
+    let RecordingFile::Report(report) = RecordingFile::open(report)? else {
         return Ok(cuts);
     };
     for population in &report.populations {
@@ -47,12 +49,12 @@ pub fn cuts(
     Ok(cuts)
 }
 
-/// The morphology with a point at the middle of each element.
-pub fn with_middles(morphology: &Morphology, elements: &[Compartment]) -> Morphology {
+/// The morphology with a point at the middle of each compartment.
+pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Morphology {
     let order = SectionOrder::of(morphology);
     let mut middles: Vec<Vec<f64>> = vec![Vec::new(); morphology.sections.len()];
-    for element in elements {
-        if let Some(Place::Section(section, along)) = order.place(*element) {
+    for compartment in compartments {
+        if let Some(Location::Section(section, along)) = order.place(*compartment) {
             middles[section.index()].push(f64::from(along));
         }
     }
@@ -60,8 +62,8 @@ pub fn with_middles(morphology: &Morphology, elements: &[Compartment]) -> Morpho
     let known = morphology.sample_ids.iter().copied();
     let last = known.chain(somata.map(|sample| sample.id)).max();
     let mut cut = Morphology {
-        points: Vec::with_capacity(morphology.points.len() + elements.len()),
-        sample_ids: Vec::with_capacity(morphology.points.len() + elements.len()),
+        points: Vec::with_capacity(morphology.points.len() + compartments.len()),
+        sample_ids: Vec::with_capacity(morphology.points.len() + compartments.len()),
         ..morphology.clone()
     };
     let mut next = last.unwrap_or(0) + 1;
@@ -98,7 +100,7 @@ struct Ways<'m> {
     middles: &'m [f64],
     /// Of the section (µm).
     length: f64,
-    /// Way so far (µm).
+    /// Distance so far (µm).
     way: f64,
 }
 
@@ -144,8 +146,8 @@ fn between(a: &Point, b: &Point, share: f32) -> Point {
 
 #[cfg(test)]
 mod tests {
-    use super::super::elements::on_cell;
-    use super::super::{Cell, depths};
+    use super::super::compartments::on_cell;
+    use super::super::{Cell, path_distances};
     use super::*;
 
     const BALL_AND_STICK: &str = "1 1 0 0 0 5 -1\n2 3 0 6 0 1 1\n3 3 0 106 0 1 2\n";
@@ -153,7 +155,7 @@ mod tests {
     const FORKED: &str = "1 1 0 0 0 5 -1\n2 3 0 6 0 1 1\n3 3 0 50 0 1 2\n4 3 30 90 0 1 3\n\
                           5 3 -30 90 0 1 3\n";
 
-    fn elements(sections: u64, each: u32) -> Vec<Compartment> {
+    fn compartments(sections: u64, each: u32) -> Vec<Compartment> {
         let of = |section: u64| {
             (0..each).map(move |k| Compartment {
                 section,
@@ -169,9 +171,9 @@ mod tests {
             .collect()
     }
 
-    fn shown(text: &str, elements: &[Compartment]) -> Vec<u32> {
+    fn shown(text: &str, compartments: &[Compartment]) -> Vec<u32> {
         let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
-        let morphology = with_middles(&read.expect("a cell").morphology, elements);
+        let morphology = with_middles(&read.expect("a cell").morphology, compartments);
         let mesh = crate::generate::generate(&morphology, &Default::default())
             .expect("meshed")
             .mesh;
@@ -181,26 +183,31 @@ mod tests {
             morphology: &morphology,
             mesh: &mesh,
         };
-        assert!(depths(&cell).iter().flatten().all(|way| way.is_finite()));
-        let mut words = on_cell(&cell, elements);
-        words.sort_unstable();
-        words.dedup();
-        words
+        assert!(
+            path_distances(&cell)
+                .iter()
+                .flatten()
+                .all(|way| way.is_finite())
+        );
+        let mut color_keys = on_cell(&cell, compartments);
+        color_keys.sort_unstable();
+        color_keys.dedup();
+        color_keys
     }
 
     #[test]
     fn a_ball_and_stick_of_two_points_shows_all_its_compartments() {
-        let elements = elements(1, 7);
+        let compartments = compartments(1, 7);
         assert_eq!(
-            shown(BALL_AND_STICK, &elements),
+            shown(BALL_AND_STICK, &compartments),
             (0..8).collect::<Vec<u32>>()
         );
     }
 
     #[test]
     fn a_section_of_one_point_shows_all_of_its_own() {
-        let elements = elements(3, 5);
-        assert_eq!(shown(FORKED, &elements), (0..16).collect::<Vec<u32>>());
+        let compartments = compartments(3, 5);
+        assert_eq!(shown(FORKED, &compartments), (0..16).collect::<Vec<u32>>());
     }
 
     #[test]
@@ -211,14 +218,14 @@ mod tests {
         let text = format!("1 1 0 0 0 2 -1\n{text}");
         let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
         let morphology = read.expect("a cell").morphology;
-        let cut = with_middles(&morphology, &elements(1, 4));
+        let cut = with_middles(&morphology, &compartments(1, 4));
         let traced = morphology.points.iter().zip(&morphology.sample_ids);
         for (point, id) in traced {
             let place = cut.sample_ids.iter().position(|other| other == id);
             assert_eq!(cut.points[place.expect("there")], *point);
         }
         assert!(cut.points.len() <= morphology.points.len() + 4);
-        // Without elements nothing changes.
+        // Without compartments nothing changes.
         assert_eq!(with_middles(&morphology, &[]), morphology);
     }
 }

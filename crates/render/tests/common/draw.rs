@@ -1,6 +1,8 @@
 //! Draws a scene with the least shading there is: front faces in one color, back faces in another.
 
-use neurotess_render::{Camera, Gpu, Refiner, Refining, SURFACE_VERTEX_WGSL, Scene, Sight};
+use neurotess_render::{
+    AdaptiveSettings, Camera, CullView, Gpu, Refiner, SURFACE_VERTEX_WGSL, Scene,
+};
 
 pub(crate) const FRONT: [u8; 4] = [0, 255, 0, 255];
 pub(crate) const BACK: [u8; 4] = [255, 0, 0, 255];
@@ -62,11 +64,11 @@ pub(crate) struct Drawer {
 }
 
 impl Drawer {
-    /// `maker`: what makes vertices, by shader; `entry`: `sides` or `normals`.
+    /// `source`: what makes vertices, by shader; `entry`: `sides` or `normals`.
     pub(crate) fn new(
         gpu: &Gpu,
         refiner: &Refiner,
-        maker: &dyn Fn(usize) -> String,
+        source: &dyn Fn(usize) -> String,
         entry: &str,
         size: [u32; 2],
     ) -> Self {
@@ -74,7 +76,7 @@ impl Drawer {
         let [width, height] = size;
         let size_text = format!("const SIZE = vec2<f32>({width}.0, {height}.0);");
         let module = |shader| {
-            let text = [SURFACE_VERTEX_WGSL, &maker(shader), &size_text, SHADE].concat();
+            let text = [SURFACE_VERTEX_WGSL, &source(shader), &size_text, SHADE].concat();
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: None,
                 source: wgpu::ShaderSource::Wgsl(text.into()),
@@ -193,15 +195,15 @@ impl Drawer {
         scene: &Scene,
         camera: &Camera,
         near: f64,
-        refining: &Refining,
+        settings: &AdaptiveSettings,
     ) -> Vec<[u8; 4]> {
         let [width, height] = self.size;
-        let sight = Sight::new(camera, width, height, near);
+        let sight = CullView::new(camera, width, height, near);
         let clip = camera.clip_from_relative(f64::from(width) / f64::from(height), near);
         gpu.queue
             .write_buffer(&self.clip, 0, bytemuck::cast_slice(&clip.to_cols_array()));
         let plan = refiner
-            .prepare(gpu, scene, &sight, refining)
+            .prepare(gpu, scene, &sight, settings)
             .expect("prepared");
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let (color, depth) = (

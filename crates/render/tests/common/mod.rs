@@ -10,10 +10,10 @@ use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 use neurotess_morphology::{
     Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
 };
-use neurotess_render::{Camera, Gpu, Sight};
+use neurotess_render::{Camera, CullView, Gpu};
 use trees::{Twig, grow};
 
-/// The device, or nothing with a word about it.
+/// The device, or nothing with a color key about it.
 #[expect(clippy::print_stdout, reason = "a test says what it skips")]
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::open(None) {
@@ -179,6 +179,6 @@ pub(crate) fn look(mesh: &CoarseMesh, random: &mut Random, distance: f64) -> Cam
     Camera::new(eye, target, up, 0.7).expect("a camera")
 }
 
-pub(crate) fn sight(camera: &Camera, width: u32, height: u32) -> Sight {
-    Sight::new(camera, width, height, 1e-3)
+pub(crate) fn sight(camera: &Camera, width: u32, height: u32) -> CullView {
+    CullView::new(camera, width, height, 1e-3)
 }

@@ -5,10 +5,11 @@ use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::CoarseMesh;
-use neurotess_refine::{Levels, RefineOptions};
+use neurotess_refine::{LodCriterion, RefineOptions};
 use neurotess_render::{
-    Ball, Camera, ColorTable, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Painted, Palette,
-    PictureOptions, Placement, Prerefined, Rgb, Side, Sketch, VertexMaker, category, paint,
+    BoundingSphere, Camera, ColorTable, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Palette,
+    PictureOptions, Placement, Prerefined, PrerefinedSurface, Proxy, Rgb, Side, VertexSource,
+    category, paint,
 };
 
 /// A soma, an axon, and a dendrite that forks.
@@ -24,7 +25,7 @@ pub(crate) const CELL: &str = "1 1 0 0 0 5 -1
 10 4 -30 9 20 1 9
 ";
 
-/// The device, or `None` with a word on why tests are skipped.
+/// The device, or `None` with a color key on why tests are skipped.
 #[expect(clippy::print_stdout, reason = "a test says what it skips")]
 pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::open(None) {
@@ -45,31 +46,31 @@ pub(crate) fn mesh(swc_text: &str) -> CoarseMesh {
         .mesh
 }
 
-/// Balls around a mesh.
-pub(crate) fn balls(mesh: &CoarseMesh) -> Vec<Ball> {
+/// Bounding spheres around a mesh.
+pub(crate) fn spheres(mesh: &CoarseMesh) -> Vec<BoundingSphere> {
     let tracing = mesh.tracing.iter();
-    let ball = tracing.map(|t| {
+    let sphere = tracing.map(|t| {
         let center = mesh.origin + t.center.as_dvec3();
         (center, f64::from(t.radius))
     });
-    ball.collect()
+    sphere.collect()
 }
 
 /// A camera that fits.
 pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
-    Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &balls(mesh)).expect("fits")
+    Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &spheres(mesh)).expect("fits")
 }
 
 /// Words and table by type.
 pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColorTable) {
-    let words = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
+    let color_keys = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
     let table = ColorTable {
         scale: Vec::new(),
         categories: (0..8).map(|kind| Palette::NeuroM.of_type(kind)).collect(),
         ..ColorTable::default()
     };
-    (words.collect(), table)
+    (color_keys.collect(), table)
 }
 
 /// The whole picture of a mesh at level 4, in the colors of its types.
@@ -79,15 +80,15 @@ pub(crate) fn picture(
     camera: &Camera,
     options: &PictureOptions,
 ) -> Image {
-    let (words, table) = by_type(mesh);
-    draw(gpu, mesh, &words, &table, camera, options)
+    let (color_keys, table) = by_type(mesh);
+    draw(gpu, mesh, &color_keys, &table, camera, options)
 }
 
 /// The same on a scale.
 pub(crate) fn picture_of(
     gpu: &Gpu,
     mesh: &CoarseMesh,
-    words: &[u32],
+    color_keys: &[u32],
     scale: &[Rgb],
     camera: &Camera,
     options: &PictureOptions,
@@ -97,7 +98,7 @@ pub(crate) fn picture_of(
         categories: Vec::new(),
         ..ColorTable::default()
     };
-    draw(gpu, mesh, words, &table, camera, options)
+    draw(gpu, mesh, color_keys, &table, camera, options)
 }
 
 /// A row of cells, each behind the other, within a budget of triangles.
@@ -109,11 +110,11 @@ pub(crate) fn explored(
     camera: &Camera,
     options: &PictureOptions,
 ) -> Image {
-    let (words, table) = by_type(mesh);
-    let mut maker = Exploration::new(gpu, options.sub_pixels(gpu)).expect("a maker");
-    maker.set_budget(budget);
-    let ids = maker
-        .add(gpu, &[Sketch::new(mesh, &words)])
+    let (color_keys, table) = by_type(mesh);
+    let mut source = Exploration::new(gpu, options.sub_pixels(gpu)).expect("a source");
+    source.set_budget(budget);
+    let ids = source
+        .add(gpu, &[Proxy::new(mesh, &color_keys)])
         .expect("uploaded");
     let instances = (0..count).map(|i| Instance {
         placement: Placement {
@@ -123,15 +124,15 @@ pub(crate) fn explored(
         },
         ..Instance::new(ids[0])
     });
-    maker
+    source
         .set_instances(gpu, instances.collect())
         .expect("placed");
-    whole(gpu, &mut maker, camera, 1.0, &table, options)
+    whole(gpu, &mut source, camera, 1.0, &table, options)
 }
 
 fn whole(
     gpu: &Gpu,
-    maker: &mut dyn VertexMaker,
+    source: &mut dyn VertexSource,
     camera: &Camera,
     near: f64,
     table: &ColorTable,
@@ -142,27 +143,27 @@ fn whole(
         whole.lay(0, i64::from(top), &band);
         Ok::<(), std::convert::Infallible>(())
     };
-    paint(gpu, maker, camera, near, table, options, taken).expect("painted");
+    paint(gpu, source, camera, near, table, options, taken).expect("painted");
     whole
 }
 
 fn draw(
     gpu: &Gpu,
     mesh: &CoarseMesh,
-    words: &[u32],
+    color_keys: &[u32],
     table: &ColorTable,
     camera: &Camera,
     options: &PictureOptions,
 ) -> Image {
-    let painted = Painted { mesh, words };
-    let mut maker = Prerefined::new(
+    let painted = PrerefinedSurface { mesh, color_keys };
+    let mut source = Prerefined::new(
         gpu,
         &[painted],
-        |_| Levels::Homogeneous(4),
+        |_| LodCriterion::Homogeneous(4).into(),
         &RefineOptions::default(),
         options.look.wire > 0.0,
     )
     .expect("uploaded");
-    let near = camera.near(&balls(mesh));
-    whole(gpu, &mut maker, camera, near, table, options)
+    let near = camera.near(&spheres(mesh));
+    whole(gpu, &mut source, camera, near, table, options)
 }

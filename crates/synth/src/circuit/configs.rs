@@ -66,7 +66,7 @@ pub fn node_sets(population: &Population, reported: &[u64]) -> Value {
     let mut sets = Map::new();
     sets.insert("All".into(), json!({"population": POPULATION}));
     for attribute in ["layer", "mtype", "synapse_class"] {
-        let Some(Attribute::Words { library, .. }) = population.attributes.get(attribute) else {
+        let Some(Attribute::Text { library, .. }) = population.attributes.get(attribute) else {
             continue;
         };
         for word in library {

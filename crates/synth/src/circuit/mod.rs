@@ -200,13 +200,13 @@ fn words(library: Vec<String>, mut indices: Vec<u32>) -> Attribute {
     };
     // Names of morphologies differ anyway, and there may be many of them.
     if library.len() > 100 {
-        return Attribute::Words { library, indices };
+        return Attribute::Text { library, indices };
     }
     let places: Vec<u32> = library.into_iter().map(place).collect();
     for index in &mut indices {
         *index = places[*index as usize];
     }
-    Attribute::Words {
+    Attribute::Text {
         library: distinct,
         indices,
     }
@@ -289,7 +289,7 @@ mod tests {
         let made = circuit(&options(2000, 10)).population;
         let mut seen = std::collections::BTreeSet::new();
         for row in 0..made.len() {
-            let word = |name: &str| made.attributes[name].word(row).expect("a word");
+            let word = |name: &str| made.attributes[name].text(row).expect("a word");
             let (_, low, high, _) = LAYERS
                 .into_iter()
                 .find(|l| l.0 == word("layer"))
@@ -306,8 +306,7 @@ mod tests {
     fn few_morphologies_serve_all_cells() {
         let made = circuit(&options(50, 1));
         assert_eq!(made.morphologies.len(), 1);
-        let Attribute::Words { library, indices } = &made.population.attributes["morphology"]
-        else {
+        let Attribute::Text { library, indices } = &made.population.attributes["morphology"] else {
             panic!("no words");
         };
         assert!(library.len() == 1 && indices.iter().all(|&i| i == 0));

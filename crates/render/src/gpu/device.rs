@@ -1,0 +1,301 @@
+//! The GPU without a window: which adapter, with which limits, and what it complained of.
+//!
+//! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until somebody asks:
+//! [`Gpu::check`] after making resources, [`Gpu::wait`] after submitting work.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use wgpu::{Adapter, Backends, DeviceType, Features, Limits};
+
+use crate::gpu::error::DeviceError;
+
+/// Environment variable that names the adapter where nobody else does.
+pub const ADAPTER_VARIABLE: &str = "NEUROTESS_ADAPTER";
+
+/// An open device with its queue.
+#[derive(Debug)]
+pub struct Gpu {
+    /// Makes resources.
+    pub device: wgpu::Device,
+    /// Takes work.
+    pub queue: wgpu::Queue,
+    /// Which adapter it is.
+    pub adapter: AdapterName,
+    fault: Fault,
+}
+
+/// What an adapter is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterName {
+    /// Name and driver, as in `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6`.
+    pub name: String,
+    /// `vulkan`, `metal`, `dx12` or `gl`.
+    pub backend: String,
+    /// Whether the processor does the work.
+    pub software: bool,
+}
+
+/// The first complaint that nobody has asked for yet.
+#[derive(Clone, Debug, Default)]
+struct Fault(Arc<Mutex<Option<DeviceError>>>);
+
+impl Fault {
+    fn keep(&self, error: DeviceError) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.get_or_insert(error);
+    }
+
+    fn take(&self) -> Option<DeviceError> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// Names of all adapters, the best first.
+pub fn adapters() -> Vec<AdapterName> {
+    let mut adapters = found(Backends::PRIMARY);
+    adapters.extend(found(Backends::SECONDARY));
+    adapters.iter().map(name).collect()
+}
+
+impl Gpu {
+    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (letter
+    /// case aside). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+    ///
+    /// The device has the adapter's own limits, and those of [`optional_features`] that it knows.
+    ///
+    /// # Errors
+    /// No such adapter, or its driver refuses.
+    pub fn open(wanted: Option<&str>) -> Result<Self, DeviceError> {
+        let variable = std::env::var(ADAPTER_VARIABLE).ok();
+        let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
+        // OpenGL last and only if need be: without a display its start-up prints of its own accord.
+        let mut adapters = found(Backends::PRIMARY);
+        if choose(&adapters, wanted).is_err() {
+            adapters.extend(found(Backends::SECONDARY));
+        }
+        let adapter = choose(&adapters, wanted)?;
+        let named = name(adapter);
+        let refused = |reason: String| DeviceError::Refused {
+            adapter: named.name.clone(),
+            reason,
+        };
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
+                .map_err(|e| refused(e.to_string()))?;
+        Ok(Self::share(adapter, device, queue))
+    }
+
+    /// A device that somebody else opened as [`device_descriptor`] asks for, to be shared with them:
+    /// whatever goes wrong on it from now on is told to [`Gpu::check`].
+    pub fn share(adapter: &Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let fault = Fault::default();
+        let (of_work, of_device) = (fault.clone(), fault.clone());
+        device.on_uncaptured_error(Arc::new(move |error| of_work.keep(complaint(error))));
+        // Destroyed is lost too: whoever ends the program by himself does not ask any more.
+        device.set_device_lost_callback(move |_, message| {
+            of_device.keep(DeviceError::Lost(one_line(&message)));
+        });
+        Self {
+            device,
+            queue,
+            adapter: name(adapter),
+            fault,
+        }
+    }
+
+    /// What the device complained of since the last call.
+    ///
+    /// # Errors
+    /// The first complaint.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        self.fault.take().map_or(Ok(()), Err)
+    }
+
+    /// Waits until all submitted work is done.
+    ///
+    /// # Errors
+    /// What the device complained of.
+    pub fn wait(&self) -> Result<(), DeviceError> {
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        waited
+            .map(|_| ())
+            .map_err(|e| DeviceError::Lost(one_line(&e.to_string())))
+    }
+
+    /// Most bytes of a buffer that a shader can be given in one piece.
+    pub fn largest_binding(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+    }
+
+    /// Greatest width and height (pixels) of a texture.
+    pub fn largest_texture(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+}
+
+/// What is used where it exists and done without elsewhere.
+pub fn optional_features() -> Features {
+    Features::TIMESTAMP_QUERY
+}
+
+/// The adapter's own limits: those by default hold a fraction of what it can.
+fn limits(adapter: &Adapter) -> Limits {
+    adapter.limits()
+}
+
+/// What we ask of a device: all that the adapter can hold.
+pub fn device_descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("neurotess"),
+        required_features: adapter.features() & optional_features(),
+        required_limits: limits(adapter),
+        ..Default::default()
+    }
+}
+
+/// The best of these adapters that can do what we need, or the best whose name or backend contains
+/// `wanted`; without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+///
+/// # Errors
+/// No such adapter.
+pub fn select_adapter(adapters: &[Adapter], wanted: Option<&str>) -> Result<Adapter, DeviceError> {
+    let variable = std::env::var(ADAPTER_VARIABLE).ok();
+    let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
+    let mut able: Vec<Adapter> = adapters.iter().filter(|a| is_able(a)).cloned().collect();
+    able.sort_by_key(rank);
+    choose(&able, wanted).cloned()
+}
+
+fn is_able(adapter: &Adapter) -> bool {
+    let able = wgpu::DownlevelFlags::COMPUTE_SHADERS
+        | wgpu::DownlevelFlags::VERTEX_STORAGE
+        | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
+    adapter.get_downlevel_capabilities().flags.contains(able)
+}
+
+/// Adapters that can do what we need, the best first.
+fn found(backends: Backends) -> Vec<Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    adapters.retain(is_able);
+    adapters.sort_by_key(rank);
+    adapters
+}
+
+/// Real GPUs first.
+fn rank(adapter: &Adapter) -> u8 {
+    match adapter.get_info().device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    }
+}
+
+fn choose<'a>(adapters: &'a [Adapter], wanted: Option<&str>) -> Result<&'a Adapter, DeviceError> {
+    let best = adapters.first().ok_or(DeviceError::NoAdapter)?;
+    let Some(wanted) = wanted else {
+        return Ok(best);
+    };
+    let names: Vec<AdapterName> = adapters.iter().map(name).collect();
+    match names.iter().position(|name| name.answers_to(wanted)) {
+        Some(place) => Ok(&adapters[place]),
+        None => Err(DeviceError::UnknownAdapter {
+            wanted: wanted.to_owned(),
+            there: names.iter().map(ToString::to_string).collect(),
+        }),
+    }
+}
+
+fn name(adapter: &Adapter) -> AdapterName {
+    let info = adapter.get_info();
+    let driver = [info.driver, info.driver_info].join(" ");
+    let name = match driver.trim() {
+        "" => info.name,
+        driver => format!("{}, {driver}", info.name),
+    };
+    AdapterName {
+        name,
+        backend: info.backend.to_str().to_owned(),
+        software: info.device_type == DeviceType::Cpu,
+    }
+}
+
+impl AdapterName {
+    fn answers_to(&self, wanted: &str) -> bool {
+        self.to_string()
+            .to_lowercase()
+            .contains(&wanted.to_lowercase())
+    }
+}
+
+impl std::fmt::Display for AdapterName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} [{}]", self.name, self.backend)
+    }
+}
+
+fn complaint(error: wgpu::Error) -> DeviceError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => DeviceError::OutOfMemory,
+        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            DeviceError::Driver(one_line(&description))
+        }
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adapters_answer_to_parts_of_their_name_and_backend() {
+        let lavapipe = AdapterName {
+            name: "llvmpipe (LLVM 15), Mesa".into(),
+            backend: "vulkan".into(),
+            software: true,
+        };
+        for yes in ["LLVMpipe", "vulkan", "mesa"] {
+            assert!(lavapipe.answers_to(yes), "{yes}");
+        }
+        assert!(!lavapipe.answers_to("metal"));
+    }
+
+    #[test]
+    fn an_unknown_adapter_is_an_error_that_lists_those_there() {
+        let error = Gpu::open(Some("no such adapter")).expect_err("unknown");
+        assert!(matches!(
+            error,
+            DeviceError::UnknownAdapter { .. } | DeviceError::NoAdapter
+        ));
+    }
+
+    #[test]
+    fn complaints_are_kept_until_asked_for() {
+        let Ok(gpu) = Gpu::open(None) else {
+            println!("SKIPPED: no adapter here");
+            return;
+        };
+        let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: !3,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        assert!(gpu.check().is_err());
+        assert_eq!(gpu.check(), Ok(()));
+    }
+}

@@ -1,0 +1,11 @@
+//! Pictures: drawn in tiles for a file, or step by step for a window; what lies over them.
+
+pub(crate) mod image;
+pub(crate) mod legend;
+pub(crate) mod meter;
+pub(crate) mod overlay;
+pub(crate) mod progressive;
+pub(crate) mod still;
+pub(crate) mod text;
+pub(crate) mod tiles;
+pub(crate) mod watch;

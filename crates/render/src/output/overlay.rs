@@ -1,0 +1,231 @@
+//! Legend and scale bar in the corners of a picture.
+
+use crate::output::image::Image;
+use crate::output::legend::{Legend, nice_length, scale_bar};
+use crate::scene::color::{Rgb, is_dark};
+use crate::view::camera::Camera;
+use crate::view::framing::BoundingSphere;
+
+/// Images to lay over a picture, each in its place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overlay {
+    pieces: Vec<(i64, i64, Image)>,
+    kept: Option<Kept>,
+    /// Whether the legend found no place.
+    pub legend_left_out: bool,
+    /// Where the legend covers something: the share of the picture's width, on the left (negative)
+    /// or the right, that would have to be free for it.
+    pub covering: Option<f64>,
+}
+
+/// What pictures of a series have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Kept {
+    size: [u32; 2],
+    line: f32,
+    background: Option<Rgb>,
+    /// Corner of the legend, and whether it covers something.
+    legend: Option<(usize, bool)>,
+    /// Corner of the scale bar, its length (µm), 0: what fits, and whether it covers something.
+    bar: Option<(usize, f64, bool)>,
+}
+
+/// What to write into the corners.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverlayOptions {
+    /// What colors mean.
+    pub legend: Option<Legend>,
+    /// A scale bar of this length (µm), 0: what fits.
+    pub scale_bar: Option<f64>,
+    /// Color behind everything; none: transparent.
+    pub background: Option<Rgb>,
+}
+
+/// Height of a line, of the picture's.
+const LINE: f32 = 0.023;
+
+impl Overlay {
+    /// Chooses places: the corners in which least is seen, of all cameras together.
+    pub fn new(
+        options: &OverlayOptions,
+        size: [u32; 2],
+        cameras: &[Camera],
+        spheres: &[BoundingSphere],
+    ) -> Self {
+        let mut overlay = Self::default();
+        let [width, height] = size.map(|n| n as f32);
+        let line = (LINE * height.min(width)).max(9.0);
+        let ink = ink(options.background);
+        let seen = Seen::new(size, cameras, spheres);
+        let mut kept = Kept {
+            size,
+            line,
+            background: options.background,
+            legend: None,
+            bar: None,
+        };
+        if let Some(legend) = &options.legend {
+            let image = legend.draw(line, ink);
+            let fits = (image.width as f32) < 0.7 * width && (image.height as f32) < 0.9 * height;
+            if fits && image.width > 2 {
+                let (corner, count) = seen.emptiest(&image, line, &[0, 1, 2, 3]);
+                kept.legend = Some((corner, count > 0));
+                if count > 0 {
+                    let share = f64::from((image.width as f32 + 1.5 * line) / width);
+                    overlay.covering = Some(if corner.is_multiple_of(2) {
+                        -share
+                    } else {
+                        share
+                    });
+                }
+            } else {
+                overlay.legend_left_out = image.width > 2;
+            }
+        }
+        if let (Some(length), Some(camera)) = (options.scale_bar, cameras.first()) {
+            let taken = kept.legend.map(|(corner, _)| corner);
+            let image = bar(camera, length, size, line, ink);
+            let corners: Vec<usize> = [3, 2].into_iter().filter(|&c| Some(c) != taken).collect();
+            let (corner, count) = seen.emptiest(&image, line, &corners);
+            kept.bar = Some((corner, length, count > 0));
+        }
+        overlay.kept = Some(kept);
+        let camera = cameras.first();
+        overlay.pieces = pieces(&kept, options.legend.as_ref(), camera);
+        overlay
+    }
+
+    /// The same for another picture of a series: its legend and scale bar, in the same corners.
+    #[must_use]
+    pub fn again(&self, legend: Option<&Legend>, camera: &Camera) -> Self {
+        let mut overlay = self.clone();
+        if let Some(kept) = &self.kept {
+            overlay.pieces = pieces(kept, legend, Some(camera));
+        }
+        overlay
+    }
+
+    /// Lays what belongs there over a band of the picture, whose first row is `top`.
+    pub fn lay_on(&self, top: u32, band: &mut Image) {
+        for (x, y, image) in &self.pieces {
+            band.lay(*x, y - i64::from(top), image);
+        }
+    }
+}
+
+fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<(i64, i64, Image)> {
+    let Kept {
+        size,
+        line,
+        background,
+        ..
+    } = *kept;
+    let ink = ink(background);
+    let mut pieces = Vec::new();
+    if let (Some((corner, covers)), Some(legend)) = (kept.legend, legend) {
+        let image = legend.draw(line, ink);
+        let [x, y] = place(corner, size, &image, line);
+        if let Some(background) = background.filter(|_| covers) {
+            pieces.push((x, y, panel(&image, background)));
+        }
+        pieces.push((x, y, image));
+    }
+    if let (Some((corner, length, covers)), Some(camera)) = (kept.bar, camera) {
+        let image = bar(camera, length, size, line, ink);
+        let [x, y] = place(corner, size, &image, line);
+        if let Some(background) = background.filter(|_| covers) {
+            pieces.push((x, y, panel(&image, background)));
+        }
+        pieces.push((x, y, image));
+    }
+    pieces
+}
+
+/// A scale bar of this length (µm), 0: what fits.
+fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Image {
+    let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(camera.target());
+    let length = match length {
+        0.0 => nice_length(0.2 * f64::from(size[0]) * pixel),
+        length => length,
+    };
+    scale_bar(length, (length / pixel) as f32, line, ink)
+}
+
+/// Black on light, white on dark; black on nothing.
+fn ink(background: Option<Rgb>) -> Rgb {
+    if background.is_some_and(is_dark) {
+        [240; 3]
+    } else {
+        [20; 3]
+    }
+}
+
+/// Where an image stands in a corner: 0 upper left, 1 upper right, 2 lower left, 3 lower right.
+fn place(corner: usize, size: [u32; 2], image: &Image, line: f32) -> [i64; 2] {
+    let gap = line.ceil() as i64;
+    let far = [
+        i64::from(size[0]) - i64::from(image.width) - gap,
+        i64::from(size[1]) - i64::from(image.height) - gap,
+    ];
+    [
+        if corner.is_multiple_of(2) {
+            gap
+        } else {
+            far[0]
+        },
+        if corner < 2 { gap } else { far[1] },
+    ]
+}
+
+fn panel(image: &Image, background: Rgb) -> Image {
+    let mut panel = Image::new(image.width, image.height);
+    for y in 0..i64::from(panel.height) {
+        for x in 0..i64::from(panel.width) {
+            panel.blend(x, y, background, 0.7);
+        }
+    }
+    panel
+}
+
+/// Where spheres are seen (pixels).
+struct Seen {
+    size: [u32; 2],
+    /// Place and radius.
+    places: Vec<([f64; 2], f64)>,
+}
+
+/// Most places that are looked at: a picture's corners are judged well enough by them.
+const MOST_PLACES: usize = 200_000;
+
+impl Seen {
+    fn new(size: [u32; 2], cameras: &[Camera], spheres: &[BoundingSphere]) -> Self {
+        let step = (cameras.len() * spheres.len() / MOST_PLACES).max(1);
+        let pairs = cameras
+            .iter()
+            .flat_map(|c| spheres.iter().map(move |b| (c, b)));
+        let places = pairs.step_by(step);
+        let places = places.filter_map(|(camera, &(center, radius))| {
+            let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(center);
+            Some((camera.pixel_of(center, size)?, radius / pixel))
+        });
+        Self {
+            size,
+            places: places.collect(),
+        }
+    }
+
+    /// The corner, of these, with fewest places under an image; and how many.
+    fn emptiest(&self, image: &Image, line: f32, corners: &[usize]) -> (usize, usize) {
+        let count = |corner: usize| {
+            let [x, y] = place(corner, self.size, image, line).map(|n| n as f64);
+            let (w, h) = (f64::from(image.width), f64::from(image.height));
+            let under = |(p, radius): &&([f64; 2], f64)| {
+                let gap = f64::from(line) / 2.0 + radius;
+                (x - gap..x + w + gap).contains(&p[0]) && (y - gap..y + h + gap).contains(&p[1])
+            };
+            self.places.iter().filter(under).count()
+        };
+        let counts = corners.iter().map(|&corner| (corner, count(corner)));
+        counts.min_by_key(|&(_, count)| count).unwrap_or((3, 0))
+    }
+}

@@ -1,0 +1,625 @@
+//! Pictures for a window: they stay on the device, and get better slice by slice.
+//!
+//! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
+//! camera moves a **draft** is drawn at once: four samples, no occlusion. At rest the picture is made in
+//! **steps** of one sub-pixel each, moved so that they add up to the samples of a saved picture
+//! (`picture.rs`), and each step in **slices**, so that each ends soon whatever the
+//! scene: a window can show what there is, and stop.
+//!
+//! ```text
+//! source ─▶ draw, band by band ─▶ occlude once ─▶ accumulate ─▶ present: texture, outlines
+//!      └─▶ ids: which patch is at which pixel
+//! ```
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::output::still::{Occlusion, samples_in_sub_pixel};
+use crate::output::tiles::{MeshPart, TileRenderer, kind};
+use crate::scene::color::{ColorTable, InstanceValues, Rgb, linear};
+use crate::shading::finish::{Finish, Finisher, Last};
+use crate::shading::ids::{Identifier, PickIds};
+use crate::shading::present::{Outlines, Presenter, Screen};
+use crate::shading::shade::{Look, PipelineKey, Shade};
+use crate::shading::targets::{Targets, make};
+use crate::sources::VertexSource;
+use crate::view::camera::Camera;
+use crate::view::frame::{Frame, Tile};
+
+/// What is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewParams {
+    /// From where.
+    pub camera: Camera,
+    /// Depth (µm) of the near plane.
+    pub near: f64,
+    /// Width and height (pixels), from 1 on.
+    pub size: [u32; 2],
+    /// Light, wireframe, cut.
+    pub look: Look,
+    /// How far corners darken one another.
+    pub occlusion: Occlusion,
+    /// Color behind everything.
+    pub background: Rgb,
+    /// Another camera and near plane, for which levels are chosen and things are left out.
+    pub frozen: Option<(Camera, f64)>,
+}
+
+/// How a picture gets better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// Number of steps: 1, 4 or 16.
+    pub steps: u32,
+    /// Slices that a step is drawn in: at most by the source's shaders, or bands of rows where there are
+    /// so many things that they are chosen in turn.
+    pub slices: u32,
+}
+
+/// A picture on the device.
+pub struct ProgressiveRenderer {
+    renderers: Vec<TileRenderer>,
+    finishers: Vec<(u32, Finisher)>,
+    identifier: Option<Identifier>,
+    presenter: Presenter,
+    finish: wgpu::Buffer,
+    draft: Option<Canvas>,
+    fine: Option<Canvas>,
+    shows_draft: bool,
+    outlines: Outlines,
+    table: ColorTable,
+    /// Counts tables, so that each renderer gets each once.
+    tables: u64,
+    states: Vec<u32>,
+    under_way: Option<UnderWay>,
+    clock: Arc<Clock>,
+}
+
+/// Textures and buffers of one size.
+struct Canvas {
+    size: [u32; 2],
+    samples: u32,
+    targets: Targets,
+    /// Of several steps; of one there is none.
+    sums: wgpu::Buffer,
+    screen: Screen,
+}
+
+/// How far a picture has come.
+#[derive(Clone, Copy, Debug)]
+struct UnderWay {
+    shot: ViewParams,
+    steps: Steps,
+    draft: bool,
+    step: u32,
+    slice: u32,
+    /// Slices are bands of rows, each chosen for itself.
+    banded: bool,
+}
+
+/// Tells when submitted work is done.
+#[derive(Debug, Default)]
+struct Clock {
+    submitted: AtomicU64,
+    done: AtomicU64,
+    /// Microseconds that the last work took.
+    took: AtomicU64,
+}
+
+impl ProgressiveRenderer {
+    /// Makes what does not depend on the scene.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            renderers: Vec::new(),
+            finishers: Vec::new(),
+            identifier: None,
+            presenter: Presenter::new(gpu, samples_in_sub_pixel(gpu, 4)),
+            finish: make(
+                gpu,
+                "finish",
+                size_of::<Finish>() as u64,
+                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            ),
+            draft: None,
+            fine: None,
+            shows_draft: false,
+            outlines: Outlines::default(),
+            table: ColorTable::default(),
+            tables: 1,
+            states: Vec::new(),
+            under_way: None,
+            clock: Arc::default(),
+        }
+    }
+
+    /// Colors from the next picture on.
+    pub fn set_colors(&mut self, table: ColorTable) {
+        self.table = table;
+        self.tables += 1;
+    }
+
+    /// Other values of instances from the next picture on; the colors stay.
+    pub fn set_values(&mut self, values: InstanceValues) {
+        self.table.values = values;
+        self.tables += 1;
+    }
+
+    /// States of instances from the next picture on, in the scene's order: [`HIGHLIGHTED`](crate::HIGHLIGHTED) and
+    /// so on; 0 beyond the end.
+    pub fn set_states(&mut self, states: Vec<u32>) {
+        self.states = states;
+    }
+
+    /// Outlines from the next [`ProgressiveRenderer::show`] on: bytes of [`SELECTED`](crate::SELECTED) and
+    /// [`HOVERED`](crate::HOVERED) by pixel of a picture of this size.
+    pub fn set_outlines(&mut self, gpu: &Gpu, outlines: Outlines, mask: Option<([u32; 2], &[u8])>) {
+        self.outlines = outlines;
+        self.presenter.set_mask(gpu, mask);
+    }
+
+    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::OUTLINED) have an outline in the
+    /// color of what is selected, as wide as told by [`ProgressiveRenderer::set_outlines`].
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn draft(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        shot: &ViewParams,
+    ) -> Result<(), DeviceError> {
+        self.under_way = None;
+        // As many samples as the first step at rest has: with one, lines thinner than a pixel are dots.
+        let samples = samples_in_sub_pixel(gpu, 4);
+        let renderer = self.renderer(gpu, source, samples, shot)?;
+        self.make_canvas(gpu, true, shot.size, samples)?;
+        let way = UnderWay {
+            shot: ViewParams {
+                occlusion: Occlusion::Off,
+                ..*shot
+            },
+            steps: Steps {
+                steps: 1,
+                slices: 1,
+            },
+            draft: true,
+            step: 0,
+            slice: 0,
+            banded: false,
+        };
+        self.shows_draft = true;
+        self.draw(gpu, source, renderer, &way)
+    }
+
+    /// Begins a picture that [`ProgressiveRenderer::slice`] makes.
+    pub fn begin(&mut self, shot: ViewParams, steps: Steps) {
+        self.under_way = Some(UnderWay {
+            shot,
+            steps: Steps {
+                slices: steps.slices.clamp(1, shot.size[1].max(1)),
+                steps: steps.steps.max(1),
+            },
+            draft: false,
+            step: 0,
+            slice: 0,
+            banded: false,
+        });
+    }
+
+    /// Leaves the picture as it is.
+    pub fn stop(&mut self) {
+        self.under_way = None;
+    }
+
+    /// Share of the picture under way that is made; none: there is none.
+    pub fn progress(&self) -> Option<f32> {
+        let way = self.under_way?;
+        let made = way.step * way.steps.slices + way.slice;
+        Some(made as f32 / (way.steps.steps * way.steps.slices) as f32)
+    }
+
+    /// The next slice of the picture under way; whether it shows something new. The slice before must be
+    /// done: see [`ProgressiveRenderer::is_busy`].
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn slice(&mut self, gpu: &Gpu, source: &mut dyn VertexSource) -> Result<bool, DeviceError> {
+        let Some(mut way) = self.under_way else {
+            return Ok(false);
+        };
+        if (way.step, way.slice) == (0, 0) {
+            let rounds = source.prepare(gpu, &chosen(&way.shot, None))?;
+            lay_out(&mut way, rounds, source);
+        }
+        let samples = samples_in_sub_pixel(gpu, 4);
+        let renderer = self.renderer(gpu, source, samples, &way.shot)?;
+        self.make_canvas(gpu, false, way.shot.size, samples)?;
+        self.draw(gpu, source, renderer, &way)?;
+        let mut next = way;
+        next.slice += 1;
+        let whole = next.slice == way.steps.slices;
+        if whole {
+            (next.slice, next.step) = (0, next.step + 1);
+            self.shows_draft = false;
+        }
+        self.under_way = (next.step < way.steps.steps).then_some(next);
+        Ok(whole)
+    }
+
+    /// Whether the device is still at work on what was submitted last. Must be asked for it to go on.
+    pub fn is_busy(&self, gpu: &Gpu) -> bool {
+        // What went wrong is told by the next call that draws.
+        let _ = gpu.device.poll(wgpu::PollType::Poll);
+        let clock = &self.clock;
+        clock.done.load(Ordering::Acquire) < clock.submitted.load(Ordering::Acquire)
+    }
+
+    /// Milliseconds from submitting the last work until it was done.
+    pub fn last_ms(&self) -> f64 {
+        self.clock.took.load(Ordering::Acquire) as f64 / 1e3
+    }
+
+    /// Puts the picture there is into its texture once more: for other outlines.
+    pub fn show(&self, gpu: &Gpu) {
+        if let Some(canvas) = self.shown() {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let (targets, screen) = (&canvas.targets, &canvas.screen);
+            self.presenter
+                .present(gpu, targets, screen, &self.outlines, &mut encoder);
+            gpu.queue.submit([encoder.finish()]);
+        }
+    }
+
+    /// The texture to show. It changes with the size, and from drafts to pictures.
+    pub fn texture(&self) -> Option<&wgpu::Texture> {
+        self.shown().map(|canvas| &canvas.screen.texture)
+    }
+
+    /// Whether it is a draft that shows.
+    pub fn shows_draft(&self) -> bool {
+        self.shows_draft
+    }
+
+    /// Draws ids; [`ProgressiveRenderer::ids`] has them a little later.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn identify(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        shot: &ViewParams,
+    ) -> Result<(), DeviceError> {
+        let renderer = self.renderer(gpu, source, 1, shot)?;
+        let renderer = &self.renderers[renderer];
+        if self.identifier.as_ref().is_none_or(|i| !i.fits(renderer)) {
+            self.identifier = Identifier::new(gpu, renderer, source);
+        }
+        let Some(identifier) = &mut self.identifier else {
+            return Ok(());
+        };
+        let shade = shade(renderer, shot);
+        identifier.draw(gpu, renderer, source, &chosen(shot, None), shade, shot.size)?;
+        self.clock.start(gpu);
+        Ok(())
+    }
+
+    /// The size and the ids by row of the picture that was identified last, once; nothing before they
+    /// have arrived.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn ids(&mut self) -> Result<Option<PickIds>, DeviceError> {
+        self.identifier.as_mut().map_or(Ok(None), Identifier::take)
+    }
+
+    /// Bytes of textures and buffers.
+    pub fn bytes(&self) -> u64 {
+        let canvases = self.draft.iter().chain(&self.fine);
+        canvases.map(|c| c.targets.bytes + c.sums.size()).sum()
+    }
+
+    fn shown(&self) -> Option<&Canvas> {
+        if self.shows_draft {
+            self.draft.as_ref()
+        } else {
+            self.fine.as_ref()
+        }
+    }
+
+    fn renderer(
+        &mut self,
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        samples: u32,
+        shot: &ViewParams,
+    ) -> Result<usize, DeviceError> {
+        let cut = shot.look.clip.is_some();
+        let way = PipelineKey {
+            samples,
+            cut,
+            valued: self.table.values.instances() > 0,
+        };
+        let wanted = kind(source, way);
+        let place = match self.renderers.iter().position(|p| p.fits(wanted)) {
+            Some(place) => place,
+            None => {
+                self.renderers.push(TileRenderer::new(gpu, source, way)?);
+                self.renderers.len() - 1
+            }
+        };
+        let renderer = &mut self.renderers[place];
+        if renderer.holds != self.tables {
+            renderer.set_table(gpu, &self.table);
+            renderer.holds = self.tables;
+        }
+        renderer.set_states(gpu, &self.states);
+        if !self.finishers.iter().any(|(n, _)| *n == samples) {
+            let finisher = Finisher::new(gpu, samples, Last::Accumulate);
+            self.finishers.push((samples, finisher));
+        }
+        Ok(place)
+    }
+
+    fn make_canvas(
+        &mut self,
+        gpu: &Gpu,
+        draft: bool,
+        size: [u32; 2],
+        samples: u32,
+    ) -> Result<(), DeviceError> {
+        let place = if draft {
+            &mut self.draft
+        } else {
+            &mut self.fine
+        };
+        let fits = |c: &Canvas| c.size == size && c.samples == samples;
+        if !place.as_ref().is_some_and(fits) {
+            *place = None;
+            *place = Some(Canvas::new(gpu, size, samples, draft));
+            gpu.check()?;
+        }
+        Ok(())
+    }
+
+    /// One slice of one step; what comes after the drawing with the last one.
+    fn draw(
+        &self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        renderer: usize,
+        way: &UnderWay,
+    ) -> Result<(), DeviceError> {
+        let UnderWay { shot, steps, .. } = way;
+        let renderer = &self.renderers[renderer];
+        let canvas = match way.draft {
+            true => self.draft.as_ref(),
+            false => self.fine.as_ref(),
+        };
+        let Some(canvas) = canvas else {
+            return Ok(());
+        };
+        let [width, height] = shot.size;
+        let edge = |slice: u32, all: u32| {
+            (u64::from(slice) * u64::from(all) / u64::from(steps.slices)) as u32
+        };
+        let slice = |all: u32| edge(way.slice, all)..edge(way.slice + 1, all);
+        let (rows, shaders) = match way.banded {
+            true => (slice(height), 0..usize::MAX),
+            false => {
+                let shaders = slice(source.shaders() as u32);
+                (0..height, shaders.start as usize..shaders.end as usize)
+            }
+        };
+        let (jitter, turn) = offset(way.step, steps.steps);
+        let shade = shade(renderer, shot).moved(jitter, turn);
+        gpu.queue
+            .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
+        let group = renderer.shade_group(gpu);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let band = way.banded.then_some((rows.start, rows.end));
+        let rounds = source.prepare(gpu, &chosen(shot, band))?.max(1);
+        for round in 0..rounds {
+            source.choose(round, &mut encoder, None);
+            let part = MeshPart {
+                round,
+                shaders: shaders.clone(),
+                first: way.slice == 0 && round == 0,
+                last: way.slice + 1 == steps.slices && round + 1 == rounds,
+                within: Some([0, rows.start, width, rows.end - rows.start]),
+            };
+            renderer.draw(source, &part, &canvas.targets, &group, &mut encoder);
+        }
+        if way.slice + 1 == steps.slices {
+            self.finish(gpu, canvas, way, &mut encoder);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        self.clock.start(gpu);
+        gpu.check()
+    }
+
+    fn finish(
+        &self,
+        gpu: &Gpu,
+        canvas: &Canvas,
+        way: &UnderWay,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let UnderWay {
+            shot, steps, step, ..
+        } = way;
+        let Some((_, finisher)) = self.finishers.iter().find(|(n, _)| *n == canvas.samples) else {
+            return;
+        };
+        let frame = whole(shot.camera, shot.near, shot.size);
+        let color_keys = finish_color_keys(shot, &frame, *step, steps.steps);
+        gpu.queue
+            .write_buffer(&self.finish, 0, bytemuck::bytes_of(&color_keys));
+        let group = canvas.group(gpu, finisher, &self.finish);
+        let over = shot.size.map(|n| n.div_ceil(8));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("finish"),
+            timestamp_writes: None,
+        });
+        pass.set_bind_group(0, &group, &[]);
+        // A quarter of a pixel beside, corners are as dark: one look serves all steps.
+        if color_keys.radius > 0.0 && *step == 0 {
+            for pipeline in [&finisher.occlude, &finisher.blur] {
+                pass.set_pipeline(pipeline);
+                pass.dispatch_workgroups(over[0], over[1], 1);
+            }
+        }
+        pass.set_pipeline(&finisher.last);
+        pass.dispatch_workgroups(over[0], over[1], 1);
+        drop(pass);
+        let (targets, screen) = (&canvas.targets, &canvas.screen);
+        self.presenter
+            .present(gpu, targets, screen, &self.outlines, encoder);
+    }
+}
+
+/// Decides what the slices of a picture are. What is chosen at once is drawn shader by shader, and need
+/// not be chosen for every slice; `rounds` that are chosen in turn are drawn in bands of rows.
+fn lay_out(way: &mut UnderWay, rounds: usize, source: &dyn VertexSource) {
+    way.banded = rounds > 1 && way.steps.slices > 1;
+    if !way.banded {
+        way.steps.slices = way.steps.slices.min(source.shaders() as u32);
+    } else if way.shot.frozen.is_some() {
+        // Levels for another camera know no bands of this one.
+        (way.banded, way.steps.slices) = (false, 1);
+    }
+}
+
+impl Clock {
+    fn start(self: &Arc<Self>, gpu: &Gpu) {
+        let number = self.submitted.fetch_add(1, Ordering::AcqRel) + 1;
+        let (clock, begun) = (Arc::clone(self), Instant::now());
+        gpu.queue.on_submitted_work_done(move || {
+            let took = begun.elapsed().as_micros() as u64;
+            clock.took.store(took, Ordering::Release);
+            clock.done.fetch_max(number, Ordering::AcqRel);
+        });
+    }
+}
+
+impl Canvas {
+    fn new(gpu: &Gpu, size: [u32; 2], samples: u32, draft: bool) -> Self {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let sums = if draft { 0 } else { 16 * pixels };
+        Self {
+            size,
+            samples,
+            targets: Targets::new(gpu, size, samples),
+            sums: make(gpu, "sums", sums, wgpu::BufferUsages::STORAGE),
+            screen: Screen::new(gpu, size, draft),
+        }
+    }
+
+    fn group(&self, gpu: &Gpu, finisher: &Finisher, finish: &wgpu::Buffer) -> wgpu::BindGroup {
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view = wgpu::BindingResource::TextureView;
+        let targets = &self.targets;
+        let resolved = targets.resolved.as_ref().unwrap_or(&targets.color);
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("finish"),
+            layout: &finisher.layout,
+            entries: &[
+                entry(0, finish.as_entire_binding()),
+                entry(1, view(resolved)),
+                entry(2, view(&targets.normal)),
+                entry(3, view(&targets.distance)),
+                entry(4, targets.raw.as_entire_binding()),
+                entry(5, targets.blurred.as_entire_binding()),
+                entry(6, targets.pixels.as_entire_binding()),
+                entry(7, self.sums.as_entire_binding()),
+            ],
+        })
+    }
+}
+
+/// Pixels by which a step is moved, and by how many its dither is turned: the places of sub-pixels.
+fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
+    let side = f64::from(steps).sqrt() as u32;
+    if side <= 1 {
+        return ([0.0; 2], [0.0; 2]);
+    }
+    let place = [step % side, step / side].map(|k| k as f32);
+    (place.map(|k| (k + 0.5) / side as f32 - 0.5), place)
+}
+
+fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
+    Frame {
+        camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
+    }
+}
+
+/// Rows above and below a band whose things may reach into it: steps are moved by half a pixel.
+const SPARE_ROWS: u32 = 2;
+
+/// What the source is told: a band of rows, or all; levels for the frozen camera if there is one.
+fn chosen(shot: &ViewParams, band: Option<(u32, u32)>) -> Frame {
+    let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
+    let mut frame = whole(camera, near, shot.size);
+    let (top, bottom) = band.unwrap_or((0, shot.size[1]));
+    frame.tile.x -= SPARE_ROWS as i32;
+    frame.tile.width += 2 * SPARE_ROWS;
+    frame.tile.y = top as i32 - SPARE_ROWS as i32;
+    frame.tile.height = bottom - top + 2 * SPARE_ROWS;
+    frame
+}
+
+fn shade(renderer: &TileRenderer, shot: &ViewParams) -> Shade {
+    let frame = whole(shot.camera, shot.near, shot.size);
+    let mut shade = Shade::new(&frame, &shot.look, 1, &renderer.sizes);
+    if let Some((frozen, _)) = shot.frozen {
+        shade.shift = (frozen.eye() - shot.camera.eye()).as_vec3().to_array();
+    }
+    shade
+}
+
+fn finish_color_keys(shot: &ViewParams, frame: &Frame, step: u32, steps: u32) -> Finish {
+    let (radius, most) = shot
+        .occlusion
+        .reach(&shot.camera, shot.size[1])
+        .unwrap_or_default();
+    let [r, g, b] = linear(shot.background);
+    let [red, green, blue] = shot.background;
+    Finish {
+        radius,
+        most,
+        scale: 1,
+        kept: shot.size,
+        spare: step,
+        clear: u32::from(steps == 1),
+        empty: u32::from_le_bytes([red, green, blue, 255]),
+        background: [r, g, b, 1.0],
+        ..Finish::of(frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_spread_over_the_pixel() {
+        for steps in [1, 4, 16] {
+            let all: Vec<_> = (0..steps).map(|step| offset(step, steps).0).collect();
+            for axis in 0..2 {
+                let sum: f32 = all.iter().map(|place| place[axis]).sum();
+                assert!(sum.abs() < 1e-6 && all.iter().all(|p| p[axis].abs() < 0.5));
+            }
+        }
+        assert_eq!(offset(3, 4), ([0.25, 0.25], [1.0, 1.0]));
+    }
+}

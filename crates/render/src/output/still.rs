@@ -1,0 +1,323 @@
+//! Pictures of any size, tile by tile, band by band.
+//!
+//! A picture is drawn in **tiles** that fit the device and comes out in **bands**, the rows that one
+//! row of tiles makes. Memory is for one tile and one band, whatever the picture's size. Tiles
+//! overlap by what ambient occlusion looks at, so that they fit together.
+
+use std::time::Instant;
+
+use thiserror::Error;
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::gpu::timing::PASSES;
+use crate::output::image::Image;
+use crate::output::tiles::{self, Finishing, TileRenderer};
+use crate::output::watch::Watch;
+use crate::scene::color::{ColorTable, Rgb};
+use crate::shading::finish::BLUR;
+use crate::shading::shade::{GUARD, Look, PipelineKey};
+use crate::sources::VertexSource;
+use crate::view::camera::Camera;
+use crate::view::frame::{Frame, Tile};
+
+/// How a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureOptions {
+    /// Width and height (pixels), from 1 on.
+    pub size: [u32; 2],
+    /// Samples of a pixel: 1, 4, 16, 36 or 64.
+    pub samples: u32,
+    /// Color behind everything; none: transparent.
+    pub background: Option<Rgb>,
+    /// Light and wireframe.
+    pub look: Look,
+    /// How far corners darken one another.
+    pub occlusion: Occlusion,
+    /// Greatest width and height of a tile (sub-pixels).
+    pub tile: u32,
+}
+
+/// Ambient occlusion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Occlusion {
+    /// Within 8 % of the picture's height, at the distance of the camera's target.
+    #[default]
+    Fit,
+    /// Within this distance (µm), at most 9 % of the picture's height and 360 sub-pixels.
+    Within(f32),
+    /// None.
+    Off,
+}
+
+impl Occlusion {
+    /// How far it looks in a picture of this height (sub-pixels): µm, and most sub-pixels. The same
+    /// whatever the tiles are: they must fit together.
+    pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
+        let height = f64::from(height);
+        let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
+        let most = (0.09 * height).min(MOST_MARGIN).ceil();
+        let radius = match self {
+            Self::Fit => 0.08 * height * sub_pixel,
+            Self::Within(radius) => f64::from(radius),
+            Self::Off => 0.0,
+        };
+        (radius > 0.0).then_some((radius as f32, most as f32))
+    }
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        Self {
+            size: [1280, 960],
+            samples: 16,
+            background: Some([255, 255, 255]),
+            look: Look::default(),
+            occlusion: Occlusion::Fit,
+            tile: TILE,
+        }
+    }
+}
+
+/// With four samples, 104 bytes a sub-pixel: 240 MiB.
+const TILE: u32 = 1536;
+/// Farthest that ambient occlusion looks (sub-pixels): more would leave little of a tile.
+const MOST_MARGIN: f64 = 360.0;
+/// Sample numbers that there are.
+pub const SAMPLES: [u32; 5] = [1, 4, 16, 36, 64];
+/// Greatest width or height of a picture: positions are f32 and keep 1/256 of a sub-pixel.
+pub const LARGEST: u32 = 32_768;
+
+/// Why a picture was not made.
+#[derive(Debug, Error)]
+pub enum PictureError<E> {
+    /// The GPU's side.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// Whoever takes the bands.
+    #[error("{0}")]
+    Sink(E),
+    /// Whoever watches wants it no more.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// What a picture cost.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Milliseconds from the first command to the last byte.
+    pub cpu_ms: f64,
+    /// Milliseconds by pass, where the GPU can tell.
+    pub gpu_ms: Option<Vec<(&'static str, f64)>>,
+    /// Number of tiles.
+    pub tiles: usize,
+    /// Bytes of textures and buffers that the picture passes through.
+    pub target_bytes: u64,
+}
+
+/// How a picture is parted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Parting {
+    /// Sub-pixels per pixel along a side.
+    scale: u32,
+    /// Samples of a sub-pixel.
+    samples: u32,
+    /// Sub-pixels around a tile.
+    margin: u32,
+    /// Pixels kept of a tile.
+    step: [u32; 2],
+    /// Radius of occlusion: µm, and most sub-pixels.
+    occlusion: Option<(f32, f32)>,
+}
+
+impl PictureOptions {
+    /// The samples of a pixel that are taken: the most that there are, not above those asked for.
+    pub fn samples_taken(&self) -> u32 {
+        let most = SAMPLES.into_iter().rfind(|&n| n <= self.samples);
+        most.unwrap_or(1)
+    }
+
+    /// Sub-pixels of a pixel, along a side.
+    pub fn sub_pixels(&self, gpu: &Gpu) -> u32 {
+        let in_each = f64::from(samples_in_sub_pixel(gpu, self.samples_taken()));
+        ((f64::from(self.samples_taken()) / in_each).sqrt() as u32).max(1)
+    }
+
+    /// Number of tiles of a picture.
+    pub fn tiles(&self, gpu: &Gpu, camera: &Camera) -> usize {
+        let Parting { step, .. } = self.parting(gpu, camera);
+        let [across, down] = [0, 1].map(|k| self.size[k].max(1).div_ceil(step[k]));
+        across as usize * down as usize
+    }
+
+    fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
+        let wanted = self.samples_taken();
+        let scale = self.sub_pixels(gpu);
+        let height = self.size[1] * scale;
+        let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);
+        let occlusion = self.occlusion.reach(camera, height);
+        let margin = occlusion
+            .map_or(0, |(_, most)| most as u32 + BLUR + 2)
+            .next_multiple_of(scale);
+        let inner = (largest.saturating_sub(2 * margin) / scale).max(32);
+        Parting {
+            scale,
+            samples: samples_in_sub_pixel(gpu, wanted),
+            margin,
+            step: self.size.map(|n| inner.min(n.max(1))),
+            occlusion,
+        }
+    }
+}
+
+/// Four, or one: where that is all there is, and on OpenGL, for which naga 30 writes the mask of samples
+/// wrongly.
+pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
+    if samples == 1 || gpu.adapter.backend == "gl" {
+        1
+    } else {
+        4
+    }
+}
+
+/// Makes one picture: see [`StillRenderer::paint`].
+///
+/// # Errors
+/// What the device cannot do, and what the taker of bands says.
+pub fn paint<E>(
+    gpu: &Gpu,
+    source: &mut dyn VertexSource,
+    camera: &Camera,
+    near: f64,
+    table: &ColorTable,
+    options: &PictureOptions,
+    take: impl FnMut(u32, Image) -> Result<(), E>,
+) -> Result<Cost, PictureError<E>> {
+    StillRenderer::new().paint(gpu, source, camera, near, table, options, take)
+}
+
+/// What pictures share: pipelines, by the kind of source and the samples, and targets. For series of
+/// pictures, whose pipelines are made once.
+#[derive(Default)]
+pub struct StillRenderer {
+    renderers: Vec<TileRenderer>,
+    states: Vec<u32>,
+    watch: Option<Watch>,
+}
+
+impl StillRenderer {
+    /// Nothing made yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::HIGHLIGHTED) and so on; 0 beyond the end.
+    pub fn set_states(&mut self, states: &[u32]) {
+        self.states = states.to_vec();
+    }
+
+    /// Tells how far pictures are, and ends them when it is told to.
+    pub fn set_watch(&mut self, watch: Watch) {
+        self.watch = Some(watch);
+    }
+
+    fn renderer(
+        &mut self,
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        way: PipelineKey,
+    ) -> Result<&mut TileRenderer, DeviceError> {
+        let kind = tiles::kind(source, way);
+        let place = match self.renderers.iter().position(|p| p.fits(kind)) {
+            Some(place) => place,
+            None => {
+                self.renderers.push(TileRenderer::new(gpu, source, way)?);
+                self.renderers.len() - 1
+            }
+        };
+        let renderer = &mut self.renderers[place];
+        renderer.set_states(gpu, &self.states);
+        Ok(renderer)
+    }
+
+    /// Makes a picture and hands it over in bands from the top: the first row of each, and its pixels.
+    ///
+    /// # Errors
+    /// What the device cannot do, and what the taker of bands says.
+    #[expect(clippy::too_many_arguments, reason = "a picture has so many sides")]
+    pub fn paint<E>(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        camera: &Camera,
+        near: f64,
+        table: &ColorTable,
+        options: &PictureOptions,
+        mut take: impl FnMut(u32, Image) -> Result<(), E>,
+    ) -> Result<Cost, PictureError<E>> {
+        let clock = Instant::now();
+        let parting = options.parting(gpu, camera);
+        let Parting {
+            scale,
+            margin,
+            step,
+            ..
+        } = parting;
+        let cut = options.look.clip.is_some();
+        let way = PipelineKey {
+            samples: parting.samples,
+            cut,
+            valued: table.values.instances() > 0,
+        };
+        let watch = self.watch.clone();
+        let renderer = self.renderer(gpu, source, way)?;
+        renderer.set_table(gpu, table);
+        renderer.timer.reset();
+        let finishing = Finishing {
+            scale,
+            margin,
+            occlusion: parting.occlusion,
+            background: options.background,
+        };
+        let [width, height] = options.size.map(|n| n.max(1));
+        let mut tiles = 0;
+        for top in (0..height).step_by(step[1] as usize) {
+            let rows = step[1].min(height - top);
+            let mut band = Image::new(width, rows);
+            for left in (0..width).step_by(step[0] as usize) {
+                let place = |n: u32| (n * scale) as i32 - margin as i32;
+                let frame = Frame {
+                    camera: *camera,
+                    near,
+                    size: [width * scale, height * scale],
+                    tile: Tile {
+                        x: place(left),
+                        y: place(top),
+                        width: step[0] * scale + 2 * margin,
+                        height: step[1] * scale + 2 * margin,
+                    },
+                };
+                let watch = watch.as_ref();
+                if watch.is_some_and(Watch::is_stopped) {
+                    return Err(PictureError::Stopped);
+                }
+                let look = &options.look;
+                let pixels = renderer.paint(gpu, source, &frame, look, &finishing, watch)?;
+                let Some(pixels) = pixels else {
+                    return Err(PictureError::Stopped);
+                };
+                band.copy_from(left, &pixels, step[0]);
+                watch.into_iter().for_each(Watch::note_tile);
+                tiles += 1;
+            }
+            take(top, band).map_err(PictureError::Sink)?;
+        }
+        let times = renderer.timer.milliseconds();
+        Ok(Cost {
+            cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
+            gpu_ms: times.map(|times| PASSES.into_iter().zip(times).collect()),
+            tiles,
+            target_bytes: renderer.target_bytes(),
+        })
+    }
+}

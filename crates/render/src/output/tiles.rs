@@ -1,0 +1,450 @@
+//! Tiles: from a frame to bytes.
+//!
+//! ```text
+//! source.prepare ─▶ draw: color, normals, depth ─▶ occlude ─▶ blur ─▶ gather: bytes ─▶ read back
+//!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
+//! ```
+
+use std::ops::Range;
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::gpu::timing::{Pass, Timer};
+use crate::output::watch::Watch;
+use crate::scene::color::{ColorTable, Rgb, linear};
+use crate::shading::finish::{Finish, Finisher, Last};
+use crate::shading::shade::{GUARD, Look, PipelineKey, Shade, Shader, TableSizes};
+use crate::shading::targets::{Targets, make};
+use crate::sources::VertexSource;
+use crate::view::frame::Frame;
+
+/// How a tile is finished.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Finishing {
+    /// Sub-pixels per pixel along a side.
+    pub(crate) scale: u32,
+    /// Sub-pixels around what is kept.
+    pub(crate) margin: u32,
+    /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may be.
+    pub(crate) occlusion: Option<(f32, f32)>,
+    /// Color behind everything; none: transparent.
+    pub(crate) background: Option<Rgb>,
+}
+
+impl Finishing {
+    /// What is kept of a tile.
+    fn without_margin(&self, frame: &Frame) -> Frame {
+        let mut kept = *frame;
+        kept.tile.x += self.margin as i32;
+        kept.tile.y += self.margin as i32;
+        kept.tile.width -= 2 * self.margin;
+        kept.tile.height -= 2 * self.margin;
+        kept
+    }
+}
+
+/// What is drawn in one pass over the targets.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct MeshPart {
+    pub(crate) round: usize,
+    /// Which of the source's shaders draw.
+    pub(crate) shaders: Range<usize>,
+    /// Whether the targets are cleared before.
+    pub(crate) first: bool,
+    /// Whether nothing more comes, so that samples become sub-pixels.
+    pub(crate) last: bool,
+    /// Left, top, width and height of what is drawn to; none: all.
+    pub(crate) within: Option<[u32; 4]>,
+}
+
+impl MeshPart {
+    fn round(round: usize, rounds: usize) -> Self {
+        Self {
+            round,
+            shaders: 0..usize::MAX,
+            first: round == 0,
+            last: round + 1 == rounds,
+            within: None,
+        }
+    }
+}
+
+/// Paints tiles of sources of one kind.
+pub(crate) struct TileRenderer {
+    kind: u64,
+    pub(crate) shader: Shader,
+    finisher: Finisher,
+    pub(crate) shade: wgpu::Buffer,
+    finish: wgpu::Buffer,
+    table: wgpu::Buffer,
+    states: wgpu::Buffer,
+    pub(crate) sizes: TableSizes,
+    /// Number of the table that it holds, where somebody counts them.
+    pub(crate) holds: u64,
+    samples: u32,
+    targets: Option<Targets>,
+    pub(crate) timer: Timer,
+}
+
+/// What pipelines depend on: the source's shaders, and the way they are drawn.
+pub(crate) fn kind(source: &dyn VertexSource, way: PipelineKey) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    way.hash(&mut hasher);
+    (0..source.shaders()).for_each(|shader| source.wgsl(shader).hash(&mut hasher));
+    hasher.finish()
+}
+
+impl TileRenderer {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        way: PipelineKey,
+    ) -> Result<Self, DeviceError> {
+        let samples = way.samples;
+        let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let renderer = Self {
+            kind: kind(source, way),
+            shader: Shader::new(gpu, source, way),
+            finisher: Finisher::new(gpu, samples, Last::Gather),
+            shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
+            finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
+            table: make(gpu, "colors", 16, storage),
+            states: make(gpu, "states", 16, storage),
+            sizes: TableSizes::default(),
+            holds: 0,
+            samples,
+            targets: None,
+            timer: Timer::new(gpu),
+        };
+        gpu.check()?;
+        Ok(renderer)
+    }
+
+    pub(crate) fn kind(&self) -> u64 {
+        self.kind
+    }
+
+    /// Whether it can draw what the source makes, in that way.
+    pub(crate) fn fits(&self, kind: u64) -> bool {
+        self.kind == kind
+    }
+
+    /// The colors from now on.
+    pub(crate) fn set_table(&mut self, gpu: &Gpu, table: &ColorTable) {
+        let (entries, colors) = table.entries();
+        self.sizes = TableSizes {
+            scale: table.scale.len() as u32,
+            colors,
+            valued: table.values.instances() as u32,
+        };
+        upload(gpu, &mut self.table, bytemuck::cast_slice(&entries));
+    }
+
+    /// The states of instances from now on, in the scene's order.
+    pub(crate) fn set_states(&mut self, gpu: &Gpu, states: &[u32]) {
+        let states = if states.is_empty() { &[0] } else { states };
+        upload(gpu, &mut self.states, bytemuck::cast_slice(states));
+    }
+
+    /// Bytes of the textures and buffers that pictures pass through.
+    pub(crate) fn target_bytes(&self) -> u64 {
+        self.targets.as_ref().map_or(0, |targets| targets.bytes)
+    }
+
+    /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB; nothing if it is not
+    /// wanted any more.
+    pub(crate) fn paint(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        frame: &Frame,
+        look: &Look,
+        finishing: &Finishing,
+        watch: Option<&Watch>,
+    ) -> Result<Option<Vec<u8>>, DeviceError> {
+        let size = [frame.tile.width, frame.tile.height];
+        let empty = finishing
+            .background
+            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        if !source.shows(&finishing.without_margin(frame)) {
+            let pixel = finishing.scale * finishing.scale;
+            let [width, height] = size.map(|n| n - 2 * finishing.margin);
+            return Ok(Some(empty.repeat((width * height / pixel) as usize)));
+        }
+        self.make_targets(gpu, size)?;
+        let Some(targets) = &self.targets else {
+            return Ok(None);
+        };
+        let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
+        let (radius, most) = finishing.occlusion.unwrap_or_default();
+        let [r, g, b] = linear(finishing.background.unwrap_or_default());
+        let finish = Finish {
+            radius,
+            most,
+            scale: finishing.scale,
+            margin: finishing.margin,
+            kept,
+            clear: u32::from(finishing.background.is_none()),
+            empty: u32::from_le_bytes(empty),
+            background: [r, g, b, 1.0],
+            ..Finish::of(frame)
+        };
+        let shade = Shade::new(frame, look, finishing.scale, &self.sizes);
+        let queue = &gpu.queue;
+        queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
+        queue.write_buffer(&self.finish, 0, bytemuck::bytes_of(&finish));
+        let (shade_group, finish_group) = self.groups(gpu, targets);
+
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let rounds = source.prepare(gpu, frame)?.max(1);
+        for round in 0..rounds {
+            let timestamps = self.timer.compute(Pass::Choose);
+            source.choose(round, &mut encoder, timestamps);
+            let part = MeshPart::round(round, rounds);
+            self.draw(source, &part, targets, &shade_group, &mut encoder);
+        }
+        let over = |n: u32| n.div_ceil(8);
+        // Nothing to do is still a pass: its times are read.
+        let all = |n: u32| if radius > 0.0 { over(n) } else { 0 };
+        let (occlude, blur) = (&self.finisher.occlude, &self.finisher.blur);
+        for (pipeline, name) in [(occlude, Pass::Occlude), (blur, Pass::Blur)] {
+            self.compute(pipeline, &finish_group, size.map(all), name, &mut encoder);
+        }
+        let pixels = [over(kept[0]), over(kept[1])];
+        self.compute(
+            &self.finisher.last,
+            &finish_group,
+            pixels,
+            Pass::Gather,
+            &mut encoder,
+        );
+        let bytes = 4 * u64::from(kept[0]) * u64::from(kept[1]);
+        encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
+        self.timer.resolve(&mut encoder);
+        queue.submit([encoder.finish()]);
+        let Some(pixels) = read_watched(gpu, &targets.read, bytes, watch)? else {
+            // What is read is not there yet, so that it cannot be drawn to again.
+            self.targets = None;
+            return Ok(None);
+        };
+        self.timer.read(gpu)?;
+        Ok(Some(pixels))
+    }
+
+    /// Chooses and draws a frame, waits for it, and leaves it where it is: for stopwatches. Gives the
+    /// number of rounds.
+    pub(crate) fn draw_only(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        frame: &Frame,
+        look: &Look,
+    ) -> Result<usize, DeviceError> {
+        let size = [frame.tile.width, frame.tile.height];
+        self.make_targets(gpu, size)?;
+        let Some(targets) = &self.targets else {
+            return Ok(0);
+        };
+        let shade = Shade::new(frame, look, 1, &self.sizes);
+        let queue = &gpu.queue;
+        queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
+        let (shade_group, finish_group) = self.groups(gpu, targets);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let rounds = source.prepare(gpu, frame)?.max(1);
+        for round in 0..rounds {
+            source.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
+            let part = MeshPart::round(round, rounds);
+            self.draw(source, &part, targets, &shade_group, &mut encoder);
+        }
+        // Passes that do nothing: their times are read with the others'.
+        let idle = [
+            (&self.finisher.occlude, Pass::Occlude),
+            (&self.finisher.blur, Pass::Blur),
+            (&self.finisher.last, Pass::Gather),
+        ];
+        for (pipeline, name) in idle {
+            self.compute(pipeline, &finish_group, [0, 0], name, &mut encoder);
+        }
+        self.timer.resolve(&mut encoder);
+        queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        Ok(rounds)
+    }
+
+    fn groups(&self, gpu: &Gpu, targets: &Targets) -> (wgpu::BindGroup, wgpu::BindGroup) {
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view = wgpu::BindingResource::TextureView;
+        let resolved = targets.resolved.as_ref().unwrap_or(&targets.color);
+        let device = &gpu.device;
+        let shade = self.shade_group(gpu);
+        let finish = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("finish"),
+            layout: &self.finisher.layout,
+            entries: &[
+                entry(0, self.finish.as_entire_binding()),
+                entry(1, view(resolved)),
+                entry(2, view(&targets.normal)),
+                entry(3, view(&targets.distance)),
+                entry(4, targets.raw.as_entire_binding()),
+                entry(5, targets.blurred.as_entire_binding()),
+                entry(6, targets.pixels.as_entire_binding()),
+            ],
+        });
+        (shade, finish)
+    }
+
+    /// Group 1 of whatever draws with our uniforms.
+    pub(crate) fn shade_group(&self, gpu: &Gpu) -> wgpu::BindGroup {
+        let buffers = [&self.shade, &self.table, &self.states];
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shade"),
+            layout: &self.shader.layout,
+            entries: &entries,
+        })
+    }
+
+    fn make_targets(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<(), DeviceError> {
+        if self.targets.as_ref().is_none_or(|t| t.size != size) {
+            self.targets = None;
+            self.targets = Some(Targets::new(gpu, size, self.samples));
+            gpu.check()?;
+        }
+        Ok(())
+    }
+
+    /// Draws what the source chose last.
+    pub(crate) fn draw(
+        &self,
+        source: &dyn VertexSource,
+        part: &MeshPart,
+        targets: &Targets,
+        group: &wgpu::BindGroup,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let empty = match part.first {
+            true => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            false => wgpu::LoadOp::Load,
+        };
+        let attachment = |view, resolve_target, store| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target,
+                ops: wgpu::Operations { load: empty, store },
+            })
+        };
+        let kept = match part.last {
+            true => wgpu::StoreOp::Discard,
+            false => wgpu::StoreOp::Store,
+        };
+        let resolved = targets.resolved.as_ref().filter(|_| part.last);
+        let color_store = match targets.resolved {
+            Some(_) => kept,
+            None => wgpu::StoreOp::Store,
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("draw"),
+            color_attachments: &[
+                attachment(&targets.color, resolved, color_store),
+                attachment(&targets.normal, None, wgpu::StoreOp::Store),
+                attachment(&targets.distance, None, wgpu::StoreOp::Store),
+            ],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: match part.first {
+                        true => wgpu::LoadOp::Clear(0.0),
+                        false => wgpu::LoadOp::Load,
+                    },
+                    // The next round hides what lies behind this one.
+                    store: kept,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: self.timer.render(Pass::Draw),
+            ..Default::default()
+        });
+        pass.set_bind_group(1, group, &[]);
+        let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
+        pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
+        if let Some([x, y, width, height]) = part.within {
+            pass.set_scissor_rect(x, y, width, height);
+        }
+        for (shader, pipeline) in self.shader.pipelines.iter().enumerate() {
+            if part.shaders.contains(&shader) {
+                pass.set_pipeline(pipeline);
+                source.draw(part.round, shader, &mut pass);
+            }
+        }
+    }
+
+    fn compute(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        group: &wgpu::BindGroup,
+        groups: [u32; 2],
+        name: Pass,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: self.timer.compute(name),
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups(groups[0], groups[1], 1);
+    }
+}
+
+/// Writes to a buffer, which is made anew where it is too small or far too large.
+fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
+    let size = (bytes.len() as u64).max(16);
+    if buffer.size() != size {
+        let usage = buffer.usage();
+        *buffer = make(gpu, "table", size, usage);
+    }
+    gpu.queue.write_buffer(buffer, 0, bytes);
+}
+
+/// Waits for the device and copies the front of a buffer.
+pub(crate) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, DeviceError> {
+    read_watched(gpu, buffer, bytes, None).map(Option::unwrap_or_default)
+}
+
+/// The same; nothing if it is not wanted any more.
+fn read_watched(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    bytes: u64,
+    watch: Option<&Watch>,
+) -> Result<Option<Vec<u8>>, DeviceError> {
+    let slice = buffer.slice(..bytes);
+    let mapped = Arc::new(AtomicBool::new(false));
+    let tells = Arc::clone(&mapped);
+    slice.map_async(wgpu::MapMode::Read, move |_| {
+        tells.store(true, Ordering::Release);
+    });
+    match watch {
+        Some(watch) if !watch.wait(gpu, &mapped)? => return Ok(None),
+        Some(_) => {}
+        None => gpu.wait()?,
+    }
+    let copied = slice
+        .get_mapped_range()
+        .map(|range| range.to_vec())
+        .map_err(|e| DeviceError::Lost(e.to_string()))?;
+    buffer.unmap();
+    Ok(Some(copied))
+}

@@ -1,0 +1,428 @@
+//! What colors things have: color keys, the table that they are looked up in, palettes and color maps.
+//!
+//! A tracing point has a **color key**. It is a **category**, or a fraction of a **scale**. The table has
+//! the colors of the scale, then those of the categories; so a map or a palette changes without
+//! touching the color_keys.
+
+use std::str::FromStr;
+
+/// A color as pictures and people have it: sRGB.
+pub type Rgb = [u8; 3];
+
+/// Set in the color key of a category.
+pub const CATEGORY_BIT: u32 = 1 << 31;
+
+/// Word of a category.
+pub fn category(index: u32) -> u32 {
+    CATEGORY_BIT | (index & (CATEGORY_BIT - 1))
+}
+
+/// Word of a place on the scale, clamped to 0 to 1; no number is 0.
+pub fn fraction(value: f32) -> u32 {
+    // Rounded to what f32 holds below 2³¹.
+    (value.clamp(0.0, 1.0).max(0.0) * (CATEGORY_BIT - 128) as f32) as u32
+}
+
+/// What color keys mean.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColorTable {
+    /// Colors of fractions, evenly spaced.
+    pub scale: Vec<Rgb>,
+    /// Colors of categories; the last also of all that follow.
+    pub categories: Vec<Rgb>,
+    /// If there are any, color keys that are no category are places among an instance's values.
+    pub values: InstanceValues,
+}
+
+/// Values that differ from instance to instance of one template: those of a simulation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InstanceValues {
+    /// By instance: its first four values.
+    first: Vec<u32>,
+    fours: Vec<[f32; 4]>,
+}
+
+impl InstanceValues {
+    /// Adds the values of the next instance: fractions of the scale, 0 to 1. What is not a number has the
+    /// color of the first category, and so has all of an instance without values.
+    pub fn push(&mut self, values: &[f32]) {
+        let first = self.fours.len() as u32;
+        self.first
+            .push(if values.is_empty() { NOWHERE } else { first });
+        // Shaders need not know what is not a number.
+        let value = |value: &f32| {
+            if value.is_nan() {
+                NO_VALUE
+            } else {
+                value.clamp(0.0, 1.0)
+            }
+        };
+        self.fours.extend(values.chunks(4).map(|chunk| {
+            let mut four = [NO_VALUE; 4];
+            four.iter_mut()
+                .zip(chunk)
+                .for_each(|(to, from)| *to = value(from));
+            four
+        }));
+    }
+
+    /// Number of instances.
+    pub fn instances(&self) -> usize {
+        self.first.len()
+    }
+}
+
+const NO_VALUE: f32 = -1.0;
+/// Where the values of an instance begin that has none: beyond all, so that shaders take the last entry.
+const NOWHERE: u32 = 1 << 24;
+
+impl ColorTable {
+    /// Linear colors, those of the scale first; never empty.
+    pub(crate) fn linear(&self) -> Vec<[f32; 4]> {
+        let all = self.scale.iter().chain(&self.categories);
+        let mut entries: Vec<[f32; 4]> = all.map(|&rgb| extended(linear(rgb))).collect();
+        if entries.is_empty() {
+            entries.push([0.5, 0.5, 0.5, 1.0]);
+        }
+        entries
+    }
+
+    /// All that shaders look colors up in, with the number of colors: these, then where each instance's
+    /// values begin, then the values, four to an entry.
+    pub(crate) fn entries(&self) -> (Vec<[f32; 4]>, u32) {
+        let mut entries = self.linear();
+        let colors = entries.len() as u32;
+        let InstanceValues { first, fours } = &self.values;
+        // Whole numbers up to 2²⁴ are exact: 67 million values.
+        let behind = first.len().div_ceil(4) as u32 + colors;
+        entries.extend(first.chunks(4).map(|chunk| {
+            let mut entry = [0.0; 4];
+            let places = chunk
+                .iter()
+                .map(|&place| (behind + place).min(NOWHERE) as f32);
+            entry
+                .iter_mut()
+                .zip(places)
+                .for_each(|(to, from)| *to = from);
+            entry
+        }));
+        entries.extend(fours);
+        if !first.is_empty() {
+            entries.push([NO_VALUE; 4]);
+        }
+        (entries, colors)
+    }
+}
+
+fn extended([r, g, b]: [f32; 3]) -> [f32; 4] {
+    [r, g, b, 1.0]
+}
+
+/// Linear light of an sRGB color (IEC 61966-2-1).
+pub fn linear(rgb: Rgb) -> [f32; 3] {
+    rgb.map(|byte| {
+        let c = f32::from(byte) / 255.0;
+        if c <= 0.040_45 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}
+
+/// Whether light things are seen better before this color than dark ones.
+pub fn is_dark(rgb: Rgb) -> bool {
+    luminance(rgb) < 0.2
+}
+
+/// Relative luminance, 0 to 1 (IEC 61966-2-1).
+pub(crate) fn luminance(rgb: Rgb) -> f32 {
+    let [r, g, b] = linear(rgb);
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// Entries of a scale: neighbors differ by less than a step of 8 bits.
+pub const SCALE_ENTRIES: usize = 256;
+
+/// Perceptually uniform color maps, dark to light: as matplotlib has them, by the crate `colorous`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorMap {
+    /// Blue, green, yellow.
+    #[default]
+    Viridis,
+    /// Black, purple, white.
+    Magma,
+    /// Black, red, yellow.
+    Inferno,
+    /// Blue, red, yellow.
+    Plasma,
+    /// Blue to yellow, the same for the color-blind.
+    Cividis,
+}
+
+impl ColorMap {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Viridis,
+        Self::Magma,
+        Self::Inferno,
+        Self::Plasma,
+        Self::Cividis,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Viridis => "viridis",
+            Self::Magma => "magma",
+            Self::Inferno => "inferno",
+            Self::Plasma => "plasma",
+            Self::Cividis => "cividis",
+        }
+    }
+
+    /// Color at a fraction, 0 to 1.
+    pub fn at(self, fraction: f64) -> Rgb {
+        let map = match self {
+            Self::Viridis => colorous::VIRIDIS,
+            Self::Magma => colorous::MAGMA,
+            Self::Inferno => colorous::INFERNO,
+            Self::Plasma => colorous::PLASMA,
+            Self::Cividis => colorous::CIVIDIS,
+        };
+        map.eval_continuous(fraction.clamp(0.0, 1.0)).as_array()
+    }
+
+    /// All of it, evenly spaced: the colors that everyone knows. What would not be seen before a background
+    /// has edges in pictures, see [`Look::contrast`](crate::Look::contrast).
+    pub fn scale(self) -> Vec<Rgb> {
+        self.spaced(0.0, 1.0)
+    }
+
+    /// Without the end that would not be seen before this background; the rest stays uniform.
+    pub fn scale_before(self, background: Rgb) -> Vec<Rgb> {
+        match is_dark(background) {
+            true => self.spaced(0.15, 1.0),
+            false => self.spaced(0.0, 0.93),
+        }
+    }
+
+    fn spaced(self, low: f64, high: f64) -> Vec<Rgb> {
+        let last = (SCALE_ENTRIES - 1) as f64;
+        (0..SCALE_ENTRIES)
+            .map(|i| self.at(low + (high - low) * i as f64 / last))
+            .collect()
+    }
+}
+
+impl FromStr for ColorMap {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|map| map.name() == name);
+        found.ok_or_else(|| "use viridis, magma, inferno, plasma or cividis".into())
+    }
+}
+
+/// Colors of the parts of a cell, by SWC type, and of things that are merely told apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Palette {
+    /// NeuroM's: soma black, axon blue, basal dendrites red, apical ones purple.
+    #[default]
+    NeuroM,
+    /// NeuroMorpho.org's: soma red, axon gray, basal dendrites green, apical ones magenta.
+    NeuroMorpho,
+    /// Okabe and Ito's, told apart by the color-blind: axon blue, basal dendrites vermilion,
+    /// apical ones reddish purple.
+    OkabeIto,
+}
+
+impl Palette {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::NeuroM, Self::NeuroMorpho, Self::OkabeIto];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NeuroM => "neurom",
+            Self::NeuroMorpho => "neuromorpho",
+            Self::OkabeIto => "okabe-ito",
+        }
+    }
+
+    /// Undefined, soma, axon, basal and apical dendrites.
+    ///
+    /// Pure primaries leave light no room to shade; so blue, red and purple are those of print, and
+    /// black is the darkest gray on which light still shows a shape.
+    fn types(self) -> [Rgb; 5] {
+        match self {
+            Self::NeuroM => [
+                [120, 120, 120],
+                [70, 71, 76],
+                [32, 84, 214],
+                [214, 40, 40],
+                [134, 46, 168],
+            ],
+            Self::NeuroMorpho => [
+                [70, 70, 70],
+                [210, 40, 40],
+                [140, 140, 140],
+                [52, 160, 62],
+                [206, 54, 190],
+            ],
+            Self::OkabeIto => [
+                [110, 110, 110],
+                [62, 62, 64],
+                [0, 114, 178],
+                [213, 94, 0],
+                [204, 121, 167],
+            ],
+        }
+    }
+
+    /// Color of an SWC type; 5 and above have their own, and repeat after eight.
+    pub fn of_type(self, kind: i32) -> Rgb {
+        match usize::try_from(kind) {
+            Ok(kind @ 0..=4) => self.types()[kind],
+            Ok(kind) => CUSTOM[(kind - 5) % CUSTOM.len()],
+            Err(_) => self.types()[0],
+        }
+    }
+
+    /// Color of somata before this background: black before black is light gray.
+    pub fn of_soma(self, background: Option<Rgb>) -> Rgb {
+        let soma = self.of_type(1);
+        if background.is_some_and(is_dark) && is_dark(soma) && self != Self::NeuroMorpho {
+            return [190, 190, 190];
+        }
+        soma
+    }
+
+    /// Number of different colors of things that are merely told apart.
+    pub fn distinct_count(self) -> usize {
+        match self {
+            Self::OkabeIto => OKABE_ITO.len(),
+            Self::NeuroM | Self::NeuroMorpho => DISTINCT.len(),
+        }
+    }
+
+    /// Color of the index-th of things that are merely told apart; they repeat after ten.
+    pub fn distinct(self, index: usize) -> Rgb {
+        if self == Self::OkabeIto {
+            return OKABE_ITO[index % OKABE_ITO.len()];
+        }
+        DISTINCT[index % DISTINCT.len()]
+    }
+}
+
+impl FromStr for Palette {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|palette| palette.name() == name);
+        found.ok_or_else(|| "use neurom, neuromorpho or okabe-ito".into())
+    }
+}
+
+/// Types 5 and above: none near those of the types before.
+const CUSTOM: [Rgb; 8] = [
+    [230, 140, 20],
+    [20, 150, 110],
+    [30, 170, 200],
+    [150, 100, 50],
+    [220, 110, 160],
+    [140, 170, 30],
+    [90, 90, 160],
+    [200, 170, 40],
+];
+
+/// Tableau's ten, a shade darker, to stand on white.
+const DISTINCT: [Rgb; 10] = [
+    [62, 105, 156],
+    [226, 124, 34],
+    [208, 66, 72],
+    [88, 166, 160],
+    [72, 146, 62],
+    [214, 180, 40],
+    [160, 106, 146],
+    [240, 130, 144],
+    [142, 104, 82],
+    [130, 124, 120],
+];
+
+/// Okabe & Ito, Color universal design, 2008; without black.
+const OKABE_ITO: [Rgb; 7] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [86, 180, 233],
+    [230, 159, 0],
+    [200, 188, 50],
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn color_keys_tell_categories_from_fractions() {
+        assert_eq!(category(3) & !CATEGORY_BIT, 3);
+        assert_eq!(fraction(f32::NAN), 0);
+        assert!(fraction(2.0) < CATEGORY_BIT && fraction(1.0) > CATEGORY_BIT - 512);
+        assert!(fraction(0.2) < fraction(0.3));
+    }
+
+    #[test]
+    fn an_instance_without_values_has_not_those_of_the_next() {
+        let mut values = InstanceValues::default();
+        values.push(&[]);
+        values.push(&[0.5; 5]);
+        let table = ColorTable {
+            scale: vec![[0; 3]; 2],
+            values,
+            ..ColorTable::default()
+        };
+        let (entries, colors) = table.entries();
+        let value = |instance: usize, color_key: usize| {
+            let first = entries[colors as usize + instance / 4][instance % 4] as usize;
+            entries[(first + color_key / 4).min(entries.len() - 1)][color_key % 4]
+        };
+        assert_eq!([0, 4].map(|color_key| value(0, color_key)), [NO_VALUE; 2]);
+        assert_eq!([0, 4].map(|color_key| value(1, color_key)), [0.5; 2]);
+    }
+
+    #[test]
+    fn maps_rise_in_lightness() {
+        for map in ColorMap::ALL {
+            let light = |i: u8| {
+                let [r, g, b] = linear(map.at(f64::from(i) / 20.0));
+                (0.2126 * r + 0.7152 * g + 0.0722 * b).cbrt()
+            };
+            assert!((1..=20).all(|i| light(i) > light(i - 1)), "{}", map.name());
+            assert_eq!(map.name().parse(), Ok(map));
+        }
+        // matplotlib's first and last of viridis.
+        let viridis = ColorMap::Viridis;
+        assert_eq!(
+            (viridis.at(0.0), viridis.at(1.0)),
+            ([68, 1, 84], [253, 231, 37])
+        );
+        // All of the map, whatever the background; without an end only where that is asked for.
+        let scale = viridis.scale();
+        assert_eq!((scale[0], scale[255]), ([68, 1, 84], [253, 231, 37]));
+        assert_ne!(viridis.scale_before([255; 3])[255], [253, 231, 37]);
+        assert_ne!(viridis.scale_before([0; 3])[0], [68, 1, 84]);
+    }
+
+    #[test]
+    fn types_have_different_colors() {
+        for palette in Palette::ALL {
+            assert_eq!(palette.name().parse(), Ok(palette));
+            let colors: Vec<Rgb> = (0..13).map(|kind| palette.of_type(kind)).collect();
+            for (i, a) in colors.iter().enumerate() {
+                assert!(!colors[..i].contains(a), "{} {i}", palette.name());
+            }
+        }
+    }
+}

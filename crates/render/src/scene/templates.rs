@@ -1,0 +1,241 @@
+//! Templates on the device: uploaded once, in pages that fit a binding.
+
+use glam::{DVec3, Vec3};
+use neurotess_mesh::{CoarseMesh, Role};
+use neurotess_refine::{MeshPart, pack, sphere_around};
+use wgpu::util::DeviceExt;
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::scene::TemplateId;
+use crate::sources::adaptive::settings::{Base, CLUSTER};
+
+/// Most places for patches of a part: a batch holds at least one.
+pub(crate) const MOST_PATCHES: usize = 1 << 20;
+/// Most u32s of a part per patch: an explicit patch, four explicit vertices with anchors.
+const U32S_OF_PATCH: usize = 2 + 4 * (3 + 8);
+
+/// A coarse mesh to be uploaded.
+#[derive(Clone, Copy, Debug)]
+pub struct Template<'t> {
+    /// The mesh.
+    pub mesh: &'t CoarseMesh,
+    /// One color key per tracing point for whoever shades: its color. Missing ones are 0.
+    pub color_keys: &'t [u32],
+    /// One level per tracing point, for [`LodCriterion::PerPoint`](crate::LodCriterion::PerPoint). Missing ones
+    /// are 1.
+    pub values: &'t [u8],
+}
+
+/// The packed buffer of a page with its bind group.
+#[derive(Debug)]
+pub(crate) struct Page {
+    pub(crate) packed: wgpu::Buffer,
+    pub(crate) group: wgpu::BindGroup,
+}
+
+/// Where a part of a template lies.
+#[derive(Clone, Debug)]
+pub(crate) struct TemplatePart {
+    pub(crate) page: usize,
+    pub(crate) base: Base,
+    /// Number of patches, counting those that stay empty.
+    pub(crate) slots: u32,
+    /// Number of patches.
+    pub(crate) patches: u32,
+    /// By place: the mesh's patch.
+    pub(crate) in_mesh: Vec<u32>,
+    /// By number: the mesh's vertex that is explicit.
+    pub(crate) explicit: Vec<u32>,
+    /// BoundingSphere around each cluster of patches, relative to the template's origin (µm).
+    pub(crate) spheres: Vec<(Vec3, f32)>,
+    /// BoundingSphere around all of them.
+    pub(crate) sphere: (Vec3, f32),
+}
+
+/// What the host remembers of a template.
+#[derive(Clone, Debug)]
+pub(crate) struct StoredTemplate {
+    pub(crate) origin: DVec3,
+    pub(crate) parts: Vec<TemplatePart>,
+    points: usize,
+}
+
+/// Templates on a device.
+#[derive(Debug, Default)]
+pub struct Templates {
+    pub(crate) pages: Vec<Page>,
+    templates: Vec<StoredTemplate>,
+    bytes: Vec<(&'static str, u64)>,
+}
+
+impl Templates {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Uploads templates, with numbers that follow those already there.
+    ///
+    /// # Errors
+    /// The device has no memory left, or refuses.
+    pub fn add(
+        &mut self,
+        gpu: &Gpu,
+        templates: &[Template<'_>],
+    ) -> Result<Vec<TemplateId>, DeviceError> {
+        let layout = layout(&gpu.device);
+        let most_u32s = usize::try_from(gpu.largest_binding() / 4).unwrap_or(usize::MAX);
+        let most = (most_u32s / U32S_OF_PATCH).clamp(CLUSTER, MOST_PATCHES);
+        let mut packed = Vec::new();
+        let first = self.templates.len();
+        for template in templates {
+            let mut stored = StoredTemplate {
+                origin: template.mesh.origin,
+                parts: Vec::new(),
+                points: points(template.mesh),
+            };
+            for part in pack(template.mesh, template.color_keys, template.values, most) {
+                if packed.len() + part.packed.len() > most_u32s {
+                    self.finish(gpu, &layout, &packed);
+                    packed.clear();
+                }
+                self.count(&part);
+                stored.parts.push(TemplatePart {
+                    page: self.pages.len(),
+                    base: Base::new(packed.len() as u32, &part.layout),
+                    slots: part.patches.len() as u32,
+                    patches: part.patches.iter().filter(|&&p| p != u32::MAX).count() as u32,
+                    sphere: sphere_around(part.spheres.iter().copied()),
+                    spheres: part.spheres,
+                    in_mesh: part.patches,
+                    explicit: part.explicit,
+                });
+                packed.extend(part.packed);
+            }
+            self.templates.push(stored);
+        }
+        self.finish(gpu, &layout, &packed);
+        gpu.check()?;
+        let ids = first..self.templates.len();
+        Ok(ids.map(|id| TemplateId(id as u32)).collect())
+    }
+
+    /// Puts another mesh in a template's place. It gets pages of its own; those that only the old one
+    /// had are used again.
+    ///
+    /// # Errors
+    /// The device has no memory left, or refuses; the old one stays.
+    pub fn replace(
+        &mut self,
+        gpu: &Gpu,
+        id: TemplateId,
+        template: &Template<'_>,
+    ) -> Result<(), DeviceError> {
+        let Some(old) = self.templates.get(id.0 as usize) else {
+            return Ok(());
+        };
+        let mut fresh = Self::new();
+        fresh.add(gpu, &[*template])?;
+        let pages = |t: &StoredTemplate| -> Vec<usize> { t.parts.iter().map(|p| p.page).collect() };
+        let own = pages(old);
+        let others = self.templates.iter().enumerate();
+        let others: Vec<usize> = others
+            .filter(|&(i, _)| i != id.0 as usize)
+            .flat_map(|(_, t)| pages(t))
+            .collect();
+        let mut free: Vec<usize> = own.into_iter().filter(|p| !others.contains(p)).collect();
+        free.sort_unstable();
+        free.dedup();
+        let mut moved = Vec::new();
+        for page in fresh.pages.drain(..) {
+            match free.pop() {
+                Some(place) => {
+                    self.pages[place] = page;
+                    moved.push(place);
+                }
+                None => {
+                    moved.push(self.pages.len());
+                    self.pages.push(page);
+                }
+            }
+        }
+        if let Some(mut stored) = fresh.templates.pop() {
+            for part in &mut stored.parts {
+                part.page = moved[part.page];
+            }
+            self.templates[id.0 as usize] = stored;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, part: &MeshPart) {
+        for (name, bytes) in part.bytes() {
+            match self.bytes.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, sum)) => *sum += bytes,
+                None => self.bytes.push((name, bytes)),
+            }
+        }
+    }
+
+    fn finish(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, packed: &[u32]) {
+        if packed.is_empty() {
+            return;
+        }
+        let packed = gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("packed of templates"),
+                contents: bytemuck::cast_slice(packed),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("page of templates"),
+            layout,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: packed.as_entire_binding(),
+            }],
+        });
+        self.pages.push(Page { packed, group });
+    }
+
+    pub(crate) fn template(&self, id: TemplateId) -> Option<&StoredTemplate> {
+        self.templates.get(id.0 as usize)
+    }
+
+    /// Number of templates.
+    pub fn count_of_templates(&self) -> usize {
+        self.templates.len()
+    }
+
+    /// Number of tracing points of all templates, those that stand for somata's vertices aside.
+    pub fn point_count(&self) -> usize {
+        self.templates.iter().map(|template| template.points).sum()
+    }
+
+    /// Bytes on the device per tracing point.
+    pub fn bytes_per_point(&self) -> f64 {
+        let bytes: u64 = self.pages.iter().map(|page| page.packed.size()).sum();
+        bytes as f64 / self.point_count().max(1) as f64
+    }
+
+    /// Bytes on the device by what they hold.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        self.bytes.clone()
+    }
+}
+
+fn points(mesh: &CoarseMesh) -> usize {
+    let tracing = mesh.tracing.iter();
+    tracing.filter(|point| point.role != Role::Soma).count()
+}
+
+/// Group 0 of the pass that decides: the packed buffer.
+pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let compute = wgpu::ShaderStages::COMPUTE;
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("page of templates"),
+        entries: &[crate::sources::adaptive::refiner::storage(0, compute, true)],
+    })
+}

@@ -1,0 +1,113 @@
+// What passes after the drawing share, and the last: from samples to the bytes of a picture.
+// Called by renderer.rs. Rust twin: finish.rs.
+
+struct Finish {
+    tile_size: vec2<u32>,
+    tile_origin: vec2<i32>,
+    // Half the whole picture (sub-pixels).
+    half_size: vec2<f32>,
+    // µm per sub-pixel at unit depth.
+    slope: f32,
+    // Sub-pixels per pixel, along one side.
+    scale: u32,
+    // Radius of occlusion (µm), at most `most` sub-pixels; 0: none.
+    radius: f32,
+    most: f32,
+    // Sub-pixels around what is kept.
+    margin: u32,
+    // 1: the background is left out.
+    clear: u32,
+    // What is kept (pixels).
+    kept: vec2<u32>,
+    spare: u32,
+    // Bytes of a pixel where nothing is.
+    empty: u32,
+    // Linear.
+    background: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> finish: Finish;
+@group(0) @binding(1) var colors: texture_2d<f32>;
+@group(0) @binding(2) var normals: SAMPLED_TEXTURE;
+@group(0) @binding(3) var depths: SAMPLED_TEXTURE;
+@group(0) @binding(4) var<storage, read_write> raw: array<f32>;
+@group(0) @binding(5) var<storage, read_write> blurred: array<f32>;
+@group(0) @binding(6) var<storage, read_write> pixels: array<u32>;
+
+// Depth (µm), 0 where nothing is.
+fn depth_at(p: vec2<i32>) -> f32 {
+    if any(p < vec2(0)) || any(p >= vec2<i32>(finish.tile_size)) {
+        return 0.0;
+    }
+    return bitcast<f32>(pack4x8unorm(textureLoad(depths, p, 0)));
+}
+
+// Place in the view (µm): right, up, backward.
+fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
+    let place = vec2<f32>(p + finish.tile_origin) + 0.5 - finish.half_size;
+    return vec3(place * vec2(1.0, -1.0) * finish.slope * depth, -depth);
+}
+
+// 1 where the depth is that of the middle, falling to 0 over half a radius of occlusion.
+fn alike(depth: f32, q: vec2<i32>) -> f32 {
+    let other = depth_at(q);
+    if other == 0.0 || depth == 0.0 {
+        return 0.0;
+    }
+    let reach = min(finish.radius, finish.most * finish.slope * depth);
+    return max(1.0 - abs(other - depth) / (0.3 * reach), 0.0);
+}
+
+fn occlusion_at(p: vec2<i32>) -> f32 {
+    let depth = depth_at(p);
+    if depth == 0.0 {
+        return 1.0;
+    }
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var k = -BLUR; k <= BLUR; k++) {
+        let q = p + vec2(0, k);
+        let weight = alike(depth, q) * f32(BLUR + 1 - abs(k));
+        weights += weight;
+        let y = u32(clamp(q.y, 0, i32(finish.tile_size.y) - 1));
+        sum += weight * blurred[y * finish.tile_size.x + u32(q.x)];
+    }
+    return select(1.0, sum / weights, weights > 0.0);
+}
+
+// IEC 61966-2-1.
+fn encoded(linear: vec3<f32>) -> vec3<f32> {
+    let c = clamp(linear, vec3(0.0), vec3(1.0));
+    return select(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3(0.0031308));
+}
+
+@compute @workgroup_size(8, 8)
+fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= finish.kept) {
+        return;
+    }
+    var sum = vec4(0.0);
+    for (var y = 0u; y < finish.scale; y++) {
+        for (var x = 0u; x < finish.scale; x++) {
+            let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.margin);
+            var color = textureLoad(colors, p, 0);
+            if finish.radius > 0.0 && color.a > 0.0 {
+                color = vec4(color.rgb * occlusion_at(p), color.a);
+            }
+            sum += color;
+        }
+    }
+    let at = id.y * finish.kept.x + id.x;
+    if sum.a == 0.0 {
+        pixels[at] = finish.empty;
+        return;
+    }
+    sum /= f32(finish.scale * finish.scale);
+    var out = vec4(sum.rgb + finish.background.rgb * (1.0 - sum.a), 1.0);
+    if finish.clear == 1u {
+        out = vec4(sum.rgb / sum.a, sum.a);
+    }
+    // Rounded by hand: how pack4x8unorm rounds is the driver's lod.
+    let bytes = vec4<u32>(floor(vec4(encoded(out.rgb), out.a) * 255.0 + 0.5));
+    pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+}

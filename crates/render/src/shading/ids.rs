@@ -1,0 +1,284 @@
+//! The pass that draws ids instead of colors, and the way back to the host. Its text: ids.wgsl.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::output::tiles::TileRenderer;
+use crate::shading::present::texture;
+use crate::shading::shade::{DEPTH_FORMAT, GUARD, PipelineKey, Shade, shader_text};
+use crate::sources::VertexSource;
+use crate::view::frame::Frame;
+
+/// What is drawn at a pixel, as a [`PickResolver`](crate::PickResolver) reads it; zeros where nothing is.
+pub type PickId = [u32; 2];
+/// Width and height (pixels), and the ids of all pixels by row.
+pub type PickIds = ([u32; 2], Vec<PickId>);
+
+/// Bits of an id's first color key for how a patch is drawn; those above are its batch's.
+pub(crate) const BATCH_SHIFT: u32 = 3;
+/// How a patch is drawn: refined. Less than that is the number of a corner of a flat one.
+pub(crate) const FINE: u32 = 4;
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+/// Bytes of an id.
+const BYTES: usize = size_of::<PickId>();
+
+/// Pipelines and targets of the pass.
+pub(crate) struct Identifier {
+    kind: u64,
+    pipelines: Vec<wgpu::RenderPipeline>,
+    canvas: Option<Canvas>,
+}
+
+struct Canvas {
+    size: [u32; 2],
+    ids: wgpu::Texture,
+    depth: wgpu::Texture,
+    read: wgpu::Buffer,
+    /// Bytes of a row in the buffer.
+    row: u32,
+    state: Arc<AtomicU8>,
+}
+
+const NOTHING: u8 = 0;
+const UNDER_WAY: u8 = 1;
+const THERE: u8 = 2;
+const FAILED: u8 = 3;
+
+/// The text for one of a source's shaders.
+pub(crate) fn ids_text(source: &str, id: &str) -> String {
+    let shading = shader_text(
+        source,
+        PipelineKey {
+            samples: 1,
+            ..PipelineKey::default()
+        },
+    );
+    let ids = include_str!("ids.wgsl");
+    let constants =
+        format!("const BATCH_SHIFT: u32 = {BATCH_SHIFT}u;\nconst FINE: u32 = {FINE}u;\n");
+    format!("{constants}{shading}{id}{ids}")
+}
+
+impl Identifier {
+    /// None where the source cannot tell what it draws.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        renderer: &TileRenderer,
+        source: &dyn VertexSource,
+    ) -> Option<Self> {
+        let id = source.id_wgsl()?;
+        let device = &gpu.device;
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("ids"),
+            bind_group_layouts: &[Some(source.layout()), Some(&renderer.shader.layout)],
+            immediate_size: 0,
+        });
+        let pipeline = |shader: usize| {
+            let text = ids_text(&source.wgsl(shader), id);
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("ids"),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            });
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("ids"),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex_id"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment_id"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(FORMAT.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        Some(Self {
+            kind: renderer.kind(),
+            pipelines: (0..source.shaders()).map(pipeline).collect(),
+            canvas: None,
+        })
+    }
+
+    pub(crate) fn fits(&self, renderer: &TileRenderer) -> bool {
+        self.kind == renderer.kind()
+    }
+
+    /// Draws a whole frame and sends it on its way to the host.
+    pub(crate) fn draw(
+        &mut self,
+        gpu: &Gpu,
+        renderer: &TileRenderer,
+        source: &mut dyn VertexSource,
+        frame: &Frame,
+        mut shade: Shade,
+        size: [u32; 2],
+    ) -> Result<(), DeviceError> {
+        let busy = |c: &Canvas| c.size != size || c.state.load(Ordering::Acquire) == UNDER_WAY;
+        if self.canvas.as_ref().is_none_or(busy) {
+            self.canvas = Some(Canvas::new(gpu, size));
+            gpu.check()?;
+        }
+        let Some(canvas) = &self.canvas else {
+            return Ok(());
+        };
+        canvas.unmap();
+        let group = renderer.shade_group(gpu);
+        let rounds = source.prepare(gpu, frame)?.max(1);
+        for round in 0..rounds {
+            shade.batch = round as u32;
+            gpu.queue
+                .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            source.choose(round, &mut encoder, None);
+            self.round(source, round, canvas, &group, &mut encoder);
+            if round + 1 == rounds {
+                canvas.copy(&mut encoder);
+            }
+            gpu.queue.submit([encoder.finish()]);
+        }
+        canvas.send();
+        gpu.check()
+    }
+
+    fn round(
+        &self,
+        source: &dyn VertexSource,
+        round: usize,
+        canvas: &Canvas,
+        group: &wgpu::BindGroup,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let (empty, far) = match round {
+            0 => (
+                wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                wgpu::LoadOp::Clear(0.0),
+            ),
+            _ => (wgpu::LoadOp::Load, wgpu::LoadOp::Load),
+        };
+        let [ids, depth] = [&canvas.ids, &canvas.depth].map(|t| t.create_view(&Default::default()));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("ids"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &ids,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: empty,
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: far,
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(1, group, &[]);
+        let [width, height] = canvas.size.map(|n| n as f32 + 2.0 * GUARD);
+        pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
+        for (shader, pipeline) in self.pipelines.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            source.draw(round, shader, &mut pass);
+        }
+    }
+
+    /// The ids of all pixels, by row, once they have arrived. The device must be polled.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub(crate) fn take(&mut self) -> Result<Option<PickIds>, DeviceError> {
+        let Some(canvas) = &self.canvas else {
+            return Ok(None);
+        };
+        match canvas.state.load(Ordering::Acquire) {
+            THERE => {}
+            FAILED => return Err(DeviceError::Lost("ids did not arrive".into())),
+            _ => return Ok(None),
+        }
+        let range = canvas.read.slice(..).get_mapped_range();
+        let range = range.map_err(|e| DeviceError::Lost(e.to_string()))?;
+        let wanted = BYTES * canvas.size[0] as usize;
+        let mut ids = Vec::with_capacity(canvas.size[0] as usize * canvas.size[1] as usize);
+        for row in range.chunks(canvas.row as usize) {
+            ids.extend(
+                row[..wanted]
+                    .chunks_exact(BYTES)
+                    .map(bytemuck::pod_read_unaligned::<PickId>),
+            );
+        }
+        drop(range);
+        canvas.unmap();
+        Ok(Some((canvas.size, ids)))
+    }
+}
+
+impl Canvas {
+    fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let row = (BYTES as u32 * size[0]).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        Self {
+            size,
+            ids: texture(gpu, size, FORMAT, drawn | wgpu::TextureUsages::COPY_SRC),
+            depth: texture(gpu, size, DEPTH_FORMAT, drawn),
+            read: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("ids"),
+                size: u64::from(row) * u64::from(size[1]),
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            }),
+            row,
+            state: Arc::new(AtomicU8::new(NOTHING)),
+        }
+    }
+
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
+        let to = wgpu::TexelCopyBufferInfo {
+            buffer: &self.read,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(self.row),
+                rows_per_image: None,
+            },
+        };
+        encoder.copy_texture_to_buffer(self.ids.as_image_copy(), to, self.ids.size());
+    }
+
+    fn send(&self) {
+        self.state.store(UNDER_WAY, Ordering::Release);
+        let state = Arc::clone(&self.state);
+        self.read
+            .slice(..)
+            .map_async(wgpu::MapMode::Read, move |mapped| {
+                let now = if mapped.is_ok() { THERE } else { FAILED };
+                state.store(now, Ordering::Release);
+            });
+    }
+
+    fn unmap(&self) {
+        if self.state.swap(NOTHING, Ordering::AcqRel) == THERE {
+            self.read.unmap();
+        }
+    }
+}

@@ -1,0 +1,28 @@
+// What is drawn at a pixel: 1 + a batch with what `surface_id` says first, and what it says second; 0 where
+// nothing is. Comes after shade.wgsl and the source's `surface_id`. Called by ids.rs.
+
+struct PickHit {
+    @invariant @builtin(position) position: vec4<f32>,
+    @location(0) coverage: f32,
+    @location(1) relative: vec3<f32>,
+    @location(2) @interpolate(flat) id: vec2<u32>,
+}
+
+@vertex
+fn vertex_id(
+    @builtin(vertex_index) vertex_index: u32,
+    @builtin(instance_index) instance_index: u32,
+) -> PickHit {
+    let v = shaded_vertex(vertex_index, instance_index);
+    let id = surface_id(vertex_index, instance_index);
+    let first = 1u + (shade.batch << BATCH_SHIFT) + id.x;
+    return PickHit(v.position, v.coverage, v.relative, vec2<u32>(first, id.y));
+}
+
+@fragment
+fn fragment_id(in: PickHit) -> @location(0) vec2<u32> {
+    if left_by_clip(in.relative, in.coverage) <= 0.0 {
+        discard;
+    }
+    return in.id;
+}

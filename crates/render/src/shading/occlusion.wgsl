@@ -1,0 +1,67 @@
+// Ambient occlusion from depth and normals. Called by renderer.rs. Rust twin of the uniform:
+// finish.rs.
+//
+// Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: taps on a spiral, each
+// counts by how far it rises above the tangent plane and fades out with its distance. The blur is
+// theirs too, along x here and along y in finish.wgsl, and stops where depth jumps.
+
+@compute @workgroup_size(8, 8)
+fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
+    let p = vec2<i32>(id.xy);
+    if any(p >= vec2<i32>(finish.tile_size)) {
+        return;
+    }
+    let at = id.y * finish.tile_size.x + id.x;
+    let depth = depth_at(p);
+    if depth == 0.0 {
+        return;
+    }
+    let center = view_at(p, depth);
+    let n = normalize(textureLoad(normals, p, 0).xyz * 2.0 - 1.0);
+    let pixel = finish.slope * depth;
+    let reach = min(finish.radius / pixel, finish.most);
+    let radius = reach * pixel;
+    let whole = vec2<u32>(p + finish.tile_origin + 65536);
+    // One of 16 turns, so that neighbors, which the blur joins, look in different directions.
+    let turn = f32((whole.x & 3u) + 4u * ((whole.y & 3u) ^ ((whole.x & 1u) << 1u))) / 16.0;
+    var sum = 0.0;
+    for (var i = 0u; i < TAPS; i++) {
+        let share = (f32(i) + 0.5 + turn * 0.5) / f32(TAPS);
+        let angle = (f32(i) * 0.618034 + turn) * 6.2831853;
+        let offset = vec2(cos(angle), sin(angle)) * reach * share;
+        let q = p + vec2<i32>(round(offset));
+        let other = depth_at(q);
+        if other == 0.0 {
+            continue;
+        }
+        let v = view_at(q, other) - center;
+        let distance = length(v);
+        let rise = max(dot(v, n) / max(distance, 1e-20) - 0.12, 0.0);
+        // Twice the radius along the sight: what lies that far in front still casts its shade.
+        let far = min(distance / (2.0 * radius), 1.0);
+        sum += rise * (1.0 - far * far);
+    }
+    raw[at] = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
+}
+
+@compute @workgroup_size(8, 8)
+fn blur(@builtin(global_invocation_id) id: vec3<u32>) {
+    let p = vec2<i32>(id.xy);
+    if any(p >= vec2<i32>(finish.tile_size)) {
+        return;
+    }
+    let depth = depth_at(p);
+    if depth == 0.0 {
+        return;
+    }
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var k = -BLUR; k <= BLUR; k++) {
+        let q = p + vec2(k, 0);
+        let weight = alike(depth, q) * f32(BLUR + 1 - abs(k));
+        weights += weight;
+        sum += weight * raw[u32(clamp(q.y, 0, i32(finish.tile_size.y) - 1)) * finish.tile_size.x
+            + u32(clamp(q.x, 0, i32(finish.tile_size.x) - 1))];
+    }
+    blurred[id.y * finish.tile_size.x + id.x] = select(1.0, sum / weights, weights > 0.0);
+}

@@ -1,0 +1,339 @@
+//! The pass that puts a picture into a texture, with outlines. Twin of the uniform in `present.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::gpu::device::Gpu;
+use crate::scene::color::Rgb;
+use crate::shading::targets::Targets;
+
+/// What windows show without converting: bytes of the screen.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Bit of a mask: selected.
+pub const SELECTED: u8 = 1;
+/// Bit of a mask: under the cursor.
+pub const HOVERED: u8 = 2;
+/// Bit of a mask: the piece that was clicked.
+pub const PICKED: u8 = 4;
+
+/// How outlines look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlines {
+    /// Width (pixels); 0: none.
+    pub width: u32,
+    /// Color of those round what is selected.
+    pub selected: Rgb,
+    /// Color of those round what is under the cursor.
+    pub hovered: Rgb,
+}
+
+impl Default for Outlines {
+    fn default() -> Self {
+        Self {
+            width: 2,
+            selected: [255, 140, 0],
+            hovered: [0, 190, 170],
+        }
+    }
+}
+
+/// Twin of `Present` in `present.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Present {
+    pub(crate) size: [u32; 2],
+    pub(crate) width: u32,
+    pub(crate) spare: u32,
+    pub(crate) selected: [f32; 4],
+    pub(crate) hovered: [f32; 4],
+}
+
+impl Present {
+    pub(crate) fn new(size: [u32; 2], outlines: Option<&Outlines>) -> Self {
+        let look = outlines.copied().unwrap_or_default();
+        let color = |[r, g, b]: Rgb| [r, g, b, 235].map(|c| f32::from(c) / 255.0);
+        Self {
+            size,
+            width: outlines.map_or(0, |outlines| outlines.width),
+            spare: 0,
+            selected: color(look.selected),
+            hovered: color(look.hovered),
+        }
+    }
+}
+
+/// The text that makes a mask of the normals that a draft has drawn, of so many samples.
+pub(crate) fn mask_text(samples: u32) -> String {
+    let texture = match samples {
+        1 => "texture_2d<f32>",
+        _ => "texture_multisampled_2d<f32>",
+    };
+    let text = include_str!("mask.wgsl");
+    text.replace("NORMALS", texture)
+        .replace("SAMPLES", &samples.to_string())
+}
+
+/// A pass over all pixels.
+struct PipelineKey {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// What a picture is shown in.
+pub(crate) struct Screen {
+    pub(crate) texture: wgpu::Texture,
+    /// Of a draft: the mask that is made of what it has drawn. Others have the host's.
+    drawn: Option<wgpu::Texture>,
+}
+
+impl Screen {
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2], draft: bool) -> Self {
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let shown = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        Self {
+            texture: texture(gpu, size, FORMAT, drawn | shown),
+            drawn: draft.then(|| mask_texture(gpu, size)),
+        }
+    }
+}
+
+/// The pass, with the mask that it looks at.
+pub(crate) struct Presenter {
+    show: PipelineKey,
+    gather: PipelineKey,
+    uniform: wgpu::Buffer,
+    mask: wgpu::Texture,
+    mask_size: Option<[u32; 2]>,
+}
+
+impl Presenter {
+    /// `samples`: of a draft's pixels.
+    pub(crate) fn new(gpu: &Gpu, samples: u32) -> Self {
+        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("present"),
+            size: size_of::<Present>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            show: PipelineKey::new(
+                gpu,
+                include_str!("present.wgsl"),
+                "show",
+                FORMAT,
+                &show_layout(),
+            ),
+            gather: PipelineKey::new(
+                gpu,
+                &mask_text(samples),
+                "gather",
+                MASK_FORMAT,
+                &gather_layout(samples),
+            ),
+            uniform,
+            mask: mask_texture(gpu, [1, 1]),
+            mask_size: None,
+        }
+    }
+
+    /// Bytes of [`SELECTED`] and [`HOVERED`] by pixel, for pictures of this size; none: no outlines.
+    pub(crate) fn set_mask(&mut self, gpu: &Gpu, mask: Option<([u32; 2], &[u8])>) {
+        self.mask_size = mask.map(|(size, _)| size);
+        let Some((size, bytes)) = mask else { return };
+        if [self.mask.width(), self.mask.height()] != size {
+            self.mask = mask_texture(gpu, size);
+        }
+        gpu.queue.write_texture(
+            self.mask.as_image_copy(),
+            bytes,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(size[0]),
+                rows_per_image: Some(size[1]),
+            },
+            self.mask.size(),
+        );
+    }
+
+    /// Encodes the pass.
+    pub(crate) fn present(
+        &self,
+        gpu: &Gpu,
+        targets: &Targets,
+        to: &Screen,
+        outlines: &Outlines,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let size = [to.texture.width(), to.texture.height()];
+        // Of another size, the mask belongs to another picture.
+        let fits = to.drawn.is_some() || self.mask_size == Some(size);
+        let outlines = Some(outlines).filter(|outlines| fits && outlines.width > 0);
+        let uniform = Present::new(size, outlines);
+        gpu.queue
+            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        if let (Some(drawn), Some(_)) = (&to.drawn, outlines) {
+            let normals = wgpu::BindingResource::TextureView(&targets.normal);
+            self.gather.run(gpu, &[normals], drawn, encoder);
+        }
+        let mask = to.drawn.as_ref().unwrap_or(&self.mask);
+        let mask = mask.create_view(&Default::default());
+        let resources = [
+            self.uniform.as_entire_binding(),
+            targets.pixels.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&mask),
+        ];
+        self.show.run(gpu, &resources, &to.texture, encoder);
+    }
+}
+
+impl PipelineKey {
+    fn new(
+        gpu: &Gpu,
+        text: &str,
+        fragment: &str,
+        format: wgpu::TextureFormat,
+        bindings: &[wgpu::BindingType],
+    ) -> Self {
+        let device = &gpu.device;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(fragment),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        });
+        let entry = |(binding, ty): (u32, &wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: *ty,
+            count: None,
+        };
+        let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(fragment),
+            entries: &entries,
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(fragment),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("corner"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { pipeline, layout }
+    }
+
+    /// Encodes the pass.
+    fn run(
+        &self,
+        gpu: &Gpu,
+        resources: &[wgpu::BindingResource<'_>],
+        to: &wgpu::Texture,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry {
+                binding,
+                resource: resource.clone(),
+            })
+            .collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layout,
+            entries: &entries,
+        });
+        let view = to.create_view(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: None,
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// What masks are made of: bits by pixel.
+const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
+
+fn mask_texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
+    let written = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::RENDER_ATTACHMENT;
+    texture(
+        gpu,
+        size,
+        MASK_FORMAT,
+        wgpu::TextureUsages::TEXTURE_BINDING | written,
+    )
+}
+
+/// A plain texture.
+pub(crate) fn texture(
+    gpu: &Gpu,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("viewport"),
+        size: wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+fn texture_binding(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled,
+    }
+}
+
+fn show_layout() -> [wgpu::BindingType; 3] {
+    let buffer = |ty| wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    [
+        buffer(wgpu::BufferBindingType::Uniform),
+        buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+        texture_binding(wgpu::TextureSampleType::Uint, false),
+    ]
+}
+
+fn gather_layout(samples: u32) -> [wgpu::BindingType; 1] {
+    let float = wgpu::TextureSampleType::Float { filterable: false };
+    [texture_binding(float, samples > 1)]
+}

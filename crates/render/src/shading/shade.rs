@@ -1,0 +1,324 @@
+//! The pipeline that shades a source's vertices. Twin of the uniform in `shade.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+
+use crate::gpu::device::Gpu;
+use crate::scene::color::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
+use crate::sources::{SURFACE_VERTEX_WGSL, VertexSource};
+use crate::view::frame::Frame;
+
+/// Linear color, premultiplied.
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Normals in the view.
+pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Depths (µm): the bytes of an f32.
+pub(crate) const DISTANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Reversed depth keeps its digits in floating point only.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// How surfaces look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Where the key light comes from.
+    pub light: Light,
+    /// Width (pixels) of the wireframe that show the triangles; 0: none.
+    pub wire: f32,
+    /// What is cut away.
+    pub clip: Option<Clip>,
+    /// Color of instances that are [`HIGHLIGHTED`], and its share, 0 to 1.
+    pub highlighted: (Rgb, f32),
+    /// Share of the samples that instances which are [`GHOSTED`] cover, 0 to 1.
+    pub ghosted: f32,
+    /// The background that colors of the scale must be told from: those that are as light as it have
+    /// edges, darker before a light background and lighter before a dark one. None, or [`Light::Flat`]: no
+    /// edges.
+    pub contrast: Option<Rgb>,
+}
+
+/// A plane: what lies behind it is cut away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clip {
+    /// A point of it (µm).
+    pub point: DVec3,
+    /// Unit direction to what is kept.
+    pub normal: DVec3,
+}
+
+/// State of an instance: it has the color of [`Look::highlighted`].
+pub const HIGHLIGHTED: u32 = 1;
+/// State of an instance: one looks through it, see [`Look::ghosted`].
+pub const GHOSTED: u32 = 2;
+/// State of an instance: only its soma is drawn.
+pub const WITHOUT_NEURITES: u32 = 4;
+/// State of an instance: its soma is not drawn.
+pub const WITHOUT_SOMA: u32 = 8;
+/// State of an instance: drafts have an outline round it, see [`ProgressiveRenderer::draft`](crate::ProgressiveRenderer::draft).
+pub const OUTLINED: u32 = 16;
+
+/// What surfaces are lit by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Light {
+    /// A soft key light from the upper left, a weak fill and the sky.
+    #[default]
+    Soft,
+    /// The same with the key light in this direction, seen from the picture: right, up, towards
+    /// the viewer. Any length but 0.
+    From(Vec3),
+    /// None: the bare colors.
+    Flat,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            light: Light::Soft,
+            wire: 0.0,
+            clip: None,
+            highlighted: ([255, 160, 0], 0.0),
+            ghosted: 0.25,
+            contrast: None,
+        }
+    }
+}
+
+/// Direction of [`Light::Soft`]'s key.
+const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
+
+/// Twin of `Shade` in `shade.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Shade {
+    pub(crate) clip_from_relative: [f32; 16],
+    pub(crate) right: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) up: [f32; 3],
+    pub(crate) slope: f32,
+    pub(crate) backward: [f32; 3],
+    pub(crate) half_width: f32,
+    pub(crate) key: [f32; 3],
+    pub(crate) wire: f32,
+    pub(crate) size: [f32; 2],
+    pub(crate) tile_origin: [f32; 2],
+    pub(crate) viewport_origin: [f32; 2],
+    pub(crate) viewport_size: [f32; 2],
+    pub(crate) lit: f32,
+    pub(crate) scale_entries: u32,
+    pub(crate) colors: u32,
+    pub(crate) valued: u32,
+    pub(crate) shift: [f32; 3],
+    pub(crate) ghosted: f32,
+    pub(crate) clip: [f32; 4],
+    pub(crate) highlighted: [f32; 4],
+    pub(crate) jitter: [f32; 2],
+    pub(crate) batch: u32,
+    pub(crate) pad: u32,
+    pub(crate) edge: [f32; 4],
+}
+
+/// What shaders must know of a color table.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct TableSizes {
+    /// Colors of the scale.
+    pub(crate) scale: u32,
+    /// All colors.
+    pub(crate) colors: u32,
+    /// Instances with values.
+    pub(crate) valued: u32,
+}
+
+impl Shade {
+    /// `scale`: sub-pixels per pixel along a side.
+    pub(crate) fn new(frame: &Frame, look: &Look, scale: u32, table: &TableSizes) -> Self {
+        let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
+        let (key, lit) = match look.light {
+            Light::Soft => (KEY, 1.0),
+            Light::From(direction) => (direction, 1.0),
+            Light::Flat => (KEY, 0.0),
+        };
+        let clip = look.clip.map_or([0.0; 4], |clip| {
+            let away = clip.normal.dot(frame.camera.eye() - clip.point);
+            clip.normal.as_vec3().extend(away as f32).to_array()
+        });
+        let [r, g, b] = linear(look.highlighted.0);
+        Self {
+            clip_from_relative: frame.clip_from_relative().to_cols_array(),
+            right,
+            near: frame.near as f32,
+            up,
+            slope: frame.slope() as f32,
+            backward,
+            half_width: HALF_WIDTH * scale as f32,
+            key: key.normalize_or(KEY).to_array(),
+            wire: 0.5 * look.wire * scale as f32,
+            size: frame.size.map(|n| n as f32),
+            tile_origin: [frame.tile.x as f32, frame.tile.y as f32],
+            viewport_origin: [frame.tile.x, frame.tile.y].map(|n| n as f32 - GUARD),
+            viewport_size: [frame.tile.width, frame.tile.height].map(|n| n as f32 + 2.0 * GUARD),
+            lit,
+            scale_entries: table.scale,
+            colors: table.colors,
+            valued: table.valued,
+            shift: [0.0; 3],
+            ghosted: look.ghosted,
+            clip,
+            highlighted: [r, g, b, look.highlighted.1],
+            jitter: [0.0; 2],
+            batch: 0,
+            pad: 0,
+            // Bare colors are nothing but those.
+            edge: edge(look.contrast.filter(|_| lit > 0.0)),
+        }
+    }
+
+    /// A step towards many samples: the picture moved by so many sub-pixels, its dither by `turn`.
+    pub(crate) fn moved(mut self, jitter: [f32; 2], turn: [f32; 2]) -> Self {
+        self.jitter = jitter;
+        self.tile_origin = [0, 1].map(|k| self.tile_origin[k] + turn[k]);
+        self
+    }
+}
+
+/// Color of edges before a background, and the background's luminance; beyond 1 there are no edges.
+fn edge(background: Option<Rgb>) -> [f32; 4] {
+    let Some(background) = background else {
+        return [0.0, 0.0, 0.0, 100.0];
+    };
+    let ink = if is_dark(background) { 0.6 } else { 0.05 };
+    [ink, ink, ink, luminance(background)]
+}
+
+/// Sub-pixels by which the viewport reaches beyond the tile on each side. Software rasterisers clip at
+/// the viewport, and a clipped edge covers other samples: one in 600,000 at the borders of tiles.
+pub(crate) const GUARD: f32 = 512.0;
+
+/// Half the width (pixels) of the thinnest thing drawn: below a pixel, lines look dotted.
+const HALF_WIDTH: f32 = 0.5;
+
+/// Draws samples from a source's vertices.
+pub(crate) struct Shader {
+    /// One for each of the source's shaders.
+    pub(crate) pipelines: Vec<wgpu::RenderPipeline>,
+    pub(crate) layout: wgpu::BindGroupLayout,
+}
+
+impl Shader {
+    pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, way: PipelineKey) -> Self {
+        let PipelineKey { samples, cut, .. } = way;
+        let device = &gpu.device;
+        let layout = layout(device);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("shade"),
+            bind_group_layouts: &[Some(source.layout()), Some(&layout)],
+            immediate_size: 0,
+        });
+        let target = |format: wgpu::TextureFormat| {
+            Some(wgpu::ColorTargetState {
+                format,
+                blend: None,
+                write_mask: wgpu::ColorWrites::ALL,
+            })
+        };
+        let pipeline = |shader: usize| {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("shade"),
+                source: wgpu::ShaderSource::Wgsl(shader_text(&source.wgsl(shader), way).into()),
+            });
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("shade"),
+                layout: Some(&pipeline_layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: (!cut).then_some(wgpu::Face::Back),
+                    ..wgpu::PrimitiveState::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    ..wgpu::MultisampleState::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[COLOR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let pipelines = (0..source.shaders()).map(pipeline).collect();
+        Self { pipelines, layout }
+    }
+}
+
+/// What pipelines depend on beside the source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct PipelineKey {
+    /// Samples of a sub-pixel: 1 or 4.
+    pub(crate) samples: u32,
+    /// Whether the inside may show.
+    pub(crate) cut: bool,
+    /// Whether instances have values: looking for them in every vertex took software Vulkan 10 ms a frame.
+    pub(crate) valued: bool,
+}
+
+/// The whole text for a source.
+pub(crate) fn shader_text(source: &str, way: PipelineKey) -> String {
+    let PipelineKey {
+        samples, valued, ..
+    } = way;
+    // With one sample a mask is of no use: what covers less than half is left out instead.
+    let (member, statement) = if samples > 1 {
+        (
+            "@builtin(sample_mask) mask: u32,",
+            "out.mask = mask_of(left, in.position);",
+        )
+    } else {
+        ("", "if mask_of(left, in.position) == 0u { discard; }")
+    };
+    let shading = include_str!("shade.wgsl")
+        .replace("MASK_MEMBER", member)
+        .replace("MASK_STATEMENT", statement);
+    format!(
+        "const SAMPLES: u32 = {samples}u;\nconst VALUED: bool = {valued};\nconst CATEGORY_BIT: u32 = {CATEGORY_BIT}u;\n\
+         {SURFACE_VERTEX_WGSL}{source}{shading}"
+    )
+}
+
+pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let binding = |binding, ty, visibility| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let table = wgpu::BufferBindingType::Storage { read_only: true };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shade"),
+        entries: &[
+            binding(
+                0,
+                wgpu::BufferBindingType::Uniform,
+                wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ),
+            binding(1, table, wgpu::ShaderStages::VERTEX),
+            binding(2, table, wgpu::ShaderStages::VERTEX),
+        ],
+    })
+}

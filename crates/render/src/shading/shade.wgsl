@@ -1,0 +1,303 @@
+// From a source's vertices to lit samples: projection, widening of thin tubes, color, light, wireframe.
+// Called by renderer.rs; comes after surface_vertex.wgsl and the source's text. Rust twin of the
+// uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
+
+struct Shade {
+    clip_from_relative: mat4x4<f32>,
+    right: vec3<f32>,
+    near: f32,
+    up: vec3<f32>,
+    // µm per sub-pixel at unit depth.
+    slope: f32,
+    backward: vec3<f32>,
+    // Half the width (sub-pixels) of the thinnest thing drawn.
+    half_width: f32,
+    // Unit direction to the key light in the view: right, up, backward.
+    key: vec3<f32>,
+    // Half the width (sub-pixels) of wireframe; 0: none.
+    wire: f32,
+    size: vec2<f32>,
+    tile_origin: vec2<f32>,
+    // Of the viewport, which reaches beyond the tile (sub-pixels of the whole picture).
+    viewport_origin: vec2<f32>,
+    viewport_size: vec2<f32>,
+    // 1: lit, 0: the bare color.
+    lit: f32,
+    // Number of scale entries at the start of the table; categories follow.
+    scale_entries: u32,
+    // Number of all colors, and of instances whose values follow them; 0: color keys are fractions.
+    colors: u32,
+    valued: u32,
+    // From positions as the source has them to those relative to the eye: 0 unless the source's eye is
+    // another one.
+    shift: vec3<f32>,
+    // Coverage of what is ghosted.
+    ghosted: f32,
+    // What lies behind this plane, relative to the eye, is cut away; all 0: nothing.
+    clip: vec4<f32>,
+    // Linear color of what is highlighted, and its share.
+    highlighted: vec4<f32>,
+    // Sub-pixels by which the whole picture is moved.
+    jitter: vec2<f32>,
+    // Which batch is drawn: for ids.
+    batch: u32,
+    pad: u32,
+    // Linear color of edges, and the luminance that they set colors of the scale off from.
+    edge: vec4<f32>,
+}
+
+const HIGHLIGHTED: u32 = 1u;
+const GHOSTED: u32 = 2u;
+const WITHOUT_NEURITES: u32 = 4u;
+const WITHOUT_SOMA: u32 = 8u;
+const OUTLINED: u32 = 16u;
+
+@group(1) @binding(0) var<uniform> shade: Shade;
+// Linear colors.
+@group(1) @binding(1) var<storage, read> table: array<vec4<f32>>;
+// By instance; those beyond the end have 0.
+@group(1) @binding(2) var<storage, read> states: array<u32>;
+
+struct Varying {
+    @invariant @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) color: vec3<f32>,
+    @location(2) relative: vec3<f32>,
+    @location(3) grid: vec2<f32>,
+    @location(4) coverage: f32,
+    // From 0, a tube two pixels wide, to 1, nothing.
+    @location(5) thin: f32,
+    // 1: has an outline.
+    @location(6) @interpolate(flat) outline: u32,
+    // Share of the edge's color at edges.
+    @location(7) edge: f32,
+}
+
+fn category_entry(category: u32) -> u32 {
+    return min(shade.scale_entries + category, shade.colors - 1u);
+}
+
+// The value that a color key means for an instance: see InstanceValues.
+fn value_of_instance(color_key: u32, instance: u32) -> f32 {
+    if instance >= shade.valued {
+        return -1.0;
+    }
+    let first = u32(table[shade.colors + instance / 4u][instance % 4u]);
+    return table[min(first + color_key / 4u, arrayLength(&table) - 1u)][color_key % 4u];
+}
+
+// A category counts from the end of the scale; anything else is a fraction of the scale, or a place
+// among the instance's values. The last component is 1 for colors of the scale.
+fn color_of(color_key: u32, instance: u32) -> vec4<f32> {
+    var share = f32(color_key) / f32(CATEGORY_BIT);
+    var category = (color_key & CATEGORY_BIT) != 0u;
+    var named = color_key & ~CATEGORY_BIT;
+    if VALUED && !category {
+        share = value_of_instance(color_key, instance);
+        category = share < 0.0;
+        named = 0u;
+    }
+    let last = max(shade.scale_entries, 1u) - 1u;
+    let place = select(share * f32(last), 0.0, category);
+    let low = select(u32(place), category_entry(named), category);
+    let high = select(min(u32(place) + 1u, last), low, category);
+    let color = mix(table[low].rgb, table[high].rgb, fract(place));
+    return vec4(color, select(1.0, 0.0, category));
+}
+
+fn luminance(color: vec3<f32>) -> f32 {
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// How little a color is told from the background: 1 up to a contrast of 1.25, as the light end of viridis has
+// before white, 0 from 1.8 on. Contrast as WCAG 2.2 defines it.
+fn lack_of_contrast(color: vec3<f32>) -> f32 {
+    let own = luminance(color) + 0.05;
+    let other = shade.edge.w + 0.05;
+    return 1.0 - smoothstep(1.25, 1.8, max(own, other) / min(own, other));
+}
+
+// Rasterisers keep 1/256 of a pixel. Here it is rounded in the whole picture's coordinates, so that
+// a triangle covers the same samples whatever tile it is drawn in. The quarter keeps away from ties.
+fn snapped(clip: vec4<f32>) -> vec4<f32> {
+    let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size + shade.jitter;
+    let local = floor(pixel * 256.0) / 256.0 - shade.viewport_origin + 0.25 / 256.0;
+    let ndc = (local / shade.viewport_size * 2.0 - 1.0) * vec2(1.0, -1.0);
+    return vec4(ndc * clip.w, clip.z, clip.w);
+}
+
+// Behind the near plane nothing can be divided; this is the same up to rounding.
+fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
+    let scale = shade.size / shade.viewport_size;
+    let shift = (shade.size + 2.0 * (shade.jitter - shade.viewport_origin)) / shade.viewport_size - 1.0;
+    return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
+}
+
+// Ink of a line by the share of a pixel that it fills. Spread by area alone, the axons of a whole cell
+// fade from sight: 0.3 of a pixel in linear light is hardly seen on white. This rises with the width
+// and is 0.9 there, 0.5 at a twentieth. SelectedPatch by eye on the samples and on real cells of 1 to 3 mm.
+fn ink_of(share: f32) -> f32 {
+    let rest = 1.0 - sqrt(share);
+    return 1.0 - rest * rest * rest;
+}
+
+fn state_of(instance: u32) -> u32 {
+    let last = arrayLength(&states) - 1u;
+    return select(0u, states[min(instance, last)], instance <= last);
+}
+
+// Coverage by what is left out. Somata are told by their radius of 0; their patches around a neurite
+// have corners on its first ring, whose radius is the neurite's. So what is left out or kept wins over
+// the ring by far, up to its very edge.
+fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {
+    if (state & WITHOUT_NEURITES) != 0u {
+        return select(0.0, 1000.0, radius == 0.0);
+    }
+    if (state & WITHOUT_SOMA) != 0u && radius == 0.0 {
+        return -1000.0;
+    }
+    return coverage;
+}
+
+fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
+    var v = surface_vertex(vertex_index, instance_index);
+    v.position += shade.shift;
+    v.axis += shade.shift;
+    let state = state_of(v.instance);
+    let color = color_of(v.color_key, v.instance);
+    let edge = color.a * lack_of_contrast(color.rgb);
+    var relative = v.position;
+    var coverage = 1.0;
+    var thin = 0.0;
+    if v.radius > 0.0 {
+        // What is thinner than a pixel is widened to one and made fainter.
+        let depth = max(-dot(v.axis, shade.backward), shade.near);
+        // As wide whatever the value: another frame of a recording changes colors and nothing else.
+        let narrowest = shade.half_width * shade.slope * depth;
+        thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
+        if v.radius < narrowest {
+            let offset = v.position - v.axis;
+            let away = select(v.normal, normalize(offset), dot(offset, offset) > 0.0);
+            relative += away * (narrowest - v.radius);
+            coverage = ink_of(v.radius / narrowest);
+        }
+    }
+    let clip = shade.clip_from_relative * vec4(relative, 1.0);
+    var out: Varying;
+    if clip.w > shade.near {
+        out.position = snapped(clip);
+    } else {
+        out.position = unsnapped(clip);
+    }
+    if (state & GHOSTED) != 0u {
+        coverage *= shade.ghosted;
+    }
+    coverage = shown_part(state, v.radius, coverage);
+    out.normal = v.normal;
+    out.color = color.rgb;
+    out.edge = edge;
+    if (state & HIGHLIGHTED) != 0u {
+        out.color = mix(out.color, shade.highlighted.rgb, shade.highlighted.a);
+    }
+    out.relative = relative;
+    out.grid = v.grid;
+    out.coverage = coverage;
+    out.thin = thin;
+    out.outline = select(0u, 1u, (state & OUTLINED) != 0u);
+    return out;
+}
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) vertex_index: u32,
+    @builtin(instance_index) instance_index: u32,
+) -> Varying {
+    return shaded_vertex(vertex_index, instance_index);
+}
+
+struct Sample {
+    // Linear, premultiplied by coverage through the mask.
+    @location(0) color: vec4<f32>,
+    // Normal in the view, from -1..1 to 0..1, and bits of the mask of outlines in bytes.
+    @location(1) normal: vec4<f32>,
+    // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
+    // draw to floating-point ones.
+    @location(2) depth: vec4<f32>,
+    MASK_MEMBER
+}
+
+// A key light from the upper left, a weak fill from the lower right, a sky brighter than the ground.
+// Weights were chosen by eye on real cells so that a side that faces the viewer has the color of
+// the legend.
+fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
+    let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
+    let sky = 0.5 + 0.5 * n.y;
+    let diffuse = 0.85 * key * key + 0.18 * fill + mix(0.22, 0.52, sky);
+    // A broad sheen, so that black things have a shape.
+    let half = normalize(shade.key + to_eye);
+    let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
+    // Light from behind along the outline, that parts a thing from what lies behind it.
+    let grazing = 1.0 - max(dot(n, to_eye), 0.0);
+    let rim = 0.16 * grazing * grazing * grazing * mix(0.4, 1.0, sky);
+    return albedo * diffuse + sheen + rim * (0.25 + albedo);
+}
+
+// How much of a wire is here: lines run where x, y or x + y is a whole number.
+fn wireframe(grid: vec2<f32>) -> f32 {
+    let g = vec3(grid, grid.x + grid.y);
+    let width = max(fwidth(g), vec3(1e-6));
+    let distance = abs(fract(g - 0.5) - 0.5) / width;
+    let nearest = min(distance.x, min(distance.y, distance.z));
+    // Where lines would touch one another they fade to a tint.
+    let crowded = max(width.x, max(width.y, width.z)) * shade.wire * 4.0;
+    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
+}
+
+fn bayer(p: vec2<u32>) -> f32 {
+    let q = p & vec2(1u);
+    return (f32((q.x ^ q.y) * 2u + q.y) + 0.5) / 4.0;
+}
+
+// As many samples as the coverage asks for, dithered over neighboring sub-pixels.
+fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
+    let p = vec2<u32>(position.xy + shade.tile_origin + 4096.0);
+    let count = u32(clamp(coverage, 0.0, 1.0) * f32(SAMPLES) + bayer(p));
+    let turn = (p.x + 2u * p.y) % SAMPLES;
+    let bits = ((1u << count) - 1u) << turn;
+    return (bits | (bits >> SAMPLES)) & ((1u << SAMPLES) - 1u);
+}
+
+// How much of a sample is there: nothing of what is cut away.
+fn left_by_clip(relative: vec3<f32>, coverage: f32) -> f32 {
+    return select(coverage, 0.0, dot(shade.clip.xyz, relative) + shade.clip.w < 0.0);
+}
+
+@fragment
+fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
+    // Only a cut shows the inside; it looks as if it were filled.
+    let world = select(-shade.clip.xyz, normalize(in.normal), front);
+    let axes = mat3x3(shade.right, shade.up, shade.backward);
+    let left = left_by_clip(in.relative, in.coverage);
+    let to_eye = -normalize(in.relative) * axes;
+    // A line shows no sides: it gets the light of a face towards the viewer, so its color is the
+    // legend's. Means over all sides were a third darker, and thin things looked gray.
+    let n = normalize(mix(world * axes, to_eye, in.thin));
+    var color = in.color;
+    if shade.wire > 0.0 {
+        let line = select(vec3(0.22), color * 0.06, luminance(color) > 0.06);
+        color = mix(color, line, wireframe(in.grid) * (1.0 - in.thin));
+    }
+    if shade.lit > 0.0 {
+        color = light(color, n, to_eye);
+    }
+    let facing = dot(world * axes, to_eye);
+    let across = sqrt(max(1.0 - facing * facing, 0.0));
+    color = mix(color, shade.edge.rgb, 0.7 * in.edge * smoothstep(0.5, 0.85, across));
+    var out: Sample;
+    out.color = vec4(color, 1.0);
+    out.normal = vec4(n * 0.5 + 0.5, f32(in.outline) / 255.0);
+    out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
+    MASK_STATEMENT
+    return out;
+}

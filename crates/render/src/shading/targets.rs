@@ -1,0 +1,81 @@
+//! Textures and buffers that a tile passes through.
+
+use crate::gpu::device::Gpu;
+use crate::shading::shade::{COLOR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, NORMAL_FORMAT};
+
+/// Textures and buffers for one tile of the greatest size.
+pub(crate) struct Targets {
+    pub(crate) color: wgpu::TextureView,
+    pub(crate) resolved: Option<wgpu::TextureView>,
+    pub(crate) normal: wgpu::TextureView,
+    pub(crate) distance: wgpu::TextureView,
+    pub(crate) depth: wgpu::TextureView,
+    pub(crate) raw: wgpu::Buffer,
+    pub(crate) blurred: wgpu::Buffer,
+    pub(crate) pixels: wgpu::Buffer,
+    pub(crate) read: wgpu::Buffer,
+    pub(crate) size: [u32; 2],
+    pub(crate) bytes: u64,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Self {
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let bound = wgpu::TextureUsages::TEXTURE_BINDING;
+        let mut bytes = 0;
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let mut texture = |format: wgpu::TextureFormat, samples: u32| {
+            bytes += pixels * u64::from(samples * format.block_copy_size(None).unwrap_or(4));
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("target"),
+                size: wgpu::Extent3d {
+                    width: size[0],
+                    height: size[1],
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: attachment | bound,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        };
+        let color = texture(COLOR_FORMAT, samples);
+        let resolved = (samples > 1).then(|| texture(COLOR_FORMAT, 1));
+        let normal = texture(NORMAL_FORMAT, samples);
+        let distance = texture(DISTANCE_FORMAT, samples);
+        let depth = texture(DEPTH_FORMAT, samples);
+        let storage = wgpu::BufferUsages::STORAGE;
+        let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        Self {
+            color,
+            resolved,
+            normal,
+            distance,
+            depth,
+            raw: make(gpu, "occlusion", 4 * pixels, storage),
+            blurred: make(gpu, "occlusion", 4 * pixels, storage),
+            pixels: make(
+                gpu,
+                "pixels",
+                4 * pixels,
+                storage | wgpu::BufferUsages::COPY_SRC,
+            ),
+            read: make(gpu, "read back", 4 * pixels, read),
+            size,
+            bytes: bytes + 16 * pixels,
+        }
+    }
+}
+
+/// A buffer, of 16 bytes at least.
+pub(crate) fn make(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size.max(16),
+        usage,
+        mapped_at_creation: false,
+    })
+}

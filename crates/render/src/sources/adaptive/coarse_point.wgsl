@@ -1,0 +1,159 @@
+// Rings and explicit vertices where an instance puts them: made once a frame, whatever the level. Every patch
+// that meets in a corner finds it by the same expression in the same color_keys.
+//
+// Few color keys, since vertex shaders load little else. Written by coarse.wgsl, read by vertices.wgsl. The twin
+// of the struct stands in work.rs.
+
+// Rings by a quarter of their first corner's place, then two entries for each explicit vertex. Places are
+// relative to the eye (micrometers), directions are the world's.
+struct CoarsePoint {
+    // Of a ring: its center. Of an explicit vertex: where it is, and in its second entry the center.
+    x: f32,
+    y: f32,
+    z: f32,
+    radius: f32,
+    // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its role.
+    low: u32,
+    high: u32,
+    color_key: u32,
+    instance: u32,
+}
+
+// Where the entry of a corner is, by the corner's place.
+fn coarse_index(place: u32) -> u32 {
+    let at_explicit = frame.first_explicit / 4u + 2u * (place - frame.first_explicit);
+    return select(place / 4u, at_explicit, place >= frame.first_explicit);
+}
+
+fn center_of(point: CoarsePoint) -> vec3<f32> {
+    return vec3<f32>(point.x, point.y, point.z);
+}
+
+// Meyer et al., On floating-point normal vectors, 2010.
+fn pack_direction(v: vec3<f32>) -> u32 {
+    let p = v.xy / max(abs(v.x) + abs(v.y) + abs(v.z), 1e-30);
+    let folded = (1.0 - abs(p.yx)) * select(vec2(-1.0), vec2(1.0), p >= vec2(0.0));
+    return pack2x16snorm(select(p, folded, v.z < 0.0));
+}
+
+fn unpack_direction(packed: u32) -> vec3<f32> {
+    let p = unpack2x16snorm(packed);
+    let z = 1.0 - abs(p.x) - abs(p.y);
+    let fold = max(-z, 0.0);
+    let folded = p - select(vec2(-fold), vec2(fold), p >= vec2(0.0));
+    return normalize(vec3(folded, z));
+}
+
+// How a ring stands: directions of its first and second corner, and the tangent, at right angles. As a
+// quaternion without its largest component, 19 bits for each other one, with five bits of the slope.
+fn pack_turn(first: vec3<f32>, second: vec3<f32>, tangent: vec3<f32>, slope: u32) -> vec2<u32> {
+    // Squares of the components, each times four.
+    let squares = vec4<f32>(
+        1.0 + first.x - second.y - tangent.z,
+        1.0 - first.x + second.y - tangent.z,
+        1.0 - first.x - second.y + tangent.z,
+        1.0 + first.x + second.y + tangent.z,
+    );
+    var largest = 0u;
+    for (var k = 1u; k < 4u; k += 1u) {
+        largest = select(largest, k, squares[k] > squares[largest]);
+    }
+    let xy = second.x + first.y;
+    let xz = tangent.x + first.z;
+    let yz = tangent.y + second.z;
+    let wx = second.z - tangent.y;
+    let wy = tangent.x - first.z;
+    let wz = first.y - second.x;
+    var others = vec3<f32>(wx, wy, wz);
+    if (largest == 0u) {
+        others = vec3<f32>(xy, xz, wx);
+    } else if (largest == 1u) {
+        others = vec3<f32>(xy, yz, wy);
+    } else if (largest == 2u) {
+        others = vec3<f32>(xz, yz, wz);
+    }
+    others /= 2.0 * sqrt(squares[largest]);
+    let steps = vec3<u32>((others * (SQRT_2 * 0.5) + 0.5) * 524287.0 + 0.5) & vec3<u32>(0x7ffffu);
+    return vec2<u32>(
+        steps.x | (steps.y << 19u),
+        (steps.y >> 13u) | (steps.z << 6u) | (largest << 25u) | (slope << 27u),
+    );
+}
+
+struct Turn {
+    first: vec3<f32>,
+    second: vec3<f32>,
+    tangent: vec3<f32>,
+}
+
+fn unpack_turn(low: u32, high: u32) -> Turn {
+    let steps = vec3<u32>(low, (low >> 19u) | (high << 13u), high >> 6u) & vec3<u32>(0x7ffffu);
+    let o = (vec3<f32>(steps) / 524287.0 - 0.5) * SQRT_2;
+    let most = sqrt(max(1.0 - dot(o, o), 0.0));
+    let largest = (high >> 25u) & 3u;
+    var q = vec4<f32>(o, most);
+    q = select(q, vec4<f32>(most, o), largest == 0u);
+    q = select(q, vec4<f32>(o.x, most, o.y, o.z), largest == 1u);
+    q = select(q, vec4<f32>(o.x, o.y, most, o.z), largest == 2u);
+    let p = q * 2.0;
+    return Turn(
+        vec3<f32>(1.0 - p.y * q.y - p.z * q.z, p.x * q.y + p.w * q.z, p.x * q.z - p.w * q.y),
+        vec3<f32>(p.x * q.y - p.w * q.z, 1.0 - p.x * q.x - p.z * q.z, p.y * q.z + p.w * q.x),
+        vec3<f32>(p.x * q.z + p.w * q.y, p.y * q.z - p.w * q.x, 1.0 - p.x * q.x - p.y * q.y),
+    );
+}
+
+// A ring, unpacked.
+struct DrawnRing {
+    center: vec3<f32>,
+    radius: f32,
+    turn: Turn,
+    slope: f32,
+    color_key: u32,
+    instance: u32,
+}
+
+fn drawn_ring(point: CoarsePoint) -> DrawnRing {
+    return DrawnRing(
+        center_of(point),
+        point.radius,
+        unpack_turn(point.low, point.high),
+        slope_of_bits(point.high >> 27u),
+        point.color_key,
+        point.instance,
+    );
+}
+
+// Corner k of a ring.
+fn corner_of_ring(ring: DrawnRing, k: u32) -> Corner {
+    var direction = select(ring.turn.first, ring.turn.second, (k & 1u) == 1u);
+    direction = select(direction, -direction, k >= 2u);
+    let offset = direction * ring.radius;
+    return Corner(
+        ring.center + offset,
+        normalize(direction - ring.turn.tangent * ring.slope),
+        ring.center,
+        offset,
+        direction,
+        ring.turn.tangent,
+        ring.radius,
+        ROLE_ORDINARY,
+    );
+}
+
+fn corner_of_explicit(vertex: CoarsePoint, more: CoarsePoint) -> Corner {
+    let position = center_of(vertex);
+    let center = center_of(more);
+    let normal = unpack_direction(vertex.low);
+    let offset = position - center;
+    return Corner(
+        position,
+        normal,
+        center,
+        offset,
+        normalize_or(offset, normal),
+        unpack_direction(vertex.high),
+        vertex.radius,
+        more.low,
+    );
+}

@@ -1,0 +1,203 @@
+//! The source of vertices that refines on the fly: a scene and how it is refined.
+
+pub(crate) mod cull;
+pub(crate) mod expand;
+pub(crate) mod grids;
+pub(crate) mod layouts;
+pub(crate) mod passes;
+pub(crate) mod pick;
+pub(crate) mod readback;
+pub(crate) mod refiner;
+pub(crate) mod settings;
+pub(crate) mod work;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::scene::Scene;
+use crate::sources::VertexSource;
+use crate::sources::adaptive::pick::PickResolver;
+use crate::sources::adaptive::readback::FrameStats;
+use crate::sources::adaptive::refiner::{FramePlan, Refiner};
+use crate::sources::adaptive::settings::{AdaptiveSettings, CullView};
+use crate::view::bounds::any_shows;
+use crate::view::frame::Frame;
+use crate::view::framing::BoundingSphere;
+
+/// A scene that is refined as it is drawn. Memory does not depend on the level.
+#[derive(Debug)]
+pub struct Adaptive {
+    refiner: Refiner,
+    scene: Scene,
+    settings: AdaptiveSettings,
+    sub_pixels: f64,
+    plan: FramePlan,
+    bounds: Option<Vec<BoundingSphere>>,
+    keeps: bool,
+    /// What the lists on the device are chosen for, while they hold.
+    kept: Option<(CullView, AdaptiveSettings)>,
+    /// Whether they are yet to be chosen.
+    stale: AtomicBool,
+}
+
+impl Adaptive {
+    /// `sub_pixels`: of a pixel, along a side. Levels, and what is left out, are counted in pixels.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(
+        gpu: &Gpu,
+        scene: Scene,
+        settings: AdaptiveSettings,
+        sub_pixels: u32,
+    ) -> Result<Self, DeviceError> {
+        Ok(Self {
+            refiner: Refiner::new(gpu)?,
+            scene,
+            settings,
+            sub_pixels: f64::from(sub_pixels.max(1)),
+            plan: FramePlan::default(),
+            bounds: None,
+            keeps: false,
+            kept: None,
+            stale: AtomicBool::new(true),
+        })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Another way of settings, from the next frame on.
+    pub fn set_settings(&mut self, settings: AdaptiveSettings) {
+        self.settings = settings;
+    }
+
+    /// Bounding spheres that hold all that the scene shows (µm, in the world): tiles of a picture without any are
+    /// left out. [`bounds`](crate::view::bounds) makes them from a mesh.
+    pub fn set_bounds(&mut self, spheres: Vec<BoundingSphere>) {
+        self.bounds = Some(spheres);
+    }
+
+    /// Other instances, or another scene, from the next frame on.
+    pub fn set_scene(&mut self, scene: Scene) {
+        self.scene = scene;
+        self.bounds = None;
+        self.plan = FramePlan::default();
+        self.kept = None;
+    }
+
+    /// Whether what was chosen is kept for frames of the same view, one after the other: for windows,
+    /// where a picture is drawn in several steps. Not beyond a million patches, which are chosen and
+    /// drawn in turn.
+    pub fn set_keeping(&mut self, keeps: bool) {
+        self.keeps = keeps;
+        self.kept = None;
+    }
+
+    /// Takes the scene out, to change it and set it again; until then there is none.
+    pub fn take_scene(&mut self) -> Scene {
+        self.plan = FramePlan::default();
+        self.bounds = None;
+        self.kept = None;
+        std::mem::take(&mut self.scene)
+    }
+
+    /// Who tells what the ids of the frame mean that was prepared last.
+    pub fn namer(&self) -> PickResolver {
+        PickResolver::new(&self.plan, &self.scene)
+    }
+
+    /// What the frame that was prepared last draws. Chooses once more and waits: for statistics, not
+    /// for every frame.
+    ///
+    /// # Errors
+    /// What the device complained of.
+    pub fn stats(&self, gpu: &Gpu) -> Result<FrameStats, DeviceError> {
+        let mut stats = FrameStats::new(self.plan.patches);
+        for round in 0..self.plan.batches.len() {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            self.choose(round, &mut encoder, None);
+            gpu.queue.submit([encoder.finish()]);
+            let batch = &self.plan.batches[round];
+            let chosen = self.refiner.read_selected(gpu, &self.scene, batch)?;
+            stats.add(&chosen, self.settings.caps);
+        }
+        Ok(stats)
+    }
+
+    /// Bytes on the device by the name of the buffer: those of templates first.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let mut bytes = self.scene.templates().bytes();
+        bytes.extend(self.refiner.bytes());
+        bytes
+    }
+
+    /// Bytes of templates per tracing point outside somata. They do not depend on the level.
+    pub fn bytes_per_point(&self) -> f64 {
+        self.scene.templates().bytes_per_point()
+    }
+}
+
+impl VertexSource for Adaptive {
+    fn shows(&self, frame: &Frame) -> bool {
+        let spheres = self.bounds.as_ref();
+        spheres.is_none_or(|spheres| any_shows(spheres, frame))
+    }
+
+    fn shaders(&self) -> usize {
+        Refiner::SHADERS
+    }
+
+    fn wgsl(&self, shader: usize) -> String {
+        Refiner::vertex_wgsl(shader)
+    }
+
+    fn id_wgsl(&self) -> Option<&'static str> {
+        Some(include_str!("surface_id.wgsl"))
+    }
+
+    fn layout(&self) -> &wgpu::BindGroupLayout {
+        self.refiner.layout()
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        let sight = CullView {
+            eye: frame.camera.eye(),
+            forward: -frame.camera.axes()[2],
+            planes: frame.frustum(),
+            slope: frame.slope() * self.sub_pixels,
+            near: frame.near,
+        };
+        let asked = Some((sight, self.settings));
+        if self.kept != asked {
+            self.kept = None;
+            self.plan = self
+                .refiner
+                .prepare(gpu, &self.scene, &sight, &self.settings)?;
+            *self.stale.get_mut() = true;
+            let keeps = self.keeps && self.plan.batches.len() == 1;
+            self.kept = asked.filter(|_| keeps);
+        }
+        Ok(self.plan.batches.len())
+    }
+
+    fn choose(
+        &self,
+        round: usize,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        let stale = self.stale.swap(false, Ordering::Relaxed) || self.kept.is_none();
+        let batch = self.plan.batches.get(round).filter(|_| stale);
+        self.refiner.choose(&self.scene, encoder, batch, timestamps);
+    }
+
+    fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(batch) = self.plan.batches.get(round) {
+            self.refiner.draw(pass, batch, shader);
+        }
+    }
+}

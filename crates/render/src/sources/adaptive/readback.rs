@@ -1,0 +1,166 @@
+//! What was chosen and drawn, read back after a frame on request: for statistics and for tests.
+
+use bytemuck::Pod;
+use neurotess_mesh::PatchKind;
+use neurotess_refine::{Caps, HIGHEST_LEVEL, patch_triangles};
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::scene::Scene;
+use crate::sources::adaptive::refiner::{Batch, Refiner};
+use crate::sources::adaptive::settings::{
+    BatchUniforms, CLUSTER, DECIDED_TUBE, Placed, QUEUE_SHOWN, decided,
+};
+
+/// A patch that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SelectedPatch {
+    /// Its place in the batch, and what was decided: for [`GridPoint`](crate::GridPoint).
+    pub slot: u32,
+    /// See [`SelectedPatch::slot`].
+    pub decided: u32,
+    /// Place of the instance in the scene.
+    pub instance: u32,
+    /// Index of the patch in the template's mesh.
+    pub patch: u32,
+    /// Levels of its four sides.
+    pub levels: [u32; 4],
+    /// What it covers.
+    pub kind: PatchKind,
+}
+
+/// What a frame drew.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FrameStats {
+    /// Patches of all instances that are not hidden.
+    pub patches: u64,
+    /// Patches that were drawn.
+    pub patches_drawn: u64,
+    /// Vertices that were evaluated, each once per patch; one for each patch at level 1, which share
+    /// theirs.
+    pub vertices: u64,
+    /// Triangles with an area.
+    pub triangles: u64,
+    /// Number of sides of drawn patches by level, from 0 to 64.
+    pub level_histogram: Vec<u64>,
+}
+
+impl FrameStats {
+    /// Nothing drawn yet, of so many patches.
+    pub fn new(patches: u64) -> Self {
+        Self {
+            patches,
+            level_histogram: vec![0; HIGHEST_LEVEL as usize + 1],
+            ..Self::default()
+        }
+    }
+
+    /// Adds what a batch drew.
+    pub fn add(&mut self, chosen: &[SelectedPatch], caps: Caps) {
+        for patch in chosen {
+            let (nx, ny, triangles) = patch_triangles(patch.kind, caps, patch.levels);
+            self.patches_drawn += 1;
+            self.vertices += match patch.levels {
+                [1, 1, 1, 1] => 1,
+                _ => u64::from((nx + 1) * (ny + 1)),
+            };
+            self.triangles += triangles as u64;
+            for level in patch.levels {
+                self.level_histogram[level.min(HIGHEST_LEVEL) as usize] += 1;
+            }
+        }
+    }
+}
+
+impl Refiner {
+    /// Patches that [`Refiner::choose`] last decided to draw, in the order of their slots. Waits for the
+    /// device.
+    ///
+    /// # Errors
+    /// What the device complained of.
+    pub fn read_selected(
+        &self,
+        gpu: &Gpu,
+        scene: &Scene,
+        batch: &Batch,
+    ) -> Result<Vec<SelectedPatch>, DeviceError> {
+        let BatchUniforms {
+            slots,
+            clusters,
+            first,
+            placed,
+            ..
+        } = batch.uniforms;
+        let buffers = &self.work.buffers;
+        let first_shown = QUEUE_SHOWN * clusters;
+        let groups: Vec<[u32; 3]> = read(gpu, &buffers.cluster_dispatches, 3)?;
+        let queues: Vec<u32> = read(gpu, &buffers.queues, 3 * clusters as usize)?;
+        let shown = first_shown..first_shown + groups[QUEUE_SHOWN as usize][0];
+        let mut shown = queues[shown.start as usize..shown.end as usize].to_vec();
+        // Workgroups queue them in any order.
+        shown.sort_unstable();
+        let decisions: Vec<u32> = read(gpu, &buffers.decisions, slots as usize)?;
+        let owners: Vec<u32> = read(gpu, &buffers.owners, clusters as usize)?;
+        let placed: Vec<Placed> = read(gpu, &buffers.placed, (first + placed) as usize)?;
+        let mut chosen = Vec::new();
+        for cluster in shown {
+            let owner: &Placed = &placed[owners[cluster as usize] as usize];
+            let instance = scene.instances()[owner.instance as usize];
+            let parts = scene.templates().template(instance.template);
+            let part = parts
+                .into_iter()
+                .flat_map(|t| &t.parts)
+                .find(|part| part.page == batch.page && part.base == owner.base);
+            let cluster = cluster * CLUSTER as u32..(cluster + 1) * CLUSTER as u32;
+            let slots = cluster.map(|slot| (slot, decisions[slot as usize]));
+            chosen.extend(
+                slots
+                    .filter(|&(_, decided)| decided != 0)
+                    .map(|(slot, bits)| {
+                        let at = (slot - owner.first_slot) as usize;
+                        let (kind, levels) = decided(bits);
+                        SelectedPatch {
+                            slot,
+                            decided: bits,
+                            instance: owner.instance,
+                            patch: part.map_or(0, |part| part.in_mesh[at]),
+                            levels,
+                            kind: match kind {
+                                0 | DECIDED_TUBE => PatchKind::Lateral,
+                                1 => PatchKind::Cap,
+                                _ => PatchKind::Soma,
+                            },
+                        }
+                    }),
+            );
+        }
+        Ok(chosen)
+    }
+}
+
+/// The first elements of a buffer. Waits for the device.
+pub(crate) fn read<T: Pod>(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    count: usize,
+) -> Result<Vec<T>, DeviceError> {
+    let bytes = (count * size_of::<T>()) as u64;
+    if bytes == 0 {
+        return Ok(Vec::new());
+    }
+    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: bytes,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
+    gpu.queue.submit([encoder.finish()]);
+    let slice = copy.slice(..);
+    slice.map_async(wgpu::MapMode::Read, |_| ());
+    gpu.wait()?;
+    let lost = |e: &dyn std::fmt::Display| DeviceError::Lost(e.to_string());
+    let view = slice.get_mapped_range().map_err(|e| lost(&e))?;
+    Ok(bytemuck::pod_collect_to_vec(&view))
+}

@@ -1,0 +1,341 @@
+//! Who chooses levels: compute passes between the placed parts of a scene and draws that need nothing from
+//! the host.
+//!
+//! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016, cull
+//! and decide in the tessellation control stage. wgpu has no such stage, so compute passes do it for
+//! every patch (passes.rs), and patches of like grids are drawn together (grids.rs).
+//!
+//! **Practice.** The host culls whole parts of instances, orders them by page, and cuts them into
+//! **batches** of at most [`MOST_SLOTS`] patches, which share one set of work buffers: memory does not
+//! grow with the level, and beyond a million patches not with the scene. Per batch: [`Refiner::choose`]
+//! in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was made with
+//! [`Refiner::vertex_wgsl`] and [`Refiner::layout`]. Nothing is read back.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::{BufferUsages, ShaderStages};
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::scene::Scene;
+use crate::scene::templates::{self, MOST_PATCHES};
+use crate::sources::adaptive::cull::shows;
+use crate::sources::adaptive::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
+use crate::sources::adaptive::layouts::WorkLayouts;
+use crate::sources::adaptive::passes::{COARSE_POINT_WGSL, Passes};
+use crate::sources::adaptive::settings::{
+    AdaptiveSettings, BatchUniforms, CLUSTER, CullView, FrameUniforms, Placed, SECTION, compose,
+};
+use crate::sources::adaptive::work::{Sizes, Work};
+
+/// Most patches that are decided on and drawn together.
+pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
+
+/// Arguments of an indexed indirect draw. Twin of the struct of the same name in scan.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct DrawIndexed {
+    pub(crate) index_count: u32,
+    pub(crate) instance_count: u32,
+    pub(crate) first_index: u32,
+    pub(crate) base_vertex: u32,
+    pub(crate) first_instance: u32,
+}
+
+/// A pile of placed parts, all of one page.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch {
+    pub(crate) page: usize,
+    pub(crate) uniforms: BatchUniforms,
+    /// Place among the batches of its frame.
+    pub(crate) index: u32,
+}
+
+/// What one frame draws.
+#[derive(Clone, Debug, Default)]
+pub struct FramePlan {
+    /// In order.
+    pub batches: Vec<Batch>,
+    /// Patches of all instances that are not hidden.
+    pub patches: u64,
+    /// What stands where: a batch has a range of it.
+    pub(crate) placed: Vec<Placed>,
+}
+
+/// Pipelines and work buffers of adaptive refinement.
+#[derive(Debug)]
+pub struct Refiner {
+    work_layouts: WorkLayouts,
+    passes: Passes,
+    indices: wgpu::Buffer,
+    buckets: wgpu::Buffer,
+    pub(crate) work: Work,
+    /// By page of the scene that was prepared last.
+    drawing_groups: Vec<wgpu::BindGroup>,
+}
+
+impl Refiner {
+    /// Makes pipelines on a device.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(gpu: &Gpu) -> Result<Self, DeviceError> {
+        let device = &gpu.device;
+        let template_layout = templates::layout(device);
+        let work_layouts = WorkLayouts::new(device);
+        let passes = Passes::new(device, &template_layout, &work_layouts);
+        let (all, indices) = buckets();
+        let indices = upload(gpu, "grid indices", BufferUsages::INDEX, &indices);
+        let buckets = upload(gpu, "buckets", BufferUsages::STORAGE, &all);
+        let work = Work::new(gpu, &work_layouts, &buckets, Sizes::default())?;
+        gpu.check()?;
+        Ok(Self {
+            work_layouts,
+            passes,
+            indices,
+            buckets,
+            work,
+            drawing_groups: Vec::new(),
+        })
+    }
+
+    /// Shaders that draw: one for patches at level 1, one for other tubes, one for all else.
+    pub const SHADERS: usize = 3;
+
+    /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn
+    /// surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`. Binds group 0.
+    ///
+    /// All shaders find an edge's vertices by the same expressions, and their positions must be
+    /// `@invariant`.
+    pub fn vertex_wgsl(shader: usize) -> String {
+        compose(&[
+            &draws(shader),
+            COARSE_POINT_WGSL,
+            include_str!("tube.wgsl"),
+            include_str!("vertices.wgsl"),
+        ])
+    }
+
+    /// Layout of group 0 of a pipeline that draws.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.work_layouts.drawing
+    }
+
+    /// Culls whole parts, uploads where the others stand, and cuts them into batches.
+    ///
+    /// # Errors
+    /// The device has no memory left, or refuses.
+    pub fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        scene: &Scene,
+        sight: &CullView,
+        settings: &AdaptiveSettings,
+    ) -> Result<FramePlan, DeviceError> {
+        let mut frame = FrameUniforms::new(sight, settings);
+        let (mut placed, patches) = place_all(scene, sight, &frame);
+        // By page, else in the scene's order.
+        placed.sort_by_key(|&(page, _)| page);
+        let (batches, first_explicit) = cut(&mut placed);
+        frame.first_explicit = first_explicit;
+        let most_of = |of: fn(&BatchUniforms) -> u32| {
+            let all = batches.iter().map(|batch| of(&batch.uniforms) as usize);
+            all.max().unwrap_or(0)
+        };
+        let sizes = Sizes {
+            slots: most_of(|uniforms| uniforms.slots).max(CLUSTER),
+            explicit: most_of(|uniforms| uniforms.explicit_vertices),
+            placed: placed.len(),
+            batches: batches.len(),
+        };
+        let most = gpu.largest_binding();
+        let bytes = size_of_val(&*placed) as u64;
+        if bytes > most {
+            let what = "the list of visible instances";
+            return Err(DeviceError::TooLarge { what, bytes, most });
+        }
+        if !self.work.holds(&sizes) {
+            self.work = Work::new(gpu, &self.work_layouts, &self.buckets, sizes)?;
+        }
+        let places: Vec<Placed> = placed.into_iter().map(|(_, place)| place).collect();
+        self.work.write(gpu, &frame, &places, &batches);
+        let pages = scene.templates().pages.iter().map(|page| {
+            let layout = &self.work_layouts.drawing;
+            self.work.drawing_group(gpu, layout, page, &self.buckets)
+        });
+        self.drawing_groups = pages.collect();
+        gpu.check()?;
+        Ok(FramePlan {
+            batches,
+            patches,
+            placed: places,
+        })
+    }
+
+    /// Decides on a batch's patches and lists those that show; without a batch, an empty pass.
+    /// `timestamps`: where the device notes the beginning and the end.
+    pub fn choose(
+        &self,
+        scene: &Scene,
+        encoder: &mut wgpu::CommandEncoder,
+        batch: Option<&Batch>,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        if batch.is_some() {
+            self.work.begin(encoder);
+        }
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("levels"),
+            timestamp_writes: timestamps,
+        });
+        if let Some(batch) = batch {
+            let page = &scene.templates().pages[batch.page];
+            self.passes.dispatch(&mut pass, page, &self.work, batch);
+        }
+    }
+
+    /// Draws a batch that was chosen just before, with the pipeline of the shader that is set. Sets
+    /// group 0.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, shader: usize) {
+        pass.set_bind_group(0, self.drawing_group(batch), &[]);
+        let (indices, draws) = match shader {
+            0 => (&self.work.buffers.flat_indices, 0..1),
+            1 => (&self.indices, 1..1 + TUBE_BUCKETS),
+            _ => (&self.indices, 1 + TUBE_BUCKETS..1 + BUCKETS),
+        };
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        let offset = (draws.start * size_of::<DrawIndexed>()) as u64;
+        let count = draws.len() as u32;
+        pass.multi_draw_indexed_indirect(&self.work.buffers.draws, offset, count);
+    }
+
+    /// Group 0 of whoever makes the vertices of a batch.
+    pub(crate) fn drawing_group(&self, batch: &Batch) -> &wgpu::BindGroup {
+        &self.drawing_groups[batch.page]
+    }
+
+    /// Bytes on the device by the name of the buffer, templates aside.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let mut bytes = vec![
+            ("grid_indices", self.indices.size()),
+            ("buckets", self.buckets.size()),
+        ];
+        bytes.extend(self.work.bytes());
+        bytes
+    }
+}
+
+/// Which of its ways vertices.wgsl goes in a shader.
+pub(crate) fn draws(shader: usize) -> String {
+    let [flat, tubes] = [0, 1];
+    format!(
+        "const DRAWS: u32 = {shader}u;\nconst DRAWS_FLAT: u32 = {flat}u;\n\
+         const DRAWS_TUBES: u32 = {tubes}u;\n"
+    )
+}
+
+/// Parts of instances that may show, with their pages, and the number of patches of all.
+fn place_all(
+    scene: &Scene,
+    sight: &CullView,
+    frame: &FrameUniforms,
+) -> (Vec<(usize, Placed)>, u64) {
+    let mut placed = Vec::new();
+    let mut patches = 0;
+    for (i, instance) in scene.instances().iter().enumerate() {
+        let Some(template) = scene.templates().template(instance.template) else {
+            continue;
+        };
+        if instance.hidden {
+            continue;
+        }
+        let stand = Placed::new(sight, &instance.placement, template.origin);
+        for part in &template.parts {
+            patches += u64::from(part.patches);
+            let place = Placed {
+                base: part.base,
+                patches: part.slots,
+                instance: i as u32,
+                state: instance.state,
+                ..stand
+            };
+            if shows(frame, &place, part.sphere.0, part.sphere.1) {
+                placed.push((part.page, place));
+            }
+        }
+    }
+    (placed, patches)
+}
+
+/// Gives every placed part its slots, a whole number of clusters, and begins a new batch where the
+/// page changes or the slots end. Also gives the place of every batch's first explicit vertex.
+fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
+    let mut batches: Vec<Batch> = Vec::new();
+    for (i, (page, place)) in placed.iter_mut().enumerate() {
+        let slots = (place.patches as usize).next_multiple_of(CLUSTER);
+        let fits = |b: &Batch| b.page == *page && b.uniforms.slots as usize + slots <= MOST_SLOTS;
+        if !batches.last().is_some_and(fits) {
+            batches.push(Batch {
+                page: *page,
+                index: batches.len() as u32,
+                uniforms: BatchUniforms {
+                    first: i as u32,
+                    ..BatchUniforms::default()
+                },
+            });
+        }
+        let Some(batch) = batches.last_mut() else {
+            continue;
+        };
+        place.first_slot = batch.uniforms.slots;
+        batch.uniforms.placed += 1;
+        batch.uniforms.slots += slots as u32;
+        batch.uniforms.clusters = batch.uniforms.slots / CLUSTER as u32;
+        batch.uniforms.sections = batch.uniforms.slots.div_ceil(SECTION as u32);
+    }
+    let slots = batches.iter().map(|batch| batch.uniforms.slots);
+    let first_explicit = slots.max().unwrap_or(0);
+    for batch in &mut batches {
+        place_explicit(batch, first_explicit, placed);
+    }
+    (batches, first_explicit)
+}
+
+/// Gives the explicit vertices of a batch's parts their places behind all slots.
+fn place_explicit(batch: &mut Batch, first_explicit: u32, placed: &mut [(usize, Placed)]) {
+    let uniforms = &mut batch.uniforms;
+    let first = uniforms.first as usize;
+    for (_, place) in &mut placed[first..first + uniforms.placed as usize] {
+        place.first_explicit = first_explicit + uniforms.explicit_vertices;
+        uniforms.explicit_vertices += place.base.explicit_count();
+    }
+}
+
+fn upload<T: Pod>(gpu: &Gpu, label: &str, usage: BufferUsages, data: &[T]) -> wgpu::Buffer {
+    use wgpu::util::DeviceExt;
+    gpu.device
+        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents: bytemuck::cast_slice(data),
+            usage,
+        })
+}
+
+/// A binding of a storage buffer.
+pub(crate) fn storage(
+    binding: u32,
+    visibility: ShaderStages,
+    read_only: bool,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+const _: () = assert!(size_of::<Bucket>() == 20 && size_of::<DrawIndexed>() == 20);

@@ -1,0 +1,331 @@
+//! What one frame is told: from where, how finely, and which parts stand where.
+
+use std::fmt::Write;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3, Vec4};
+use neurotess_refine::gpu::{self, GpuLodCriterion};
+use neurotess_refine::{Caps, LodCriterion, LodView, PartLayout, Path, RefineOptions};
+
+use crate::scene::Placement;
+use crate::sources::adaptive::grids::{
+    BUCKETS, FLAT_CORNER_SHIFT, FLAT_INDICES, GRID_SIZE, INDEX_BUCKET_SHIFT, INDEX_PATCH_MASK,
+    INDEX_PATCH_SHIFT, INDEX_PLACE_MASK, INDEX_ROW_SHIFT,
+};
+use crate::view::camera::Camera;
+
+/// Patches that are decided on together: the size of a workgroup.
+pub(crate) const CLUSTER: usize = 64;
+/// Patches that are counted and listed together.
+pub(crate) const SECTION: usize = 1024;
+const DECISION_KIND_SHIFT: u32 = 28;
+/// Levels of a decision on a patch at level 1.
+const FLAT_LEVELS: u32 = 1 | (1 << 7) | (1 << 14) | (1 << 21);
+/// Queued clusters have their level above these bits.
+const QUEUED_LEVEL_SHIFT: u32 = 24;
+/// Queues by their place among the arguments of dispatches.
+pub(crate) const QUEUE_PLAIN: u32 = 0;
+pub(crate) const QUEUE_ASKED: u32 = 1;
+pub(crate) const QUEUE_SHOWN: u32 = 2;
+pub(crate) const QUEUE_SECTIONS: u32 = 0;
+pub(crate) const QUEUE_RINGS: u32 = 1;
+/// u32s of an explicit vertex: see refine's template.wgsl.
+const EXPLICIT_VERTEX_U32S: u32 = 3;
+/// Kind of a lateral patch between two points with rings of their own, in a decision.
+pub(crate) const DECIDED_TUBE: u32 = 3;
+
+/// A camera and a picture's size, as culling and levels see them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CullView {
+    /// Position of the eye (µm).
+    pub eye: DVec3,
+    /// Unit direction of sight.
+    pub forward: DVec3,
+    /// Planes relative to the eye, unit normals inwards. A picture in tiles has each tile's own.
+    pub planes: [Vec4; 5],
+    /// Size (µm) of a pixel at unit depth.
+    pub slope: f64,
+    /// Depth (µm) of the nearest thing that shows.
+    pub near: f64,
+}
+
+impl CullView {
+    /// A whole picture of this size (pixels).
+    pub fn new(camera: &Camera, width: u32, height: u32, near: f64) -> Self {
+        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
+        Self {
+            eye: camera.eye(),
+            forward: -camera.axes()[2],
+            planes: camera.frustum(aspect, near),
+            slope: camera.pixel_slope(f64::from(height.max(1))),
+            near,
+        }
+    }
+
+    /// The view that levels are chosen from, in the coordinates of a template at a placement.
+    pub fn local_view(&self, placement: &Placement, origin: DVec3) -> LodView {
+        LodView {
+            eye: (placement.cell_from_world(self.eye) - origin).as_vec3(),
+            forward: (placement.rotation.inverse() * self.forward).as_vec3(),
+            slope: self.slope as f32,
+            flat: 0.0,
+            near: (self.near / placement.scale) as f32,
+        }
+    }
+}
+
+/// How a frame is refined.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AdaptiveSettings {
+    /// How finely.
+    pub lod: LodCriterion,
+    /// Course of the path.
+    pub path: Path,
+    /// Shape of the ends.
+    pub caps: Caps,
+    /// What is smaller than this many pixels is left out; 0 leaves out nothing.
+    pub smallest: f32,
+    /// Whether vertices know their place in their patch's grid, as [`Look::wire`](crate::Look) needs.
+    /// Patches at level 1 then do not share corners, which costs time.
+    pub wireframe: bool,
+}
+
+impl AdaptiveSettings {
+    /// What the reference on the CPU is told.
+    pub fn options(&self) -> RefineOptions {
+        RefineOptions {
+            path: self.path,
+            caps: self.caps,
+            quads: false,
+        }
+    }
+}
+
+/// Twin of `Frame` in placed.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct FrameUniforms {
+    pub(crate) planes: [[f32; 4]; 5],
+    pub(crate) slope: f32,
+    pub(crate) flat: f32,
+    pub(crate) smallest: f32,
+    pub(crate) wireframe: u32,
+    /// Place of the first explicit vertex of every batch.
+    pub(crate) first_explicit: u32,
+    pad: [u32; 3],
+    pub(crate) levels: GpuLodCriterion,
+    pad_end: [u32; 3],
+}
+
+impl FrameUniforms {
+    pub(crate) fn new(sight: &CullView, settings: &AdaptiveSettings) -> Self {
+        Self {
+            planes: sight.planes.map(|plane| plane.to_array()),
+            slope: sight.slope as f32,
+            flat: 0.0,
+            smallest: settings.smallest.max(0.0),
+            wireframe: u32::from(settings.wireframe),
+            first_explicit: 0,
+            pad: [0; 3],
+            levels: GpuLodCriterion::new(settings.lod, &settings.options()),
+            pad_end: [0; 3],
+        }
+    }
+}
+
+/// One part of a template where an instance puts it. Twin of the struct of the same name in
+/// placed.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Placed {
+    /// Rows of the transform from the part's coordinates to those relative to the eye.
+    pub(crate) row_x: [f32; 4],
+    pub(crate) row_y: [f32; 4],
+    pub(crate) row_z: [f32; 4],
+    /// The eye in the part's coordinates.
+    pub(crate) eye: [f32; 3],
+    pub(crate) scale: f32,
+    pub(crate) forward: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) base: Base,
+    pub(crate) first_slot: u32,
+    pub(crate) patches: u32,
+    pub(crate) instance: u32,
+    pub(crate) state: u32,
+    pub(crate) first_explicit: u32,
+}
+
+/// Where a part lies in the packed buffer of its page: [`PartLayout`], moved. Twin of the struct of the same name in
+/// refine's template.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Base {
+    pub(crate) points: u32,
+    pub(crate) point_count: u32,
+    pub(crate) spheres: u32,
+    pub(crate) explicit_vertices: u32,
+    pub(crate) anchors: u32,
+    pub(crate) soma: u32,
+    pub(crate) soma_count: u32,
+    pub(crate) quads: u32,
+    pub(crate) quad_count: u32,
+    pub(crate) caps: u32,
+    pub(crate) color_keys: u32,
+}
+
+impl Base {
+    /// A part that begins at this u32 of the packed buffer.
+    pub(crate) fn new(first: u32, layout: &PartLayout) -> Self {
+        Self {
+            points: first + layout.points,
+            point_count: layout.point_count,
+            spheres: first + layout.spheres,
+            explicit_vertices: first + layout.explicit,
+            anchors: first + layout.anchors,
+            soma: first + layout.soma,
+            soma_count: layout.soma_count,
+            quads: first + layout.quads,
+            quad_count: layout.quad_count,
+            caps: first + layout.caps,
+            color_keys: first + layout.color_keys,
+        }
+    }
+}
+
+impl Base {
+    /// Number of explicit vertices.
+    pub(crate) fn explicit_count(&self) -> u32 {
+        (self.anchors - self.explicit_vertices) / EXPLICIT_VERTEX_U32S
+    }
+}
+
+impl Placed {
+    /// The transform and view; where the part lies is left open.
+    pub(crate) fn new(sight: &CullView, placement: &Placement, origin: DVec3) -> Self {
+        let linear = placement.linear();
+        // Large coordinates cancel in f64; what is left is as small as what one sees.
+        let at = placement.world_from_cell(origin) - sight.eye;
+        let rows = linear.transpose();
+        let row = |axis: DVec3, at: f64| axis.as_vec3().extend(at as f32).to_array();
+        let view = sight.local_view(placement, origin);
+        Self {
+            row_x: row(rows.x_axis, at.x),
+            row_y: row(rows.y_axis, at.y),
+            row_z: row(rows.z_axis, at.z),
+            eye: view.eye.to_array(),
+            scale: placement.scale as f32,
+            forward: view.forward.to_array(),
+            near: view.near,
+            ..Self::default()
+        }
+    }
+
+    /// Coordinates relative to the eye, as `relative` in placed.wgsl.
+    pub(crate) fn relative(&self, p: Vec3) -> Vec3 {
+        let q = p.extend(1.0);
+        let along = |row: [f32; 4]| Vec4::from_array(row).dot(q);
+        Vec3::new(along(self.row_x), along(self.row_y), along(self.row_z))
+    }
+}
+
+/// What is drawn together. Twin of the struct of the same name in placed.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct BatchUniforms {
+    /// First and number of placed parts.
+    pub(crate) first: u32,
+    pub(crate) placed: u32,
+    pub(crate) slots: u32,
+    pub(crate) clusters: u32,
+    pub(crate) sections: u32,
+    /// Number of explicit vertices.
+    pub(crate) explicit_vertices: u32,
+}
+
+/// Levels of the four sides and the kind of a patch in one u32. Twin of `decision` in placed.wgsl.
+#[cfg(test)]
+pub(crate) fn decision(kind: u32, levels: [u32; 4]) -> u32 {
+    let sides = levels[0] | (levels[1] << 7) | (levels[2] << 14) | (levels[3] << 21);
+    sides | (kind << DECISION_KIND_SHIFT)
+}
+
+/// Kind and levels of a decision that is not 0.
+pub(crate) fn decided(bits: u32) -> (u32, [u32; 4]) {
+    let levels = [0, 7, 14, 21].map(|shift| (bits >> shift) & 0x7f);
+    ((bits >> DECISION_KIND_SHIFT) & 3, levels)
+}
+
+/// Constants, refine's twins and placed.wgsl, followed by a shader's own text.
+pub(crate) fn compose(own: &[&str]) -> String {
+    let mut constants = String::new();
+    for (name, value) in [
+        ("CLUSTER", CLUSTER as u32),
+        ("POINTS_OF_CLUSTER", CLUSTER as u32 / 4),
+        ("CLUSTERS_OF_GROUP", 4),
+        ("FLAT_INDICES", FLAT_INDICES),
+        ("FLAT_CORNER_SHIFT", FLAT_CORNER_SHIFT),
+        ("FLAT_LEVELS", FLAT_LEVELS),
+        ("QUEUED_LEVEL_SHIFT", QUEUED_LEVEL_SHIFT),
+        ("QUEUE_PLAIN", QUEUE_PLAIN),
+        ("QUEUE_ASKED", QUEUE_ASKED),
+        ("QUEUE_SHOWN", QUEUE_SHOWN),
+        ("QUEUE_SECTIONS", QUEUE_SECTIONS),
+        ("QUEUE_RINGS", QUEUE_RINGS),
+        ("SECTION", SECTION as u32),
+        ("BUCKETS", BUCKETS as u32),
+        ("GRID_SIZES", GRID_SIZE.len() as u32),
+        ("DECISION_KIND_SHIFT", DECISION_KIND_SHIFT),
+        ("DECIDED_TUBE", DECIDED_TUBE),
+        ("INDEX_PLACE_MASK", INDEX_PLACE_MASK),
+        ("INDEX_ROW_SHIFT", INDEX_ROW_SHIFT),
+        ("INDEX_PATCH_SHIFT", INDEX_PATCH_SHIFT),
+        ("INDEX_PATCH_MASK", INDEX_PATCH_MASK),
+        ("INDEX_BUCKET_SHIFT", INDEX_BUCKET_SHIFT),
+    ] {
+        // Writing to a String does not fail.
+        let _ = writeln!(constants, "const {name}: u32 = {value}u;");
+    }
+    let sizes = GRID_SIZE.map(|size| format!("{size}u")).join(", ");
+    let _ = writeln!(
+        constants,
+        "const GRID_SIZE = array<u32, {}>({sizes});",
+        GRID_SIZE.len()
+    );
+    let mut parts = vec![constants.as_str(), include_str!("placed.wgsl")];
+    parts.extend(own);
+    gpu::compose(&parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decisions_keep_their_levels_and_kind() {
+        for levels in [[1, 2, 3, 4], [64, 64, 64, 64], [1, 64, 17, 33]] {
+            for kind in 0..4 {
+                assert_eq!(decided(decision(kind, levels)), (kind, levels));
+            }
+        }
+    }
+
+    #[test]
+    fn far_instances_keep_their_digits() {
+        let placement = Placement {
+            translation: DVec3::new(1e6, -2e6, 3e6),
+            ..Placement::default()
+        };
+        let camera = Camera::new(
+            placement.translation + DVec3::Z,
+            placement.translation,
+            DVec3::Y,
+            0.5,
+        )
+        .expect("a camera");
+        let sight = CullView::new(&camera, 100, 100, 0.01);
+        let placed = Placed::new(&sight, &placement, DVec3::ZERO);
+        let p = Vec3::new(0.125, 0.25, 0.001);
+        assert_eq!(placed.relative(p), p - Vec3::Z);
+        assert_eq!(placed.eye, [0.0, 0.0, 1.0]);
+    }
+}

@@ -1,0 +1,378 @@
+// What the shaders of exploration share: structs, where instances cull_instances, what chunks ask for.
+//
+// Comes after the constants of layout.rs, whose structs are twins of these. Called by select.wgsl and
+// visible_chunks.wgsl. `offers` has its twin in lod.rs.
+
+struct Eye {
+    planes: array<vec4<f32>, 5>,
+    cell: vec3<i32>,
+    slope: f32,
+    offset: vec3<f32>,
+    near: f32,
+    forward: vec3<f32>,
+    error: f32,
+    budget: u32,
+    instances: u32,
+    pad: vec2<u32>,
+}
+
+struct Chunk {
+    center: vec3<f32>,
+    reach: f32,
+    low: vec3<f32>,
+    step: f32,
+    counts: vec2<u32>,
+    errors: vec2<u32>,
+    first: u32,
+    color_keys: u32,
+    flags: u32,
+    radius: f32,
+    length: f32,
+    carried: f32,
+    start: u32,
+    end: u32,
+}
+
+struct GpuInstance {
+    rotation: vec4<f32>,
+    offset: vec3<f32>,
+    scale: f32,
+    cell: vec3<i32>,
+    shape: u32,
+    flags: u32,
+    state: u32,
+    pad: vec2<u32>,
+}
+
+struct VisibleChunk {
+    instance: u32,
+    chunk: u32,
+    lod: u32,
+    first: u32,
+}
+
+@group(0) @binding(0) var<uniform> eye: Eye;
+@group(0) @binding(1) var<storage, read> chunks: array<Chunk>;
+@group(0) @binding(3) var<storage, read> gpu_instances: array<GpuInstance>;
+// Points of chunks, two u32s each: x, y | z, radius; then their lists of kept points, a byte each.
+// Of somata: vertices, x, y | z, normal; then quads.
+@group(0) @binding(5) var<storage, read> packed: array<u32>;
+
+fn turn(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
+    let t = 2.0 * cross(q.xyz, v);
+    return v + q.w * t + cross(q.xyz, t);
+}
+
+// From a template's coordinates to those relative to the eye. Cells cancel as whole numbers, so that
+// far from the origin of the world no digit is lost.
+fn relative(place: GpuInstance, p: vec3<f32>) -> vec3<f32> {
+    let cells = vec3<f32>(place.cell - eye.cell) * CELL;
+    return cells + (place.offset - eye.offset) + place.scale * turn(place.rotation, p);
+}
+
+// Whether a sphere shows, relative to the eye; what is thinner than a pixel is drawn a pixel wide.
+fn in_sight(p: vec3<f32>, reach: f32) -> bool {
+    let depth = max(dot(eye.forward, p) + reach, eye.near);
+    let most = reach + eye.slope * depth;
+    for (var k = 0u; k < 5u; k += 1u) {
+        // Also where it is not a number.
+        if (!(dot(eye.planes[k].xyz, p) + eye.planes[k].w >= -most)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Whether all of a sphere is between the planes.
+fn enclosed(p: vec3<f32>, reach: f32) -> bool {
+    for (var k = 0u; k < 5u; k += 1u) {
+        if (!(dot(eye.planes[k].xyz, p) + eye.planes[k].w >= reach)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+fn byte_of(color_keys: vec2<u32>, k: u32) -> u32 {
+    return (select(color_keys.x, color_keys.y, k >= 4u) >> (8u * (k & 3u))) & 0xffu;
+}
+
+// Segments of a lod; 0 where it is not there.
+fn segments(chunk: Chunk, level: u32) -> u32 {
+    return byte_of(chunk.counts, level);
+}
+
+// How far a lod may be off (µm); there is always lod 0.
+fn lod_error(chunk: Chunk, level: u32) -> f32 {
+    let byte = byte_of(chunk.errors, level);
+    if (byte == 0u) {
+        return 0.0;
+    }
+    return exp2(f32(byte) / ERROR_STEPS - ERROR_OFFSET);
+}
+
+// The coarsest lod within an error.
+fn lod_within(chunk: Chunk, error: f32) -> u32 {
+    for (var level = LEVELS - 1u; level > 0u; level -= 1u) {
+        if (segments(chunk, level) > 0u && lod_error(chunk, level) <= error) {
+            return level;
+        }
+    }
+    return 0u;
+}
+
+struct Stored {
+    position: vec3<f32>,
+    radius: f32,
+    point: u32,
+}
+
+fn stored_position(chunk: Chunk, low: u32, high: u32) -> vec3<f32> {
+    let steps = vec3<f32>(f32(low & 0xffffu), f32(low >> 16u), f32(high & 0xffffu));
+    return chunk.low + chunk.step * steps;
+}
+
+// A point of a lod.
+fn stored(chunk: Chunk, level: u32, index: u32) -> Stored {
+    var point = index;
+    if (level > 0u) {
+        var at = index;
+        for (var k = 1u; k < level; k += 1u) {
+            let there = segments(chunk, k);
+            at += select(0u, there + 1u, there > 0u);
+        }
+        let lists = chunk.first + 2u * (segments(chunk, 0u) + 1u);
+        point = (packed[lists + at / 4u] >> (8u * (at & 3u))) & 0xffu;
+    }
+    let low = packed[chunk.first + 2u * point];
+    let high = packed[chunk.first + 2u * point + 1u];
+    let radius = chunk.radius * (f32(high >> 16u) / 65535.0);
+    return Stored(stored_position(chunk, low, high), radius, point);
+}
+
+// What of a chunk shows: depths (µm) of the nearest that does, and in the mean; and its share.
+struct Seen {
+    nearest: f32,
+    middle: f32,
+    share: f32,
+}
+
+// Segments at most of the lod that is looked at.
+const LOOKED_AT: u32 = 8u;
+
+// A chunk that is near, or partly outside the picture: segment by segment, each cut at the planes. From its
+// sphere alone every chunk that passes beside the eye would be taken for the nearest thing there is.
+fn seen_part(chunk: Chunk, place: GpuInstance) -> Seen {
+    var level = 0u;
+    for (var k = 1u; k < LEVELS; k += 1u) {
+        if (segments(chunk, level) > LOOKED_AT && segments(chunk, k) > 0u) {
+            level = k;
+        }
+    }
+    let margin = (lod_error(chunk, level) + chunk.radius) * place.scale;
+    var seen = Seen(1e30, 0.0, 0.0);
+    var all = 0.0;
+    var a = relative(place, stored(chunk, level, 0u).position);
+    for (var i = 1u; i <= segments(chunk, level); i += 1u) {
+        let b = relative(place, stored(chunk, level, i).position);
+        let depths = vec2<f32>(dot(eye.forward, a), dot(eye.forward, b));
+        let reach = margin + eye.slope * max(max(depths.x, depths.y), eye.near);
+        var from_a = 0.0;
+        var to_b = 1.0;
+        for (var k = 0u; k < 5u; k += 1u) {
+            let plane = eye.planes[k];
+            let off_a = dot(plane.xyz, a) + plane.w + reach;
+            let off_b = dot(plane.xyz, b) + plane.w + reach;
+            let cut = off_a / (off_a - off_b);
+            if (off_a < 0.0 && off_b < 0.0) {
+                to_b = -1.0;
+            } else if (off_a < 0.0) {
+                from_a = max(from_a, cut);
+            } else if (off_b < 0.0) {
+                to_b = min(to_b, cut);
+            }
+        }
+        let span = length(b - a);
+        if (from_a <= to_b) {
+            let there = mix(depths.xx, depths.yy, vec2<f32>(from_a, to_b));
+            let part = (to_b - from_a) * span + 1e-6;
+            seen.nearest = min(seen.nearest, min(there.x, there.y) - margin);
+            seen.middle += part * 0.5 * (there.x + there.y);
+            seen.share += part;
+        }
+        all += span;
+        a = b;
+    }
+    seen.middle /= max(seen.share, 1e-30);
+    seen.share /= max(all, 1e-6);
+    return seen;
+}
+
+// How a visible chunk is drawn, in one color_key: lod, halvings of its segments, strips around it, what it is, and
+// how much of its width, of 63.
+const WHAT_TUBE: u32 = 0u;
+const WHAT_DOT: u32 = 1u;
+const WHAT_DISC: u32 = 2u;
+const WHAT_DOME: u32 = 3u;
+const WHAT_SOMA: u32 = 4u;
+
+fn packed_lod(what: u32, level: u32, halvings: u32, strips: u32, width: u32) -> u32 {
+    return what | (level << 3u) | (halvings << 6u) | (strips << 8u) | (width << 16u);
+}
+
+// Quads of a sphere seen from the front: a fan of two sectors each, and a ring around it.
+const DISC_QUADS: u32 = 4u;
+const DOME_QUADS: u32 = 18u;
+
+// Half the width (pixels) of the thinnest thing drawn, as the shading's.
+const HALF_PIXEL: f32 = 0.5;
+
+// As in shade.wgsl.
+fn ink_share(share: f32) -> f32 {
+    let rest = 1.0 - sqrt(min(share, 1.0));
+    return 1.0 - rest * rest * rest;
+}
+
+// Up to four steps in which a chunk is drawn better, each with the class of its worth and the quads that
+// it takes beyond those before. Worth falls from step to step.
+struct Offers {
+    bins: vec4<u32>,
+    quads: vec4<u32>,
+    lods: vec4<u32>,
+}
+
+// The class of square pixels per quad. 0: nothing.
+fn bin_of(worth: f32) -> u32 {
+    if (!(worth > 0.0)) {
+        return 0u;
+    }
+    let bin = (log2(worth) - LOWEST_OCTAVE) * BINS_OF_OCTAVE;
+    return u32(clamp(bin, 1.0, f32(BINS - 1u)));
+}
+
+// From 0 to 1, by instance, the same in every frame.
+fn chance(instance: u32) -> f32 {
+    var h = instance * 747796405u + 277803737u;
+    h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
+    h = (h >> 22u) ^ h;
+    return f32(h >> 8u) / 16777216.0;
+}
+
+fn no_offers() -> Offers {
+    return Offers(vec4<u32>(0u), vec4<u32>(0u), vec4<u32>(0u));
+}
+
+// Strips around the visible half of a tube of this radius (pixels), and a little more: within half a
+// pixel of the circle.
+fn strips_of(radius: f32) -> u32 {
+    if (radius < 3.0) {
+        return 1u;
+    }
+    if (radius < 7.0) {
+        return 5u;
+    }
+    return select(20u, 10u, radius < 27.0);
+}
+
+fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
+    let chunk = chunks[chunk_index];
+    let center = relative(place, chunk.center);
+    let reach = chunk.reach * place.scale;
+    if (!in_sight(center, reach)) {
+        return no_offers();
+    }
+    let depth = dot(eye.forward, center);
+    if ((chunk.flags & CHUNK_SOMA) != 0u) {
+        let near = max(depth - reach, eye.near);
+        return soma_offers(chunk, chunk.radius * place.scale / (eye.slope * max(depth, near)));
+    }
+    var seen = Seen(depth - reach, depth, 1.0);
+    if (!(depth > 4.0 * reach) || !enclosed(center, reach)) {
+        seen = seen_part(chunk, place);
+        if (!(seen.share > 0.0)) {
+            return no_offers();
+        }
+    }
+    let nearest = eye.slope * max(seen.nearest, eye.near);
+    let pixel = max(eye.slope * seen.middle, nearest);
+    // Errors and lengths in the template, sizes in pixels.
+    let near_pixel = nearest / place.scale;
+    let far_pixel = pixel / place.scale;
+    let mean = chunk.radius * (f32(chunk.flags >> 16u) / 65535.0) / far_pixel;
+    var width = 2.0 * mean;
+    if (mean < HALF_PIXEL) {
+        width = ink_share(mean / HALF_PIXEL);
+    }
+    let length = min(chunk.length, 2.0 * chunk.reach) * min(seen.share, 1.0);
+    let area = max(length / far_pixel, 0.25) * width;
+
+    let coarse = lod_within(chunk, 4.0 * eye.error * near_pixel);
+    let fine = lod_within(chunk, eye.error * near_pixel);
+    var halvings = 0u;
+    if (fine == 0u) {
+        let off = lod_error(chunk, 0u) / (eye.error * near_pixel);
+        halvings = u32(clamp(ceil(0.5 * log2(max(off, 1.0))), 0.0, 3.0));
+    }
+    let strips = strips_of(chunk.radius / near_pixel);
+    var caps = 0u;
+    if (strips > 1u) {
+        caps = DOME_QUADS * countOneBits(chunk.flags & (CHUNK_FREE_START | CHUNK_FREE_END));
+    }
+    let first = segments(chunk, coarse);
+    let second = segments(chunk, fine) << halvings;
+    let third = second * strips + caps;
+    // By projected size, and what carries others before them, so that nothing floats. Equals are parted by
+    // chance, or all of a class would come and go at once.
+    let worth = 2.0 * chunk.carried / (far_pixel * sqrt(far_pixel)) * exp2(0.5 * chance(instance) - 0.25);
+    var all = no_offers();
+    all.bins.x = max(bin_of(worth), 1u);
+    all.quads.x = first;
+    all.lods.x = packed_lod(WHAT_TUBE, coarse, 0u, 1u, 0u);
+    if (second > first) {
+        all.bins.y = min(bin_of(0.25 * area / f32(second - first)), all.bins.x);
+        all.quads.y = second - first;
+        all.lods.y = packed_lod(WHAT_TUBE, fine, halvings, 1u, 0u);
+    }
+    if (third > max(first, second)) {
+        let before = select(all.bins.x, all.bins.y, second > first);
+        let quads = third - max(first, second);
+        all.bins.z = min(bin_of(0.25 * area / f32(quads)), before);
+        all.quads.z = quads;
+        all.lods.z = packed_lod(WHAT_TUBE, fine, halvings, strips, 0u);
+    }
+    return all;
+}
+
+// Somata come before neurites of their size: they are what a circuit consists of.
+fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
+    let area = 3.1416 * radius * radius;
+    var all = no_offers();
+    all.bins.x = bin_of(256.0 * max(area, 1.0));
+    all.quads.x = 1u;
+    all.lods.x = packed_lod(WHAT_DOT, 0u, 0u, 1u, 63u);
+    if (radius <= 1.0) {
+        return all;
+    }
+    let dome = radius > 3.0;
+    let sphere = select(DISC_QUADS, DOME_QUADS, dome);
+    all.bins.y = min(bin_of(16.0 * area / f32(sphere)), all.bins.x);
+    all.quads.y = sphere - 1u;
+    all.lods.y = packed_lod(select(WHAT_DISC, WHAT_DOME, dome), 0u, 0u, 1u, 63u);
+    let own = chunk.counts.x;
+    if (radius <= 6.0 || own <= sphere) {
+        return all;
+    }
+    all.bins.z = min(bin_of(8.0 * area / f32(own)), all.bins.y);
+    all.quads.z = own - sphere;
+    all.lods.z = packed_lod(WHAT_SOMA, 0u, 0u, 1u, 63u);
+    // Half a pixel where it bends four times as much as a sphere of its size.
+    let off = 4.0 * (3.1416 / 2.0) * radius / f32(own) / eye.error;
+    let halvings = u32(clamp(ceil(0.5 * log2(max(off, 1.0))), 0.0, 3.0));
+    if (halvings > 0u) {
+        let quads = (own << (2u * halvings)) - own;
+        all.bins.w = min(bin_of(area / f32(quads)), all.bins.z);
+        all.quads.w = quads;
+        all.lods.w = packed_lod(WHAT_SOMA, 0u, halvings, 1u, 63u);
+    }
+    return all;
+}

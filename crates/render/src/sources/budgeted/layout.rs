@@ -1,0 +1,201 @@
+//! What the shaders of exploration share with the host: constants and structs, twins of those in
+//! `explore.wgsl`.
+
+use std::fmt::Write;
+
+use bytemuck::{Pod, Zeroable};
+
+/// Most segments of a chunk.
+pub(crate) const MOST_SEGMENTS: usize = 64;
+/// Forms of a chunk: all points, and ever coarser ones.
+pub(crate) const LEVELS: usize = 7;
+/// Runs that are looked at together, and the size of workgroups that do.
+pub(crate) const CLUSTER: usize = 64;
+/// Size of the workgroups that sum up.
+pub(crate) const WIDE: usize = 256;
+/// Classes of keys.
+pub(crate) const BINS: usize = 1024;
+/// Classes per octave of key.
+pub(crate) const BINS_OF_OCTAVE: f32 = 24.0;
+/// Octaves below a square pixel per quad at which classes begin.
+pub(crate) const LOWEST_OCTAVE: f32 = -20.0;
+/// Quads of a full block of the draw.
+pub(crate) const BLOCK: usize = 1024;
+/// Groups side by side in a dispatch: some devices take no more than 65,535.
+pub(crate) const ROW: usize = 32_768;
+/// Of a stored error's byte: `2^(byte / ERROR_STEPS - ERROR_OFFSET)` µm.
+pub(crate) const ERROR_STEPS: f32 = 8.0;
+pub(crate) const ERROR_OFFSET: f32 = 20.0;
+/// A lod that is not there.
+pub(crate) const NO_LOD: u8 = 255;
+/// Edge (µm) of the cells that positions in the world are counted in.
+pub(crate) const CELL: f64 = 1024.0;
+/// As [`neurotess_refine`]'s of the same name: a path sways by no more than this share of the radius.
+pub(crate) const MOST_SWAY: f32 = 0.12;
+
+/// Kinds and marks of a chunk.
+pub(crate) const CHUNK_SOMA: u32 = 1;
+pub(crate) const CHUNK_FREE_START: u32 = 2;
+pub(crate) const CHUNK_FREE_END: u32 = 4;
+/// One color key colors all of it; else there is one per point.
+pub(crate) const CHUNK_ONE_COLOR_KEY: u32 = 8;
+
+impl Chunk {
+    /// Mean radius (µm).
+    pub(crate) fn mean(&self) -> f32 {
+        self.radius * ((self.flags >> 16) as f32 / 65_535.0)
+    }
+
+    /// Marks with a mean radius.
+    pub(crate) fn marks(flags: u32, mean: f32, radius: f32) -> u32 {
+        let share = mean / radius.max(f32::MIN_POSITIVE);
+        flags | (((share * 65_535.0).round().clamp(0.0, 65_535.0) as u32) << 16)
+    }
+}
+
+/// Mark of an instance that is not drawn.
+pub(crate) const HIDDEN: u32 = 1;
+
+/// Up to 64 segments of a path, or a soma.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Chunk {
+    /// BoundingSphere around its surface (µm, in the template).
+    pub(crate) center: [f32; 3],
+    pub(crate) reach: f32,
+    /// What stored positions are counted from, and in steps of.
+    pub(crate) low: [f32; 3],
+    pub(crate) step: f32,
+    /// A byte per lod, 0 to 6: segments. Of a soma: quads, vertices.
+    pub(crate) counts: [u32; 2],
+    /// A byte per lod: error.
+    pub(crate) errors: [u32; 2],
+    /// Word of the packed buffer where its points begin; lists of kept points follow.
+    pub(crate) first: u32,
+    /// Its one color key, or where its color keys begin.
+    pub(crate) color_keys: u32,
+    /// Marks, and from bit 16 on the mean radius in 65,535 steps of the greatest.
+    pub(crate) flags: u32,
+    /// Greatest radius (µm).
+    pub(crate) radius: f32,
+    /// Length of the path (µm).
+    pub(crate) length: f32,
+    /// The greatest product of length and root of the mean radius (µm^1.5) of it and what hangs on it:
+    /// ink of thin lines grows with the root.
+    pub(crate) carried: f32,
+    /// Directions of the path at its ends.
+    pub(crate) start: u32,
+    pub(crate) end: u32,
+}
+
+/// What a template consists of.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Shape {
+    pub(crate) center: [f32; 3],
+    pub(crate) reach: f32,
+    pub(crate) first_chunk: u32,
+    pub(crate) chunks: u32,
+    pub(crate) pad: [u32; 2],
+}
+
+/// Where an instance instance_pose. In the world: `cell · CELL + offset + scale · rotation · p`, p relative to
+/// the template's origin.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct GpuInstance {
+    pub(crate) rotation: [f32; 4],
+    pub(crate) offset: [f32; 3],
+    pub(crate) scale: f32,
+    pub(crate) cell: [i32; 3],
+    pub(crate) shape: u32,
+    pub(crate) flags: u32,
+    pub(crate) state: u32,
+    pub(crate) pad: [u32; 2],
+}
+
+/// One for the whole frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Eye {
+    /// Relative to the eye.
+    pub(crate) planes: [[f32; 4]; 5],
+    pub(crate) cell: [i32; 3],
+    /// µm per pixel at unit depth.
+    pub(crate) slope: f32,
+    pub(crate) offset: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) forward: [f32; 3],
+    /// Farthest that anything may be off (pixels).
+    pub(crate) error: f32,
+    /// Most quads.
+    pub(crate) budget: u32,
+    pub(crate) instances: u32,
+    pub(crate) pad: [u32; 2],
+}
+
+/// Sums of a frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Sums {
+    /// Chunks of instances that may show.
+    pub(crate) clusters: u32,
+    /// Those with anything to draw.
+    pub(crate) visible: u32,
+    /// Least class that is drawn.
+    pub(crate) threshold: u32,
+    /// Quads drawn, visible chunks that they are of.
+    pub(crate) quads: u32,
+    pub(crate) visible_chunks: u32,
+    /// Quads that would be drawn without a limit.
+    pub(crate) wanted: u32,
+    /// Instances that may show.
+    pub(crate) instances: u32,
+    pub(crate) pad: u32,
+}
+
+/// A chunk or soma that is drawn.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct VisibleChunk {
+    pub(crate) instance: u32,
+    pub(crate) chunk: u32,
+    /// How finely: see `explore.wgsl`.
+    pub(crate) lod: u32,
+    /// Place of its first quad.
+    pub(crate) first: u32,
+}
+
+/// Constants, then `explore.wgsl`, then a shader's own text.
+pub(crate) fn compose(own: &[&str]) -> String {
+    let mut text = String::new();
+    for (name, value) in [
+        ("LEVELS", LEVELS as u32),
+        ("CLUSTER", CLUSTER as u32),
+        ("WIDE", WIDE as u32),
+        ("BINS", BINS as u32),
+        ("BLOCK", BLOCK as u32),
+        ("ROW", ROW as u32),
+        ("NO_LOD", u32::from(NO_LOD)),
+        ("CHUNK_SOMA", CHUNK_SOMA),
+        ("CHUNK_FREE_START", CHUNK_FREE_START),
+        ("CHUNK_FREE_END", CHUNK_FREE_END),
+        ("CHUNK_ONE_COLOR_KEY", CHUNK_ONE_COLOR_KEY),
+        ("HIDDEN", HIDDEN),
+    ] {
+        // Writing to a String does not fail.
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+    }
+    for (name, value) in [
+        ("BINS_OF_OCTAVE", BINS_OF_OCTAVE),
+        ("LOWEST_OCTAVE", LOWEST_OCTAVE),
+        ("ERROR_STEPS", ERROR_STEPS),
+        ("ERROR_OFFSET", ERROR_OFFSET),
+        ("CELL", CELL as f32),
+    ] {
+        let _ = writeln!(text, "const {name}: f32 = {value:?};");
+    }
+    text.push_str(include_str!("budgeted.wgsl"));
+    own.iter().for_each(|part| text.push_str(part));
+    text
+}

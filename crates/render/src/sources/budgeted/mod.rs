@@ -1,0 +1,296 @@
+//! Exploration: any scene within a budget of triangles, for a camera that moves.
+//!
+//! **Theory.** A scene of 50 million segments has more parts than a screen has pixels, so work must
+//! follow what shows. Instances are culled as a whole; of those left every **chunk**, up to 64 segments
+//! of a path ([`Proxy`]), says on the GPU what it would take to draw it coarsely, within half a
+//! pixel, and round, and what each step is worth: square pixels per quad. A histogram of quads over
+//! worth gives the least worth that is within the budget, in the same frame; what is worth more is
+//! listed and drawn (select.wgsl, visible_chunks.wgsl).
+//!
+//! A chunk is a polyline, one of seven nested ones, the coarsest that is within half a pixel of the
+//! curved path; below three pixels of radius a strip that faces the eye with a cylinder's normals,
+//! above it the half of the tube that faces the eye, round within half a pixel. Below a pixel the
+//! shading widens the strip and makes it fainter, as it does every tube. Somata are dots of a pixel at
+//! least, then spheres, then their own mesh.
+//!
+//! **Practice.** [`Proxy::new`] on any thread, [`Exploration::add`] once a template,
+//! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
+//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any time:
+//! pipelines are made once. A frame uploads 144 bytes and what changed; where camera, size and scene
+//! are those of the frame before, it chooses nothing anew.
+//!
+//! Why not the patches of [`Adaptive`](crate::Adaptive)? They are closed and fit one another whatever
+//! their levels, and need eight triangles a segment for it. Seen from where a whole neuron fits the
+//! screen no one can tell.
+
+mod layout;
+mod lod_requests;
+mod nested;
+mod passes;
+mod paths;
+mod pick;
+mod proxy;
+mod residents;
+#[cfg(test)]
+mod shader_tests;
+mod somata;
+mod stats;
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::DVec3;
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::gpu::store::Store;
+use crate::scene::Instance;
+use crate::sources::VertexSource;
+use crate::view::frame::{Frame, Tile, shows};
+use layout::{CELL, CLUSTER, Eye, GpuInstance};
+use passes::{Groups, Passes, Resident, Size, Work, visible_chunks_wgsl};
+use residents::Known;
+
+pub use lod_requests::{LodRequest, lod_requests};
+pub use pick::{ProxyPickResolver, ProxyPickTargets};
+pub use proxy::Proxy;
+pub use residents::ExplorationError;
+pub use stats::{DrawnChunk, ExplorationStats};
+
+/// Triangles of a frame unless told otherwise: what a laptop draws fluently.
+pub const DEFAULT_BUDGET: u32 = 100_000;
+/// Most triangles of a frame.
+pub const MOST_BUDGET: u32 = 1 << 23;
+/// Farthest (pixels) that a lod may be off.
+const ERROR: f32 = 0.5;
+/// Most of a picture's height that a tile's margin may reach over its border.
+const MOST_MARGIN: f64 = 0.1;
+
+/// A source that draws any scene within a budget of triangles.
+#[derive(Debug)]
+pub struct Exploration {
+    passes: Passes,
+    chunks: Store,
+    shapes: Store,
+    gpu_instances: Store,
+    packed: Store,
+    color_keys: Store,
+    known: Vec<Known>,
+    instances: Vec<Instance>,
+    /// Those that the device has not heard of yet.
+    edited: Range<usize>,
+    work: Work,
+    groups: Option<Groups>,
+    /// Triangles.
+    budget: u32,
+    sub_pixels: f64,
+    /// Whether the lists on the device must be chosen anew.
+    stale: AtomicBool,
+    /// The picture that they are chosen for.
+    picture: Option<Frame>,
+}
+
+impl Exploration {
+    /// An empty scene. `sub_pixels`: of a pixel, along a side; errors are counted in pixels.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(gpu: &Gpu, sub_pixels: u32) -> Result<Self, DeviceError> {
+        let budget = DEFAULT_BUDGET;
+        Ok(Self {
+            passes: Passes::new(gpu)?,
+            chunks: Store::new(gpu, "chunks", 0),
+            shapes: Store::new(gpu, "shapes", 0),
+            gpu_instances: Store::new(gpu, "instances", 0),
+            packed: Store::new(gpu, "points of exploration", 0),
+            color_keys: Store::new(gpu, "color_keys", 0),
+            known: Vec::new(),
+            instances: Vec::new(),
+            edited: 0..0,
+            work: Work::new(gpu, Size::default())?,
+            groups: None,
+            budget,
+            sub_pixels: f64::from(sub_pixels.max(1)),
+            stale: AtomicBool::new(true),
+            picture: None,
+        })
+    }
+
+    /// Most triangles of a frame, at most [`MOST_BUDGET`], from the next frame on.
+    pub fn set_budget(&mut self, triangles: u32) {
+        let triangles = triangles.min(MOST_BUDGET);
+        if self.budget != triangles {
+            self.budget = triangles;
+            self.changed(false);
+        }
+    }
+
+    /// Most triangles of a frame.
+    pub fn budget(&self) -> u32 {
+        self.budget
+    }
+
+    /// Sub-pixels of a pixel, along a side, from the next frame on.
+    pub fn set_sub_pixels(&mut self, sub_pixels: u32) {
+        self.sub_pixels = f64::from(sub_pixels.max(1));
+        self.changed(false);
+    }
+
+    /// Bytes on the device by the name of the buffer.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let mut bytes = vec![
+            ("chunks", self.chunks.used() + self.shapes.used()),
+            ("points", self.packed.used()),
+            ("color_keys", self.color_keys.used()),
+            ("instances", self.gpu_instances.used()),
+        ];
+        bytes.extend(self.work.bytes());
+        bytes
+    }
+
+    /// Bytes of templates per tracing point outside somata.
+    pub fn bytes_per_point(&self) -> f64 {
+        let points: usize = self.known.iter().map(|known| known.points).sum();
+        let bytes =
+            self.chunks.used() + self.shapes.used() + self.packed.used() + self.color_keys.used();
+        bytes as f64 / points.max(1) as f64
+    }
+
+    /// What there is, were all to show.
+    fn size(&self) -> Size {
+        let mut size = Size {
+            instances: self.instances.len(),
+            budget: self.budget / 2,
+            ..Size::default()
+        };
+        for instance in &self.instances {
+            let chunks = u64::from(self.known[instance.template.0 as usize].chunks);
+            size.chunks += chunks;
+            size.clusters += chunks.div_ceil(CLUSTER as u64);
+        }
+        size
+    }
+
+    fn eye(&self, frame: &Frame, margin: u32) -> Eye {
+        let [width, height] = frame.size;
+        let around = Frame {
+            tile: Tile {
+                x: -(margin as i32),
+                y: -(margin as i32),
+                width: width + 2 * margin,
+                height: height + 2 * margin,
+            },
+            ..*frame
+        };
+        let (cell, offset) = in_cells(frame.camera.eye());
+        Eye {
+            planes: around.frustum().map(|plane| plane.to_array()),
+            cell,
+            slope: (frame.slope() * self.sub_pixels) as f32,
+            offset,
+            near: frame.near as f32,
+            forward: (-frame.camera.axes()[2]).as_vec3().to_array(),
+            error: ERROR,
+            budget: self.budget / 2,
+            instances: self.instances.len() as u32,
+            ..Eye::default()
+        }
+    }
+}
+
+/// The cell that a point of the world is in, and where in it (µm).
+fn in_cells(p: DVec3) -> ([i32; 3], [f32; 3]) {
+    let cell = (p / CELL).floor();
+    let offset = (p - cell * CELL).as_vec3();
+    (cell.to_array().map(|c| c as i32), offset.to_array())
+}
+
+impl VertexSource for Exploration {
+    fn shows(&self, frame: &Frame) -> bool {
+        let planes = frame.frustum();
+        let eye = frame.camera.eye();
+        self.instances.iter().any(|instance| {
+            let known = &self.known[instance.template.0 as usize];
+            let center = known.origin + known.center.as_dvec3();
+            let center = (instance.placement.world_from_cell(center) - eye).as_vec3();
+            let reach = f64::from(known.reach) * instance.placement.scale;
+            // As for spheres of patches: lines are a pixel wide.
+            let pixels = 8.0 * (f64::from(center.length()) + reach) * frame.slope();
+            !instance.hidden && shows(&planes, center, (reach + pixels) as f32)
+        })
+    }
+
+    fn wgsl(&self, _shader: usize) -> String {
+        visible_chunks_wgsl()
+    }
+
+    fn id_wgsl(&self) -> Option<&'static str> {
+        Some(pick::ID_WGSL)
+    }
+
+    fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.passes.drawing
+    }
+
+    /// One lod for the whole picture, whatever the tile.
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        if !self.edited.is_empty() {
+            let edited = std::mem::take(&mut self.edited);
+            let instances = &self.instances[edited.clone()];
+            let gpu_instances: Vec<GpuInstance> =
+                instances.iter().map(|i| self.cull_instances(i)).collect();
+            self.gpu_instances.write(gpu, edited.start, &gpu_instances);
+        }
+        let size = self.size();
+        if !self.work.holds(&size) {
+            self.work = Work::new(gpu, size)?;
+            self.groups = None;
+        }
+        if self.groups.is_none() {
+            let resident = Resident {
+                chunks: &self.chunks,
+                shapes: &self.shapes,
+                gpu_instances: &self.gpu_instances,
+                packed: &self.packed,
+                color_keys: &self.color_keys,
+            };
+            self.groups = Some(self.passes.groups(gpu, &self.work, &resident));
+            *self.stale.get_mut() = true;
+        }
+        let whole = Frame {
+            tile: Tile::default(),
+            ..*frame
+        };
+        if *self.stale.get_mut() || self.picture != Some(whole) {
+            // What lies just outside the picture darkens what is inside.
+            let most = (MOST_MARGIN * f64::from(frame.size[1])).ceil() as i32;
+            let margin = (-frame.tile.x).max(-frame.tile.y).clamp(0, most) as u32;
+            let eye = self.eye(frame, margin);
+            gpu.queue
+                .write_buffer(&self.work.eye, 0, bytemuck::bytes_of(&eye));
+            self.picture = Some(whole);
+            *self.stale.get_mut() = true;
+        }
+        gpu.check()?;
+        Ok(1)
+    }
+
+    fn choose(
+        &self,
+        _round: usize,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        let groups = self.groups.as_ref();
+        let groups = groups.filter(|_| self.stale.swap(false, Ordering::Relaxed));
+        let instances = self.instances.len();
+        self.passes
+            .record(encoder, &self.work, groups, instances, timestamps);
+    }
+
+    fn draw(&self, _round: usize, _shader: usize, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(groups) = &self.groups {
+            self.passes.draw(pass, &self.work, groups);
+        }
+    }
+}

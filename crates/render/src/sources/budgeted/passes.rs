@@ -1,0 +1,377 @@
+//! The compute passes of exploration and the buffers that they share: see `select.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use neurotess_refine::gpu;
+use wgpu::BufferUsages;
+
+use super::layout::{BINS, BLOCK, CLUSTER, Eye, Sums, VisibleChunk, WIDE, compose};
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::gpu::store::Store;
+use crate::sources::adaptive::refiner::storage;
+
+/// Twin of the struct in `select.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct VisibleCluster {
+    pub(crate) cluster: u32,
+    pub(crate) quads: u32,
+    pub(crate) visible_chunks: u32,
+}
+
+/// Twin of the struct in `select.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Arguments {
+    pub(crate) clusters: [u32; 3],
+    pub(crate) visible: [u32; 3],
+    pub(crate) draws: [u32; 10],
+}
+
+/// What the passes read: templates and instances.
+pub(crate) struct Resident<'a> {
+    pub(crate) chunks: &'a Store,
+    pub(crate) shapes: &'a Store,
+    pub(crate) gpu_instances: &'a Store,
+    pub(crate) packed: &'a Store,
+    pub(crate) color_keys: &'a Store,
+}
+
+/// A pass: what it is called, and the bindings that it uses.
+struct Step {
+    entry: &'static str,
+    bindings: &'static [u32],
+}
+
+const STEPS: [Step; 7] = [
+    Step {
+        entry: "cull_instances",
+        bindings: &[0, 2, 3, 4],
+    },
+    Step {
+        entry: "sum_clusters",
+        bindings: &[0, 4, 6],
+    },
+    Step {
+        entry: "measure",
+        bindings: &[0, 1, 2, 3, 4, 5, 7, 8],
+    },
+    Step {
+        entry: "limit",
+        bindings: &[0, 4, 6, 7, 8, 9],
+    },
+    Step {
+        entry: "count",
+        bindings: &[0, 1, 2, 3, 4, 5, 9],
+    },
+    Step {
+        entry: "sum_visible",
+        bindings: &[0, 4, 6, 9, 10, 11],
+    },
+    Step {
+        entry: "write",
+        bindings: &[0, 1, 2, 3, 4, 5, 9, 10, 11],
+    },
+];
+
+/// Pipelines of all passes: made once.
+#[derive(Debug)]
+pub(crate) struct Passes {
+    layouts: Vec<wgpu::BindGroupLayout>,
+    pipelines: Vec<wgpu::ComputePipeline>,
+    pub(crate) drawing: wgpu::BindGroupLayout,
+}
+
+/// What a frame may have to do with.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Size {
+    pub(crate) instances: usize,
+    pub(crate) chunks: u64,
+    pub(crate) clusters: u64,
+    /// Quads.
+    pub(crate) budget: u32,
+}
+
+/// Buffers of a frame, for scenes up to a size.
+#[derive(Debug)]
+pub(crate) struct Work {
+    size: Size,
+    pub(crate) eye: wgpu::Buffer,
+    /// Sums, then where the clusters of each instance begin.
+    pub(crate) book: wgpu::Buffer,
+    arguments: wgpu::Buffer,
+    best: wgpu::Buffer,
+    histogram: wgpu::Buffer,
+    visible: wgpu::Buffer,
+    pub(crate) visible_chunks: wgpu::Buffer,
+    quads: wgpu::Buffer,
+    indices: wgpu::Buffer,
+}
+
+/// Bind groups of all passes and of the draw.
+#[derive(Debug)]
+pub(crate) struct Groups {
+    passes: Vec<wgpu::BindGroup>,
+    drawing: wgpu::BindGroup,
+}
+
+impl Passes {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, DeviceError> {
+        let device = &gpu.device;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("exploration"),
+            source: wgpu::ShaderSource::Wgsl(select_wgsl().into()),
+        });
+        let mut layouts = Vec::new();
+        let mut pipelines = Vec::new();
+        for step in STEPS {
+            let entries: Vec<_> = step.bindings.iter().map(|&b| binding(b)).collect();
+            let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(step.entry),
+                entries: &entries,
+            });
+            let of_pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(step.entry),
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+            pipelines.push(
+                device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(step.entry),
+                    layout: Some(&of_pipeline),
+                    module: &module,
+                    entry_point: Some(step.entry),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    cache: None,
+                }),
+            );
+            layouts.push(layout);
+        }
+        let vertex = wgpu::ShaderStages::VERTEX;
+        let mut entries = vec![uniform(vertex)];
+        entries.extend([1, 2, 3, 4, 5, 6].map(|binding| storage(binding, vertex, true)));
+        let drawing = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("visible_chunks"),
+            entries: &entries,
+        });
+        gpu.check()?;
+        Ok(Self {
+            layouts,
+            pipelines,
+            drawing,
+        })
+    }
+
+    pub(crate) fn groups(&self, gpu: &Gpu, work: &Work, resident: &Resident<'_>) -> Groups {
+        let buffer = |binding: u32| match binding {
+            0 => &work.eye,
+            1 => &resident.chunks.buffer,
+            2 => &resident.shapes.buffer,
+            3 => &resident.gpu_instances.buffer,
+            4 => &work.book,
+            5 => &resident.packed.buffer,
+            6 => &work.arguments,
+            7 => &work.best,
+            8 => &work.histogram,
+            9 => &work.visible,
+            10 => &work.visible_chunks,
+            _ => &work.quads,
+        };
+        let group = |layout, buffers: Vec<(u32, &wgpu::Buffer)>| {
+            let entries: Vec<_> = buffers
+                .iter()
+                .map(|&(binding, buffer)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: buffer.as_entire_binding(),
+                })
+                .collect();
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("exploration"),
+                layout,
+                entries: &entries,
+            })
+        };
+        let passes = STEPS.iter().zip(&self.layouts).map(|(step, layout)| {
+            let buffers = step.bindings.iter().map(|&b| (b, buffer(b)));
+            group(layout, buffers.collect())
+        });
+        let drawn = vec![
+            (0, &work.eye),
+            (1, &resident.chunks.buffer),
+            (2, &work.visible_chunks),
+            (3, &resident.gpu_instances.buffer),
+            (4, &work.quads),
+            (5, &resident.packed.buffer),
+            (6, &resident.color_keys.buffer),
+        ];
+        Groups {
+            passes: passes.collect(),
+            drawing: group(&self.drawing, drawn),
+        }
+    }
+
+    /// Records all passes of a frame; without groups, an empty one.
+    pub(crate) fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        work: &Work,
+        groups: Option<&Groups>,
+        instances: usize,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        if groups.is_some() {
+            encoder.clear_buffer(&work.histogram, 0, None);
+        }
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("exploration"),
+            timestamp_writes: timestamps,
+        });
+        let Some(groups) = groups else { return };
+        let of_instances = (instances.div_ceil(WIDE) as u32).max(1);
+        for ((step, pipeline), group) in STEPS.iter().zip(&self.pipelines).zip(&groups.passes) {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            match step.entry {
+                "cull_instances" => pass.dispatch_workgroups(of_instances, 1, 1),
+                "measure" => pass.dispatch_workgroups_indirect(&work.arguments, 0),
+                "count" | "write" => pass.dispatch_workgroups_indirect(&work.arguments, 12),
+                _ => pass.dispatch_workgroups(1, 1, 1),
+            }
+        }
+    }
+
+    /// Draws what was chosen, with the pipeline that is set. Sets group 0.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, work: &Work, groups: &Groups) {
+        pass.set_bind_group(0, &groups.drawing, &[]);
+        pass.set_index_buffer(work.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.multi_draw_indexed_indirect(&work.arguments, 24, 2);
+    }
+}
+
+impl Work {
+    /// For scenes up to a size.
+    ///
+    /// # Errors
+    /// More than the device binds in one visible_chunk.
+    pub(crate) fn new(gpu: &Gpu, size: Size) -> Result<Self, DeviceError> {
+        let quads = u64::from(size.budget).max(1);
+        let stored = BufferUsages::STORAGE;
+        let make = |what: &'static str, bytes: u64, usage| {
+            let (bytes, most) = (bytes.max(16), gpu.largest_binding());
+            if bytes > most {
+                return Err(DeviceError::TooLarge { what, bytes, most });
+            }
+            Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(what),
+                size: bytes,
+                usage: usage | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }))
+        };
+        // Every visible cluster draws a quad at least, and so does every visible_chunk.
+        let most_visible = size.clusters.min(quads);
+        let book = size_of::<Sums>() as u64 + 4 * (size.instances as u64).max(1);
+        let most_visible_chunks = size.chunks.min(quads);
+        let work = Self {
+            size,
+            eye: make("eye", size_of::<Eye>() as u64, BufferUsages::UNIFORM)?,
+            book: make("starts of instances", book, stored)?,
+            arguments: make(
+                "arguments",
+                size_of::<Arguments>() as u64,
+                stored | BufferUsages::INDIRECT,
+            )?,
+            best: make("clusters of chunks", 4 * size.clusters, stored)?,
+            histogram: make("histogram", 4 * BINS as u64, stored)?,
+            visible: make(
+                "visible clusters",
+                size_of::<VisibleCluster>() as u64 * most_visible,
+                stored,
+            )?,
+            visible_chunks: make(
+                "visible_chunks",
+                size_of::<VisibleChunk>() as u64 * most_visible_chunks,
+                stored,
+            )?,
+            quads: make("quads", 4 * (quads + 1), stored)?,
+            indices: make("indices", 4 * INDICES as u64, BufferUsages::INDEX)?,
+        };
+        gpu.queue
+            .write_buffer(&work.indices, 0, bytemuck::cast_slice(&indices()));
+        gpu.check()?;
+        Ok(work)
+    }
+
+    /// Whether a scene of this size fits: smaller ones need no other buffers.
+    pub(crate) fn holds(&self, size: &Size) -> bool {
+        let Size {
+            instances,
+            chunks,
+            clusters,
+            budget,
+        } = self.size;
+        instances >= size.instances
+            && chunks >= size.chunks
+            && clusters >= size.clusters
+            && budget >= size.budget
+    }
+
+    pub(crate) fn bytes(&self) -> Vec<(&'static str, u64)> {
+        vec![
+            ("starts", self.book.size()),
+            ("clusters", self.best.size() + self.visible.size()),
+            ("visible_chunks", self.visible_chunks.size()),
+            ("quads", self.quads.size()),
+            ("histogram", self.histogram.size() + self.arguments.size()),
+            ("frame", self.eye.size()),
+            ("indices", self.indices.size()),
+        ]
+    }
+}
+
+/// Of a full block and of the rest.
+const INDICES: usize = 12 * BLOCK;
+
+/// Two triangles a quad, parted from corner 1 to 3; those of the rest have vertices of their own.
+fn indices() -> Vec<u32> {
+    let quads = 0..2 * BLOCK as u32;
+    quads
+        .flat_map(|quad| [0, 1, 3, 1, 2, 3].map(|corner| 4 * quad + corner))
+        .collect()
+}
+
+/// The module of all passes that choose.
+pub(crate) fn select_wgsl() -> String {
+    compose(&[include_str!("select.wgsl")])
+}
+
+/// What makes vertices.
+pub(crate) fn visible_chunks_wgsl() -> String {
+    // Somata near by are evaluated as everywhere.
+    let own = compose(&[include_str!("visible_chunks.wgsl")]);
+    [&gpu::prelude(), gpu::EVALUATE_WGSL, &own].concat()
+}
+
+fn binding(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    let compute = wgpu::ShaderStages::COMPUTE;
+    match binding {
+        0 => uniform(compute),
+        1 | 2 | 3 | 5 => storage(binding, compute, true),
+        _ => storage(binding, compute, false),
+    }
+}
+
+fn uniform(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+const _: () = assert!(CLUSTER == 64 && size_of::<VisibleCluster>() == 12);

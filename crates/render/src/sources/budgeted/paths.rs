@@ -1,0 +1,241 @@
+//! A coarse mesh's tubes as paths: from a start through forks to a tip, always along the branch that
+//! reaches farthest. What branches off is a path of its own that starts at the fork.
+//!
+//! A path goes on through forks, so a far neuron needs as many visible chunks as it has tips, and the tube of
+//! a fork's main branch has no seam.
+
+use glam::Vec3;
+use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+
+const NONE: u32 = u32::MAX;
+
+/// A way along tracing points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct TubePath {
+    /// At least two.
+    pub(crate) points: Vec<PathPoint>,
+    /// Tracing point of the fork that it starts from.
+    pub(crate) fork: Option<u32>,
+    /// Whether nothing closes it at its beginning: no soma, no fork.
+    pub(crate) starts_free: bool,
+}
+
+/// A tracing point on a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PathPoint {
+    pub(crate) center: Vec3,
+    pub(crate) radius: f32,
+    /// Tracing point that says the color.
+    pub(crate) tracing: u32,
+}
+
+/// All paths of a mesh, each after the one that it starts from.
+pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
+    let tree = Tree::new(mesh);
+    let far = tree.reaches(mesh);
+    let mut paths = Vec::new();
+    let mut starts: Vec<(u32, u32)> = (0..mesh.tracing.len() as u32)
+        .filter(|&point| tree.parents[point as usize] == NONE && !tree.of(point).is_empty())
+        .map(|point| (NONE, point))
+        .collect();
+    starts.reverse();
+    while let Some((fork, first)) = starts.pop() {
+        let mut path = TubePath {
+            fork: (fork != NONE).then_some(fork),
+            starts_free: fork == NONE && mesh.tracing[first as usize].role != Role::Insertion,
+            ..TubePath::default()
+        };
+        if fork != NONE {
+            // The branch leaves with its own width and color: the fork's tube is there already.
+            path.points.push(PathPoint {
+                center: mesh.tracing[fork as usize].center,
+                ..point(mesh, first)
+            });
+        }
+        if mesh.tracing[first as usize].role == Role::Insertion {
+            // From within the soma, so that no gap shows however the neurite bends away.
+            let mut inside = point(mesh, first);
+            inside.center -= mesh.tracing[first as usize].tangent * inside.radius;
+            path.points.push(inside);
+        }
+        let mut at = first;
+        loop {
+            path.points.push(point(mesh, at));
+            let children = tree.of(at);
+            let farthest = |&&child: &&u32| {
+                let [a, b] = [at, child].map(|p| mesh.tracing[p as usize].center);
+                far[child as usize] + a.distance(b)
+            };
+            let main = children
+                .iter()
+                .max_by(|a, b| farthest(a).total_cmp(&farthest(b)).then(b.cmp(a)));
+            let Some(&main) = main else { break };
+            let others = children.iter().rev().filter(|&&child| child != main);
+            starts.extend(others.map(|&child| (at, child)));
+            at = main;
+        }
+        if path.points.len() > 1 {
+            paths.push(path);
+        }
+    }
+    paths
+}
+
+fn point(mesh: &CoarseMesh, tracing: u32) -> PathPoint {
+    let of_mesh = &mesh.tracing[tracing as usize];
+    let radius = of_mesh.radius.max(0.0);
+    PathPoint {
+        center: of_mesh.center,
+        radius: if radius.is_finite() { radius } else { 0.0 },
+        tracing,
+    }
+}
+
+/// Which tracing point follows which.
+struct Tree {
+    parents: Vec<u32>,
+    /// Children of all, one after the other, and where each one's begin.
+    children: Vec<u32>,
+    first: Vec<u32>,
+}
+
+impl Tree {
+    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2).
+    fn new(mesh: &CoarseMesh) -> Self {
+        let count = mesh.tracing.len();
+        let mut parents = vec![NONE; count];
+        let of = |corner: u32| mesh.vertices[corner as usize].tracing;
+        for patch in &mesh.patches {
+            let [near, _, _, far] = patch.corners.map(of);
+            let tube = patch.kind == PatchKind::Lateral && near != far;
+            if tube && parents[far as usize] == NONE && !leads_to(&parents, near, far) {
+                parents[far as usize] = near;
+            }
+        }
+        let mut first = vec![0; count + 1];
+        for &parent in parents.iter().filter(|&&parent| parent != NONE) {
+            first[parent as usize + 1] += 1;
+        }
+        for i in 0..count {
+            first[i + 1] += first[i];
+        }
+        let mut next = first.clone();
+        let mut children = vec![0; first[count] as usize];
+        for (child, &parent) in parents.iter().enumerate() {
+            if parent != NONE {
+                children[next[parent as usize] as usize] = child as u32;
+                next[parent as usize] += 1;
+            }
+        }
+        Self {
+            parents,
+            children,
+            first,
+        }
+    }
+
+    fn of(&self, point: u32) -> &[u32] {
+        let point = point as usize;
+        &self.children[self.first[point] as usize..self.first[point + 1] as usize]
+    }
+
+    /// Length (µm) of the longest way from each point to a tip.
+    fn reaches(&self, mesh: &CoarseMesh) -> Vec<f32> {
+        let mut order: Vec<u32> = Vec::with_capacity(self.parents.len());
+        let roots = (0..).zip(&self.parents).filter(|(_, p)| **p == NONE);
+        order.extend(roots.map(|(root, _)| root));
+        let mut i = 0;
+        while i < order.len() {
+            order.extend(self.of(order[i]));
+            i += 1;
+        }
+        let mut far = vec![0.0_f32; self.parents.len()];
+        for &point in order.iter().rev() {
+            let parent = self.parents[point as usize];
+            if parent != NONE {
+                let [a, b] = [point, parent].map(|p| mesh.tracing[p as usize].center);
+                far[parent as usize] =
+                    far[parent as usize].max(far[point as usize] + a.distance(b));
+            }
+        }
+        far
+    }
+}
+
+/// Whether `from` descends from `ancestor`: only a mesh that is no tree's has such a ring.
+fn leads_to(parents: &[u32], from: u32, ancestor: u32) -> bool {
+    // A mesh of ours names parents before children, and then the child has no descendants yet; a
+    // parent that was named before its own parent is rare, and its chain short.
+    let mut at = from;
+    for _ in 0..parents.len() {
+        if at == ancestor {
+            return true;
+        }
+        match parents[at as usize] {
+            NONE => return false,
+            parent if parent < at && ancestor > at => return false,
+            parent => at = parent,
+        }
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess_mesh::{Patch, TracingPoint, Vertex};
+
+    use super::*;
+
+    /// Rings of four vertices at these centers, joined in pairs.
+    fn rings(centers: &[Vec3], pairs: &[[u32; 2]]) -> CoarseMesh {
+        let mut mesh = CoarseMesh::default();
+        for (i, &center) in centers.iter().enumerate() {
+            mesh.tracing.push(TracingPoint {
+                center,
+                radius: 1.0 + i as f32,
+                ..TracingPoint::default()
+            });
+            mesh.vertices.extend(
+                [Vertex {
+                    tracing: i as u32,
+                    ..Vertex::default()
+                }; 4],
+            );
+        }
+        for &[a, b] in pairs {
+            for k in 0..4 {
+                let after = (k + 1) % 4;
+                mesh.patches.push(Patch {
+                    corners: [4 * a + k, 4 * a + after, 4 * b + after, 4 * b + k],
+                    kind: PatchKind::Lateral,
+                });
+            }
+        }
+        mesh
+    }
+
+    fn ids(path: &TubePath) -> Vec<u32> {
+        path.points.iter().map(|point| point.tracing).collect()
+    }
+
+    #[test]
+    fn paths_go_on_along_the_branch_that_reaches_farthest() {
+        let centers = [0.0, 1.0, 2.0, 9.0, 3.0].map(|x| Vec3::X * x);
+        let mesh = rings(&centers, &[[0, 1], [1, 2], [1, 3], [2, 4]]);
+        let paths = tube_paths(&mesh);
+        assert_eq!(paths.len(), 2);
+        assert_eq!(ids(&paths[0]), [0, 1, 3]);
+        // The other branch starts at the fork, as wide as its own first point.
+        assert_eq!(ids(&paths[1]), [2, 2, 4]);
+        assert_eq!(paths[1].points[0].center, Vec3::X);
+        assert_eq!(paths[1].points[0].radius, 3.0);
+        assert!(paths[0].starts_free && !paths[1].starts_free);
+    }
+
+    #[test]
+    fn a_circle_of_rings_is_cut_open() {
+        let centers = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let paths = tube_paths(&rings(&centers, &[[0, 1], [1, 2], [2, 0]]));
+        assert_eq!(paths.iter().map(ids).collect::<Vec<_>>(), [[0, 1, 2]]);
+    }
+}

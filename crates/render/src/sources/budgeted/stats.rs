@@ -1,0 +1,92 @@
+//! What a frame of exploration drew, read back on request: for statistics and for tests.
+
+use super::Exploration;
+use super::layout::{Sums, VisibleChunk};
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::sources::adaptive::readback::read;
+
+/// Sums of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExplorationStats {
+    /// Triangles drawn.
+    pub triangles: u64,
+    /// The most that may be.
+    pub budget: u64,
+    /// Triangles that half a pixel everywhere would take.
+    pub wanted: u64,
+    /// Runs and somata drawn.
+    pub visible_chunks: u64,
+    /// Instances that may show: not hidden, in the picture.
+    pub instances: u64,
+    /// All instances.
+    pub all_instances: u64,
+}
+
+/// A chunk or a soma that was drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnChunk {
+    /// Place of the instance.
+    pub instance: u32,
+    /// Chunk, among those of its template.
+    pub chunk: u32,
+    /// What was drawn, in the color keys of `explore.wgsl`.
+    pub lod: u32,
+    /// Quads.
+    pub quads: u32,
+}
+
+impl Exploration {
+    /// What the picture that was prepared last takes. Chooses once more and waits: for statistics, not
+    /// for every frame.
+    ///
+    /// # Errors
+    /// What the device complained of.
+    pub fn stats(&self, gpu: &Gpu) -> Result<ExplorationStats, DeviceError> {
+        let sums = self.sums(gpu)?;
+        Ok(ExplorationStats {
+            triangles: 2 * u64::from(sums.quads),
+            budget: u64::from(self.budget),
+            wanted: 2 * u64::from(sums.wanted),
+            visible_chunks: u64::from(sums.visible_chunks),
+            instances: u64::from(sums.instances),
+            all_instances: self.instances.len() as u64,
+        })
+    }
+
+    /// The visible chunks themselves, in the order in which they are drawn, as [`Exploration::stats`].
+    ///
+    /// # Errors
+    /// What the device complained of.
+    pub fn shown(&self, gpu: &Gpu) -> Result<Vec<DrawnChunk>, DeviceError> {
+        let sums = self.sums(gpu)?;
+        let count = sums.visible_chunks as usize;
+        let visible_chunks: Vec<VisibleChunk> = read(gpu, &self.work.visible_chunks, count)?;
+        let ends = visible_chunks.iter().skip(1).map(|next| next.first);
+        let ends = ends.chain([sums.quads]);
+        Ok(visible_chunks
+            .iter()
+            .zip(ends)
+            .map(|(visible_chunk, end)| DrawnChunk {
+                instance: visible_chunk.instance,
+                chunk: visible_chunk.chunk - self.first_chunk(visible_chunk.instance as usize),
+                lod: visible_chunk.lod,
+                quads: end - visible_chunk.first,
+            })
+            .collect())
+    }
+
+    fn first_chunk(&self, instance: usize) -> u32 {
+        self.known[self.instances[instance].template.0 as usize].first_chunk
+    }
+
+    fn sums(&self, gpu: &Gpu) -> Result<Sums, DeviceError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let (groups, instances) = (self.groups.as_ref(), self.instances.len());
+        self.passes
+            .record(&mut encoder, &self.work, groups, instances, None);
+        gpu.queue.submit([encoder.finish()]);
+        let sums = read(gpu, &self.work.book, 1)?;
+        Ok(sums.first().copied().unwrap_or_default())
+    }
+}

@@ -1,0 +1,29 @@
+// What a vertex of visible_chunks.wgsl is drawn for. Called by ids.wgsl; Rust twin: names.rs.
+
+const POINT_BITS: u32 = 7u;
+
+// First: the instance. Second: the chunk, and the point of it that the segment leads to.
+fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {
+    let place = quad_place(vertex_index, instance_index);
+    if (place >= quads[0]) {
+        return vec2<u32>(0u);
+    }
+    let visible_chunk = visible_chunks[quads[place + 1u]];
+    return vec2<u32>(visible_chunk.instance, (visible_chunk.chunk << POINT_BITS) | leads_to(visible_chunk, place - visible_chunk.first));
+}
+
+fn leads_to(visible_chunk: VisibleChunk, index: u32) -> u32 {
+    if ((visible_chunk.lod & 7u) != WHAT_TUBE) {
+        return 0u;
+    }
+    let chunk = chunks[visible_chunk.chunk];
+    let level = (visible_chunk.lod >> 3u) & 7u;
+    let halvings = (visible_chunk.lod >> 6u) & 3u;
+    let strips = max((visible_chunk.lod >> 8u) & 0xffu, 1u);
+    let tube_quads = (segments(chunk, level) << halvings) * strips;
+    if (index < tube_quads) {
+        return stored(chunk, level, ((index / strips) >> halvings) + 1u).point;
+    }
+    let of_start = index - tube_quads < DOME_QUADS && (chunk.flags & CHUNK_FREE_START) != 0u;
+    return select(segments(chunk, 0u), 0u, of_start);
+}

@@ -1,0 +1,465 @@
+//! The simplest source of vertices: a surface refined beforehand, whole in the GPU's memory.
+//!
+//! Memory grows with the level; that is what refinement on the fly is compared with. Surfaces are
+//! cut into **chunks** that each fit one binding, and chunks into **runs** of triangles that are left
+//! out where they do not show.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, SurfaceVertex};
+use neurotess_refine::{Lod, RefineOptions, Refinement};
+
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::sources::VertexSource;
+use crate::view::bounds::{any_shows, bounds};
+use crate::view::frame::{Frame, shows};
+use crate::view::framing::BoundingSphere;
+
+/// Triangles in a run: some thousand, so that tests for showing cost nothing beside drawing.
+const RUN: usize = 4096;
+/// Runs in a chunk: at most 36 MiB of vertices, were they all of one triangle each.
+const CHUNK: usize = 128 * RUN;
+/// Distance of dynamic offsets into a uniform buffer that every device allows.
+const STRIDE: u64 = 256;
+
+/// A coarse mesh with one color key per tracing point that says its color: see
+/// [`ColorTable`](crate::ColorTable).
+#[derive(Clone, Copy, Debug)]
+pub struct PrerefinedSurface<'m> {
+    /// The mesh.
+    pub mesh: &'m CoarseMesh,
+    /// One per tracing point.
+    pub color_keys: &'m [u32],
+}
+
+/// Where a surface is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// What to add to its coordinates (µm).
+    pub translation: DVec3,
+}
+
+/// Twin of `StoredVertex` in `prerefined.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct StoredVertex {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) z: f32,
+    /// 0 on somata.
+    pub(crate) radius: f32,
+    pub(crate) normal: u32,
+    pub(crate) color_key: u32,
+}
+
+impl StoredVertex {
+    fn position(&self) -> Vec3 {
+        Vec3::new(self.x, self.y, self.z)
+    }
+}
+
+/// Twin of `Placement` in `prerefined.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Placement {
+    pub(crate) relative_from_mesh: [f32; 3],
+    pub(crate) instance: u32,
+}
+
+/// What is resident, and how much.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Resident {
+    /// Coarse patches that it was made of.
+    pub patches: usize,
+    /// Tracing points that it was made of.
+    pub points: usize,
+    /// Vertices of the surface.
+    pub vertices: usize,
+    /// Triangles of the surface.
+    pub triangles: usize,
+    /// Bytes of vertices.
+    pub vertex_bytes: u64,
+    /// Bytes of corners.
+    pub corner_bytes: u64,
+    /// Number of coarse edges by level.
+    pub levels: BTreeMap<u32, usize>,
+}
+
+struct Run {
+    /// Corners in the chunk.
+    corners: Range<u32>,
+    center: Vec3,
+    radius: f32,
+    /// Whether it ever showed.
+    drawn: bool,
+}
+
+struct Chunk {
+    mesh: usize,
+    group: wgpu::BindGroup,
+    corners: wgpu::Buffer,
+    runs: Vec<Run>,
+    /// Place and corners.
+    shown: Vec<(u32, Range<u32>)>,
+}
+
+/// A refined surface in the GPU's memory.
+pub struct Prerefined {
+    layout: wgpu::BindGroupLayout,
+    placements: wgpu::Buffer,
+    /// Mesh, and what its coordinates are relative to.
+    places: Vec<(usize, DVec3)>,
+    chunks: Vec<Chunk>,
+    bounds: Vec<BoundingSphere>,
+    resident: Resident,
+    drawn: usize,
+    /// Whether triangles have corners of their own, as wireframes need.
+    barycentric: bool,
+}
+
+impl Prerefined {
+    /// Refines meshes and uploads them. `levels` gives the levels of each mesh, in its coordinates;
+    /// `barycentric`: whether a wireframe will be drawn.
+    ///
+    /// # Errors
+    /// They do not fit the device.
+    pub fn new(
+        gpu: &Gpu,
+        meshes: &[PrerefinedSurface<'_>],
+        lod: impl Fn(usize) -> Lod<'static>,
+        options: &RefineOptions,
+        barycentric: bool,
+    ) -> Result<Self, DeviceError> {
+        let own = (0..meshes.len()).map(|mesh| Place {
+            mesh,
+            translation: DVec3::ZERO,
+        });
+        let places: Vec<Place> = own.collect();
+        Self::placed(gpu, meshes, &places, lod, options, barycentric)
+    }
+
+    /// As [`Prerefined::new`], each mesh drawn at any number of places.
+    ///
+    /// # Errors
+    /// They do not fit the device.
+    ///
+    /// # Panics
+    /// If a place is of no mesh.
+    pub fn placed(
+        gpu: &Gpu,
+        meshes: &[PrerefinedSurface<'_>],
+        places: &[Place],
+        lod: impl Fn(usize) -> Lod<'static>,
+        options: &RefineOptions,
+        barycentric: bool,
+    ) -> Result<Self, DeviceError> {
+        let placements = buffer(
+            gpu,
+            "placements",
+            STRIDE * places.len().max(1) as u64,
+            wgpu::BufferUsages::UNIFORM,
+        )?;
+        let mut made = Self {
+            layout: layout(&gpu.device),
+            placements,
+            places: places
+                .iter()
+                .map(|place| {
+                    (
+                        place.mesh,
+                        meshes[place.mesh].mesh.origin + place.translation,
+                    )
+                })
+                .collect(),
+            chunks: Vec::new(),
+            bounds: places
+                .iter()
+                .flat_map(|place| {
+                    let spheres = bounds(meshes[place.mesh].mesh).into_iter();
+                    spheres.map(|(center, radius)| (center + place.translation, radius))
+                })
+                .collect(),
+            resident: Resident::default(),
+            drawn: 0,
+            barycentric,
+        };
+        for (index, painted) in meshes.iter().enumerate() {
+            // The vertices' numbers of samples become those of tracing points, to find the color keys by.
+            let mut numbered = painted.mesh.clone();
+            for (point, number) in numbered.tracing.iter_mut().zip(0..) {
+                point.sample = number;
+            }
+            let refined = Refinement::new(&numbered, lod(index), options);
+            for (level, edges) in refined.level_histogram() {
+                *made.resident.levels.entry(level).or_default() += edges;
+            }
+            let surface = SurfaceMesh::collect(&refined);
+            made.resident.patches += painted.mesh.patches.len();
+            made.resident.points += painted.mesh.tracing.len();
+            let store = |vertex: &SurfaceVertex| store(vertex, painted);
+            for triangles in surface.faces.triangles.chunks(CHUNK) {
+                made.add(gpu, index, &surface.vertices, triangles, store)?;
+            }
+        }
+        gpu.check()?;
+        Ok(made)
+    }
+
+    /// What is resident.
+    pub fn resident(&self) -> &Resident {
+        &self.resident
+    }
+
+    /// Triangles of the runs that showed in any frame.
+    pub fn drawn(&self) -> usize {
+        self.drawn
+    }
+
+    /// Triangles of the runs that show in the frame that was prepared last, at all places.
+    pub fn shown(&self) -> usize {
+        let shown = self.chunks.iter().flat_map(|chunk| &chunk.shown);
+        shown.map(|(_, corners)| corners.len() / 3).sum()
+    }
+
+    /// About as many patches as made those triangles.
+    pub fn patches_drawn(&self) -> usize {
+        let Resident {
+            patches, triangles, ..
+        } = self.resident;
+        (patches * self.drawn).div_ceil(triangles.max(1))
+    }
+
+    fn add(
+        &mut self,
+        gpu: &Gpu,
+        mesh: usize,
+        vertices: &[SurfaceVertex],
+        triangles: &[[u32; 3]],
+        store: impl Fn(&SurfaceVertex) -> StoredVertex,
+    ) -> Result<(), DeviceError> {
+        // Numbers within the chunk, in the order of first use.
+        let mut place = vec![u32::MAX; vertices.len()];
+        let mut stored = Vec::new();
+        let mut corners = Vec::with_capacity(3 * triangles.len());
+        for &vertex in triangles.iter().flatten() {
+            let slot = &mut place[vertex as usize];
+            if *slot == u32::MAX {
+                *slot = stored.len() as u32;
+                stored.push(store(&vertices[vertex as usize]));
+            }
+            corners.push(*slot);
+        }
+        let storage = wgpu::BufferUsages::STORAGE;
+        let vertex_buffer = filled(gpu, "vertices", bytemuck::cast_slice(&stored), storage)?;
+        let usage = storage | wgpu::BufferUsages::INDEX;
+        let corner_buffer = filled(gpu, "corners", bytemuck::cast_slice(&corners), usage)?;
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("prerefined"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, vertex_buffer.as_entire_binding()),
+                entry(1, corner_buffer.as_entire_binding()),
+                entry(
+                    2,
+                    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer: &self.placements,
+                        offset: 0,
+                        size: wgpu::BufferSize::new(size_of::<Placement>() as u64),
+                    }),
+                ),
+            ],
+        });
+        self.resident.vertices += stored.len();
+        self.resident.triangles += triangles.len();
+        self.resident.vertex_bytes += vertex_buffer.size();
+        self.resident.corner_bytes += corner_buffer.size();
+        let runs = corners.chunks(3 * RUN).zip((0_u32..).step_by(3 * RUN));
+        let runs = runs.map(|(run, first)| {
+            let positions = || run.iter().map(|&c| stored[c as usize].position());
+            let low = positions().fold(Vec3::MAX, Vec3::min);
+            let high = positions().fold(Vec3::MIN, Vec3::max);
+            Run {
+                corners: first..first + run.len() as u32,
+                center: (low + high) / 2.0,
+                radius: (high - low).length() / 2.0,
+                drawn: false,
+            }
+        });
+        self.chunks.push(Chunk {
+            mesh,
+            group,
+            corners: corner_buffer,
+            runs: runs.collect(),
+            shown: Vec::new(),
+        });
+        Ok(())
+    }
+}
+
+impl VertexSource for Prerefined {
+    fn shows(&self, frame: &Frame) -> bool {
+        any_shows(&self.bounds, frame)
+    }
+
+    fn wgsl(&self, _shader: usize) -> String {
+        let barycentric = self.barycentric;
+        format!("const BARYCENTRIC: bool = {barycentric};\n{}", WGSL)
+    }
+
+    fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        let eye = frame.camera.eye();
+        let offsets = self
+            .places
+            .iter()
+            .map(|&(_, origin)| (origin - eye).as_vec3());
+        let offsets: Vec<Vec3> = offsets.collect();
+        for (index, offset) in offsets.iter().enumerate() {
+            let placement = Placement {
+                relative_from_mesh: offset.to_array(),
+                instance: index as u32,
+            };
+            let bytes = bytemuck::bytes_of(&placement);
+            gpu.queue
+                .write_buffer(&self.placements, STRIDE * index as u64, bytes);
+        }
+        let planes = frame.frustum();
+        for chunk in &mut self.chunks {
+            chunk.shown.clear();
+            let here = self.places.iter().zip(&offsets).zip(0_u32..);
+            for ((_, &offset), place) in here.filter(|((place, _), _)| place.0 == chunk.mesh) {
+                for run in &mut chunk.runs {
+                    // Widened to a pixel, a run reaches farther by half of one: 4 sub-pixels.
+                    let center = run.center + offset;
+                    let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
+                    if !shows(&planes, center, run.radius + pixels) {
+                        continue;
+                    }
+                    if !run.drawn {
+                        self.drawn += run.corners.len() / 3;
+                        run.drawn = true;
+                    }
+                    match chunk.shown.last_mut() {
+                        Some((of, last)) if *of == place && last.end == run.corners.start => {
+                            last.end = run.corners.end;
+                        }
+                        _ => chunk.shown.push((place, run.corners.clone())),
+                    }
+                }
+            }
+        }
+        Ok(1)
+    }
+
+    fn draw(&self, _round: usize, _shader: usize, pass: &mut wgpu::RenderPass<'_>) {
+        for chunk in self.chunks.iter().filter(|chunk| !chunk.shown.is_empty()) {
+            if !self.barycentric {
+                pass.set_index_buffer(chunk.corners.slice(..), wgpu::IndexFormat::Uint32);
+            }
+            for (place, shown) in &chunk.shown {
+                pass.set_bind_group(0, &chunk.group, &[STRIDE as u32 * place]);
+                if self.barycentric {
+                    pass.draw(shown.clone(), 0..1);
+                } else {
+                    pass.draw_indexed(shown.clone(), 0, 0..1);
+                }
+            }
+        }
+    }
+}
+
+/// Defines `surface_vertex`.
+pub(crate) const WGSL: &str = include_str!("prerefined.wgsl");
+
+fn store(vertex: &SurfaceVertex, painted: &PrerefinedSurface<'_>) -> StoredVertex {
+    let tracing = vertex.point as usize;
+    let soma = painted.mesh.tracing[tracing].role == Role::Soma;
+    StoredVertex {
+        x: vertex.position.x,
+        y: vertex.position.y,
+        z: vertex.position.z,
+        radius: if soma { 0.0 } else { vertex.radius },
+        normal: pack_normal(vertex.normal),
+        color_key: painted.color_keys.get(tracing).copied().unwrap_or(0),
+    }
+}
+
+/// A unit vector's place on an octahedron, two signed 16-bit numbers: the angle is kept within 0.005°.
+fn pack_normal(normal: Vec3) -> u32 {
+    let sum = normal.abs().element_sum().max(f32::MIN_POSITIVE);
+    let (x, y) = (normal.x / sum, normal.y / sum);
+    let sign = |value: f32| if value < 0.0 { -1.0 } else { 1.0 };
+    let (x, y) = if normal.z < 0.0 {
+        ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y))
+    } else {
+        (x, y)
+    };
+    let snorm = |value: f32| u32::from((value.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    snorm(x) | (snorm(y) << 16)
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let binding = |binding: u32, ty: wgpu::BufferBindingType| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: ty == wgpu::BufferBindingType::Uniform,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("prerefined"),
+        entries: &[
+            binding(0, storage),
+            binding(1, storage),
+            binding(2, wgpu::BufferBindingType::Uniform),
+        ],
+    })
+}
+
+fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+/// A buffer that can be written to.
+fn buffer(
+    gpu: &Gpu,
+    what: &'static str,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, DeviceError> {
+    let most = gpu.largest_binding();
+    if bytes > most {
+        return Err(DeviceError::TooLarge { what, bytes, most });
+    }
+    Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(what),
+        size: bytes,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    }))
+}
+
+fn filled(
+    gpu: &Gpu,
+    what: &'static str,
+    bytes: &[u8],
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, DeviceError> {
+    let buffer = buffer(gpu, what, bytes.len() as u64, usage)?;
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    gpu.check()?;
+    Ok(buffer)
+}

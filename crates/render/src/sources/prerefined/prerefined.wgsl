@@ -1,0 +1,51 @@
+// Vertices of a surface that was refined beforehand and lies in buffers. Called by shade.wgsl.
+// Rust twin: prerefined.rs. BARYCENTRIC says whether every triangle has corners of its own.
+
+struct StoredVertex {
+    x: f32,
+    y: f32,
+    z: f32,
+    radius: f32,
+    normal: u32,
+    color_key: u32,
+}
+
+struct Placement {
+    relative_from_mesh: vec3<f32>,
+    instance: u32,
+}
+
+@group(0) @binding(0) var<storage, read> stored: array<StoredVertex>;
+@group(0) @binding(1) var<storage, read> corners: array<u32>;
+@group(0) @binding(2) var<uniform> placement: Placement;
+
+// Unit vector from its place on an octahedron (Meyer et al., On floating-point normal vectors, 2010).
+fn unpack_normal(packed: u32) -> vec3<f32> {
+    let p = unpack2x16snorm(packed);
+    let z = 1.0 - abs(p.x) - abs(p.y);
+    let fold = max(-z, 0.0);
+    let folded = p - select(vec2(-fold), vec2(fold), p >= vec2(0.0));
+    return normalize(vec3(folded, z));
+}
+
+fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
+    var index = vertex_index;
+    var grid = vec2(0.5);
+    if BARYCENTRIC {
+        index = corners[vertex_index];
+        let corner = vertex_index % 3u;
+        grid = vec2(f32(corner == 1u), f32(corner == 2u));
+    }
+    let v = stored[index];
+    let position = vec3(v.x, v.y, v.z) + placement.relative_from_mesh;
+    let normal = unpack_normal(v.normal);
+    return SurfaceVertex(
+        position,
+        normal,
+        position - normal * v.radius,
+        v.radius,
+        v.color_key,
+        placement.instance,
+        grid,
+    );
+}

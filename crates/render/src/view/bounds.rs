@@ -1,0 +1,96 @@
+//! Bounding spheres around a mesh, to tell which tiles of a picture are empty.
+//!
+//! An empty tile costs as much as a full one in passes over its sub-pixels: of a cell drawn 4096 pixels
+//! high, nine tiles of ten are empty.
+
+use glam::{DVec3, Vec3};
+use neurotess_mesh::{CoarseMesh, Patch, Role};
+
+use crate::view::frame::{Frame, shows};
+use crate::view::framing::BoundingSphere;
+
+/// Patches in a sphere: neighbors, as patches follow the tree.
+const TOGETHER: usize = 8;
+/// How far a surface may bulge beyond its corners, by their distance from the middle.
+const BULGE: f32 = 1.5;
+
+/// Bounding spheres that hold the refined surface of a mesh, whatever its levels.
+pub fn bounds(mesh: &CoarseMesh) -> Vec<BoundingSphere> {
+    mesh.patches
+        .chunks(TOGETHER)
+        .map(|patches| sphere(mesh, patches))
+        .collect()
+}
+
+fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {
+    let corners = || patches.iter().flat_map(|patch| patch.corners);
+    let positions = || corners().map(|v| mesh.vertices[v as usize].position);
+    let low = positions().fold(Vec3::MAX, Vec3::min);
+    let high = positions().fold(Vec3::MIN, Vec3::max);
+    let center = (low + high) / 2.0;
+    // A tube bulges by its radius, at its end too; a soma's radius is its own size.
+    let radius = corners()
+        .map(|v| &mesh.tracing[mesh.vertices[v as usize].tracing as usize])
+        .filter(|point| point.role != Role::Soma)
+        .map(|point| point.radius)
+        .fold(0.0, f32::max);
+    let reach = positions().map(|p| p.distance(center)).fold(0.0, f32::max);
+    let origin: DVec3 = mesh.origin;
+    (
+        origin + center.as_dvec3(),
+        f64::from(BULGE * reach + radius),
+    )
+}
+
+/// Whether any sphere may show in a frame, lines widened to a pixel.
+pub fn any_shows(spheres: &[BoundingSphere], frame: &Frame) -> bool {
+    let planes = frame.frustum();
+    let eye = frame.camera.eye();
+    spheres.iter().any(|&(center, radius)| {
+        let center = (center - eye).as_vec3();
+        // Half a pixel is at most four sub-pixels; twice that for the corners of the picture.
+        let pixels = 8.0 * (f64::from(center.length()) + radius) * frame.slope();
+        shows(&planes, center, (radius + pixels) as f32)
+    })
+}
+
+/// At most so many spheres that hold all of these: neighbors in the list should be
+/// neighbors in space.
+pub fn merged(spheres: &[BoundingSphere], most: usize) -> Vec<BoundingSphere> {
+    if spheres.len() <= most {
+        return spheres.to_vec();
+    }
+    let around = |spheres: &[BoundingSphere]| {
+        let low = spheres
+            .iter()
+            .map(|&(c, r)| c - r)
+            .fold(DVec3::MAX, DVec3::min);
+        let high = spheres
+            .iter()
+            .map(|&(c, r)| c + r)
+            .fold(DVec3::MIN, DVec3::max);
+        let center = (low + high) / 2.0;
+        let reach = spheres.iter().map(|&(c, r)| c.distance(center) + r);
+        (center, reach.fold(0.0, f64::max))
+    };
+    let together = spheres.len().div_ceil(most);
+    spheres.chunks(together).map(around).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn merged_spheres_hold_those_that_they_are_of() {
+        let at = |i: usize| DVec3::new(i as f64, (0.3 * i as f64).sin() * 20.0, 0.0);
+        let spheres: Vec<BoundingSphere> =
+            (0..1000).map(|i| (at(i), 0.1 + 0.01 * i as f64)).collect();
+        let few = merged(&spheres, 30);
+        assert!(few.len() <= 30);
+        let held =
+            |&(c, r): &BoundingSphere| few.iter().any(|&(m, s)| c.distance(m) + r <= s + 1e-9);
+        assert!(spheres.iter().all(held));
+        assert_eq!(merged(&spheres, 1000), spheres);
+    }
+}

@@ -1,0 +1,228 @@
+//! From where the scene is seen.
+//!
+//! A circuit is 10⁴ µm wide and a membrane 10⁻² µm thick, so a camera is f64 and shaders get
+//! everything relative to the eye: near things keep all their digits.
+//!
+//! Depth is reversed and has no far end: 1 at the near plane, 0 infinitely far. With floating-point
+//! depth, precision is then the same share of the distance everywhere (Upchurch & Desbrun,
+//! Tightening the precision of perspective rendering, 2012).
+
+use glam::{DMat3, DQuat, DVec3, Mat4, Vec3, Vec4};
+use neurotess_refine::LodView;
+
+use crate::gpu::error::CameraError;
+use crate::view::frame::shows;
+use crate::view::framing::BoundingSphere;
+
+/// An eye in perspective.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    eye: DVec3,
+    target: DVec3,
+    /// Rows: right, up and backward, unit and orthogonal.
+    pub(crate) view_from_world: DMat3,
+    fov: f64,
+}
+
+impl Camera {
+    /// A camera at `eye` (µm) that looks at `target`; `up` is upwards in the picture, `fov` the
+    /// vertical angle of view (radians).
+    ///
+    /// # Errors
+    /// Numbers that are not finite, or that leave the direction open.
+    pub fn new(eye: DVec3, target: DVec3, up: DVec3, fov: f64) -> Result<Self, CameraError> {
+        for (value, name) in [(eye, "eye"), (target, "target"), (up, "up")] {
+            if !value.is_finite() {
+                return Err(CameraError::NotFinite(name));
+            }
+        }
+        if !fov.is_finite() {
+            return Err(CameraError::NotFinite("field of view"));
+        }
+        if !(0.01..=170.0).contains(&fov.to_degrees()) {
+            return Err(CameraError::FieldOfView(fov.to_degrees()));
+        }
+        let backward = (eye - target).try_normalize();
+        let backward = backward.ok_or(CameraError::NoDirection)?;
+        let up = up.try_normalize().ok_or(CameraError::NoUp)?;
+        let right = up.cross(backward);
+        if right.length() < 1e-6 {
+            return Err(CameraError::NoUp);
+        }
+        let right = right / right.length();
+        let axes = DMat3::from_cols(right, backward.cross(right), backward);
+        Ok(Self {
+            eye,
+            target,
+            view_from_world: axes.transpose(),
+            fov,
+        })
+    }
+
+    /// The same camera, gone around its target by an angle (radians), to the right if positive.
+    pub fn turned(&self, angle: f64) -> Self {
+        let turn = DQuat::from_axis_angle(self.axes()[1], angle);
+        let [right, up, backward] = self.axes().map(|axis| turn * axis);
+        Self {
+            eye: self.target + turn * (self.eye - self.target),
+            view_from_world: DMat3::from_cols(right, up, backward).transpose(),
+            ..*self
+        }
+    }
+
+    /// Position of the eye (µm).
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// What it looks at (µm).
+    pub fn target(&self) -> DVec3 {
+        self.target
+    }
+
+    /// Vertical angle of view (radians).
+    pub fn fov(&self) -> f64 {
+        self.fov
+    }
+
+    /// Unit directions: right, up and backward.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let world = self.view_from_world.transpose();
+        [world.x_axis, world.y_axis, world.z_axis]
+    }
+
+    /// Depth (µm) of a point along the sight, negative behind the eye.
+    pub fn depth(&self, point: DVec3) -> f64 {
+        -(self.view_from_world * (point - self.eye)).z
+    }
+
+    /// Nearest depth (µm) at which anything shows, for a scene of these spheres: a little before the
+    /// nearest, and never so near that digits are lost.
+    pub fn near(&self, spheres: &[BoundingSphere]) -> f64 {
+        let depths = spheres
+            .iter()
+            .map(|&(c, r)| (self.depth(c) - r, self.depth(c) + r));
+        let (near, far) = depths.fold((f64::MAX, 1e-3_f64), |(n, f), (a, b)| (n.min(a), f.max(b)));
+        (0.9 * near.min(far)).max(1e-5 * far)
+    }
+
+    /// Depth (µm) of the nearest sphere in the picture, at least a thousandth of the target's: what
+    /// lies outside or behind the eye need not be fine. Nothing seen: the target's.
+    pub fn nearest_seen(&self, aspect: f64, spheres: &[BoundingSphere]) -> f64 {
+        let target = self.depth(self.target).abs();
+        let planes = self.frustum(aspect, 0.0);
+        let seen = spheres.iter().filter(|&&(center, radius)| {
+            shows(&planes, (center - self.eye).as_vec3(), radius as f32)
+        });
+        let depths = seen.map(|&(center, radius)| self.depth(center) - radius);
+        let nearest = depths.fold(f64::MAX, f64::min);
+        let nearest = if nearest == f64::MAX { target } else { nearest };
+        nearest.max(1e-3 * target)
+    }
+
+    /// Rotation from the world to the view, as f32: x right, y up, z backward.
+    pub fn view_rotation(&self) -> [Vec3; 3] {
+        let rows = self.view_from_world.transpose();
+        [rows.x_axis, rows.y_axis, rows.z_axis].map(DVec3::as_vec3)
+    }
+
+    /// Clip space from positions relative to the eye (world axes, µm): reversed depth, no far end.
+    pub fn clip_from_relative(&self, aspect: f64, near: f64) -> Mat4 {
+        let [right, up, backward] = self.axes().map(DVec3::as_vec3);
+        let (tan_x, tan_y) = self.tangents(aspect, 0.0);
+        let rows = [
+            (right / tan_x as f32).extend(0.0),
+            (up / tan_y as f32).extend(0.0),
+            Vec4::new(0.0, 0.0, 0.0, near as f32),
+            (-backward).extend(0.0),
+        ];
+        Mat4::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose()
+    }
+
+    /// Planes of the frustum relative to the eye, normals inwards, unit: left, right, bottom, top,
+    /// near. A point p is inside where n·p + d ≥ 0.
+    pub fn frustum(&self, aspect: f64, near: f64) -> [Vec4; 5] {
+        let [right, up, backward] = self.axes();
+        let (tan_x, tan_y) = self.tangents(aspect, 0.0);
+        let side = |axis: DVec3, tan: f64| {
+            ((axis - backward * tan) / tan.hypot(1.0))
+                .as_vec3()
+                .extend(0.0)
+        };
+        [
+            side(right, tan_x),
+            side(-right, tan_x),
+            side(up, tan_y),
+            side(-up, tan_y),
+            (-backward).as_vec3().extend(-near as f32),
+        ]
+    }
+
+    /// Where a point is seen in a picture of this size (pixels from the upper left corner); nowhere
+    /// if it lies behind the eye.
+    pub fn pixel_of(&self, point: DVec3, size: [u32; 2]) -> Option<[f64; 2]> {
+        let v = self.view_from_world * (point - self.eye);
+        let [width, height] = size.map(f64::from);
+        let pixel = -v.z * self.pixel_slope(height);
+        (v.z < 0.0).then(|| [width / 2.0 + v.x / pixel, height / 2.0 - v.y / pixel])
+    }
+
+    /// Size (µm) of a pixel at unit depth, in a picture of this height (pixels).
+    pub fn pixel_slope(&self, height: f64) -> f64 {
+        2.0 * (self.fov / 2.0).tan() / height
+    }
+
+    /// The view that levels are chosen from, in coordinates relative to `origin` (µm).
+    pub fn refine_view(&self, origin: DVec3, height: f64, near: f64) -> LodView {
+        LodView {
+            eye: (self.eye - origin).as_vec3(),
+            forward: -self.axes()[2].as_vec3(),
+            slope: self.pixel_slope(height) as f32,
+            flat: 0.0,
+            near: near as f32,
+        }
+    }
+
+    /// Tangents of half the angles of view, without the margins.
+    pub(crate) fn tangents(&self, aspect: f64, margin: f64) -> (f64, f64) {
+        let tan_y = (self.fov / 2.0).tan() * (1.0 - 2.0 * margin.clamp(0.0, 0.49));
+        (tan_y * aspect, tan_y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clip_space_is_reversed_and_upright() {
+        let camera = Camera::new(DVec3::Z * 10.0, DVec3::ZERO, DVec3::Y, 1.0).expect("a camera");
+        let clip = camera.clip_from_relative(2.0, 0.5);
+        let project = |p: DVec3| {
+            let c = clip * (p - camera.eye()).as_vec3().extend(1.0);
+            c.truncate() / c.w
+        };
+        assert!((project(DVec3::Z * 9.5).z - 1.0).abs() < 1e-6);
+        assert!(project(DVec3::ZERO).z > project(DVec3::Z * -1e6).z);
+        let (right, up) = (project(DVec3::X), project(DVec3::Y));
+        assert!(right.x > 0.0 && right.y.abs() < 1e-6 && up.y > 0.0);
+        assert!((2.0 * right.x - up.y).abs() < 1e-6, "square pixels");
+    }
+
+    #[test]
+    fn impossible_cameras_are_errors() {
+        let new = |eye, up, fov| Camera::new(eye, DVec3::ZERO, up, fov);
+        assert!(new(DVec3::NAN, DVec3::Y, 1.0).is_err());
+        assert!(new(DVec3::Z, DVec3::INFINITY, 1.0).is_err());
+        assert!(new(DVec3::Z, DVec3::Y, f64::NAN).is_err());
+        assert_eq!(
+            new(DVec3::ZERO, DVec3::Y, 1.0),
+            Err(CameraError::NoDirection)
+        );
+        assert_eq!(new(DVec3::Z, DVec3::Z, 1.0), Err(CameraError::NoUp));
+        assert!(matches!(
+            new(DVec3::Z, DVec3::Y, 4.0),
+            Err(CameraError::FieldOfView(_))
+        ));
+    }
+}

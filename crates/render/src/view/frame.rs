@@ -1,0 +1,116 @@
+//! What is drawn at once: a camera, a picture's size and the tile of it.
+
+use glam::{DVec3, Mat4, Vec4};
+
+use crate::view::camera::Camera;
+
+/// A rectangle of a picture in sub-pixels, from its upper left corner. It may reach over the border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tile {
+    /// Left side.
+    pub x: i32,
+    /// Upper side.
+    pub y: i32,
+    /// Width.
+    pub width: u32,
+    /// Height.
+    pub height: u32,
+}
+
+/// A tile of a picture.
+///
+/// A **sub-pixel** is a pixel of what is drawn; a pixel of the finished picture is the mean of one or
+/// more. Whatever decides how finely something is drawn asks the whole picture, not the tile, so
+/// that tiles fit together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// From where.
+    pub camera: Camera,
+    /// Depth (µm) of the near plane.
+    pub near: f64,
+    /// Width and height of the whole picture (sub-pixels).
+    pub size: [u32; 2],
+    /// What is drawn of it.
+    pub tile: Tile,
+}
+
+impl Frame {
+    /// Width by height of the whole picture.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+
+    /// Size (µm) of a sub-pixel at unit depth.
+    pub fn slope(&self) -> f64 {
+        self.camera.pixel_slope(f64::from(self.size[1]))
+    }
+
+    /// Clip space of the whole picture, from positions relative to the eye.
+    pub fn clip_from_relative(&self) -> Mat4 {
+        self.camera.clip_from_relative(self.aspect(), self.near)
+    }
+
+    /// Planes around what the tile shows, relative to the eye, as [`Camera::frustum`]'s.
+    pub fn frustum(&self) -> [Vec4; 5] {
+        let [right, up, backward] = self.camera.axes();
+        let slope = self.slope();
+        let [w, h] = self.size.map(f64::from);
+        let Tile { x, y, .. } = self.tile;
+        // Tangents of the tile's sides; y runs down in a picture, up in the view.
+        let left = (f64::from(x) - w / 2.0) * slope;
+        let top = (h / 2.0 - f64::from(y)) * slope;
+        let (width, height) = (f64::from(self.tile.width), f64::from(self.tile.height));
+        let side = |axis: DVec3, tan: f64, sign: f64| {
+            let normal = (axis + backward * tan) * (sign / tan.hypot(1.0));
+            normal.as_vec3().extend(0.0)
+        };
+        [
+            side(right, left, 1.0),
+            side(right, left + width * slope, -1.0),
+            side(up, top - height * slope, 1.0),
+            side(up, top, -1.0),
+            (-backward).as_vec3().extend(-self.near as f32),
+        ]
+    }
+}
+
+/// Whether a sphere, relative to the eye, may show between the planes.
+pub fn shows(planes: &[Vec4; 5], center: glam::Vec3, radius: f32) -> bool {
+    let p = center.extend(1.0);
+    planes.iter().all(|plane| plane.dot(p) >= -radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn tiles_part_the_frustum_of_the_picture() {
+        let camera =
+            Camera::new(DVec3::new(1.0, 2.0, 30.0), DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+        let frame = |x: i32, y: i32, width: u32, height: u32| Frame {
+            camera,
+            near: 0.1,
+            size: [200, 100],
+            tile: Tile {
+                x,
+                y,
+                width,
+                height,
+            },
+        };
+        let whole = frame(0, 0, 200, 100).frustum();
+        for (a, b) in whole.iter().zip(camera.frustum(2.0, 0.1)) {
+            assert!((*a - b).length() < 1e-6, "{a} {b}");
+        }
+        let quarters = [(0, 0), (100, 0), (0, 50), (100, 50)];
+        for i in 0..400 {
+            let t = i as f32;
+            let p = Vec3::new((t * 1.3).sin() * 15.0, (t * 0.7).cos() * 9.0, -20.0);
+            let seen = quarters.map(|(x, y)| shows(&frame(x, y, 100, 50).frustum(), p, 0.0));
+            let count = seen.iter().filter(|&&s| s).count();
+            assert_eq!(count, usize::from(shows(&whole, p, 0.0)), "{p}");
+        }
+    }
+}

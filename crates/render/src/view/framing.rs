@@ -1,0 +1,262 @@
+//! Where a camera must stand to see all there is.
+
+use glam::DVec3;
+
+use crate::gpu::error::CameraError;
+use crate::view::camera::Camera;
+
+/// Sides to look from. Cells stand in y; x points right, z towards the one who looks from the front.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Along −z.
+    #[default]
+    Front,
+    /// Along +z.
+    Back,
+    /// Along +x.
+    Left,
+    /// Along −x.
+    Right,
+    /// Along −y.
+    Top,
+    /// Along +y.
+    Bottom,
+    /// From the right, above and before.
+    Iso,
+}
+
+/// A sphere to be seen: center and radius (µm).
+pub type BoundingSphere = (DVec3, f64);
+
+/// Angle of view (radians) unless told otherwise: little distortion, as through a long lens.
+pub const DEFAULT_FOV: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+impl Side {
+    /// From the target to the eye, and upwards.
+    fn axes(self) -> (DVec3, DVec3) {
+        match self {
+            Self::Front => (DVec3::Z, DVec3::Y),
+            Self::Back => (DVec3::NEG_Z, DVec3::Y),
+            Self::Left => (DVec3::NEG_X, DVec3::Y),
+            Self::Right => (DVec3::X, DVec3::Y),
+            Self::Top => (DVec3::Y, DVec3::NEG_Z),
+            Self::Bottom => (DVec3::NEG_Y, DVec3::Z),
+            Self::Iso => (DVec3::new(1.0, 0.8, 1.0), DVec3::Y),
+        }
+    }
+}
+
+impl Camera {
+    /// The camera on this side that is as near as it can be while all spheres are in the picture and
+    /// `margin` of its width and height stays free on each side. `aspect` is width by height. No
+    /// sphere at all: from 100 µm away at the origin.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn fit(
+        side: Side,
+        fov: f64,
+        aspect: f64,
+        margin: f64,
+        spheres: &[BoundingSphere],
+    ) -> Result<Self, CameraError> {
+        Self::fit_within(side, fov, aspect, [margin; 4], spheres)
+    }
+
+    /// As [`Camera::fit`], with a margin for each side: left, right, top, bottom.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn fit_within(
+        side: Side,
+        fov: f64,
+        aspect: f64,
+        margins: [f64; 4],
+        spheres: &[BoundingSphere],
+    ) -> Result<Self, CameraError> {
+        let (backward, up) = side.axes();
+        let start = Self::new(backward, DVec3::ZERO, up, fov)?;
+        if spheres.is_empty() {
+            return Self::new(backward * 100.0, DVec3::ZERO, up, fov);
+        }
+        let (tan_x, tan_y) = start.tangents(aspect, 0.0);
+        let [left, right, top, bottom] = margins.map(|m| 1.0 - 2.0 * m.clamp(0.0, 0.45));
+        // Where the eye must be along an axis, and how far back, for the planes on its low and high
+        // side to touch.
+        let touch = |axis: usize, low_tan: f64, high_tan: f64| {
+            let (mut low, mut high) = (f64::MAX, f64::MIN);
+            for &(center, radius) in spheres {
+                let v = start.view_from_world * center;
+                high = high.max(v[axis] + high_tan * v.z + radius * high_tan.hypot(1.0));
+                low = low.min(v[axis] - low_tan * v.z - radius * low_tan.hypot(1.0));
+            }
+            let depth = (high - low) / (low_tan + high_tan);
+            (
+                (low * high_tan + high * low_tan) / (low_tan + high_tan),
+                depth,
+            )
+        };
+        let (x, depth_x) = touch(0, tan_x * left, tan_x * right);
+        let (y, depth_y) = touch(1, tan_y * bottom, tan_y * top);
+        let depth = depth_x.max(depth_y);
+        // Farther than an axis asks for, its things stay in the middle of what is free.
+        let x = x + (depth - depth_x) * tan_x * (left - right) / 2.0;
+        let y = y + (depth - depth_y) * tan_y * (bottom - top) / 2.0;
+        let nearest = spheres
+            .iter()
+            .map(|&(center, radius)| (start.view_from_world * center).z + radius)
+            .fold(f64::MIN, f64::max);
+        let middle = start.view_from_world * mean(spheres);
+        // A scene without extent is seen from a little away; never from within the nearest sphere.
+        let depth = depth.max(nearest + 1e-3 * (nearest - middle.z).abs().max(1e-3));
+        let eye = DVec3::new(x, y, depth);
+        let target = DVec3::new(x, y, middle.z.min(nearest - 1e-6).min(depth - 1e-3));
+        let world = start.view_from_world.transpose();
+        Self::new(world * eye, world * target, up, fov)
+    }
+
+    /// The camera that keeps all spheres in the picture while it goes around them by
+    /// [`Camera::turned`], as near as it can be.
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn fit_turning(
+        side: Side,
+        fov: f64,
+        aspect: f64,
+        margin: f64,
+        spheres: &[BoundingSphere],
+    ) -> Result<Self, CameraError> {
+        let still = Self::fit(side, fov, aspect, margin, spheres)?;
+        let (tan_x, tan_y) = still.tangents(aspect, margin);
+        let [right, up, backward] = still.axes();
+        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        for &(center, radius) in spheres {
+            let v = still.view_from_world * center;
+            low = low.min(v - radius);
+            high = high.max(v + radius);
+        }
+        if spheres.is_empty() {
+            return Ok(still);
+        }
+        let middle = (low + high) / 2.0;
+        let mut distance: f64 = 0.0;
+        for &(center, radius) in spheres {
+            let v = still.view_from_world * center - middle;
+            let around = v.x.hypot(v.z);
+            // ρ (sin θ + t cos θ) is at most ρ √(1 + t²).
+            distance = distance
+                .max((around + radius) * tan_x.hypot(1.0) / tan_x)
+                .max(around + (v.y.abs() + radius * tan_y.hypot(1.0)) / tan_y);
+        }
+        let target = right * middle.x + up * middle.y + backward * middle.z;
+        Self::new(target + backward * distance.max(1e-3), target, up, fov)
+    }
+}
+
+fn mean(spheres: &[BoundingSphere]) -> DVec3 {
+    let sum: DVec3 = spheres.iter().map(|&(center, _)| center).sum();
+    sum / spheres.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDES: [Side; 7] = [
+        Side::Front,
+        Side::Back,
+        Side::Left,
+        Side::Right,
+        Side::Top,
+        Side::Bottom,
+        Side::Iso,
+    ];
+
+    fn spheres() -> Vec<BoundingSphere> {
+        (0..40)
+            .map(|i| {
+                let t = f64::from(i);
+                let center = DVec3::new(t.sin() * 300.0, t * 7.0 - 1e4, (2.0 * t).cos() * 50.0);
+                (center, 1.0 + t / 4.0)
+            })
+            .collect()
+    }
+
+    /// Farthest that a sphere reaches in the picture, from −1 to 1 in both directions.
+    fn reach(camera: &Camera, aspect: f64, spheres: &[BoundingSphere]) -> f64 {
+        let planes = camera.frustum(aspect, 1e-3);
+        let mut most = f64::MIN;
+        for &(center, radius) in spheres {
+            let p = (center - camera.eye()).as_vec3().extend(1.0);
+            for plane in &planes[..4] {
+                most = most.max(radius - f64::from(plane.dot(p)));
+            }
+        }
+        most
+    }
+
+    #[test]
+    fn fitted_spheres_touch_the_frustum_from_within() {
+        for side in SIDES {
+            for aspect in [0.3, 1.0, 2.5] {
+                let camera = Camera::fit(side, 0.5, aspect, 0.0, &spheres()).expect("fits");
+                let most = reach(&camera, aspect, &spheres());
+                assert!(most.abs() < 0.01, "{side:?} {aspect}: {most}");
+            }
+        }
+    }
+
+    #[test]
+    fn margins_stay_free() {
+        let margins = [0.3, 0.05, 0.02, 0.1];
+        for aspect in [0.5, 2.0] {
+            let camera = Camera::fit_within(Side::Iso, 0.4, aspect, margins, &spheres());
+            let camera = camera.expect("fits");
+            let size = [(4000.0 * aspect) as u32, 4000];
+            let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+            for (center, _) in spheres() {
+                let p = camera.pixel_of(center, size).expect("in front");
+                for k in 0..2 {
+                    low[k] = low[k].min(p[k] / f64::from(size[k]));
+                    high[k] = high[k].max(p[k] / f64::from(size[k]));
+                }
+            }
+            let free = [low[0], 1.0 - high[0], low[1], 1.0 - high[1]];
+            for (free, margin) in free.iter().zip(margins) {
+                assert!(*free > margin - 0.001, "{free} {margin}");
+            }
+            let slack = [
+                free[0] - 0.3 + free[1] - 0.05,
+                free[2] - 0.02 + free[3] - 0.1,
+            ];
+            assert!(
+                slack[0].min(slack[1]) < 0.1,
+                "as near as it can be: {slack:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn turning_keeps_everything_in_the_picture() {
+        for side in SIDES {
+            let camera = Camera::fit_turning(side, 0.4, 1.5, 0.0, &spheres()).expect("fits");
+            for step in 0..24 {
+                let turned = camera.turned(f64::from(step) * 0.3);
+                assert!(reach(&turned, 1.5, &spheres()) < 0.01, "{side:?} {step}");
+            }
+            let whole = camera.turned(std::f64::consts::TAU);
+            assert!(whole.eye().distance(camera.eye()) < 1e-6);
+        }
+    }
+
+    #[test]
+    fn scenes_without_extent_have_a_camera() {
+        for side in SIDES {
+            assert!(Camera::fit(side, 0.5, 1.0, 0.1, &[]).is_ok());
+            let point = [(DVec3::new(1.0, 2.0, 3.0), 0.0)];
+            assert!(Camera::fit(side, 0.5, 1.0, 0.1, &point).is_ok());
+            assert!(Camera::fit_turning(side, 0.5, 1.0, 0.1, &point).is_ok());
+        }
+    }
+}
