@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p neurotess-viewer --example pacing -- 100` prints milliseconds from an input to the
 //! end of the draft that shows it, and from the last input to the full picture. The figures of
-//! docs/viewer.md come from here.
+//! benchmarks/viewer.md come from here.
 #![allow(
     clippy::print_stdout,
     clippy::unwrap_used,

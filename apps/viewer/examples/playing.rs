@@ -5,7 +5,7 @@
 //! cargo run --release -p neurotess-viewer --example playing -- c100 c100/reports/voltage.h5
 //! ```
 //!
-//! The figures of docs/viewer.md come from here.
+//! The figures of benchmarks/viewer.md come from here.
 #![allow(
     clippy::print_stdout,
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! The figures of `docs/circuits.md`: how long it takes to open a circuit, and to read a frame of some
+//! The figures of `benchmarks/circuits.md`: how long it takes to open a circuit, and to read a frame of some
 //! elements of a large report.
 //!
 //! `cargo run --release -p neurotess-circuit --example figures -- CIRCUIT`

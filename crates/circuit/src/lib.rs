@@ -30,7 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A **report** has values of a simulation for **elements**, pieces of sections, frame by frame; of a
+//! A **report** has values of a simulation for **compartments**, pieces of sections, frame by frame; of a
 //! file far larger than memory only what is asked for is read. **Spikes** flash and decay.
 //!
 //! ```no_run
@@ -39,8 +39,8 @@
 //! let report = Report::open("voltage.h5")?;
 //! let values = &report.populations[0];
 //! let frame = values.time.frame_at(12.5).ok_or("no frame at 12.5 ms")?;
-//! let elements: Vec<u64> = values.elements_of(0).collect();
-//! for (value, compartment) in values.values(frame, &elements)?.iter().zip(values.compartments(0)?) {
+//! let compartments: Vec<u64> = values.compartment_range(0).collect();
+//! for (value, compartment) in values.values(frame, &compartments)?.iter().zip(values.compartments(0)?) {
 //!     println!("section {} at {}: {value} {}", compartment.section, compartment.along, values.units);
 //! }
 //! for (node, brightness) in Spikes::open("spikes.h5")?.populations[0].flashes(12.5, 5.0) {

@@ -75,7 +75,7 @@ impl LodCriterion {
 /// All that the levels of one mesh depend on.
 ///
 /// ```
-/// use neurotess_refine::{LodCriterion};
+/// use neurotess_refine::{Lod, LodCriterion};
 /// let everywhere: Lod<'_> = LodCriterion::Homogeneous(4).into();
 /// let levels = [1, 4, 16];
 /// let by_point = Lod::per_point(&levels);

@@ -1,4 +1,4 @@
-//! The numbers of each kind. By eye, after the cells that `docs/synthetic.md` compares with and
+//! The numbers of each kind. By eye, after the cells that `benchmarks/synthetic.md` compares with and
 //! what textbooks draw; none is fitted.
 
 use glam::DVec3;

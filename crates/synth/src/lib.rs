@@ -16,7 +16,7 @@
 //! which sets the contraction). Radii taper, and obey Rall's r^1.5 = r₁^1.5 + r₂^1.5 at forks as
 //! long as no daughter is as thin as its kind of neurite gets. W. Rall, Branching dendritic trees
 //! and motoneuron membrane resistivity, 1959. The numbers for each kind are in `kinds.rs`, and
-//! `docs/synthetic.md` compares the results with real cells.
+//! `benchmarks/synthetic.md` compares the results with real cells.
 //!
 //! **Practice.** A millisecond for 5,000 points. Only additions, multiplications, divisions and square
 //! roots are the processor's; all else is `libm`'s, so that results do not depend on the platform.
