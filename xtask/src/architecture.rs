@@ -1,10 +1,14 @@
-//! Which of our crates may know which: the rule of ARCHITECTURE.md.
+//! Who may know whom: the rules of ARCHITECTURE.md. Between crates a list says it; inside a crate, files
+//! and folders that lie side by side import one way.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 
 use anyhow::bail;
 
 use crate::metadata::Package;
+use crate::modules::{self, Imports, Module};
+use crate::steps::root;
 
 /// A crate and the crates of ours that it may depend on (tests aside).
 const ALLOWED: &[(&str, &[&str])] = &[
@@ -47,8 +51,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("xtask", &["neurotess"]),
 ];
 
-/// An error that names each dependency that is not allowed.
+/// An error that names each dependency that is not allowed, and each circle of imports.
 pub(crate) fn check(packages: &[Package]) -> anyhow::Result<String> {
+    let crates = check_crates(packages)?;
+    let files = check_files()?;
+    Ok(format!("{crates}; {files}"))
+}
+
+fn check_crates(packages: &[Package]) -> anyhow::Result<String> {
     let ours: Vec<&Package> = packages.iter().filter(|package| package.ours).collect();
     let names: BTreeSet<&str> = ours.iter().map(|package| package.name.as_str()).collect();
     let mut faults = Vec::new();
@@ -68,6 +78,102 @@ pub(crate) fn check(packages: &[Package]) -> anyhow::Result<String> {
         bail!("{}", faults.join("; "));
     }
     Ok(format!("{} crates know only what they may", ours.len()))
+}
+
+fn check_files() -> anyhow::Result<String> {
+    let (mut count, mut faults) = (0, Vec::new());
+    for group in ["crates", "apps", "."] {
+        for entry in fs::read_dir(root().join(group))? {
+            let src = entry?.path().join("src");
+            if !src.is_dir() {
+                continue;
+            }
+            let imports = modules::read(&src)?;
+            count += imports.len();
+            let of_crate = src.parent().and_then(|p| p.file_name()).unwrap_or_default();
+            let circles = circles(&imports).into_iter();
+            faults.extend(circles.map(|circle| format!("{}: {circle}", of_crate.display())));
+        }
+    }
+    if !faults.is_empty() {
+        bail!("imports go in circles:\n   {}", faults.join("\n   "));
+    }
+    Ok(format!("{count} files import one way"))
+}
+
+/// For each folder the circles among what lies in it side by side, files and folders. A module and its
+/// own children may know one another.
+fn circles(imports: &Imports) -> Vec<String> {
+    let mut edges: BTreeMap<&[String], BTreeMap<&String, BTreeSet<&String>>> = BTreeMap::new();
+    for (from, targets) in imports {
+        for to in targets {
+            let common = from.iter().zip(to).take_while(|(a, b)| a == b).count();
+            if let (Some(a), Some(b)) = (from.get(common), to.get(common)) {
+                let folder = edges.entry(&from[..common]).or_default();
+                folder.entry(a).or_default().insert(b);
+            }
+        }
+    }
+    let mut circles = Vec::new();
+    for (folder, edges) in edges {
+        for group in strongly_connected(&edges) {
+            let names: Vec<&str> = group.iter().map(|name| name.as_str()).collect();
+            let links = links(imports, folder, &group);
+            circles.push(format!(
+                "{}{} ({links})",
+                folder.iter().map(|f| format!("{f}/")).collect::<String>(),
+                names.join(" ↔ ")
+            ));
+        }
+    }
+    circles
+}
+
+/// Which files make a circle, from where to where.
+fn links(imports: &Imports, folder: &[String], group: &BTreeSet<&String>) -> String {
+    let within = |module: &Module| {
+        let name = module.strip_prefix(folder).and_then(|rest| rest.first());
+        name.filter(|name| group.contains(name)).cloned()
+    };
+    let mut links = Vec::new();
+    for (from, targets) in imports {
+        for to in targets {
+            if let (Some(a), Some(b)) = (within(from), within(to))
+                && a != b
+            {
+                links.push(format!("{} → {}", from.join("/"), to.join("/")));
+            }
+        }
+    }
+    links.join(", ")
+}
+
+/// Groups of more than one, each of which leads to all others of its group.
+fn strongly_connected<'n>(
+    edges: &BTreeMap<&'n String, BTreeSet<&'n String>>,
+) -> Vec<BTreeSet<&'n String>> {
+    let reach = |start: &'n String| {
+        let (mut seen, mut open) = (BTreeSet::new(), vec![start]);
+        while let Some(next) = open.pop() {
+            for &other in edges.get(next).into_iter().flatten() {
+                if seen.insert(other) {
+                    open.push(other);
+                }
+            }
+        }
+        seen
+    };
+    let reached: BTreeMap<&String, BTreeSet<&String>> =
+        edges.keys().map(|&name| (name, reach(name))).collect();
+    let mut groups = BTreeSet::new();
+    for (&name, others) in &reached {
+        let back = |other: &&&'n String| reached.get(**other).is_some_and(|r| r.contains(name));
+        let group: BTreeSet<&String> = others.iter().filter(back).copied().collect();
+        if group.len() > 1 {
+            groups.insert(group);
+        }
+    }
+    groups.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -95,12 +201,34 @@ mod tests {
             package("neurotess-morphology", &[]),
         ];
         let packages: Vec<Package> = others.into_iter().chain([refine]).collect();
-        let error = check(&packages).expect_err("forbidden").to_string();
+        let error = check_crates(&packages).expect_err("forbidden").to_string();
         assert_eq!(
             error,
             "neurotess-refine must not depend on neurotess-morphology"
         );
-        assert!(check(&packages[..2]).is_ok());
-        assert!(check(&[package("neurotess-new", &[])]).is_err());
+        assert!(check_crates(&packages[..2]).is_ok());
+        assert!(check_crates(&[package("neurotess-new", &[])]).is_err());
+    }
+
+    #[test]
+    fn circles_of_files_and_of_folders_are_found_but_not_those_with_children() {
+        let module = |path: &str| -> Module { path.split('/').map(str::to_owned).collect() };
+        let edge = |from: &str, to: &[&str]| {
+            let to = to.iter().map(|path| module(path)).collect::<BTreeSet<_>>();
+            (module(from), to)
+        };
+        let plain = [
+            edge("a/x", &["b/y"]),
+            edge("b", &["b/y"]),
+            edge("b/y", &["b"]),
+        ];
+        assert_eq!(
+            circles(&plain.clone().into_iter().collect()),
+            Vec::<String>::new()
+        );
+        let back = plain.into_iter().chain([edge("b/z", &["a/w"])]);
+        assert_eq!(circles(&back.collect()), ["a ↔ b (a/x → b/y, b/z → a/w)"]);
+        let files = [edge("a/x", &["a/y"]), edge("a/y", &["a/x"])];
+        assert_eq!(circles(&files.into_iter().collect()).len(), 1);
     }
 }

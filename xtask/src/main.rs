@@ -12,6 +12,7 @@ mod bench;
 mod demo;
 mod licenses;
 mod metadata;
+mod modules;
 mod pictures;
 mod python;
 mod setup;
@@ -27,6 +28,8 @@ const USAGE: &str = "cargo xtask COMMAND
   test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
+  architecture
+            who knows whom among crates, folders and files
   setup     a software Vulkan driver where there is none, and the Python environment in which other
             readers check our files (where Python 3 is)
   pictures  draw the README's pictures; with --golden those that tests compare with
@@ -39,6 +42,7 @@ fn main() -> ExitCode {
         Some("test") => tests::run(),
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
+        Some("architecture") => architecture(),
         Some("setup") => setup::run().map(|said| println!("{said}")),
         Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),
         _ => {
@@ -53,4 +57,8 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+fn architecture() -> anyhow::Result<()> {
+    architecture::check(&metadata::read()?).map(|said| println!("{said}"))
 }
