@@ -28,7 +28,7 @@ pub use gpu::device::{
     ADAPTER_VARIABLE, AdapterName, Gpu, adapters, device_descriptor, optional_features,
     select_adapter,
 };
-pub use gpu::error::{CameraError, DeviceError};
+pub use gpu::error::DeviceError;
 pub use output::image::{Image, PngWriter};
 pub use output::legend::{Legend, nice_length, scale_bar};
 pub use output::meter::{FrameTime, Meter};
@@ -44,25 +44,28 @@ pub use scene::color::{
 };
 pub use scene::templates::{Template, Templates};
 pub use scene::{Instance, Placement, Scene, SceneError, TemplateId};
-pub use shading::ids::{PickId, PickIds};
 pub use shading::present::{HOVERED, Outlines, PICKED, SELECTED};
 pub use shading::shade::{
     Clip, GHOSTED, HIGHLIGHTED, Light, Look, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA,
 };
 pub use sources::adaptive::Adaptive;
+pub use sources::adaptive::batch::{Batch, FramePlan};
 pub use sources::adaptive::cull::decide;
 pub use sources::adaptive::expand::{ExpandedVertex, GridPoint};
-pub use sources::adaptive::pick::{PickHit, PickResolver, PickTarget};
 pub use sources::adaptive::readback::{FrameStats, SelectedPatch};
-pub use sources::adaptive::refiner::{Batch, FramePlan, Refiner};
+pub use sources::adaptive::refiner::Refiner;
+pub use sources::adaptive::resolver::PickResolver;
 pub use sources::adaptive::settings::{AdaptiveSettings, CullView};
 pub use sources::budgeted::{
     DEFAULT_BUDGET, DrawnChunk, Exploration, ExplorationError, ExplorationStats, LodRequest,
     MOST_BUDGET, Proxy, ProxyPickResolver, ProxyPickTargets, lod_requests,
 };
+pub use sources::pick::{PickHit, PickId, PickIds, PickTarget};
 pub use sources::prerefined::{Place, Prerefined, PrerefinedSurface, Resident};
 pub use sources::{SURFACE_VERTEX_WGSL, VertexSource};
 pub use view::bounds::{any_shows, bounds, merged};
 pub use view::camera::Camera;
-pub use view::frame::{Frame, Tile, shows};
-pub use view::framing::{BoundingSphere, DEFAULT_FOV, Side};
+pub use view::camera::CameraError;
+pub use view::frame::{Frame, Tile};
+pub use view::framing::{DEFAULT_FOV, Side};
+pub use view::frustum::{BoundingSphere, shows};

@@ -1,9 +1,9 @@
 //! The shaders of pictures are valid in every language, and their structs are ours.
 
 use crate::assert_layout;
+use crate::output::ids::ids_text;
 use crate::shader_tests::languages;
 use crate::shading::finish::{Finish, Last, finish_text};
-use crate::shading::ids::ids_text;
 use crate::shading::present::{Present, mask_text};
 use crate::shading::shade::{PipelineKey, Shade, shader_text};
 use crate::sources::adaptive::refiner::Refiner;

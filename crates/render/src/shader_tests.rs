@@ -4,11 +4,12 @@
 pub(crate) mod languages;
 
 use crate::assert_layout;
+use crate::scene::templates::Base;
+use crate::sources::adaptive::batch::DrawIndexed;
 use crate::sources::adaptive::expand::{ExpandedVertex, GridPoint, expand_wgsl};
 use crate::sources::adaptive::grids::Bucket;
 use crate::sources::adaptive::passes::modules;
-use crate::sources::adaptive::refiner::DrawIndexed;
-use crate::sources::adaptive::settings::{Base, BatchUniforms, FrameUniforms, Placed};
+use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed};
 use crate::sources::adaptive::work::CoarsePoint;
 
 #[test]

@@ -48,23 +48,6 @@ pub enum DeviceError {
     Driver(String),
 }
 
-/// Why a camera sees nothing: `what: what to do`.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum CameraError {
-    /// A coordinate or angle is no number, or is infinite.
-    #[error("the camera's {0} is not a finite number: correct it")]
-    NotFinite(&'static str),
-    /// There is no direction of sight.
-    #[error("the camera's eye and target coincide: move one of them")]
-    NoDirection,
-    /// The picture could be turned any way.
-    #[error("the camera's up points along its sight: give another --up")]
-    NoUp,
-    /// The angle of view is not usable.
-    #[error("a field of view of {0}° is not between 0.01° and 170°: correct --fov")]
-    FieldOfView(f64),
-}
-
 fn list(names: &[String]) -> String {
     if names.is_empty() {
         return "none".into();

@@ -1,6 +1,7 @@
 //! The device: opening it, its errors, buffers and times.
 
+pub(crate) mod buffers;
 pub(crate) mod device;
 pub(crate) mod error;
-pub(crate) mod store;
+pub(crate) mod growable;
 pub(crate) mod timing;

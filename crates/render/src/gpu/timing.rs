@@ -1,8 +1,8 @@
 //! How long passes take on the GPU, where it can tell.
 
+use crate::gpu::buffers::read_mapped;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::output::tiles::read;
 
 /// The passes of a tile. Of a scene that is drawn in several rounds the last is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,7 +102,7 @@ impl Timer {
     /// Adds the times of the last tile.
     pub(crate) fn read(&mut self, gpu: &Gpu) -> Result<(), DeviceError> {
         if let Some(queries) = &self.queries {
-            let bytes = read(gpu, &queries.read, u64::from(8 * COUNT))?;
+            let bytes = read_mapped(gpu, &queries.read, u64::from(8 * COUNT))?;
             let mut ticks = bytes
                 .chunks_exact(8)
                 .map(|b| u64::from_le_bytes(b.try_into().unwrap_or_default()));

@@ -1,5 +1,6 @@
 //! Pictures: drawn in tiles for a file, or step by step for a window; what lies over them.
 
+pub(crate) mod ids;
 pub(crate) mod image;
 pub(crate) mod legend;
 pub(crate) mod meter;

@@ -4,7 +4,7 @@ use crate::output::image::Image;
 use crate::output::legend::{Legend, nice_length, scale_bar};
 use crate::scene::color::{Rgb, is_dark};
 use crate::view::camera::Camera;
-use crate::view::framing::BoundingSphere;
+use crate::view::frustum::BoundingSphere;
 
 /// Images to lay over a picture, each in its place.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -15,17 +15,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::output::ids::Identifier;
 use crate::output::still::{Occlusion, samples_in_sub_pixel};
 use crate::output::tiles::{MeshPart, TileRenderer, kind};
 use crate::scene::color::{ColorTable, InstanceValues, Rgb, linear};
 use crate::shading::finish::{Finish, Finisher, Last};
-use crate::shading::ids::{Identifier, PickIds};
 use crate::shading::present::{Outlines, Presenter, Screen};
 use crate::shading::shade::{Look, PipelineKey, Shade};
-use crate::shading::targets::{Targets, make};
+use crate::shading::targets::Targets;
 use crate::sources::VertexSource;
+use crate::sources::pick::PickIds;
 use crate::view::camera::Camera;
 use crate::view::frame::{Frame, Tile};
 

@@ -11,6 +11,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::{Pass, Timer};
@@ -18,7 +19,7 @@ use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb, linear};
 use crate::shading::finish::{Finish, Finisher, Last};
 use crate::shading::shade::{GUARD, Look, PipelineKey, Shade, Shader, TableSizes};
-use crate::shading::targets::{Targets, make};
+use crate::shading::targets::Targets;
 use crate::sources::VertexSource;
 use crate::view::frame::Frame;
 
@@ -416,11 +417,6 @@ fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
         *buffer = make(gpu, "table", size, usage);
     }
     gpu.queue.write_buffer(buffer, 0, bytes);
-}
-
-/// Waits for the device and copies the front of a buffer.
-pub(crate) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, DeviceError> {
-    read_watched(gpu, buffer, bytes, None).map(Option::unwrap_or_default)
 }
 
 /// The same; nothing if it is not wanted any more.

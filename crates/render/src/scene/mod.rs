@@ -13,7 +13,7 @@ use thiserror::Error;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::templates::{Template, Templates};
-use crate::view::framing::BoundingSphere;
+use crate::view::frustum::BoundingSphere;
 
 /// A template among those of a [`Templates`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

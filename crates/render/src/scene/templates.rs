@@ -1,19 +1,68 @@
 //! Templates on the device: uploaded once, in pages that fit a binding.
 
+use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role};
-use neurotess_refine::{MeshPart, pack, sphere_around};
+use neurotess_refine::{MeshPart, PartLayout, pack, sphere_around};
 use wgpu::util::DeviceExt;
 
+use crate::gpu::buffers::storage;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::TemplateId;
-use crate::sources::adaptive::settings::{Base, CLUSTER};
 
+/// Patches that are decided on together: the size of a workgroup.
+pub(crate) const CLUSTER: usize = 64;
+/// u32s of an explicit vertex: see refine's template.wgsl.
+const EXPLICIT_VERTEX_U32S: u32 = 3;
 /// Most places for patches of a part: a batch holds at least one.
 pub(crate) const MOST_PATCHES: usize = 1 << 20;
 /// Most u32s of a part per patch: an explicit patch, four explicit vertices with anchors.
 const U32S_OF_PATCH: usize = 2 + 4 * (3 + 8);
+
+/// Where a part lies in the packed buffer of its page: [`PartLayout`], moved. Twin of the struct of the same name in
+/// refine's template.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Base {
+    pub(crate) points: u32,
+    pub(crate) point_count: u32,
+    pub(crate) spheres: u32,
+    pub(crate) explicit_vertices: u32,
+    pub(crate) anchors: u32,
+    pub(crate) soma: u32,
+    pub(crate) soma_count: u32,
+    pub(crate) quads: u32,
+    pub(crate) quad_count: u32,
+    pub(crate) caps: u32,
+    pub(crate) color_keys: u32,
+}
+
+impl Base {
+    /// A part that begins at this u32 of the packed buffer.
+    pub(crate) fn new(first: u32, layout: &PartLayout) -> Self {
+        Self {
+            points: first + layout.points,
+            point_count: layout.point_count,
+            spheres: first + layout.spheres,
+            explicit_vertices: first + layout.explicit,
+            anchors: first + layout.anchors,
+            soma: first + layout.soma,
+            soma_count: layout.soma_count,
+            quads: first + layout.quads,
+            quad_count: layout.quad_count,
+            caps: first + layout.caps,
+            color_keys: first + layout.color_keys,
+        }
+    }
+}
+
+impl Base {
+    /// Number of explicit vertices.
+    pub(crate) fn explicit_count(&self) -> u32 {
+        (self.anchors - self.explicit_vertices) / EXPLICIT_VERTEX_U32S
+    }
+}
 
 /// A coarse mesh to be uploaded.
 #[derive(Clone, Copy, Debug)]
@@ -236,6 +285,6 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let compute = wgpu::ShaderStages::COMPUTE;
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("page of templates"),
-        entries: &[crate::sources::adaptive::refiner::storage(0, compute, true)],
+        entries: &[storage(0, compute, true)],
     })
 }

@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::gpu::buffers::texture;
 use crate::gpu::device::Gpu;
 use crate::scene::color::Rgb;
 use crate::shading::targets::Targets;
@@ -287,29 +288,6 @@ fn mask_texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
         MASK_FORMAT,
         wgpu::TextureUsages::TEXTURE_BINDING | written,
     )
-}
-
-/// A plain texture.
-pub(crate) fn texture(
-    gpu: &Gpu,
-    [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("viewport"),
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
 }
 
 fn texture_binding(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {

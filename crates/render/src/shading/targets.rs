@@ -1,5 +1,6 @@
 //! Textures and buffers that a tile passes through.
 
+use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::shading::shade::{COLOR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, NORMAL_FORMAT};
 
@@ -68,14 +69,4 @@ impl Targets {
             bytes: bytes + 16 * pixels,
         }
     }
-}
-
-/// A buffer, of 16 bytes at least.
-pub(crate) fn make(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: size.max(16),
-        usage,
-        mapped_at_creation: false,
-    })
 }

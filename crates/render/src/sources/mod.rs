@@ -20,6 +20,7 @@
 
 pub(crate) mod adaptive;
 pub(crate) mod budgeted;
+pub(crate) mod pick;
 pub(crate) mod prerefined;
 
 use crate::gpu::device::Gpu;

@@ -6,8 +6,9 @@
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, Role};
 
-use crate::view::frame::{Frame, shows};
-use crate::view::framing::BoundingSphere;
+use crate::view::frame::Frame;
+use crate::view::frustum::BoundingSphere;
+use crate::view::frustum::shows;
 
 /// Patches in a sphere: neighbors, as patches follow the tree.
 const TOGETHER: usize = 8;

@@ -9,10 +9,26 @@
 
 use glam::{DMat3, DQuat, DVec3, Mat4, Vec3, Vec4};
 use neurotess_refine::LodView;
+use thiserror::Error;
 
-use crate::gpu::error::CameraError;
-use crate::view::frame::shows;
-use crate::view::framing::BoundingSphere;
+use crate::view::frustum::{BoundingSphere, shows};
+
+/// Why a camera sees nothing: `what: what to do`.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum CameraError {
+    /// A coordinate or angle is no number, or is infinite.
+    #[error("the camera's {0} is not a finite number: correct it")]
+    NotFinite(&'static str),
+    /// There is no direction of sight.
+    #[error("the camera's eye and target coincide: move one of them")]
+    NoDirection,
+    /// The picture could be turned any way.
+    #[error("the camera's up points along its sight: give another --up")]
+    NoUp,
+    /// The angle of view is not usable.
+    #[error("a field of view of {0}° is not between 0.01° and 170°: correct --fov")]
+    FieldOfView(f64),
+}
 
 /// An eye in perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]

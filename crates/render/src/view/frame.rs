@@ -74,15 +74,10 @@ impl Frame {
     }
 }
 
-/// Whether a sphere, relative to the eye, may show between the planes.
-pub fn shows(planes: &[Vec4; 5], center: glam::Vec3, radius: f32) -> bool {
-    let p = center.extend(1.0);
-    planes.iter().all(|plane| plane.dot(p) >= -radius)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::frustum::shows;
     use glam::Vec3;
 
     #[test]

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::gpu::error::CameraError;
-use crate::view::camera::Camera;
+use crate::view::camera::{Camera, CameraError};
+use crate::view::frustum::BoundingSphere;
 
 /// Sides to look from. Cells stand in y; x points right, z towards the one who looks from the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,9 +24,6 @@ pub enum Side {
     /// From the right, above and before.
     Iso,
 }
-
-/// A sphere to be seen: center and radius (µm).
-pub type BoundingSphere = (DVec3, f64);
 
 /// Angle of view (radians) unless told otherwise: little distortion, as through a long lens.
 pub const DEFAULT_FOV: f64 = 20.0 * std::f64::consts::PI / 180.0;

@@ -4,3 +4,4 @@ pub(crate) mod bounds;
 pub(crate) mod camera;
 pub(crate) mod frame;
 pub(crate) mod framing;
+pub(crate) mod frustum;

@@ -5,12 +5,14 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 use wgpu::{BufferUsages, ShaderStages};
 
+use crate::gpu::buffers::read_back;
+use crate::gpu::buffers::storage;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::sources::SURFACE_VERTEX_WGSL;
+use crate::sources::adaptive::batch::Batch;
 use crate::sources::adaptive::passes::COARSE_POINT_WGSL;
-use crate::sources::adaptive::readback::read;
-use crate::sources::adaptive::refiner::{Batch, Refiner, draws, storage};
+use crate::sources::adaptive::refiner::{Refiner, draws};
 use crate::sources::adaptive::settings::compose;
 
 /// Workgroups in a row of a dispatch.
@@ -141,6 +143,6 @@ impl Refiner {
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
-        read(gpu, &made, wanted.len())
+        read_back(gpu, &made, wanted.len())
     }
 }

@@ -4,7 +4,7 @@
 
 use wgpu::ShaderStages;
 
-use crate::sources::adaptive::refiner::storage;
+use crate::gpu::buffers::{storage, uniform};
 
 /// Layouts of the groups that work buffers are in.
 #[derive(Debug)]
@@ -62,22 +62,5 @@ impl WorkLayouts {
                 ],
             ),
         }
-    }
-}
-
-fn uniform(
-    binding: u32,
-    visibility: ShaderStages,
-    has_dynamic_offset: bool,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset,
-            min_binding_size: None,
-        },
-        count: None,
     }
 }

@@ -1,13 +1,14 @@
 //! The source of vertices that refines on the fly: a scene and how it is refined.
 
+pub(crate) mod batch;
 pub(crate) mod cull;
 pub(crate) mod expand;
 pub(crate) mod grids;
 pub(crate) mod layouts;
 pub(crate) mod passes;
-pub(crate) mod pick;
 pub(crate) mod readback;
 pub(crate) mod refiner;
+pub(crate) mod resolver;
 pub(crate) mod settings;
 pub(crate) mod work;
 
@@ -17,13 +18,14 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::Scene;
 use crate::sources::VertexSource;
-use crate::sources::adaptive::pick::PickResolver;
+use crate::sources::adaptive::batch::FramePlan;
 use crate::sources::adaptive::readback::FrameStats;
-use crate::sources::adaptive::refiner::{FramePlan, Refiner};
+use crate::sources::adaptive::refiner::Refiner;
+use crate::sources::adaptive::resolver::PickResolver;
 use crate::sources::adaptive::settings::{AdaptiveSettings, CullView};
 use crate::view::bounds::any_shows;
 use crate::view::frame::Frame;
-use crate::view::framing::BoundingSphere;
+use crate::view::frustum::BoundingSphere;
 
 /// A scene that is refined as it is drawn. Memory does not depend on the level.
 #[derive(Debug)]

@@ -12,13 +12,13 @@
 
 use neurotess_refine::gpu::CORNER_SOURCE_WGSL;
 
+use crate::scene::templates::CLUSTER;
 use crate::scene::templates::Page;
+use crate::sources::adaptive::batch::Batch;
 use crate::sources::adaptive::grids::BUCKETS;
 use crate::sources::adaptive::layouts::WorkLayouts;
-use crate::sources::adaptive::refiner::Batch;
 use crate::sources::adaptive::settings::{
-    BatchUniforms, CLUSTER, QUEUE_ASKED, QUEUE_PLAIN, QUEUE_RINGS, QUEUE_SECTIONS, QUEUE_SHOWN,
-    compose,
+    BatchUniforms, QUEUE_ASKED, QUEUE_PLAIN, QUEUE_RINGS, QUEUE_SECTIONS, QUEUE_SHOWN, compose,
 };
 use crate::sources::adaptive::work::Work;
 

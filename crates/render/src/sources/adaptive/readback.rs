@@ -1,15 +1,17 @@
 //! What was chosen and drawn, read back after a frame on request: for statistics and for tests.
 
-use bytemuck::Pod;
 use neurotess_mesh::PatchKind;
 use neurotess_refine::{Caps, HIGHEST_LEVEL, patch_triangles};
 
+use crate::gpu::buffers::read_back;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::Scene;
-use crate::sources::adaptive::refiner::{Batch, Refiner};
+use crate::scene::templates::CLUSTER;
+use crate::sources::adaptive::batch::Batch;
+use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::adaptive::settings::{
-    BatchUniforms, CLUSTER, DECIDED_TUBE, Placed, QUEUE_SHOWN, decided,
+    BatchUniforms, DECIDED_TUBE, Placed, QUEUE_SHOWN, decided,
 };
 
 /// A patch that is drawn.
@@ -93,15 +95,15 @@ impl Refiner {
         } = batch.uniforms;
         let buffers = &self.work.buffers;
         let first_shown = QUEUE_SHOWN * clusters;
-        let groups: Vec<[u32; 3]> = read(gpu, &buffers.cluster_dispatches, 3)?;
-        let queues: Vec<u32> = read(gpu, &buffers.queues, 3 * clusters as usize)?;
+        let groups: Vec<[u32; 3]> = read_back(gpu, &buffers.cluster_dispatches, 3)?;
+        let queues: Vec<u32> = read_back(gpu, &buffers.queues, 3 * clusters as usize)?;
         let shown = first_shown..first_shown + groups[QUEUE_SHOWN as usize][0];
         let mut shown = queues[shown.start as usize..shown.end as usize].to_vec();
         // Workgroups queue them in any order.
         shown.sort_unstable();
-        let decisions: Vec<u32> = read(gpu, &buffers.decisions, slots as usize)?;
-        let owners: Vec<u32> = read(gpu, &buffers.owners, clusters as usize)?;
-        let placed: Vec<Placed> = read(gpu, &buffers.placed, (first + placed) as usize)?;
+        let decisions: Vec<u32> = read_back(gpu, &buffers.decisions, slots as usize)?;
+        let owners: Vec<u32> = read_back(gpu, &buffers.owners, clusters as usize)?;
+        let placed: Vec<Placed> = read_back(gpu, &buffers.placed, (first + placed) as usize)?;
         let mut chosen = Vec::new();
         for cluster in shown {
             let owner: &Placed = &placed[owners[cluster as usize] as usize];
@@ -136,31 +138,4 @@ impl Refiner {
         }
         Ok(chosen)
     }
-}
-
-/// The first elements of a buffer. Waits for the device.
-pub(crate) fn read<T: Pod>(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    count: usize,
-) -> Result<Vec<T>, DeviceError> {
-    let bytes = (count * size_of::<T>()) as u64;
-    if bytes == 0 {
-        return Ok(Vec::new());
-    }
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read back"),
-        size: bytes,
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
-    gpu.queue.submit([encoder.finish()]);
-    let slice = copy.slice(..);
-    slice.map_async(wgpu::MapMode::Read, |_| ());
-    gpu.wait()?;
-    let lost = |e: &dyn std::fmt::Display| DeviceError::Lost(e.to_string());
-    let view = slice.get_mapped_range().map_err(|e| lost(&e))?;
-    Ok(bytemuck::pod_collect_to_vec(&view))
 }

@@ -6,60 +6,27 @@
 //! every patch (passes.rs), and patches of like grids are drawn together (grids.rs).
 //!
 //! **Practice.** The host culls whole parts of instances, orders them by page, and cuts them into
-//! **batches** of at most [`MOST_SLOTS`] patches, which share one set of work buffers: memory does not
+//! **batches** of at most a million patches, which share one set of work buffers: memory does not
 //! grow with the level, and beyond a million patches not with the scene. Per batch: [`Refiner::choose`]
 //! in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was made with
 //! [`Refiner::vertex_wgsl`] and [`Refiner::layout`]. Nothing is read back.
 
-use bytemuck::{Pod, Zeroable};
-use wgpu::{BufferUsages, ShaderStages};
+use wgpu::BufferUsages;
 
+use crate::gpu::buffers::upload;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::Scene;
-use crate::scene::templates::{self, MOST_PATCHES};
-use crate::sources::adaptive::cull::shows;
+use crate::scene::templates;
+use crate::scene::templates::CLUSTER;
+use crate::sources::adaptive::batch::{Batch, DrawIndexed, FramePlan, cut, place_all};
 use crate::sources::adaptive::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
 use crate::sources::adaptive::layouts::WorkLayouts;
 use crate::sources::adaptive::passes::{COARSE_POINT_WGSL, Passes};
 use crate::sources::adaptive::settings::{
-    AdaptiveSettings, BatchUniforms, CLUSTER, CullView, FrameUniforms, Placed, SECTION, compose,
+    AdaptiveSettings, BatchUniforms, CullView, FrameUniforms, Placed, compose,
 };
 use crate::sources::adaptive::work::{Sizes, Work};
-
-/// Most patches that are decided on and drawn together.
-pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
-
-/// Arguments of an indexed indirect draw. Twin of the struct of the same name in scan.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct DrawIndexed {
-    pub(crate) index_count: u32,
-    pub(crate) instance_count: u32,
-    pub(crate) first_index: u32,
-    pub(crate) base_vertex: u32,
-    pub(crate) first_instance: u32,
-}
-
-/// A pile of placed parts, all of one page.
-#[derive(Clone, Copy, Debug)]
-pub struct Batch {
-    pub(crate) page: usize,
-    pub(crate) uniforms: BatchUniforms,
-    /// Place among the batches of its frame.
-    pub(crate) index: u32,
-}
-
-/// What one frame draws.
-#[derive(Clone, Debug, Default)]
-pub struct FramePlan {
-    /// In order.
-    pub batches: Vec<Batch>,
-    /// Patches of all instances that are not hidden.
-    pub patches: u64,
-    /// What stands where: a batch has a range of it.
-    pub(crate) placed: Vec<Placed>,
-}
 
 /// Pipelines and work buffers of adaptive refinement.
 #[derive(Debug)]
@@ -231,111 +198,6 @@ pub(crate) fn draws(shader: usize) -> String {
         "const DRAWS: u32 = {shader}u;\nconst DRAWS_FLAT: u32 = {flat}u;\n\
          const DRAWS_TUBES: u32 = {tubes}u;\n"
     )
-}
-
-/// Parts of instances that may show, with their pages, and the number of patches of all.
-fn place_all(
-    scene: &Scene,
-    sight: &CullView,
-    frame: &FrameUniforms,
-) -> (Vec<(usize, Placed)>, u64) {
-    let mut placed = Vec::new();
-    let mut patches = 0;
-    for (i, instance) in scene.instances().iter().enumerate() {
-        let Some(template) = scene.templates().template(instance.template) else {
-            continue;
-        };
-        if instance.hidden {
-            continue;
-        }
-        let stand = Placed::new(sight, &instance.placement, template.origin);
-        for part in &template.parts {
-            patches += u64::from(part.patches);
-            let place = Placed {
-                base: part.base,
-                patches: part.slots,
-                instance: i as u32,
-                state: instance.state,
-                ..stand
-            };
-            if shows(frame, &place, part.sphere.0, part.sphere.1) {
-                placed.push((part.page, place));
-            }
-        }
-    }
-    (placed, patches)
-}
-
-/// Gives every placed part its slots, a whole number of clusters, and begins a new batch where the
-/// page changes or the slots end. Also gives the place of every batch's first explicit vertex.
-fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
-    let mut batches: Vec<Batch> = Vec::new();
-    for (i, (page, place)) in placed.iter_mut().enumerate() {
-        let slots = (place.patches as usize).next_multiple_of(CLUSTER);
-        let fits = |b: &Batch| b.page == *page && b.uniforms.slots as usize + slots <= MOST_SLOTS;
-        if !batches.last().is_some_and(fits) {
-            batches.push(Batch {
-                page: *page,
-                index: batches.len() as u32,
-                uniforms: BatchUniforms {
-                    first: i as u32,
-                    ..BatchUniforms::default()
-                },
-            });
-        }
-        let Some(batch) = batches.last_mut() else {
-            continue;
-        };
-        place.first_slot = batch.uniforms.slots;
-        batch.uniforms.placed += 1;
-        batch.uniforms.slots += slots as u32;
-        batch.uniforms.clusters = batch.uniforms.slots / CLUSTER as u32;
-        batch.uniforms.sections = batch.uniforms.slots.div_ceil(SECTION as u32);
-    }
-    let slots = batches.iter().map(|batch| batch.uniforms.slots);
-    let first_explicit = slots.max().unwrap_or(0);
-    for batch in &mut batches {
-        place_explicit(batch, first_explicit, placed);
-    }
-    (batches, first_explicit)
-}
-
-/// Gives the explicit vertices of a batch's parts their places behind all slots.
-fn place_explicit(batch: &mut Batch, first_explicit: u32, placed: &mut [(usize, Placed)]) {
-    let uniforms = &mut batch.uniforms;
-    let first = uniforms.first as usize;
-    for (_, place) in &mut placed[first..first + uniforms.placed as usize] {
-        place.first_explicit = first_explicit + uniforms.explicit_vertices;
-        uniforms.explicit_vertices += place.base.explicit_count();
-    }
-}
-
-fn upload<T: Pod>(gpu: &Gpu, label: &str, usage: BufferUsages, data: &[T]) -> wgpu::Buffer {
-    use wgpu::util::DeviceExt;
-    gpu.device
-        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(label),
-            contents: bytemuck::cast_slice(data),
-            usage,
-        })
-}
-
-/// A binding of a storage buffer.
-pub(crate) fn storage(
-    binding: u32,
-    visibility: ShaderStages,
-    read_only: bool,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    }
 }
 
 const _: () = assert!(size_of::<Bucket>() == 20 && size_of::<DrawIndexed>() == 20);

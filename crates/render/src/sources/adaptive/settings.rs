@@ -5,17 +5,16 @@ use std::fmt::Write;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 use neurotess_refine::gpu::{self, GpuLodCriterion};
-use neurotess_refine::{Caps, LodCriterion, LodView, PartLayout, Path, RefineOptions};
+use neurotess_refine::{Caps, LodCriterion, LodView, Path, RefineOptions};
 
 use crate::scene::Placement;
+use crate::scene::templates::{Base, CLUSTER};
 use crate::sources::adaptive::grids::{
     BUCKETS, FLAT_CORNER_SHIFT, FLAT_INDICES, GRID_SIZE, INDEX_BUCKET_SHIFT, INDEX_PATCH_MASK,
     INDEX_PATCH_SHIFT, INDEX_PLACE_MASK, INDEX_ROW_SHIFT,
 };
 use crate::view::camera::Camera;
 
-/// Patches that are decided on together: the size of a workgroup.
-pub(crate) const CLUSTER: usize = 64;
 /// Patches that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
 const DECISION_KIND_SHIFT: u32 = 28;
@@ -29,8 +28,6 @@ pub(crate) const QUEUE_ASKED: u32 = 1;
 pub(crate) const QUEUE_SHOWN: u32 = 2;
 pub(crate) const QUEUE_SECTIONS: u32 = 0;
 pub(crate) const QUEUE_RINGS: u32 = 1;
-/// u32s of an explicit vertex: see refine's template.wgsl.
-const EXPLICIT_VERTEX_U32S: u32 = 3;
 /// Kind of a lateral patch between two points with rings of their own, in a decision.
 pub(crate) const DECIDED_TUBE: u32 = 3;
 
@@ -153,50 +150,6 @@ pub(crate) struct Placed {
     pub(crate) instance: u32,
     pub(crate) state: u32,
     pub(crate) first_explicit: u32,
-}
-
-/// Where a part lies in the packed buffer of its page: [`PartLayout`], moved. Twin of the struct of the same name in
-/// refine's template.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct Base {
-    pub(crate) points: u32,
-    pub(crate) point_count: u32,
-    pub(crate) spheres: u32,
-    pub(crate) explicit_vertices: u32,
-    pub(crate) anchors: u32,
-    pub(crate) soma: u32,
-    pub(crate) soma_count: u32,
-    pub(crate) quads: u32,
-    pub(crate) quad_count: u32,
-    pub(crate) caps: u32,
-    pub(crate) color_keys: u32,
-}
-
-impl Base {
-    /// A part that begins at this u32 of the packed buffer.
-    pub(crate) fn new(first: u32, layout: &PartLayout) -> Self {
-        Self {
-            points: first + layout.points,
-            point_count: layout.point_count,
-            spheres: first + layout.spheres,
-            explicit_vertices: first + layout.explicit,
-            anchors: first + layout.anchors,
-            soma: first + layout.soma,
-            soma_count: layout.soma_count,
-            quads: first + layout.quads,
-            quad_count: layout.quad_count,
-            caps: first + layout.caps,
-            color_keys: first + layout.color_keys,
-        }
-    }
-}
-
-impl Base {
-    /// Number of explicit vertices.
-    pub(crate) fn explicit_count(&self) -> u32 {
-        (self.anchors - self.explicit_vertices) / EXPLICIT_VERTEX_U32S
-    }
 }
 
 impl Placed {

@@ -5,11 +5,12 @@ use wgpu::BufferUsages;
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::scene::templates::CLUSTER;
 use crate::scene::templates::Page;
+use crate::sources::adaptive::batch::{Batch, DrawIndexed};
 use crate::sources::adaptive::grids::{BUCKETS, FLAT_INDICES};
 use crate::sources::adaptive::layouts::WorkLayouts;
-use crate::sources::adaptive::refiner::{Batch, DrawIndexed};
-use crate::sources::adaptive::settings::{BatchUniforms, CLUSTER, FrameUniforms, Placed, SECTION};
+use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed, SECTION};
 
 /// A ring or an explicit vertex as it is drawn. Twin of the struct of the same name in coarse_point.wgsl.
 #[repr(C)]

@@ -23,6 +23,7 @@
 //! their levels, and need eight triangles a segment for it. Seen from where a whole neuron fits the
 //! screen no one can tell.
 
+mod build;
 mod layout;
 mod lod_requests;
 mod nested;
@@ -30,6 +31,7 @@ mod passes;
 mod paths;
 mod pick;
 mod proxy;
+mod quantized;
 mod residents;
 #[cfg(test)]
 mod shader_tests;
@@ -43,10 +45,11 @@ use glam::DVec3;
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::gpu::store::Store;
+use crate::gpu::growable::GrowableBuffer;
 use crate::scene::Instance;
 use crate::sources::VertexSource;
-use crate::view::frame::{Frame, Tile, shows};
+use crate::view::frame::{Frame, Tile};
+use crate::view::frustum::shows;
 use layout::{CELL, CLUSTER, Eye, GpuInstance};
 use passes::{Groups, Passes, Resident, Size, Work, visible_chunks_wgsl};
 use residents::Known;
@@ -70,11 +73,11 @@ const MOST_MARGIN: f64 = 0.1;
 #[derive(Debug)]
 pub struct Exploration {
     passes: Passes,
-    chunks: Store,
-    shapes: Store,
-    gpu_instances: Store,
-    packed: Store,
-    color_keys: Store,
+    chunks: GrowableBuffer,
+    shapes: GrowableBuffer,
+    gpu_instances: GrowableBuffer,
+    packed: GrowableBuffer,
+    color_keys: GrowableBuffer,
     known: Vec<Known>,
     instances: Vec<Instance>,
     /// Those that the device has not heard of yet.
@@ -99,11 +102,11 @@ impl Exploration {
         let budget = DEFAULT_BUDGET;
         Ok(Self {
             passes: Passes::new(gpu)?,
-            chunks: Store::new(gpu, "chunks", 0),
-            shapes: Store::new(gpu, "shapes", 0),
-            gpu_instances: Store::new(gpu, "instances", 0),
-            packed: Store::new(gpu, "points of exploration", 0),
-            color_keys: Store::new(gpu, "color_keys", 0),
+            chunks: GrowableBuffer::new(gpu, "chunks", 0),
+            shapes: GrowableBuffer::new(gpu, "shapes", 0),
+            gpu_instances: GrowableBuffer::new(gpu, "instances", 0),
+            packed: GrowableBuffer::new(gpu, "points of exploration", 0),
+            color_keys: GrowableBuffer::new(gpu, "color_keys", 0),
             known: Vec::new(),
             instances: Vec::new(),
             edited: 0..0,

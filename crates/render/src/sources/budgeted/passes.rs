@@ -5,10 +5,10 @@ use neurotess_refine::gpu;
 use wgpu::BufferUsages;
 
 use super::layout::{BINS, BLOCK, CLUSTER, Eye, Sums, VisibleChunk, WIDE, compose};
+use crate::gpu::buffers::{storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::gpu::store::Store;
-use crate::sources::adaptive::refiner::storage;
+use crate::gpu::growable::GrowableBuffer;
 
 /// Twin of the struct in `select.wgsl`.
 #[repr(C)]
@@ -30,11 +30,11 @@ pub(crate) struct Arguments {
 
 /// What the passes read: templates and instances.
 pub(crate) struct Resident<'a> {
-    pub(crate) chunks: &'a Store,
-    pub(crate) shapes: &'a Store,
-    pub(crate) gpu_instances: &'a Store,
-    pub(crate) packed: &'a Store,
-    pub(crate) color_keys: &'a Store,
+    pub(crate) chunks: &'a GrowableBuffer,
+    pub(crate) shapes: &'a GrowableBuffer,
+    pub(crate) gpu_instances: &'a GrowableBuffer,
+    pub(crate) packed: &'a GrowableBuffer,
+    pub(crate) color_keys: &'a GrowableBuffer,
 }
 
 /// A pass: what it is called, and the bindings that it uses.
@@ -148,7 +148,7 @@ impl Passes {
             layouts.push(layout);
         }
         let vertex = wgpu::ShaderStages::VERTEX;
-        let mut entries = vec![uniform(vertex)];
+        let mut entries = vec![uniform(0, vertex, false)];
         entries.extend([1, 2, 3, 4, 5, 6].map(|binding| storage(binding, vertex, true)));
         let drawing = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("visible_chunks"),
@@ -252,7 +252,7 @@ impl Work {
     /// For scenes up to a size.
     ///
     /// # Errors
-    /// More than the device binds in one visible_chunk.
+    /// More than the device binds in one piece.
     pub(crate) fn new(gpu: &Gpu, size: Size) -> Result<Self, DeviceError> {
         let quads = u64::from(size.budget).max(1);
         let stored = BufferUsages::STORAGE;
@@ -355,22 +355,9 @@ pub(crate) fn visible_chunks_wgsl() -> String {
 fn binding(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let compute = wgpu::ShaderStages::COMPUTE;
     match binding {
-        0 => uniform(compute),
+        0 => uniform(0, compute, false),
         1 | 2 | 3 | 5 => storage(binding, compute, true),
         _ => storage(binding, compute, false),
-    }
-}
-
-fn uniform(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
     }
 }
 

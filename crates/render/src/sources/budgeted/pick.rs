@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::Exploration;
 use super::layout::CHUNK_SOMA;
 use super::proxy::Proxy;
-use crate::shading::ids::PickId;
-use crate::sources::adaptive::pick::{PickHit, PickTarget};
+use crate::sources::pick::PickId;
+use crate::sources::pick::{PickHit, PickTarget};
 
 /// Bits of an id's second color key for the point of a chunk; those above are the chunk's.
 const POINT_BITS: u32 = 7;

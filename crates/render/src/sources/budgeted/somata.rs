@@ -1,4 +1,4 @@
-//! Somata of a mesh for exploration: their quads as they are, and one more for each neurite's seat.
+//! Somata of a mesh for exploration: their quads as they are, and one more for each neurite that leaves it.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,8 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role};
 
 use super::layout::{CHUNK_SOMA, Chunk};
-use super::proxy::{Proxy, grid, octahedral, packed, sphere};
+use super::proxy::Proxy;
+use super::quantized::{grid, octahedral, packed, sphere};
 
 /// Most vertices and quads of a soma that is kept as a mesh; a larger one is drawn as a sphere.
 const MOST: usize = 1 << 16;
@@ -15,16 +16,16 @@ const MOST: usize = 1 << 16;
 pub(super) fn add(proxy: &mut Proxy, mesh: &CoarseMesh) {
     let of_soma = mesh.patches.iter().filter(|p| p.kind == PatchKind::Soma);
     let quads: Vec<[u32; 4]> = of_soma.map(|patch| patch.corners).collect();
-    let seats = seats(mesh);
+    let rings = first_rings(mesh);
     for mut part in connected(&quads) {
         let own: BTreeMap<u32, ()> = part.iter().flatten().map(|&v| (v, ())).collect();
-        part.extend(seats.iter().filter(|seat| own.contains_key(&seat[0])));
+        part.extend(rings.iter().filter(|ring| own.contains_key(&ring[0])));
         add_soma(proxy, mesh, &part);
     }
 }
 
 /// The rings that neurites grow from: what is open in a soma's own quads, facing outwards.
-fn seats(mesh: &CoarseMesh) -> Vec<[u32; 4]> {
+fn first_rings(mesh: &CoarseMesh) -> Vec<[u32; 4]> {
     let near = |patch: &Patch| {
         let tracing = mesh.vertices[patch.corners[0] as usize].tracing;
         mesh.tracing[tracing as usize].role == Role::Insertion
@@ -78,8 +79,8 @@ fn add_soma(proxy: &mut Proxy, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
         let tracing = mesh.vertices[vertex as usize].tracing;
         mesh.tracing[tracing as usize].role == Role::Soma
     };
-    let (inner, seats) = (quads.iter().flatten().filter(own), quads.iter().flatten());
-    for &vertex in inner.chain(seats) {
+    let (inner, all) = (quads.iter().flatten().filter(own), quads.iter().flatten());
+    for &vertex in inner.chain(all) {
         numbers.entry(vertex).or_insert_with(|| {
             vertices.push(vertex);
             vertices.len() as u32 - 1
@@ -108,7 +109,7 @@ fn add_soma(proxy: &mut Proxy, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
             proxy.packed.extend([a | (b << 16), c | (d << 16)]);
         }
     }
-    // The sphere that instance_pose for it from afar has the mean of its sides.
+    // The sphere that is drawn for it from afar has the mean of its sides.
     let (middle, radius) = middle(mesh, &vertices).unwrap_or((center, reach));
     proxy.push(
         Chunk {

@@ -2,9 +2,9 @@
 
 use super::Exploration;
 use super::layout::{Sums, VisibleChunk};
+use crate::gpu::buffers::read_back;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::sources::adaptive::readback::read;
 
 /// Sums of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Exploration {
     pub fn shown(&self, gpu: &Gpu) -> Result<Vec<DrawnChunk>, DeviceError> {
         let sums = self.sums(gpu)?;
         let count = sums.visible_chunks as usize;
-        let visible_chunks: Vec<VisibleChunk> = read(gpu, &self.work.visible_chunks, count)?;
+        let visible_chunks: Vec<VisibleChunk> = read_back(gpu, &self.work.visible_chunks, count)?;
         let ends = visible_chunks.iter().skip(1).map(|next| next.first);
         let ends = ends.chain([sums.quads]);
         Ok(visible_chunks
@@ -86,7 +86,7 @@ impl Exploration {
         self.passes
             .record(&mut encoder, &self.work, groups, instances, None);
         gpu.queue.submit([encoder.finish()]);
-        let sums = read(gpu, &self.work.book, 1)?;
+        let sums = read_back(gpu, &self.work.book, 1)?;
         Ok(sums.first().copied().unwrap_or_default())
     }
 }

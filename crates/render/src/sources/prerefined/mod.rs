@@ -16,8 +16,9 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::sources::VertexSource;
 use crate::view::bounds::{any_shows, bounds};
-use crate::view::frame::{Frame, shows};
-use crate::view::framing::BoundingSphere;
+use crate::view::frame::Frame;
+use crate::view::frustum::BoundingSphere;
+use crate::view::frustum::shows;
 
 /// Triangles in a run: some thousand, so that tests for showing cost nothing beside drawing.
 const RUN: usize = 4096;

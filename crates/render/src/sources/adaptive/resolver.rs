@@ -3,31 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::scene::Scene;
-use crate::shading::ids::{BATCH_SHIFT, FINE, PickId};
-use crate::sources::adaptive::refiner::{Batch, FramePlan};
-use crate::sources::adaptive::settings::{Base, Placed};
-
-/// What is seen at a pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PickHit {
-    /// Place of the instance in the scene.
-    pub instance: u32,
-    /// Where on it.
-    pub spot: PickTarget,
-}
-
-/// A place on a template's mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PickTarget {
-    /// Index of the patch.
-    Patch(u32),
-    /// Index of a vertex of the patch, one so small that it is drawn flat.
-    Vertex(u32),
-    /// Index of a tracing point.
-    Point(u32),
-    /// A soma, with the index of a tracing point of it.
-    Soma(u32),
-}
+use crate::scene::templates::Base;
+use crate::sources::adaptive::batch::{Batch, FramePlan};
+use crate::sources::adaptive::settings::Placed;
+use crate::sources::pick::{BATCH_SHIFT, FINE, PickHit, PickId, PickTarget};
 
 /// Knows where everything of a frame stood, also when other frames came after.
 #[derive(Clone, Debug, Default)]

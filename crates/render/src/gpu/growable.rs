@@ -8,14 +8,14 @@ use crate::gpu::error::DeviceError;
 
 /// A list on the device.
 #[derive(Debug)]
-pub(crate) struct Store {
+pub(crate) struct GrowableBuffer {
     what: &'static str,
     pub(crate) buffer: wgpu::Buffer,
     /// Bytes in use.
     used: u64,
 }
 
-impl Store {
+impl GrowableBuffer {
     /// With room for so many bytes.
     pub(crate) fn new(gpu: &Gpu, what: &'static str, bytes: u64) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl Store {
     /// Appends; true if the buffer is another one now.
     ///
     /// # Errors
-    /// More than the device binds in one visible_chunk.
+    /// More than the device binds in one piece.
     pub(crate) fn append<T: Pod>(&mut self, gpu: &Gpu, data: &[T]) -> Result<bool, DeviceError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let grown = self.reserve(gpu, self.used + bytes.len() as u64)?;
@@ -47,7 +47,7 @@ impl Store {
     /// Replaces everything; true if the buffer is another one now.
     ///
     /// # Errors
-    /// As [`Store::append`].
+    /// As [`GrowableBuffer::append`].
     pub(crate) fn replace<T: Pod>(&mut self, gpu: &Gpu, data: &[T]) -> Result<bool, DeviceError> {
         self.used = 0;
         self.append(gpu, data)
@@ -63,7 +63,7 @@ impl Store {
     /// Makes room for so many bytes in all; true if the buffer is another one now.
     ///
     /// # Errors
-    /// As [`Store::append`].
+    /// As [`GrowableBuffer::append`].
     pub(crate) fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> Result<bool, DeviceError> {
         if bytes <= self.buffer.size() {
             return Ok(false);

@@ -3,23 +3,14 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
+use crate::gpu::buffers::texture;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::output::tiles::TileRenderer;
-use crate::shading::present::texture;
 use crate::shading::shade::{DEPTH_FORMAT, GUARD, PipelineKey, Shade, shader_text};
 use crate::sources::VertexSource;
+use crate::sources::pick::{BATCH_SHIFT, FINE, PickId, PickIds};
 use crate::view::frame::Frame;
-
-/// What is drawn at a pixel, as a [`PickResolver`](crate::PickResolver) reads it; zeros where nothing is.
-pub type PickId = [u32; 2];
-/// Width and height (pixels), and the ids of all pixels by row.
-pub type PickIds = ([u32; 2], Vec<PickId>);
-
-/// Bits of an id's first color key for how a patch is drawn; those above are its batch's.
-pub(crate) const BATCH_SHIFT: u32 = 3;
-/// How a patch is drawn: refined. Less than that is the number of a corner of a flat one.
-pub(crate) const FINE: u32 = 4;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of an id.

@@ -1,0 +1,119 @@
+//! Which parts of templates a frame draws, and which of them together.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::scene::Scene;
+use crate::scene::templates::{CLUSTER, MOST_PATCHES};
+use crate::sources::adaptive::cull::shows;
+use crate::sources::adaptive::settings::{BatchUniforms, CullView, FrameUniforms, Placed, SECTION};
+
+/// Most patches that are decided on and drawn together.
+pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
+
+/// Arguments of an indexed indirect draw. Twin of the struct of the same name in scan.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct DrawIndexed {
+    pub(crate) index_count: u32,
+    pub(crate) instance_count: u32,
+    pub(crate) first_index: u32,
+    pub(crate) base_vertex: u32,
+    pub(crate) first_instance: u32,
+}
+
+/// A pile of placed parts, all of one page.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch {
+    pub(crate) page: usize,
+    pub(crate) uniforms: BatchUniforms,
+    /// Place among the batches of its frame.
+    pub(crate) index: u32,
+}
+
+/// What one frame draws.
+#[derive(Clone, Debug, Default)]
+pub struct FramePlan {
+    /// In order.
+    pub batches: Vec<Batch>,
+    /// Patches of all instances that are not hidden.
+    pub patches: u64,
+    /// What stands where: a batch has a range of it.
+    pub(crate) placed: Vec<Placed>,
+}
+
+/// Parts of instances that may show, with their pages, and the number of patches of all.
+pub(crate) fn place_all(
+    scene: &Scene,
+    sight: &CullView,
+    frame: &FrameUniforms,
+) -> (Vec<(usize, Placed)>, u64) {
+    let mut placed = Vec::new();
+    let mut patches = 0;
+    for (i, instance) in scene.instances().iter().enumerate() {
+        let Some(template) = scene.templates().template(instance.template) else {
+            continue;
+        };
+        if instance.hidden {
+            continue;
+        }
+        let stand = Placed::new(sight, &instance.placement, template.origin);
+        for part in &template.parts {
+            patches += u64::from(part.patches);
+            let place = Placed {
+                base: part.base,
+                patches: part.slots,
+                instance: i as u32,
+                state: instance.state,
+                ..stand
+            };
+            if shows(frame, &place, part.sphere.0, part.sphere.1) {
+                placed.push((part.page, place));
+            }
+        }
+    }
+    (placed, patches)
+}
+
+/// Gives every placed part its slots, a whole number of clusters, and begins a new batch where the
+/// page changes or the slots end. Also gives the place of every batch's first explicit vertex.
+pub(crate) fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
+    let mut batches: Vec<Batch> = Vec::new();
+    for (i, (page, place)) in placed.iter_mut().enumerate() {
+        let slots = (place.patches as usize).next_multiple_of(CLUSTER);
+        let fits = |b: &Batch| b.page == *page && b.uniforms.slots as usize + slots <= MOST_SLOTS;
+        if !batches.last().is_some_and(fits) {
+            batches.push(Batch {
+                page: *page,
+                index: batches.len() as u32,
+                uniforms: BatchUniforms {
+                    first: i as u32,
+                    ..BatchUniforms::default()
+                },
+            });
+        }
+        let Some(batch) = batches.last_mut() else {
+            continue;
+        };
+        place.first_slot = batch.uniforms.slots;
+        batch.uniforms.placed += 1;
+        batch.uniforms.slots += slots as u32;
+        batch.uniforms.clusters = batch.uniforms.slots / CLUSTER as u32;
+        batch.uniforms.sections = batch.uniforms.slots.div_ceil(SECTION as u32);
+    }
+    let slots = batches.iter().map(|batch| batch.uniforms.slots);
+    let first_explicit = slots.max().unwrap_or(0);
+    for batch in &mut batches {
+        place_explicit(batch, first_explicit, placed);
+    }
+    (batches, first_explicit)
+}
+
+/// Gives the explicit vertices of a batch's parts their places behind all slots.
+fn place_explicit(batch: &mut Batch, first_explicit: u32, placed: &mut [(usize, Placed)]) {
+    let uniforms = &mut batch.uniforms;
+    let first = uniforms.first as usize;
+    for (_, place) in &mut placed[first..first + uniforms.placed as usize] {
+        place.first_explicit = first_explicit + uniforms.explicit_vertices;
+        uniforms.explicit_vertices += place.base.explicit_count();
+    }
+}

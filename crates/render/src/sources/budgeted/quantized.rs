@@ -1,0 +1,80 @@
+//! Positions, directions and errors in few bits.
+
+use glam::{Vec2, Vec3};
+
+use super::layout::{ERROR_OFFSET, ERROR_STEPS, NO_LOD};
+
+/// Steps of a stored coordinate.
+pub(super) const STEPS: f32 = 65_535.0;
+
+/// Rounded up, so that no error is understated.
+pub(super) fn error_byte(error: f32) -> u8 {
+    if error <= 0.0 {
+        return 0;
+    }
+    let step = ((error.log2() + ERROR_OFFSET) * ERROR_STEPS).ceil();
+    step.clamp(1.0, f32::from(NO_LOD - 1)) as u8
+}
+
+pub(super) fn u32s_of(bytes: [u8; 8]) -> [u32; 2] {
+    let [a, b, c, d, e, f, g, h] = bytes;
+    [[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes)
+}
+
+/// What positions are counted from, and in steps of.
+pub(super) fn grid(positions: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
+    let low = positions.clone().fold(Vec3::MAX, Vec3::min);
+    let high = positions.fold(Vec3::MIN, Vec3::max);
+    let extent = (high - low).max_element();
+    (low, (extent / STEPS).max(1e-9))
+}
+
+/// A position in steps, and 16 bits more.
+pub(super) fn packed(position: Vec3, low: Vec3, step: f32, more: u32) -> [u32; 2] {
+    let [x, y, z] = ((position - low) / step)
+        .round()
+        .clamp(Vec3::ZERO, Vec3::splat(STEPS))
+        .to_array()
+        .map(|v| v as u32);
+    [x | (y << 16), z | (more << 16)]
+}
+
+/// A unit vector in two times 16 bits.
+pub(super) fn packed_direction(v: Vec3) -> u32 {
+    let p = octahedral(v);
+    let whole = |x: f32| u32::from((x * 32_767.0).round() as i16 as u16);
+    whole(p.x) | (whole(p.y) << 16)
+}
+
+/// Place of a unit vector on an unfolded octahedron (Meyer et al., On floating-point normal vectors,
+/// 2010), −1 to 1.
+pub(super) fn octahedral(v: Vec3) -> Vec2 {
+    let size = v.abs().element_sum();
+    if size <= 0.0 {
+        return Vec2::ZERO;
+    }
+    let p = v.truncate() / size;
+    if v.z >= 0.0 {
+        return p;
+    }
+    let sign = |x: f32| if x >= 0.0 { 1.0 } else { -1.0 };
+    Vec2::new((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y))
+}
+
+/// A sphere that holds spheres: around the middle of their box.
+pub(super) fn sphere(spheres: impl Iterator<Item = (Vec3, f32)> + Clone) -> (Vec3, f32) {
+    let low = spheres
+        .clone()
+        .map(|(c, r)| c - r)
+        .fold(Vec3::MAX, Vec3::min);
+    let high = spheres
+        .clone()
+        .map(|(c, r)| c + r)
+        .fold(Vec3::MIN, Vec3::max);
+    let center = (low + high) / 2.0;
+    let reach = spheres
+        .map(|(c, r)| c.distance(center) + r)
+        .fold(0.0, f32::max);
+    // Positions are stored rounded.
+    (center, reach * 1.0001)
+}
