@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Attribute, Circuit, NodeRef};
+use crate::population::{Attribute, NodeRef, Population};
 
 /// The nodes of a circuit by the value of an attribute.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,10 +15,9 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Groups all nodes by an attribute, or by `population`.
-    pub fn by(circuit: &Circuit, attribute: &str) -> Self {
-        let columns: Vec<(Vec<String>, Vec<u32>)> = circuit
-            .populations
+    /// Groups all nodes of these populations by an attribute, or by `population`.
+    pub fn by(populations: &[Population], attribute: &str) -> Self {
+        let columns: Vec<(Vec<String>, Vec<u32>)> = populations
             .iter()
             .map(|population| match population.attributes.get(attribute) {
                 Some(Attribute::Text { library, indices }) => (library.clone(), indices.clone()),

@@ -20,7 +20,7 @@
 //! let nodes = circuit.select(&selection)?;
 //!
 //! // **Instances** are what a renderer needs: template, place, id, group for the color.
-//! let groups = Groups::by(&circuit, "layer");
+//! let groups = Groups::by(&circuit.populations, "layer");
 //! let instances = circuit.instances(&nodes, Some(&groups));
 //! read_all(instances.iter().map(|i| &circuit.templates[i.template.index()]));
 //! for instance in &instances {
@@ -52,6 +52,7 @@
 //! Coordinates of circuits are `f64`: at 10⁴ µm `f32` resolves 0.001 µm only.
 #![forbid(unsafe_code)]
 
+mod edges;
 mod error;
 mod groups;
 mod hdf5;
@@ -62,6 +63,7 @@ mod model;
 mod node_sets;
 mod nsol;
 mod open;
+mod population;
 mod report;
 mod scene;
 mod select;
@@ -71,17 +73,19 @@ mod transform;
 mod warning;
 pub mod write;
 
+pub use edges::{Edges, Synapses};
 pub use error::{CircuitError, Fault};
 pub use groups::{Groups, natural};
-pub use model::{Attribute, Circuit, Instance, NodeRef, Population};
+pub use model::{Circuit, Instance};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;
+pub use population::{Attribute, NodeRef, Population};
 pub use report::{
     Compartment, Location, RecordingFile, Report, ReportKind, ReportPopulation, SectionOrder,
     SpikePopulation, Spikes, TimeAxis, is_recording,
 };
 pub use scene::color;
 pub use select::Selection;
-pub use sonata::{Edges, Synapses};
+
 pub use template::{Template, TemplateId, read_all, soma_center};
 pub use warning::Warning;

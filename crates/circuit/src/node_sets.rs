@@ -18,8 +18,9 @@ use std::path::Path;
 use regex_lite::Regex;
 use serde_json::Value;
 
+use crate::error::{CircuitError, Fault};
 use crate::json::{Document, Json};
-use crate::{Attribute, Circuit, CircuitError, Fault, NodeRef, Population};
+use crate::population::{Attribute, NodeRef, Population};
 
 /// Named choices of nodes.
 #[derive(Debug, Default)]
@@ -90,14 +91,19 @@ impl NodeSets {
         Ok(())
     }
 
-    /// The nodes of a set, in the circuit's order.
+    /// The nodes of a set, in the populations' order. `file`: of the circuit, for errors.
     ///
     /// # Errors
     /// There is no such set, it needs itself, or it asks for an attribute that no population has.
-    pub fn nodes(&self, circuit: &Circuit, name: &str) -> Result<Vec<NodeRef>, CircuitError> {
+    pub fn nodes(
+        &self,
+        populations: &[Population],
+        file: &str,
+        name: &str,
+    ) -> Result<Vec<NodeRef>, CircuitError> {
         let mut found = BTreeSet::new();
         self.collect(
-            circuit,
+            (populations, file),
             name,
             &mut Vec::new(),
             &mut BTreeSet::new(),
@@ -108,7 +114,7 @@ impl NodeSets {
 
     fn collect<'a>(
         &'a self,
-        circuit: &Circuit,
+        (populations, circuit): (&[Population], &str),
         name: &'a str,
         way: &mut Vec<&'a str>,
         done: &mut BTreeSet<&'a str>,
@@ -116,7 +122,7 @@ impl NodeSets {
     ) -> Result<(), CircuitError> {
         let Some(set) = self.sets.get(name) else {
             let file = way.last().and_then(|last| self.sets.get(*last));
-            let file = file.map_or(circuit.file.as_str(), |set| &set.file);
+            let file = file.map_or(circuit, |set| &set.file);
             let fault = Fault::NoNodeSet {
                 name: name.into(),
                 there: self.names().collect::<Vec<_>>().join(", "),
@@ -138,7 +144,7 @@ impl NodeSets {
                 way.push(name);
                 for inner in names {
                     if !done.contains(inner.as_str()) {
-                        self.collect(circuit, inner, way, done, found)?;
+                        self.collect((populations, circuit), inner, way, done, found)?;
                     }
                 }
                 way.pop();
@@ -146,7 +152,7 @@ impl NodeSets {
             Choice::Rules(rules) => {
                 for (attribute, _) in rules {
                     let known = |p: &Population| column(p, attribute).is_some();
-                    if !circuit.populations.iter().any(known) {
+                    if !populations.iter().any(known) {
                         let key = format!("{name}.{attribute}");
                         let name = attribute.clone();
                         return Err(CircuitError::new(
@@ -156,7 +162,7 @@ impl NodeSets {
                         ));
                     }
                 }
-                for (population, index) in circuit.populations.iter().zip(0..) {
+                for (population, index) in populations.iter().zip(0..) {
                     let rows = rows(population, rules);
                     found.extend(rows.map(|row| NodeRef {
                         population: index,
@@ -214,7 +220,7 @@ enum Test<'a> {
 impl<'a> Test<'a> {
     fn new(of: &Of<'a>, rule: &'a Rule) -> Self {
         match *of {
-            Of::Name(name) => Self::All(rule.holds_for_word(name)),
+            Of::Name(name) => Self::All(rule.holds_for_text(name)),
             Of::Id(ids) => {
                 let set = match rule {
                     Rule::OneOf(_, numbers) => numbers.iter().map(|&n| n as u64).collect(),
@@ -229,7 +235,7 @@ impl<'a> Test<'a> {
                 Self::Numbers(Box::new(move |row| values[row]), rule)
             }
             Of::Attribute(Attribute::Text { library, indices }) => {
-                let holds = library.iter().map(|text| rule.holds_for_word(text));
+                let holds = library.iter().map(|text| rule.holds_for_text(text));
                 Self::Text(indices, holds.collect())
             }
         }
@@ -298,7 +304,7 @@ impl Rule {
         Ok(Self::Compares(compare, operand.real()?))
     }
 
-    fn holds_for_word(&self, text: &str) -> bool {
+    fn holds_for_text(&self, text: &str) -> bool {
         match self {
             Self::OneOf(texts, numbers) => {
                 let number = || text.parse::<f64>();
@@ -307,7 +313,7 @@ impl Rule {
             }
             Self::Matches(regex) => regex.is_match(text),
             Self::Compares(..) => text.parse().is_ok_and(|n| self.holds_for_number(n)),
-            Self::All(rules) => rules.iter().all(|rule| rule.holds_for_word(text)),
+            Self::All(rules) => rules.iter().all(|rule| rule.holds_for_text(text)),
         }
     }
 

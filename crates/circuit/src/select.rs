@@ -37,7 +37,7 @@ impl Circuit {
             ));
         }
         let mut nodes = match &selection.node_set {
-            Some(name) => self.node_sets.nodes(self, name)?,
+            Some(name) => self.node_sets.nodes(&self.populations, &self.file, name)?,
             None => self.nodes().collect(),
         };
         let ids = selection.ids.as_ref().map(|ranges| {

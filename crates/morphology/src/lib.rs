@@ -39,6 +39,7 @@
 #![forbid(unsafe_code)]
 
 mod build;
+mod frustum;
 mod kind;
 mod measures;
 mod model;

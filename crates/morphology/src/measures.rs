@@ -4,13 +4,10 @@
 //! it branches from included; the way from the soma to a neurite's first point is not. Sums are
 //! `f64`, in the order of the points. Negative radii count as zero.
 
-use std::f64::consts::PI;
-
 use serde::Serialize;
 
-use crate::{
-    Attachment, Morphology, NeuriteKind, Point, SectionId, SomaKind, shape, soma_area_volume,
-};
+use crate::frustum::{distance, frustum_area, frustum_volume};
+use crate::{Attachment, Morphology, NeuriteKind, SectionId, SomaKind, shape, soma_area_volume};
 
 /// What `info --json` tells of one cell, µm, µm², µm³.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -182,25 +179,4 @@ fn bounds(morphology: &Morphology) -> Option<Bounds> {
         min: global(min),
         max: global(max),
     })
-}
-
-/// Distance (µm) of two points, in `f64`.
-pub(crate) fn distance(a: &Point, b: &Point) -> f64 {
-    a.position.as_dvec3().distance(b.position.as_dvec3())
-}
-
-fn clamped(a: f32, b: f32) -> (f64, f64) {
-    (f64::from(a).max(0.0), f64::from(b).max(0.0))
-}
-
-/// Side of a frustum: π (a + b) √((a − b)² + L²), L ≥ 0.
-pub(crate) fn frustum_area(a: f32, b: f32, length: f64) -> f64 {
-    let (a, b) = clamped(a, b);
-    PI * (a + b) * ((a - b) * (a - b) + length * length).sqrt()
-}
-
-/// Volume of a frustum: π L (a² + ab + b²) / 3, L ≥ 0.
-pub(crate) fn frustum_volume(a: f32, b: f32, length: f64) -> f64 {
-    let (a, b) = clamped(a, b);
-    PI * length * (a * a + a * b + b * b) / 3.0
 }

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::measures::distance;
+use crate::frustum::distance;
 use crate::{Attachment, Morphology, Point, SectionId};
 
 /// Consecutive points of a section, from the point that it branches from on; that point is left

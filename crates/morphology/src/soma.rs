@@ -264,12 +264,12 @@ fn links(samples: &[SomaSample]) -> impl Iterator<Item = (&SomaSample, &SomaSamp
 
 fn area(a: &SomaSample, b: &SomaSample) -> f64 {
     let length = a.position.as_dvec3().distance(b.position.as_dvec3());
-    crate::measures::frustum_area(a.radius, b.radius, length)
+    crate::frustum::frustum_area(a.radius, b.radius, length)
 }
 
 fn volume(a: &SomaSample, b: &SomaSample) -> f64 {
     let length = a.position.as_dvec3().distance(b.position.as_dvec3());
-    crate::measures::frustum_volume(a.radius, b.radius, length)
+    crate::frustum::frustum_volume(a.radius, b.radius, length)
 }
 
 #[cfg(test)]

@@ -177,3 +177,12 @@ impl ImplicitRing {
         (center + direction * radius(self.radius), normal)
     }
 }
+
+/// Largest error of a point's center, in its radii.
+const MOST_CENTER_ERROR: f32 = 0.002;
+
+/// Whether a sphere is small enough for a point of this radius.
+pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
+    // Half a step in each of three directions.
+    sphere / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
+}

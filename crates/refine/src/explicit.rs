@@ -3,12 +3,9 @@
 use neurotess_mesh::PatchKind;
 
 use crate::bounding_sphere::sphere_around;
-use crate::decode::{POINTS_OF_SPHERE, POSITION_STEPS};
-use crate::pack::{Packer, cap_ring};
+use crate::decode::{POINTS_OF_SPHERE, accurate};
+use crate::packer::{Packer, cap_ring};
 use crate::runs::{Tube, implicit_ring};
-
-/// Largest error of a point's center, in its radii.
-const MOST_CENTER_ERROR: f32 = 0.002;
 
 impl Packer<'_> {
     /// A ring is implicit, made from its point, if it is a circle, in one run only, and otherwise in its cap at most.
@@ -82,10 +79,4 @@ impl Packer<'_> {
             }
         }
     }
-}
-
-/// Whether a sphere is small enough for a point of this radius.
-pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
-    // Half a step in each of three directions.
-    sphere / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
 }

@@ -11,10 +11,8 @@ use crate::decode::{
     POINT_ORDINARY, POINTS_OF_SPHERE, from_sphere, octahedral, radius, signed16, to_octahedral,
     to_signed16, to_sphere,
 };
-use crate::pack::{Contents, MeshPart, PATCHES_OF_SPHERE, Packer, Slot, cap_ring, widened};
-
-/// Most different color keys of a part's points.
-pub(crate) const MOST_COLOR_KEYS: usize = 1 << 10;
+use crate::packer::{Contents, Packer, Slot, cap_ring, widened};
+use crate::part::{MOST_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
 
 impl Packer<'_> {
     pub(crate) fn write(&self, contents: &Contents) -> MeshPart {

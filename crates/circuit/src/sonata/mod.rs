@@ -5,7 +5,6 @@
 //! differ, see `docs/circuits.md`.
 
 mod config;
-mod edges;
 mod nodes;
 pub(crate) mod orientation;
 mod population;
@@ -15,8 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 pub(crate) use config::{find, folder_of};
-pub use edges::{Edges, Synapses};
 
+use crate::edges;
 use crate::hdf5::Store;
 use crate::template::{Template, TemplateId};
 use crate::{Circuit, CircuitError, Fault, NodeSets, Population, Warning};

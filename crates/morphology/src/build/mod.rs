@@ -155,7 +155,9 @@ fn build(
         ..Morphology::default()
     };
     walk.neurites(&starts, &frame, &mut morphology);
-    notes.radii(nodes, &somata);
+    notes.radii(nodes, |i| {
+        is_soma(&nodes[i as usize]) && somata.of(i) != NONE
+    });
     Ok(Built {
         morphology,
         notes: notes.into_vec(),

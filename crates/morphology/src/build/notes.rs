@@ -3,9 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::somata::Somata;
-use super::tree::NONE;
-use super::{Node, is_soma};
+use super::Node;
 use crate::{Soma, SomaKind};
 
 /// Something that a reader should warn of; the morphology is usable all the same.
@@ -104,11 +102,11 @@ impl Notes {
     }
 
     /// Radii of points; those of somata are zero by right in contours.
-    pub(super) fn radii(&mut self, nodes: &[Node], somata: &Somata) {
+    pub(super) fn radii(&mut self, nodes: &[Node], is_of_soma: impl Fn(u32) -> bool) {
         for (i, node) in (0_u32..).zip(nodes) {
             if node.radius < 0.0 {
                 self.add(Oddity::NegativeRadius, i);
-            } else if node.radius == 0.0 && !(is_soma(node) && somata.of(i) != NONE) {
+            } else if node.radius == 0.0 && !is_of_soma(i) {
                 self.add(Oddity::ZeroRadius, i);
             }
         }

@@ -1,0 +1,92 @@
+//! A part of a packed mesh: what is resident, and where what lies in it.
+
+use glam::Vec3;
+
+use crate::decode::POINTS_OF_SPHERE;
+
+/// Patches that a bounding sphere is for.
+pub const PATCHES_OF_SPHERE: usize = 4 * POINTS_OF_SPHERE;
+/// Most different color keys of a part's points: their numbers have 10 bits.
+pub(crate) const MOST_COLOR_KEYS: usize = 1 << 10;
+
+/// Where the arrays of a part begin in its packed buffer, in u32s, and how many there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PartLayout {
+    /// Points.
+    pub points: u32,
+    /// Number of points.
+    pub point_count: u32,
+    /// Bounding spheres.
+    pub spheres: u32,
+    /// Explicit vertices.
+    pub explicit: u32,
+    /// Anchors.
+    pub anchors: u32,
+    /// Somata's patches.
+    pub soma: u32,
+    /// Number of somata's patches.
+    pub soma_count: u32,
+    /// Other explicit patches.
+    pub quads: u32,
+    /// Number of other explicit patches.
+    pub quad_count: u32,
+    /// Caps.
+    pub caps: u32,
+    /// Color keys.
+    pub color_keys: u32,
+}
+
+/// A piece of a coarse mesh that fits a device.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshPart {
+    /// All that is resident.
+    pub packed: Vec<u32>,
+    /// Where its arrays begin.
+    pub layout: PartLayout,
+    /// By place: the mesh's patch, or `u32::MAX` where there is none.
+    pub patches: Vec<u32>,
+    /// By number: the mesh's vertex that is explicit.
+    pub explicit: Vec<u32>,
+    /// Bounding sphere around each [`PATCHES_OF_SPHERE`] patches, at any level (µm).
+    pub spheres: Vec<(Vec3, f32)>,
+    /// By vertex of the mesh that is in this part: position and normal as shaders read them.
+    pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
+    /// By tracing point: center, radius and tangent as shaders read them.
+    pub(crate) tracing: Vec<(u32, Vec3, f32, Vec3)>,
+}
+
+impl MeshPart {
+    /// Bytes by the name of what they hold.
+    pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let p = &self.layout;
+        let names = [
+            "points",
+            "spheres",
+            "explicit_vertices",
+            "anchors",
+            "soma_patches",
+            "explicit_patches",
+            "caps",
+            "color_keys",
+        ];
+        let starts = [
+            p.points,
+            p.spheres,
+            p.explicit,
+            p.anchors,
+            p.soma,
+            p.quads,
+            p.caps,
+            p.color_keys,
+        ];
+        let ends = starts[1..]
+            .iter()
+            .copied()
+            .chain([self.packed.len() as u32]);
+        let sizes = starts
+            .iter()
+            .zip(ends)
+            .map(|(start, end)| u64::from(end - start) * 4);
+        names.into_iter().zip(sizes).collect()
+    }
+}
