@@ -2,6 +2,8 @@
 //
 // Called by plan.wgsl, where nobody has made corners beforehand.
 
+#import template.wgsl
+
 alias CornerSource = Base;
 
 fn base_of(source: CornerSource) -> Base {

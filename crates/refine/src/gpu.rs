@@ -1,10 +1,7 @@
 //! What shaders share with this crate: constants, structs and the twins of its functions.
 //!
-//! A shader is composed by joining [`prelude`], [`EVALUATE_WGSL`], [`LEVEL_WGSL`],
-//! [`TEMPLATE_WGSL`], [`PLAN_WGSL`] and a source of corners with its own text: [`compose`]. Constants go one
-//! way, from Rust into the prelude; layouts are compared field by field in `tests/shaders.rs`.
-
-use std::fmt::Write;
+//! A shader is composed ([`compose`](crate::wgsl::compose)) of its own file, which imports those of
+//! [`FILES`] that it needs, with [`constants`]. Constants go one way, from Rust into WGSL; layouts are compared field by field in `tests/shaders.rs`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -17,16 +14,33 @@ use crate::decode::{
 };
 use crate::evaluate::MOST_SWAY;
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
+use crate::wgsl::{Constants, WgslFile};
 use crate::{Caps, LodCriterion, LodView, Path, RefineOptions};
 
+/// A file of this crate.
+macro_rules! file {
+    ($name:literal) => {
+        WgslFile {
+            name: $name,
+            text: include_str!($name),
+        }
+    };
+}
+
 /// Twin of `evaluate.rs`.
-pub const EVALUATE_WGSL: &str = include_str!("evaluate.wgsl");
+pub const EVALUATE: WgslFile = file!("evaluate.wgsl");
 /// Twin of `level.rs`.
-pub const LEVEL_WGSL: &str = include_str!("level.wgsl");
+pub const LEVEL: WgslFile = file!("level.wgsl");
 /// The layout of resident data, twin of `decode.rs`; binds group 0, binding 0.
-pub const TEMPLATE_WGSL: &str = include_str!("template.wgsl");
-/// Twin of `plan.rs`.
-pub const PLAN_WGSL: &str = include_str!("plan.wgsl");
+pub const TEMPLATE: WgslFile = file!("template.wgsl");
+/// Twin of `plan.rs`. Beside it, `CornerSource`, `base_of` and `corner_of` must be defined: they say where
+/// patches have their corners from. [`CORNER_SOURCE`] is one such file.
+pub const PLAN: WgslFile = file!("plan.wgsl");
+/// Corners as they are resident, for whoever has no others.
+pub const CORNER_SOURCE: WgslFile = file!("corner_source.wgsl");
+
+/// All files, for imports.
+pub const FILES: [WgslFile; 5] = [EVALUATE, LEVEL, TEMPLATE, PLAN, CORNER_SOURCE];
 
 const EDGE_RING: u32 = 0;
 const EDGE_ALONG: u32 = 1;
@@ -40,27 +54,10 @@ const LEVELS_DISTANCE: u32 = 3;
 const LEVELS_PIXEL_SIZE: u32 = 4;
 const LEVELS_PIXEL_ERROR: u32 = 5;
 
-/// Corners as they are resident, for whoever has no others: see [`compose`].
-pub const CORNER_SOURCE_WGSL: &str = include_str!("corner_source.wgsl");
-
-/// A shader's whole text: constants, the twins, and what is its own, in which `CornerSource`, `base_of` and
-/// `corner_of` say where patches have their corners from; [`CORNER_SOURCE_WGSL`] is one such text.
-pub fn compose(own: &[&str]) -> String {
-    let mut text = prelude();
-    for part in [EVALUATE_WGSL, LEVEL_WGSL, TEMPLATE_WGSL, PLAN_WGSL] {
-        text.push_str(part);
-    }
-    own.iter().for_each(|part| text.push_str(part));
-    text
-}
-
-/// The constants, as WGSL.
-pub fn prelude() -> String {
-    let mut text = String::new();
-    let mut whole = |name: &str, value: u32| {
-        // Writing to a String does not fail.
-        let _ = writeln!(text, "const {name}: u32 = {value}u;");
-    };
+/// What the files need of Rust.
+pub fn constants() -> Constants {
+    let mut constants = Constants::default();
+    let mut whole = |name: &str, value: u32| constants.u32(name, value);
     whole("HIGHEST_LEVEL", HIGHEST_LEVEL);
     whole("ROLE_JOINT", Role::Joint as u32);
     whole("ROLE_SOMA", Role::Soma as u32);
@@ -93,9 +90,7 @@ pub fn prelude() -> String {
     whole("LEVELS_DISTANCE", LEVELS_DISTANCE);
     whole("LEVELS_PIXEL_SIZE", LEVELS_PIXEL_SIZE);
     whole("LEVELS_PIXEL_ERROR", LEVELS_PIXEL_ERROR);
-    let mut real = |name: &str, value: f32| {
-        let _ = writeln!(text, "const {name}: f32 = {value:?};");
-    };
+    let mut real = |name: &str, value: f32| constants.f32(name, value);
     real("MOST_SWAY", MOST_SWAY);
     real("SHARE", SHARE);
     real("SLACK", SLACK);
@@ -105,7 +100,7 @@ pub fn prelude() -> String {
     real("SOMA_REACH", SOMA_REACH);
     real("SQRT_2", std::f32::consts::SQRT_2);
     real("HALF_PI", std::f32::consts::FRAC_PI_2);
-    text
+    constants
 }
 
 /// A [`LodView`] as shaders have it.

@@ -3,6 +3,8 @@
 // Called by the shader that decides levels and by the one of the parity test.
 // Rust twin: level.rs. Constants come from the prelude (gpu.rs).
 
+#import evaluate.wgsl
+
 struct LodView {
     eye: vec3<f32>,
     slope: f32,

@@ -33,6 +33,9 @@ mod part;
 mod plan;
 mod refinement;
 mod runs;
+#[cfg(feature = "testing")]
+pub mod testing;
+pub mod wgsl;
 
 pub use bounding_sphere::{patch_sphere, sphere_around};
 pub use coarse_surface::CoarseSurface;

@@ -4,6 +4,9 @@
 // the whole surface, this evaluates one vertex of one patch's grid, which is the same point. Its corners
 // come from a CornerSource: the resident data (corner_source.wgsl), or what a renderer made of them.
 
+#import level.wgsl
+#import template.wgsl
+
 // A side of a patch as an edge in its own direction.
 struct Side {
     start: u32,

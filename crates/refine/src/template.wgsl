@@ -3,6 +3,8 @@
 // Called by everything that evaluates patches. This is the only file that knows the layout: another
 // layout is another file with the same functions. Rust twin: decode.rs; pack.rs writes it.
 
+#import evaluate.wgsl
+
 // Where the arrays of a part begin in the packed buffer, in u32s.
 struct Base {
     // Four u32s each; PATCHES_OF_POINT lateral patches from each to the next.

@@ -1,10 +1,12 @@
 //! The shaders' text is valid in every language, and its structs are ours.
-mod languages;
-
+use neurotess_refine::assert_layout;
 use neurotess_refine::gpu::{self, GpuLodCriterion, GpuLodView};
+use neurotess_refine::testing;
+use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile, compose};
 
 /// Uses every twin, so that no function escapes translation.
-const ENTRY: &str = "
+const ENTRY: &str = "#import plan.wgsl
+#import corner_source.wgsl
 struct Asked { view: LodView, levels: LodCriterion, base: Base }
 @group(0) @binding(1) var<storage, read> asked: Asked;
 @group(0) @binding(2) var<storage, read_write> out: array<SurfacePoint>;
@@ -17,21 +19,31 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ";
 
+fn twins() -> Shader {
+    let entry = WgslFile {
+        name: "entry.wgsl",
+        text: ENTRY,
+    };
+    let mut parts = ShaderParts::new(&[entry]);
+    parts.constants = gpu::constants();
+    compose("twins", &parts, &[&gpu::FILES])
+}
+
 #[test]
 fn twins_are_valid_in_every_language() {
-    languages::check("twins", &gpu::compose(&[gpu::CORNER_SOURCE_WGSL, ENTRY]));
+    testing::check(&twins());
 }
 
 #[test]
 fn structs_have_one_layout() {
-    let module = languages::check("twins", &gpu::compose(&[gpu::CORNER_SOURCE_WGSL, ENTRY]));
+    let (module, _) = testing::check(&twins());
     assert_layout!(
         &module,
         "LodCriterion",
         GpuLodCriterion,
         [kind, level, amount, path, caps]
     );
-    let (fields, size) = languages::fields(&module, "LodView");
+    let (fields, size) = testing::fields(&module, "LodView");
     let names: Vec<&str> = fields.iter().map(|(name, ..)| name.as_str()).collect();
     assert_eq!(names, ["eye", "slope", "forward", "flat", "near"]);
     assert_eq!(size, size_of::<GpuLodView>());

@@ -20,8 +20,6 @@ mod sources;
 mod view;
 
 #[cfg(test)]
-mod picture_shader_tests;
-#[cfg(test)]
 mod shader_tests;
 
 pub use gpu::device::{
@@ -62,7 +60,7 @@ pub use sources::budgeted::{
 };
 pub use sources::pick::{PickHit, PickId, PickIds, PickTarget};
 pub use sources::prerefined::{Place, Prerefined, PrerefinedSurface, Resident};
-pub use sources::{SURFACE_VERTEX_WGSL, VertexSource};
+pub use sources::{SourceKey, VertexSource};
 pub use view::bounds::{any_shows, bounds, merged};
 pub use view::camera::Camera;
 pub use view::camera::CameraError;

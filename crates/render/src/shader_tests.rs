@@ -1,21 +1,32 @@
 //! Our shaders are valid in every language, and their structs are ours.
 
-#[path = "../../refine/tests/languages/mod.rs"]
-pub(crate) mod languages;
+mod bindings;
 
-use crate::assert_layout;
+use neurotess_refine::{assert_layout, testing};
+
+use crate::gpu::shader;
+use crate::output::ids::ids_shader;
 use crate::scene::templates::Base;
+use crate::shading::finish::{Finish, Last, finish_shader};
+use crate::shading::present::{Present, mask_shader, present_shader};
+use crate::shading::shade::{PipelineKey, Shade, shade_shader};
 use crate::sources::adaptive::batch::DrawIndexed;
-use crate::sources::adaptive::expand::{ExpandedVertex, GridPoint, expand_wgsl};
+use crate::sources::adaptive::expand::{ExpandedVertex, GridPoint, expand_shader};
 use crate::sources::adaptive::grids::Bucket;
 use crate::sources::adaptive::passes::modules;
+use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed};
 use crate::sources::adaptive::work::CoarsePoint;
+use crate::sources::budgeted;
+use crate::sources::budgeted::layout::{
+    Chunk, Eye, GpuInstance, MOST_SWAY, Shape, Sums, VisibleChunk,
+};
+use crate::sources::budgeted::passes::{Arguments, VisibleCluster, select_shader};
+use crate::sources::prerefined::{self, Placement, StoredVertex};
 
 #[test]
-fn shaders_are_valid_in_every_language_and_have_our_layouts() {
-    let [_, decide, _, coarse, scan, _, list] =
-        modules().map(|(name, text)| languages::check(name, &text));
+fn adaptive_shaders_are_valid_in_every_language_and_have_our_structs() {
+    let [_, decide, _, coarse, scan, _, list] = modules().map(|shader| testing::check(&shader).0);
     assert_layout!(
         &coarse,
         "CoarsePoint",
@@ -80,7 +91,7 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         BatchUniforms,
         [first, placed, slots, clusters, sections, explicit_vertices]
     );
-    let expand = languages::check("expand", &expand_wgsl());
+    let (expand, _) = testing::check(&expand_shader());
     for module in [&scan, &list, &expand] {
         assert_layout!(
             module,
@@ -108,4 +119,184 @@ fn shaders_are_valid_in_every_language_and_have_our_layouts() {
         ExpandedVertex,
         [position, normal, axis, radius, color_key, instance, grid]
     );
+}
+
+#[test]
+fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
+    for samples in [1, 4] {
+        for barycentric in [false, true] {
+            let key = PipelineKey {
+                samples,
+                valued: samples > 1,
+                ..PipelineKey::default()
+            };
+            let source = prerefined::vertex_shader(barycentric);
+            let (module, _) = testing::check(&shade_shader(&source, key));
+            assert_layout!(
+                &module,
+                "Shade",
+                Shade,
+                [
+                    clip_from_relative,
+                    right,
+                    near,
+                    up,
+                    slope,
+                    backward,
+                    half_width,
+                    key,
+                    wire,
+                    size,
+                    tile_origin,
+                    viewport_origin,
+                    viewport_size,
+                    lit,
+                    scale_entries,
+                    colors,
+                    valued,
+                    shift,
+                    ghosted,
+                    clip,
+                    highlighted,
+                    jitter,
+                    batch,
+                    pad,
+                    edge
+                ]
+            );
+            assert_layout!(
+                &module,
+                "StoredVertex",
+                StoredVertex,
+                [x, y, z, radius, normal, color_key]
+            );
+            assert_layout!(
+                &module,
+                "Placement",
+                Placement,
+                [relative_from_mesh, instance]
+            );
+        }
+        testing::check(&finish_shader(samples, Last::Accumulate));
+        let (module, _) = testing::check(&finish_shader(samples, Last::Gather));
+        assert_layout!(
+            &module,
+            "Finish",
+            Finish,
+            [
+                tile_size,
+                tile_origin,
+                half_size,
+                slope,
+                scale,
+                radius,
+                most,
+                margin,
+                clear,
+                kept,
+                spare,
+                empty,
+                background
+            ]
+        );
+    }
+}
+
+#[test]
+fn window_shaders_are_valid_in_every_language_and_have_our_structs() {
+    let id = shader::file("surface_id.wgsl");
+    for shader in 0..Refiner::SHADERS {
+        testing::check(&ids_shader(&Refiner::vertex_shader(shader), id));
+    }
+    let id = shader::file("visible_chunks_id.wgsl");
+    testing::check(&ids_shader(&budgeted::passes::vertex_shader(), id));
+    for samples in [1, 4] {
+        testing::check(&mask_shader(samples));
+    }
+    let (module, _) = testing::check(&present_shader());
+    assert_layout!(
+        &module,
+        "Present",
+        Present,
+        [size, width, spare, selected, hovered]
+    );
+}
+
+#[test]
+fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
+    let (select, _) = testing::check(&select_shader());
+    assert_layout!(
+        &select,
+        "Eye",
+        Eye,
+        [
+            planes, cell, slope, offset, near, forward, error, budget, instances, pad
+        ]
+    );
+    assert_layout!(
+        &select,
+        "Chunk",
+        Chunk,
+        [
+            center, reach, low, step, counts, errors, first, color_keys, flags, radius, length,
+            carried, start, end
+        ]
+    );
+    assert_layout!(
+        &select,
+        "Shape",
+        Shape,
+        [center, reach, first_chunk, chunks, pad]
+    );
+    assert_layout!(
+        &select,
+        "GpuInstance",
+        GpuInstance,
+        [rotation, offset, scale, cell, shape, flags, state, pad]
+    );
+    assert_layout!(
+        &select,
+        "Sums",
+        Sums,
+        [
+            clusters,
+            visible,
+            threshold,
+            quads,
+            visible_chunks,
+            wanted,
+            instances,
+            pad
+        ]
+    );
+    assert_layout!(
+        &select,
+        "VisibleChunk",
+        VisibleChunk,
+        [instance, chunk, lod, first]
+    );
+    assert_layout!(
+        &select,
+        "VisibleCluster",
+        VisibleCluster,
+        [cluster, quads, visible_chunks]
+    );
+    assert_layout!(&select, "Arguments", Arguments, [clusters, visible, draws]);
+    for samples in [1, 4] {
+        testing::check(&shade_shader(
+            &budgeted::passes::vertex_shader(),
+            PipelineKey {
+                samples,
+                valued: samples > 1,
+                ..PipelineKey::default()
+            },
+        ));
+    }
+}
+
+#[test]
+fn paths_sway_as_refined_ones_do() {
+    let mut wanted = neurotess_refine::wgsl::Constants::default();
+    wanted.f32("MOST_SWAY", MOST_SWAY);
+    assert!(neurotess_refine::gpu::constants().contains(&wanted));
 }

@@ -93,7 +93,7 @@ fn count(gpu: &Gpu, source: &dyn Fn(usize) -> String, cells: u64, trials: usize)
 #[test]
 fn no_back_face_shows_through_a_closed_surface() {
     let Some(gpu) = gpu() else { return };
-    let (front, back) = count(&gpu, &Refiner::vertex_wgsl, 3, 8);
+    let (front, back) = count(&gpu, &Refiner::vertex_text, 3, 8);
     println!("48 pictures, {front} pixels of front faces, {back} of back faces");
     assert!(front > 500_000, "{front}");
     assert_eq!(back, 0);
@@ -112,7 +112,7 @@ fn an_edge_whose_faces_disagree_is_found() {
         ("level = levels.w;", "level = max(levels.w / 2u, 1u);", 2),
     ] {
         let source = |drawn: usize| {
-            let text = Refiner::vertex_wgsl(drawn);
+            let text = Refiner::vertex_text(drawn);
             assert!(text.contains(honest), "{honest}");
             if drawn == shader {
                 text.replace(honest, torn)

@@ -45,6 +45,14 @@ impl Fault {
         kept.get_or_insert(error);
     }
 
+    /// Puts the driver's words into those of `explain`.
+    fn explain(&self, explain: impl Fn(&str) -> String) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(DeviceError::Driver(message)) = &mut *kept {
+            *message = explain(message);
+        }
+    }
+
     fn take(&self) -> Option<DeviceError> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
@@ -109,6 +117,11 @@ impl Gpu {
     /// The first complaint.
     pub fn check(&self) -> Result<(), DeviceError> {
         self.fault.take().map_or(Ok(()), Err)
+    }
+
+    /// Puts what the driver said last, if nobody has asked for it yet, into other words.
+    pub(crate) fn explain_fault(&self, explain: impl Fn(&str) -> String) {
+        self.fault.explain(explain);
     }
 
     /// Waits until all submitted work is done.

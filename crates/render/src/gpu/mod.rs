@@ -4,4 +4,5 @@ pub(crate) mod buffers;
 pub(crate) mod device;
 pub(crate) mod error;
 pub(crate) mod growable;
+pub(crate) mod shader;
 pub(crate) mod timing;

@@ -4,12 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::gpu::buffers::texture;
+use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile};
+
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::gpu::shader;
 use crate::output::tiles::TileRenderer;
-use crate::shading::shade::{DEPTH_FORMAT, GUARD, PipelineKey, Shade, shader_text};
+use crate::shading::shade::{self, DEPTH_FORMAT, GUARD, PipelineKey, Shade};
 use crate::sources::VertexSource;
-use crate::sources::pick::{BATCH_SHIFT, FINE, PickId, PickIds};
+use crate::sources::pick::{BATCH_SHIFT, FINE, POINT_BITS, PickId, PickIds};
 use crate::view::frame::Frame;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
@@ -18,7 +21,7 @@ const BYTES: usize = size_of::<PickId>();
 
 /// Pipelines and targets of the pass.
 pub(crate) struct Identifier {
-    kind: u64,
+    key: PipelineKey,
     pipelines: Vec<wgpu::RenderPipeline>,
     canvas: Option<Canvas>,
 }
@@ -38,19 +41,18 @@ const UNDER_WAY: u8 = 1;
 const THERE: u8 = 2;
 const FAILED: u8 = 3;
 
-/// The text for one of a source's shaders.
-pub(crate) fn ids_text(source: &str, id: &str) -> String {
-    let shading = shader_text(
-        source,
-        PipelineKey {
-            samples: 1,
-            ..PipelineKey::default()
-        },
-    );
-    let ids = include_str!("ids.wgsl");
-    let constants =
-        format!("const BATCH_SHIFT: u32 = {BATCH_SHIFT}u;\nconst FINE: u32 = {FINE}u;\n");
-    format!("{constants}{shading}{id}{ids}")
+/// The shader for what a source defines, and how it says what it draws.
+pub(crate) fn ids_shader(source: &ShaderParts, id: WgslFile) -> Shader {
+    let mut parts = source.clone();
+    parts.files.extend([id, shader::file("ids.wgsl")]);
+    parts.constants.extend(&shade::constants(PipelineKey {
+        samples: 1,
+        ..PipelineKey::default()
+    }));
+    parts.constants.u32("BATCH_SHIFT", BATCH_SHIFT);
+    parts.constants.u32("FINE", FINE);
+    parts.constants.u32("POINT_BITS", POINT_BITS);
+    shader::shader("ids", &parts)
 }
 
 impl Identifier {
@@ -60,7 +62,7 @@ impl Identifier {
         renderer: &TileRenderer,
         source: &dyn VertexSource,
     ) -> Option<Self> {
-        let id = source.id_wgsl()?;
+        let id = source.id_shader()?;
         let device = &gpu.device;
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("ids"),
@@ -68,11 +70,7 @@ impl Identifier {
             immediate_size: 0,
         });
         let pipeline = |shader: usize| {
-            let text = ids_text(&source.wgsl(shader), id);
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("ids"),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            });
+            let module = gpu.shader_module(&ids_shader(&source.shader(shader), id));
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("ids"),
                 layout: Some(&layout),
@@ -102,14 +100,14 @@ impl Identifier {
             })
         };
         Some(Self {
-            kind: renderer.kind(),
+            key: renderer.key(),
             pipelines: (0..source.shaders()).map(pipeline).collect(),
             canvas: None,
         })
     }
 
     pub(crate) fn fits(&self, renderer: &TileRenderer) -> bool {
-        self.kind == renderer.kind()
+        self.key == renderer.key()
     }
 
     /// Draws a whole frame and sends it on its way to the host.

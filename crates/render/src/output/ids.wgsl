@@ -1,6 +1,8 @@
 // What is drawn at a pixel: 1 + a batch with what `surface_id` says first, and what it says second; 0 where
 // nothing is. Comes after shade.wgsl and the source's `surface_id`. Called by ids.rs.
 
+#import shade.wgsl
+
 struct PickHit {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) coverage: f32,

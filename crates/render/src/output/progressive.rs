@@ -20,7 +20,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::output::ids::Identifier;
 use crate::output::still::{Occlusion, samples_in_sub_pixel};
-use crate::output::tiles::{MeshPart, TileRenderer, kind};
+use crate::output::tiles::{MeshPart, TileRenderer};
 use crate::scene::color::{ColorTable, InstanceValues, Rgb, linear};
 use crate::shading::finish::{Finish, Finisher, Last};
 use crate::shading::present::{Outlines, Presenter, Screen};
@@ -339,16 +339,16 @@ impl ProgressiveRenderer {
         shot: &ViewParams,
     ) -> Result<usize, DeviceError> {
         let cut = shot.look.clip.is_some();
-        let way = PipelineKey {
+        let key = PipelineKey {
+            source: source.key(),
             samples,
             cut,
             valued: self.table.values.instances() > 0,
         };
-        let wanted = kind(source, way);
-        let place = match self.renderers.iter().position(|p| p.fits(wanted)) {
+        let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {
-                self.renderers.push(TileRenderer::new(gpu, source, way)?);
+                self.renderers.push(TileRenderer::new(gpu, source, key)?);
                 self.renderers.len() - 1
             }
         };

@@ -12,7 +12,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
-use crate::output::tiles::{self, Finishing, TileRenderer};
+use crate::output::tiles::{Finishing, TileRenderer};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb};
 use crate::shading::finish::BLUR;
@@ -225,13 +225,12 @@ impl StillRenderer {
         &mut self,
         gpu: &Gpu,
         source: &dyn VertexSource,
-        way: PipelineKey,
+        key: PipelineKey,
     ) -> Result<&mut TileRenderer, DeviceError> {
-        let kind = tiles::kind(source, way);
-        let place = match self.renderers.iter().position(|p| p.fits(kind)) {
+        let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {
-                self.renderers.push(TileRenderer::new(gpu, source, way)?);
+                self.renderers.push(TileRenderer::new(gpu, source, key)?);
                 self.renderers.len() - 1
             }
         };
@@ -264,13 +263,14 @@ impl StillRenderer {
             ..
         } = parting;
         let cut = options.look.clip.is_some();
-        let way = PipelineKey {
+        let key = PipelineKey {
+            source: source.key(),
             samples: parting.samples,
             cut,
             valued: table.values.instances() > 0,
         };
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, way)?;
+        let renderer = self.renderer(gpu, source, key)?;
         renderer.set_table(gpu, table);
         renderer.timer.reset();
         let finishing = Finishing {

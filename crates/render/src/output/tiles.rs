@@ -7,7 +7,6 @@
 
 use std::ops::Range;
 
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -76,7 +75,7 @@ impl MeshPart {
 
 /// Paints tiles of sources of one kind.
 pub(crate) struct TileRenderer {
-    kind: u64,
+    key: PipelineKey,
     pub(crate) shader: Shader,
     finisher: Finisher,
     pub(crate) shade: wgpu::Buffer,
@@ -91,26 +90,18 @@ pub(crate) struct TileRenderer {
     pub(crate) timer: Timer,
 }
 
-/// What pipelines depend on: the source's shaders, and the way they are drawn.
-pub(crate) fn kind(source: &dyn VertexSource, way: PipelineKey) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    way.hash(&mut hasher);
-    (0..source.shaders()).for_each(|shader| source.wgsl(shader).hash(&mut hasher));
-    hasher.finish()
-}
-
 impl TileRenderer {
     pub(crate) fn new(
         gpu: &Gpu,
         source: &dyn VertexSource,
-        way: PipelineKey,
+        key: PipelineKey,
     ) -> Result<Self, DeviceError> {
-        let samples = way.samples;
+        let samples = key.samples;
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let renderer = Self {
-            kind: kind(source, way),
-            shader: Shader::new(gpu, source, way),
+            key,
+            shader: Shader::new(gpu, source, key),
             finisher: Finisher::new(gpu, samples, Last::Gather),
             shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
             finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
@@ -126,13 +117,13 @@ impl TileRenderer {
         Ok(renderer)
     }
 
-    pub(crate) fn kind(&self) -> u64 {
-        self.kind
+    pub(crate) fn key(&self) -> PipelineKey {
+        self.key
     }
 
     /// Whether it can draw what the source makes, in that way.
-    pub(crate) fn fits(&self, kind: u64) -> bool {
-        self.kind == kind
+    pub(crate) fn fits(&self, key: PipelineKey) -> bool {
+        self.key == key
     }
 
     /// The colors from now on.

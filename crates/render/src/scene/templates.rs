@@ -6,7 +6,7 @@ use neurotess_mesh::{CoarseMesh, Role};
 use neurotess_refine::{MeshPart, PartLayout, pack, sphere_around};
 use wgpu::util::DeviceExt;
 
-use crate::gpu::buffers::storage;
+use crate::gpu::buffers::{group_layout, storage};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::TemplateId;
@@ -280,11 +280,11 @@ fn points(mesh: &CoarseMesh) -> usize {
     tracing.filter(|point| point.role != Role::Soma).count()
 }
 
-/// Group 0 of the pass that decides: the packed buffer.
+/// Group 0 of the passes that select: the packed buffer.
+pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    vec![storage(0, wgpu::ShaderStages::COMPUTE, true)]
+}
+
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let compute = wgpu::ShaderStages::COMPUTE;
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("page of templates"),
-        entries: &[storage(0, compute, true)],
-    })
+    group_layout(device, "page of templates", &entries())
 }

@@ -1,6 +1,9 @@
 // The last pass of a picture that gets better: adds this step's samples to those before, and makes the
 // bytes of their mean. Comes after finish.wgsl and occlusion.wgsl. Called by live.rs.
 
+#import finish.wgsl
+#import occlusion.wgsl
+
 // Linear, premultiplied.
 @group(0) @binding(7) var<storage, read_write> sums: array<vec4<f32>>;
 

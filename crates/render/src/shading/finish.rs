@@ -2,8 +2,11 @@
 //! in `finish.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
+use neurotess_refine::wgsl::{Shader, ShaderParts};
 
+use crate::gpu::buffers::{UNFILTERED, group_layout, storage, texture_binding, uniform};
 use crate::gpu::device::Gpu;
+use crate::gpu::shader;
 use crate::view::frame::Frame;
 
 /// Twin of `Finish` in `finish.wgsl`.
@@ -65,11 +68,8 @@ pub(crate) struct Finisher {
 impl Finisher {
     pub(crate) fn new(gpu: &Gpu, samples: u32, last: Last) -> Self {
         let device = &gpu.device;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("finish"),
-            source: wgpu::ShaderSource::Wgsl(finish_text(samples, last).into()),
-        });
-        let layout = layout(device, samples > 1, last);
+        let module = gpu.shader_module(&finish_shader(samples, last));
+        let layout = group_layout(device, "finish", &entries(samples > 1, last));
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("finish"),
             bind_group_layouts: &[Some(&layout)],
@@ -97,59 +97,37 @@ impl Finisher {
     }
 }
 
-/// The passes' text, for this many samples per sub-pixel.
-pub(crate) fn finish_text(samples: u32, last: Last) -> String {
+/// The passes' shader, for this many samples per sub-pixel.
+pub(crate) fn finish_shader(samples: u32, last: Last) -> Shader {
+    let mut parts =
+        ShaderParts::new(&[shader::file("finish.wgsl"), shader::file("occlusion.wgsl")]);
+    if last == Last::Accumulate {
+        parts.files.push(shader::file("accumulate.wgsl"));
+    }
     // Of several samples the first stands for the sub-pixel; of one, there is only that.
-    let texture = if samples > 1 {
-        "texture_multisampled_2d<f32>"
-    } else {
-        "texture_2d<f32>"
-    };
-    let shared = include_str!("finish.wgsl").replace("SAMPLED_TEXTURE", texture);
-    let occlusion = include_str!("occlusion.wgsl");
-    let last = match last {
-        Last::Gather => "",
-        Last::Accumulate => include_str!("accumulate.wgsl"),
-    };
-    format!(
-        "const TAPS: u32 = {TAPS}u;\nconst STRENGTH: f32 = {STRENGTH:?};\n\
-         const BLUR: i32 = {BLUR};\n{shared}{occlusion}{last}"
-    )
+    if samples > 1 {
+        parts.constants.flag("MULTISAMPLED");
+    }
+    parts.constants.u32("TAPS", TAPS);
+    parts.constants.f32("STRENGTH", STRENGTH);
+    parts.constants.i32("BLUR", BLUR as i32);
+    shader::shader("finish", &parts)
 }
 
-fn layout(device: &wgpu::Device, multisampled: bool, last: Last) -> wgpu::BindGroupLayout {
-    let binding = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty,
-        count: None,
-    };
-    let buffer = |ty| wgpu::BindingType::Buffer {
-        ty,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let texture = |sample_type, multisampled| wgpu::BindingType::Texture {
-        sample_type,
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled,
-    };
-    let plain = wgpu::TextureSampleType::Float { filterable: false };
-    let storage = wgpu::BufferBindingType::Storage { read_only: false };
+/// The passes' only group. `multisampled`: of normals and depths.
+pub(crate) fn entries(multisampled: bool, last: Last) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let compute = wgpu::ShaderStages::COMPUTE;
     let mut entries = vec![
-        binding(0, buffer(wgpu::BufferBindingType::Uniform)),
-        binding(1, texture(plain, false)),
-        binding(2, texture(plain, multisampled)),
-        binding(3, texture(plain, multisampled)),
-        binding(4, buffer(storage)),
-        binding(5, buffer(storage)),
-        binding(6, buffer(storage)),
+        uniform(0, compute, false),
+        texture_binding(1, compute, UNFILTERED, false),
+        texture_binding(2, compute, UNFILTERED, multisampled),
+        texture_binding(3, compute, UNFILTERED, multisampled),
+        storage(4, compute, false),
+        storage(5, compute, false),
+        storage(6, compute, false),
     ];
     if last == Last::Accumulate {
-        entries.push(binding(7, buffer(storage)));
+        entries.push(storage(7, compute, false));
     }
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("finish"),
-        entries: &entries,
-    })
+    entries
 }

@@ -28,8 +28,13 @@ struct Finish {
 
 @group(0) @binding(0) var<uniform> finish: Finish;
 @group(0) @binding(1) var colors: texture_2d<f32>;
-@group(0) @binding(2) var normals: SAMPLED_TEXTURE;
-@group(0) @binding(3) var depths: SAMPLED_TEXTURE;
+#ifdef MULTISAMPLED
+@group(0) @binding(2) var normals: texture_multisampled_2d<f32>;
+@group(0) @binding(3) var depths: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(2) var normals: texture_2d<f32>;
+@group(0) @binding(3) var depths: texture_2d<f32>;
+#endif
 @group(0) @binding(4) var<storage, read_write> raw: array<f32>;
 @group(0) @binding(5) var<storage, read_write> blurred: array<f32>;
 @group(0) @binding(6) var<storage, read_write> pixels: array<u32>;

@@ -1,6 +1,10 @@
 // From the normals that a draft has drawn to a mask: the bits of all samples of a pixel. Called by present.rs.
 
-@group(0) @binding(0) var normals: NORMALS;
+#ifdef MULTISAMPLED
+@group(0) @binding(0) var normals: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(0) var normals: texture_2d<f32>;
+#endif
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {

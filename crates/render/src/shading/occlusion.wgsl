@@ -5,6 +5,8 @@
 // counts by how far it rises above the tangent plane and fades out with its distance. The blur is
 // theirs too, along x here and along y in finish.wgsl, and stops where depth jumps.
 
+#import finish.wgsl
+
 @compute @workgroup_size(8, 8)
 fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let p = vec2<i32>(id.xy);

@@ -1,9 +1,11 @@
 //! The pass that puts a picture into a texture, with outlines. Twin of the uniform in `present.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
+use neurotess_refine::wgsl::{Shader, ShaderParts};
 
-use crate::gpu::buffers::texture;
+use crate::gpu::buffers::{UNFILTERED, group_layout, storage, texture, texture_binding, uniform};
 use crate::gpu::device::Gpu;
+use crate::gpu::shader;
 use crate::scene::color::Rgb;
 use crate::shading::targets::Targets;
 
@@ -63,19 +65,24 @@ impl Present {
     }
 }
 
-/// The text that makes a mask of the normals that a draft has drawn, of so many samples.
-pub(crate) fn mask_text(samples: u32) -> String {
-    let texture = match samples {
-        1 => "texture_2d<f32>",
-        _ => "texture_multisampled_2d<f32>",
-    };
-    let text = include_str!("mask.wgsl");
-    text.replace("NORMALS", texture)
-        .replace("SAMPLES", &samples.to_string())
+/// The shader that makes a mask of the normals that a draft has drawn, of so many samples.
+pub(crate) fn mask_shader(samples: u32) -> Shader {
+    let mut parts = ShaderParts::new(&[shader::file("mask.wgsl")]);
+    parts.constants.i32("SAMPLES", samples as i32);
+    if samples > 1 {
+        parts.constants.flag("MULTISAMPLED");
+    }
+    shader::shader("mask", &parts)
+}
+
+/// The shader that shows a picture.
+pub(crate) fn present_shader() -> Shader {
+    let parts = ShaderParts::new(&[shader::file("present.wgsl")]);
+    shader::shader("present", &parts)
 }
 
 /// A pass over all pixels.
-struct PipelineKey {
+struct FullScreenPass {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
 }
@@ -100,8 +107,8 @@ impl Screen {
 
 /// The pass, with the mask that it looks at.
 pub(crate) struct Presenter {
-    show: PipelineKey,
-    gather: PipelineKey,
+    show: FullScreenPass,
+    gather: FullScreenPass,
     uniform: wgpu::Buffer,
     mask: wgpu::Texture,
     mask_size: Option<[u32; 2]>,
@@ -117,19 +124,13 @@ impl Presenter {
             mapped_at_creation: false,
         });
         Self {
-            show: PipelineKey::new(
+            show: FullScreenPass::new(gpu, &present_shader(), "show", FORMAT, &show_entries()),
+            gather: FullScreenPass::new(
                 gpu,
-                include_str!("present.wgsl"),
-                "show",
-                FORMAT,
-                &show_layout(),
-            ),
-            gather: PipelineKey::new(
-                gpu,
-                &mask_text(samples),
+                &mask_shader(samples),
                 "gather",
                 MASK_FORMAT,
-                &gather_layout(samples),
+                &gather_entries(samples),
             ),
             uniform,
             mask: mask_texture(gpu, [1, 1]),
@@ -187,30 +188,17 @@ impl Presenter {
     }
 }
 
-impl PipelineKey {
+impl FullScreenPass {
     fn new(
         gpu: &Gpu,
-        text: &str,
+        shader: &Shader,
         fragment: &str,
         format: wgpu::TextureFormat,
-        bindings: &[wgpu::BindingType],
+        entries: &[wgpu::BindGroupLayoutEntry],
     ) -> Self {
         let device = &gpu.device;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(fragment),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
-        let entry = |(binding, ty): (u32, &wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: *ty,
-            count: None,
-        };
-        let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(fragment),
-            entries: &entries,
-        });
+        let module = gpu.shader_module(shader);
+        let layout = group_layout(device, fragment, entries);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(fragment),
             bind_group_layouts: &[Some(&layout)],
@@ -290,28 +278,18 @@ fn mask_texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
     )
 }
 
-fn texture_binding(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type,
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled,
-    }
-}
-
-fn show_layout() -> [wgpu::BindingType; 3] {
-    let buffer = |ty| wgpu::BindingType::Buffer {
-        ty,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    [
-        buffer(wgpu::BufferBindingType::Uniform),
-        buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-        texture_binding(wgpu::TextureSampleType::Uint, false),
+/// Of the pass that shows.
+pub(crate) fn show_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let fragment = wgpu::ShaderStages::FRAGMENT;
+    vec![
+        uniform(0, fragment, false),
+        storage(1, fragment, true),
+        texture_binding(2, fragment, wgpu::TextureSampleType::Uint, false),
     ]
 }
 
-fn gather_layout(samples: u32) -> [wgpu::BindingType; 1] {
-    let float = wgpu::TextureSampleType::Float { filterable: false };
-    [texture_binding(float, samples > 1)]
+/// Of the pass that gathers the mask of a draft of so many samples.
+pub(crate) fn gather_entries(samples: u32) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let fragment = wgpu::ShaderStages::FRAGMENT;
+    vec![texture_binding(0, fragment, UNFILTERED, samples > 1)]
 }

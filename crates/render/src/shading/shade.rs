@@ -2,10 +2,13 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
+use neurotess_refine::wgsl::{Constants, Shader as Composed, ShaderParts};
 
+use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
+use crate::gpu::shader;
 use crate::scene::color::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
-use crate::sources::{SURFACE_VERTEX_WGSL, VertexSource};
+use crate::sources::{SourceKey, VertexSource};
 use crate::view::frame::Frame;
 
 /// Linear color, premultiplied.
@@ -203,10 +206,10 @@ pub(crate) struct Shader {
 }
 
 impl Shader {
-    pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, way: PipelineKey) -> Self {
-        let PipelineKey { samples, cut, .. } = way;
+    pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, key: PipelineKey) -> Self {
+        let PipelineKey { samples, cut, .. } = key;
         let device = &gpu.device;
-        let layout = layout(device);
+        let layout = group_layout(device, "shade", &entries());
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("shade"),
             bind_group_layouts: &[Some(source.layout()), Some(&layout)],
@@ -220,10 +223,7 @@ impl Shader {
             })
         };
         let pipeline = |shader: usize| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("shade"),
-                source: wgpu::ShaderSource::Wgsl(shader_text(&source.wgsl(shader), way).into()),
-            });
+            let module = gpu.shader_module(&shade_shader(&source.shader(shader), key));
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("shade"),
                 layout: Some(&pipeline_layout),
@@ -263,9 +263,11 @@ impl Shader {
     }
 }
 
-/// What pipelines depend on beside the source.
+/// What pipelines depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
+    /// The source's shaders.
+    pub(crate) source: SourceKey,
     /// Samples of a sub-pixel: 1 or 4.
     pub(crate) samples: u32,
     /// Whether the inside may show.
@@ -274,51 +276,41 @@ pub(crate) struct PipelineKey {
     pub(crate) valued: bool,
 }
 
-/// The whole text for a source.
-pub(crate) fn shader_text(source: &str, way: PipelineKey) -> String {
-    let PipelineKey {
-        samples, valued, ..
-    } = way;
-    // With one sample a mask is of no use: what covers less than half is left out instead.
-    let (member, statement) = if samples > 1 {
-        (
-            "@builtin(sample_mask) mask: u32,",
-            "out.mask = mask_of(left, in.position);",
-        )
-    } else {
-        ("", "if mask_of(left, in.position) == 0u { discard; }")
-    };
-    let shading = include_str!("shade.wgsl")
-        .replace("MASK_MEMBER", member)
-        .replace("MASK_STATEMENT", statement);
-    format!(
-        "const SAMPLES: u32 = {samples}u;\nconst VALUED: bool = {valued};\nconst CATEGORY_BIT: u32 = {CATEGORY_BIT}u;\n\
-         {SURFACE_VERTEX_WGSL}{source}{shading}"
-    )
+/// The shader for what a source defines.
+pub(crate) fn shade_shader(source: &ShaderParts, key: PipelineKey) -> Composed {
+    let mut parts = source.clone();
+    parts.files.push(shader::file("shade.wgsl"));
+    parts.constants.extend(&constants(key));
+    shader::shader("shade", &parts)
 }
 
-pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let binding = |binding, ty, visibility| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let table = wgpu::BufferBindingType::Storage { read_only: true };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shade"),
-        entries: &[
-            binding(
-                0,
-                wgpu::BufferBindingType::Uniform,
-                wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ),
-            binding(1, table, wgpu::ShaderStages::VERTEX),
-            binding(2, table, wgpu::ShaderStages::VERTEX),
-        ],
-    })
+/// What shade.wgsl needs of Rust.
+pub(crate) fn constants(key: PipelineKey) -> Constants {
+    let mut constants = Constants::default();
+    constants.u32("SAMPLES", key.samples);
+    constants.bool("VALUED", key.valued);
+    for (name, value) in [
+        ("CATEGORY_BIT", CATEGORY_BIT),
+        ("HIGHLIGHTED", HIGHLIGHTED),
+        ("GHOSTED", GHOSTED),
+        ("WITHOUT_NEURITES", WITHOUT_NEURITES),
+        ("WITHOUT_SOMA", WITHOUT_SOMA),
+        ("OUTLINED", OUTLINED),
+    ] {
+        constants.u32(name, value);
+    }
+    if key.samples > 1 {
+        constants.flag("MULTISAMPLED");
+    }
+    constants
+}
+
+/// Group 1: the uniform, the colors, the states of instances.
+pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let vertex = wgpu::ShaderStages::VERTEX;
+    vec![
+        uniform(0, wgpu::ShaderStages::VERTEX_FRAGMENT, false),
+        storage(1, vertex, true),
+        storage(2, vertex, true),
+    ]
 }

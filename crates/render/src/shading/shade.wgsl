@@ -2,6 +2,8 @@
 // Called by renderer.rs; comes after surface_vertex.wgsl and the source's text. Rust twin of the
 // uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
 
+#import surface_vertex.wgsl
+
 struct Shade {
     clip_from_relative: mat4x4<f32>,
     right: vec3<f32>,
@@ -45,12 +47,6 @@ struct Shade {
     // Linear color of edges, and the luminance that they set colors of the scale off from.
     edge: vec4<f32>,
 }
-
-const HIGHLIGHTED: u32 = 1u;
-const GHOSTED: u32 = 2u;
-const WITHOUT_NEURITES: u32 = 4u;
-const WITHOUT_SOMA: u32 = 8u;
-const OUTLINED: u32 = 16u;
 
 @group(1) @binding(0) var<uniform> shade: Shade;
 // Linear colors.
@@ -223,7 +219,9 @@ struct Sample {
     // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
     // draw to floating-point ones.
     @location(2) depth: vec4<f32>,
-    MASK_MEMBER
+#ifdef MULTISAMPLED
+    @builtin(sample_mask) mask: u32,
+#endif
 }
 
 // A key light from the upper left, a weak fill from the lower right, a sky brighter than the ground.
@@ -298,6 +296,11 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     out.color = vec4(color, 1.0);
     out.normal = vec4(n * 0.5 + 0.5, f32(in.outline) / 255.0);
     out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
-    MASK_STATEMENT
+#ifdef MULTISAMPLED
+    out.mask = mask_of(left, in.position);
+#else
+    // With one sample a mask is of no use: what covers less than half is left out instead.
+    if mask_of(left, in.position) == 0u { discard; }
+#endif
     return out;
 }

@@ -15,20 +15,27 @@
 //! fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex
 //! ```
 //!
-//! The struct stands in [`SURFACE_VERTEX_WGSL`], which comes first; then the source's text, then the
-//! shading. Bind group 0 is the source's, groups from 1 on are the shading's.
+//! The struct is in `surface_vertex.wgsl`, which both sides import. Bind group 0 is the source's, groups from 1 on are the shading's.
 
 pub(crate) mod adaptive;
 pub(crate) mod budgeted;
 pub(crate) mod pick;
 pub(crate) mod prerefined;
 
+use neurotess_refine::wgsl::{ShaderParts, WgslFile};
+
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::view::frame::Frame;
 
-/// The struct that sources return.
-pub const SURFACE_VERTEX_WGSL: &str = include_str!("surface_vertex.wgsl");
+/// Which shaders a source draws with: equal keys have equal shaders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SourceKey {
+    /// Name of the source, its own.
+    pub name: &'static str,
+    /// Which of its variants.
+    pub variant: u32,
+}
 
 /// Makes vertices on the GPU, and decides how many.
 pub trait VertexSource {
@@ -37,12 +44,16 @@ pub trait VertexSource {
         1
     }
 
-    /// Defines `surface_vertex` and what it needs, with bind group 0, for one of its shaders.
-    fn wgsl(&self, shader: usize) -> String;
+    /// Which shaders it draws with: pipelines are kept by this.
+    fn key(&self) -> SourceKey;
 
-    /// Defines `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`, the first less than 8 where
-    /// a frame has several rounds, to stand after [`VertexSource::wgsl`]; nothing where what is drawn cannot be told apart.
-    fn id_wgsl(&self) -> Option<&'static str> {
+    /// Defines `surface_vertex` and what it needs, with bind group 0, for one of its shaders.
+    fn shader(&self, shader: usize) -> ShaderParts;
+
+    /// Defines `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`, the first less than 8
+    /// where a frame has several rounds, beside what [`VertexSource::shader`] defines; none where what is
+    /// drawn cannot be picked.
+    fn id_shader(&self) -> Option<WgslFile> {
         None
     }
 

@@ -8,8 +8,10 @@ pub type PickId = [u32; 2];
 /// Width and height (pixels), and the ids of all pixels by row.
 pub type PickIds = ([u32; 2], Vec<PickId>);
 
-/// Bits of an id's first color key for how a patch is drawn; those above are its batch's.
+/// Bits of an id's first number for how a patch is drawn; those above are its batch's.
 pub(crate) const BATCH_SHIFT: u32 = 3;
+/// Bits of an id's second number for the point of a chunk of exploration; those above are the chunk's.
+pub(crate) const POINT_BITS: u32 = 7;
 /// How a patch is drawn: refined. Less than that is the number of a corner of a flat one.
 pub(crate) const FINE: u32 = 4;
 

@@ -1,8 +1,6 @@
 //! Draws a scene with the least shading there is: front faces in one color, back faces in another.
 
-use neurotess_render::{
-    AdaptiveSettings, Camera, CullView, Gpu, Refiner, SURFACE_VERTEX_WGSL, Scene,
-};
+use neurotess_render::{AdaptiveSettings, Camera, CullView, Gpu, Refiner, Scene};
 
 pub(crate) const FRONT: [u8; 4] = [0, 255, 0, 255];
 pub(crate) const BACK: [u8; 4] = [255, 0, 0, 255];
@@ -76,7 +74,7 @@ impl Drawer {
         let [width, height] = size;
         let size_text = format!("const SIZE = vec2<f32>({width}.0, {height}.0);");
         let module = |shader| {
-            let text = [SURFACE_VERTEX_WGSL, &source(shader), &size_text, SHADE].concat();
+            let text = [&source(shader), &size_text, SHADE].concat();
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: None,
                 source: wgpu::ShaderSource::Wgsl(text.into()),

@@ -2,6 +2,9 @@
 //
 // Called by refiner.rs for a batch, first of all. A cluster that does not show costs nothing after this.
 
+#import clusters.wgsl
+#import shown.wgsl
+
 // Workgroups of the passes that take queues, three u32s each: of clusters, and of single patches.
 @group(2) @binding(0) var<storage, read_write> cluster_dispatches: array<atomic<u32>>;
 @group(2) @binding(1) var<storage, read_write> single_dispatch: array<atomic<u32>>;

@@ -2,6 +2,9 @@
 //
 // Called by all that passes.rs lists. Sizes: work.rs.
 
+#import placed.wgsl
+#import corner_source.wgsl
+
 @group(1) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(1) var<uniform> batch: Batch;
 @group(1) @binding(2) var<storage, read> placed: array<Placed>;

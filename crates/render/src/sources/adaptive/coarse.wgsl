@@ -3,6 +3,9 @@
 // Called by refiner.rs for a batch, after note.wgsl: a lane for each point of queued clusters, and
 // one for each explicit vertex.
 
+#import clusters.wgsl
+#import coarse_point.wgsl
+
 @group(2) @binding(0) var<storage, read_write> coarse: array<CoarsePoint>;
 
 @compute @workgroup_size(CLUSTER)

@@ -4,6 +4,8 @@
 // Few color keys, since vertex shaders load little else. Written by coarse.wgsl, read by vertices.wgsl. The twin
 // of the struct stands in work.rs.
 
+#import placed.wgsl
+
 // Rings by a quarter of their first corner's place, then two entries for each explicit vertex. Places are
 // relative to the eye (micrometers), directions are the world's.
 struct CoarsePoint {

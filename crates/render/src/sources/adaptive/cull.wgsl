@@ -4,6 +4,9 @@
 // is known, `decide_tubes` for points with rings of their own, a lane for the four patches to the next;
 // `decide_singles` for all other patches. CPU twin: decide.rs.
 
+#import clusters.wgsl
+#import shown.wgsl
+
 @group(2) @binding(0) var<storage, read_write> decisions: array<u32>;
 // By point: level of its ring of its own; 0 where no tube that is asked has asked for it.
 @group(2) @binding(1) var<storage, read_write> ring_levels: array<u32>;

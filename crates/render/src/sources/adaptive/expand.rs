@@ -2,18 +2,17 @@
 //! is what is exported.
 
 use bytemuck::{Pod, Zeroable};
+use neurotess_refine::wgsl::{Shader, ShaderParts};
 use wgpu::util::DeviceExt;
 use wgpu::{BufferUsages, ShaderStages};
 
 use crate::gpu::buffers::read_back;
-use crate::gpu::buffers::storage;
+use crate::gpu::buffers::{group_layout, storage};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::sources::SURFACE_VERTEX_WGSL;
+use crate::gpu::shader;
 use crate::sources::adaptive::batch::Batch;
-use crate::sources::adaptive::passes::COARSE_POINT_WGSL;
-use crate::sources::adaptive::refiner::{Refiner, draws};
-use crate::sources::adaptive::settings::compose;
+use crate::sources::adaptive::refiner::{Refiner, drawing_constants};
 
 /// Workgroups in a row of a dispatch.
 const ROW: u32 = 1024;
@@ -55,22 +54,17 @@ pub struct GridPoint {
 }
 
 /// The module of the pass.
-pub(crate) fn expand_wgsl() -> String {
-    let row = format!(
-        "const EXPAND_ROW: u32 = {ROW}u;\n{}",
-        draws(Refiner::SHADERS - 1)
-    );
-    let tube = include_str!("tube.wgsl");
-    let vertices = include_str!("vertices.wgsl");
-    let expand = include_str!("expand.wgsl");
-    compose(&[
-        &row,
-        SURFACE_VERTEX_WGSL,
-        COARSE_POINT_WGSL,
-        tube,
-        vertices,
-        expand,
-    ])
+pub(crate) fn expand_shader() -> Shader {
+    let mut parts = ShaderParts::new(&[shader::file("expand.wgsl")]);
+    parts.constants = drawing_constants(Refiner::SHADERS - 1);
+    parts.constants.u32("EXPAND_ROW", ROW);
+    shader::shader("expand", &parts)
+}
+
+/// Group 1 of the pass: the places in grids, and their vertices.
+pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let compute = ShaderStages::COMPUTE;
+    vec![storage(0, compute, true), storage(1, compute, false)]
 }
 
 impl Refiner {
@@ -89,17 +83,8 @@ impl Refiner {
             return Ok(Vec::new());
         }
         let device = &gpu.device;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("expand"),
-            source: wgpu::ShaderSource::Wgsl(expand_wgsl().into()),
-        });
-        let own = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("expand"),
-            entries: &[
-                storage(0, ShaderStages::COMPUTE, true),
-                storage(1, ShaderStages::COMPUTE, false),
-            ],
-        });
+        let module = gpu.shader_module(&expand_shader());
+        let own = group_layout(device, "expand", &entries());
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("expand"),
             bind_group_layouts: &[Some(self.layout()), Some(&own)],

@@ -2,6 +2,8 @@
 //
 // Called by expand.rs; joined after vertices.wgsl.
 
+#import vertices.wgsl
+
 struct GridPoint {
     // A patch, column and row.
     slot: u32,

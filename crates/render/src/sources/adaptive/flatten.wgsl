@@ -2,6 +2,8 @@
 //
 // Called by refiner.rs for a batch, after scan.wgsl: a workgroup for each cluster that shows.
 
+#import clusters.wgsl
+
 @group(2) @binding(0) var<storage, read_write> decisions: array<u32>;
 @group(2) @binding(1) var<storage, read_write> flat_indices: array<u32>;
 

@@ -4,7 +4,7 @@
 
 use wgpu::ShaderStages;
 
-use crate::gpu::buffers::{storage, uniform};
+use crate::gpu::buffers::{group_layout, storage, uniform};
 
 /// Layouts of the groups that work buffers are in.
 #[derive(Debug)]
@@ -15,52 +15,53 @@ pub(crate) struct WorkLayouts {
     pub(crate) one: wgpu::BindGroupLayout,
     pub(crate) two: wgpu::BindGroupLayout,
     pub(crate) three: wgpu::BindGroupLayout,
-    /// Group 0 of whoever makes vertices: binding 0 of a page, those of a frame from 4.
+    /// Group 0 of what makes vertices: binding 0 of a page, those of a frame from 4.
     pub(crate) drawing: wgpu::BindGroupLayout,
 }
 
 impl WorkLayouts {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries,
-            })
-        };
-        let compute = ShaderStages::COMPUTE;
-        let both = ShaderStages::COMPUTE | ShaderStages::VERTEX;
-        let written = |count: u32| -> Vec<wgpu::BindGroupLayoutEntry> {
-            (0..count)
-                .map(|binding| storage(binding, compute, false))
-                .collect()
-        };
         Self {
-            clusters: layout(
-                "clusters",
-                &[
-                    uniform(0, compute, false),
-                    uniform(1, compute, true),
-                    storage(2, compute, true),
-                    storage(3, compute, false),
-                    storage(4, compute, false),
-                    storage(5, compute, false),
-                ],
-            ),
-            one: layout("one buffer", &written(1)),
-            two: layout("two buffers", &written(2)),
-            three: layout("three buffers", &written(3)),
-            drawing: layout(
-                "drawing",
-                &[
-                    storage(0, both, true),
-                    uniform(4, both, false),
-                    storage(5, both, true),
-                    storage(6, both, true),
-                    storage(7, both, true),
-                    storage(8, both, true),
-                    storage(9, both, true),
-                ],
-            ),
+            clusters: group_layout(device, "clusters", &clusters_entries()),
+            one: group_layout(device, "one buffer", &written_entries(1)),
+            two: group_layout(device, "two buffers", &written_entries(2)),
+            three: group_layout(device, "three buffers", &written_entries(3)),
+            drawing: group_layout(device, "drawing", &drawing_entries()),
         }
     }
+
+    /// Group 2 with so many buffers that are written, 1 to 3.
+    pub(crate) fn written(&self, count: u32) -> &wgpu::BindGroupLayout {
+        match count {
+            1 => &self.one,
+            2 => &self.two,
+            _ => &self.three,
+        }
+    }
+}
+
+pub(crate) fn clusters_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let compute = ShaderStages::COMPUTE;
+    vec![
+        uniform(0, compute, false),
+        uniform(1, compute, true),
+        storage(2, compute, true),
+        storage(3, compute, false),
+        storage(4, compute, false),
+        storage(5, compute, false),
+    ]
+}
+
+pub(crate) fn written_entries(count: u32) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let bindings = 0..count;
+    bindings
+        .map(|binding| storage(binding, ShaderStages::COMPUTE, false))
+        .collect()
+}
+
+pub(crate) fn drawing_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let both = ShaderStages::COMPUTE | ShaderStages::VERTEX;
+    let mut entries = vec![storage(0, both, true), uniform(4, both, false)];
+    entries.extend([5, 6, 7, 8, 9].map(|binding| storage(binding, both, true)));
+    entries
 }

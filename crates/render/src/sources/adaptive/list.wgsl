@@ -3,6 +3,8 @@
 //
 // Called by refiner.rs for a batch, after scan.wgsl: a workgroup for each queued section.
 
+#import clusters.wgsl
+
 struct Bucket {
     // First place in the list, and how many.
     start: u32,

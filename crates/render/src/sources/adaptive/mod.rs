@@ -14,15 +14,18 @@ pub(crate) mod work;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use neurotess_refine::wgsl::{ShaderParts, WgslFile};
+
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::gpu::shader;
 use crate::scene::Scene;
-use crate::sources::VertexSource;
 use crate::sources::adaptive::batch::FramePlan;
 use crate::sources::adaptive::readback::FrameStats;
 use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::adaptive::resolver::PickResolver;
 use crate::sources::adaptive::settings::{AdaptiveSettings, CullView};
+use crate::sources::{SourceKey, VertexSource};
 use crate::view::bounds::any_shows;
 use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
@@ -153,12 +156,19 @@ impl VertexSource for Adaptive {
         Refiner::SHADERS
     }
 
-    fn wgsl(&self, shader: usize) -> String {
-        Refiner::vertex_wgsl(shader)
+    fn key(&self) -> SourceKey {
+        SourceKey {
+            name: "adaptive",
+            variant: 0,
+        }
     }
 
-    fn id_wgsl(&self) -> Option<&'static str> {
-        Some(include_str!("surface_id.wgsl"))
+    fn shader(&self, shader: usize) -> ShaderParts {
+        Refiner::vertex_shader(shader)
+    }
+
+    fn id_shader(&self) -> Option<WgslFile> {
+        Some(shader::file("surface_id.wgsl"))
     }
 
     fn layout(&self) -> &wgpu::BindGroupLayout {

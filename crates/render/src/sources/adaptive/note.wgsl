@@ -2,6 +2,8 @@
 //
 // Called by refiner.rs for a batch, after decide.wgsl: a workgroup for each cluster that shows.
 
+#import clusters.wgsl
+
 @group(2) @binding(0) var<storage, read_write> decisions: array<u32>;
 // Workgroups of the passes that take the queues of sections and of rings: three u32s each.
 @group(2) @binding(1) var<storage, read_write> dispatches: array<atomic<u32>>;

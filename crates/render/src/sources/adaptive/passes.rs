@@ -10,47 +10,54 @@
 //! not asked for each of them; and the four patches of a tube are asked together. Each of these ways is a
 //! pass of its own with a queue, not a branch: Mesa's software Vulkan takes the time of both sides.
 
-use neurotess_refine::gpu::CORNER_SOURCE_WGSL;
+use neurotess_refine::wgsl::{Shader, ShaderParts};
 
+use crate::gpu::device::Gpu;
+use crate::gpu::shader;
 use crate::scene::templates::CLUSTER;
 use crate::scene::templates::Page;
 use crate::sources::adaptive::batch::Batch;
 use crate::sources::adaptive::grids::BUCKETS;
 use crate::sources::adaptive::layouts::WorkLayouts;
 use crate::sources::adaptive::settings::{
-    BatchUniforms, QUEUE_ASKED, QUEUE_PLAIN, QUEUE_RINGS, QUEUE_SECTIONS, QUEUE_SHOWN, compose,
+    BatchUniforms, QUEUE_ASKED, QUEUE_PLAIN, QUEUE_RINGS, QUEUE_SECTIONS, QUEUE_SHOWN, constants,
 };
 use crate::sources::adaptive::work::Work;
 
-/// What coarse.wgsl writes and vertices.wgsl reads.
-pub(crate) const COARSE_POINT_WGSL: &str = include_str!("coarse_point.wgsl");
-const CLUSTERS_WGSL: &str = include_str!("clusters.wgsl");
-const SHOWN_WGSL: &str = include_str!("shown.wgsl");
-
-/// The modules of the passes, by name.
-pub(crate) fn modules() -> [(&'static str, String); 7] {
-    let classify = [CLUSTERS_WGSL, SHOWN_WGSL, include_str!("classify.wgsl")];
-    let decide = [CLUSTERS_WGSL, SHOWN_WGSL, include_str!("cull.wgsl")];
-    let note = [CLUSTERS_WGSL, include_str!("note.wgsl")];
-    let coarse = [
-        CLUSTERS_WGSL,
-        COARSE_POINT_WGSL,
-        include_str!("coarse.wgsl"),
-    ];
-    let scan = [CLUSTERS_WGSL, include_str!("scan.wgsl")];
-    let flatten = [CLUSTERS_WGSL, include_str!("flatten.wgsl")];
-    let list = [CLUSTERS_WGSL, include_str!("list.wgsl")];
+/// The modules of the passes, in their order.
+pub(crate) fn modules() -> [Shader; 7] {
+    let of_file = |name: &'static str| {
+        let mut parts = ShaderParts::new(&[shader::file(name)]);
+        parts.constants = constants();
+        shader::shader(name, &parts)
+    };
     [
-        ("classify", &classify[..]),
-        ("decide", &decide),
-        ("note", &note),
-        ("coarse", &coarse),
-        ("scan", &scan),
-        ("flatten", &flatten),
-        ("list", &list),
+        "classify.wgsl",
+        "cull.wgsl",
+        "note.wgsl",
+        "coarse.wgsl",
+        "scan.wgsl",
+        "flatten.wgsl",
+        "list.wgsl",
     ]
-    .map(|(name, own)| (name, compose(&[&[CORNER_SOURCE_WGSL], own].concat())))
+    .map(of_file)
 }
+
+/// Entry points: which module has it, and how many buffers of group 2 it writes.
+pub(crate) const ENTRIES: [(usize, &str, u32); 12] = [
+    (0, "classify", 2),
+    (1, "decide_plain", 3),
+    (1, "level_rings", 3),
+    (1, "decide_tubes", 3),
+    (1, "decide_singles", 2),
+    (2, "note", 2),
+    (3, "make_rings", 1),
+    (3, "make_explicit", 1),
+    (4, "scan_marks", 2),
+    (4, "scan_buckets", 2),
+    (5, "flatten", 2),
+    (6, "scatter", 3),
+];
 
 /// Pipelines.
 #[derive(Debug)]
@@ -70,19 +77,10 @@ pub(crate) struct Passes {
 }
 
 impl Passes {
-    pub(crate) fn new(
-        device: &wgpu::Device,
-        page: &wgpu::BindGroupLayout,
-        layouts: &WorkLayouts,
-    ) -> Self {
-        let modules = modules().map(|(name, text)| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            })
-        });
-        let [classify, decide, note, coarse, scan, flatten, list] = &modules;
-        let pipeline = |module, entry, own: &wgpu::BindGroupLayout| {
+    pub(crate) fn new(gpu: &Gpu, page: &wgpu::BindGroupLayout, layouts: &WorkLayouts) -> Self {
+        let device = &gpu.device;
+        let modules = modules().map(|shader| gpu.shader_module(&shader));
+        let pipeline = |module: usize, entry, own: &wgpu::BindGroupLayout| {
             let groups = [page, &layouts.clusters, own].map(Some);
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(entry),
@@ -92,28 +90,40 @@ impl Passes {
             device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry),
                 layout: Some(&layout),
-                module,
+                module: &modules[module],
                 entry_point: Some(entry),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 cache: None,
             })
         };
-        let WorkLayouts {
-            one, two, three, ..
-        } = layouts;
+        let [
+            classify,
+            decide_plain,
+            level_rings,
+            decide_tubes,
+            decide_singles,
+            note,
+            make_rings,
+            make_explicit,
+            scan_marks,
+            scan_buckets,
+            flatten,
+            scatter,
+        ] = ENTRIES
+            .map(|(module, entry, written)| pipeline(module, entry, layouts.written(written)));
         Self {
-            classify: pipeline(classify, "classify", two),
-            decide_plain: pipeline(decide, "decide_plain", three),
-            level_rings: pipeline(decide, "level_rings", three),
-            decide_tubes: pipeline(decide, "decide_tubes", three),
-            decide_singles: pipeline(decide, "decide_singles", two),
-            note: pipeline(note, "note", two),
-            make_rings: pipeline(coarse, "make_rings", one),
-            make_explicit: pipeline(coarse, "make_explicit", one),
-            scan_marks: pipeline(scan, "scan_marks", two),
-            scan_buckets: pipeline(scan, "scan_buckets", two),
-            flatten: pipeline(flatten, "flatten", two),
-            scatter: pipeline(list, "scatter", three),
+            classify,
+            decide_plain,
+            level_rings,
+            decide_tubes,
+            decide_singles,
+            note,
+            make_rings,
+            make_explicit,
+            scan_marks,
+            scan_buckets,
+            flatten,
+            scatter,
         }
     }
 

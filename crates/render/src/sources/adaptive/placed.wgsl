@@ -2,6 +2,8 @@
 //
 // Called by all shaders of refiner.rs. Structs as in settings.rs; constants come from its prelude.
 
+#import plan.wgsl
+
 // One for the whole frame. Lengths in micrometers; planes are relative to the eye.
 struct Frame {
     planes: array<vec4<f32>, 5>,

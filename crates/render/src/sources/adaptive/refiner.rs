@@ -9,22 +9,24 @@
 //! **batches** of at most a million patches, which share one set of work buffers: memory does not
 //! grow with the level, and beyond a million patches not with the scene. Per batch: [`Refiner::choose`]
 //! in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was made with
-//! [`Refiner::vertex_wgsl`] and [`Refiner::layout`]. Nothing is read back.
+//! [`Refiner::vertex_shader`] and [`Refiner::layout`]. Nothing is read back.
 
+use neurotess_refine::wgsl::{Constants, ShaderParts};
 use wgpu::BufferUsages;
 
 use crate::gpu::buffers::upload;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::gpu::shader;
 use crate::scene::Scene;
 use crate::scene::templates;
 use crate::scene::templates::CLUSTER;
 use crate::sources::adaptive::batch::{Batch, DrawIndexed, FramePlan, cut, place_all};
 use crate::sources::adaptive::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
 use crate::sources::adaptive::layouts::WorkLayouts;
-use crate::sources::adaptive::passes::{COARSE_POINT_WGSL, Passes};
+use crate::sources::adaptive::passes::Passes;
 use crate::sources::adaptive::settings::{
-    AdaptiveSettings, BatchUniforms, CullView, FrameUniforms, Placed, compose,
+    AdaptiveSettings, BatchUniforms, CullView, FrameUniforms, Placed, constants,
 };
 use crate::sources::adaptive::work::{Sizes, Work};
 
@@ -49,7 +51,7 @@ impl Refiner {
         let device = &gpu.device;
         let template_layout = templates::layout(device);
         let work_layouts = WorkLayouts::new(device);
-        let passes = Passes::new(device, &template_layout, &work_layouts);
+        let passes = Passes::new(gpu, &template_layout, &work_layouts);
         let (all, indices) = buckets();
         let indices = upload(gpu, "grid indices", BufferUsages::INDEX, &indices);
         let buckets = upload(gpu, "buckets", BufferUsages::STORAGE, &all);
@@ -68,18 +70,21 @@ impl Refiner {
     /// Shaders that draw: one for patches at level 1, one for other tubes, one for all else.
     pub const SHADERS: usize = 3;
 
-    /// What makes vertices, to stand after [`SURFACE_VERTEX_WGSL`](crate::SURFACE_VERTEX_WGSL): `fn
-    /// surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`. Binds group 0.
+    /// What makes vertices: `fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`.
+    /// Binds group 0.
     ///
     /// All shaders find an edge's vertices by the same expressions, and their positions must be
     /// `@invariant`.
-    pub fn vertex_wgsl(shader: usize) -> String {
-        compose(&[
-            &draws(shader),
-            COARSE_POINT_WGSL,
-            include_str!("tube.wgsl"),
-            include_str!("vertices.wgsl"),
-        ])
+    pub fn vertex_shader(shader: usize) -> ShaderParts {
+        ShaderParts {
+            files: vec![shader::file("vertices.wgsl")],
+            constants: drawing_constants(shader),
+        }
+    }
+
+    /// The text of [`Refiner::vertex_shader`] with all that it imports.
+    pub fn vertex_text(shader: usize) -> String {
+        shader::shader("vertices", &Self::vertex_shader(shader)).text
     }
 
     /// Layout of group 0 of a pipeline that draws.
@@ -191,13 +196,13 @@ impl Refiner {
     }
 }
 
-/// Which of its ways vertices.wgsl goes in a shader.
-pub(crate) fn draws(shader: usize) -> String {
-    let [flat, tubes] = [0, 1];
-    format!(
-        "const DRAWS: u32 = {shader}u;\nconst DRAWS_FLAT: u32 = {flat}u;\n\
-         const DRAWS_TUBES: u32 = {tubes}u;\n"
-    )
+/// Constants of the shaders that make vertices; DRAWS says which of its ways vertices.wgsl goes.
+pub(crate) fn drawing_constants(shader: usize) -> Constants {
+    let mut constants = constants();
+    constants.u32("DRAWS", shader as u32);
+    constants.u32("DRAWS_FLAT", 0);
+    constants.u32("DRAWS_TUBES", 1);
+    constants
 }
 
 const _: () = assert!(size_of::<Bucket>() == 20 && size_of::<DrawIndexed>() == 20);

@@ -2,6 +2,8 @@
 //
 // Called by refiner.rs for a batch, after note.wgsl: `scan_marks`, then `scan_buckets`.
 
+#import clusters.wgsl
+
 struct Bucket {
     // First place in the list, and how many.
     start: u32,

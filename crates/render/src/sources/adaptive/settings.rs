@@ -1,10 +1,9 @@
 //! What one frame is told: from where, how finely, and which parts stand where.
 
-use std::fmt::Write;
-
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 use neurotess_refine::gpu::{self, GpuLodCriterion};
+use neurotess_refine::wgsl::Constants;
 use neurotess_refine::{Caps, LodCriterion, LodView, Path, RefineOptions};
 
 use crate::scene::Placement;
@@ -208,9 +207,9 @@ pub(crate) fn decided(bits: u32) -> (u32, [u32; 4]) {
     ((bits >> DECISION_KIND_SHIFT) & 3, levels)
 }
 
-/// Constants, refine's twins and placed.wgsl, followed by a shader's own text.
-pub(crate) fn compose(own: &[&str]) -> String {
-    let mut constants = String::new();
+/// What the shaders of a frame need of Rust.
+pub(crate) fn constants() -> Constants {
+    let mut constants = gpu::constants();
     for (name, value) in [
         ("CLUSTER", CLUSTER as u32),
         ("POINTS_OF_CLUSTER", CLUSTER as u32 / 4),
@@ -235,18 +234,10 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("INDEX_PATCH_MASK", INDEX_PATCH_MASK),
         ("INDEX_BUCKET_SHIFT", INDEX_BUCKET_SHIFT),
     ] {
-        // Writing to a String does not fail.
-        let _ = writeln!(constants, "const {name}: u32 = {value}u;");
+        constants.u32(name, value);
     }
-    let sizes = GRID_SIZE.map(|size| format!("{size}u")).join(", ");
-    let _ = writeln!(
-        constants,
-        "const GRID_SIZE = array<u32, {}>({sizes});",
-        GRID_SIZE.len()
-    );
-    let mut parts = vec![constants.as_str(), include_str!("placed.wgsl")];
-    parts.extend(own);
-    gpu::compose(&parts)
+    constants.u32s("GRID_SIZE", &GRID_SIZE);
+    constants
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 // Who is seen. Called by classify.wgsl and decide.wgsl. CPU twin: decide.rs.
 
+#import clusters.wgsl
+
 // What shows of a sphere: nothing, some of it or all. It shows within the frustum, and if it is not
 // smaller than what is left out. What is thinner than a pixel is drawn a pixel wide.
 const SHOWS_NOTHING: u32 = 0u;

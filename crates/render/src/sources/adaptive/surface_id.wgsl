@@ -1,6 +1,8 @@
 // What a vertex is drawn for: see `surface_vertex` in vertices.wgsl, whose places these are. Called by
 // ids.wgsl; Rust twin: named.rs.
 
+#import vertices.wgsl
+
 // First: the corner's number in a flat patch, or FINE. Second: the corner's place, or the patch's
 // slot.
 fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {

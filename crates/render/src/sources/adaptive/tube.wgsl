@@ -2,6 +2,10 @@
 //
 // Called by vertices.wgsl; gives what grid_vertex of plan.wgsl gives.
 
+#import surface_vertex.wgsl
+#import placed.wgsl
+#import coarse_point.wgsl
+
 // Column i and row j of patch k of the tube after a ring.
 fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32) -> SurfaceVertex {
     let near = j == 0u;

@@ -5,6 +5,11 @@
 // indices that say which bucket, which
 // patch of the instance, and which column and row of its grid.
 
+#import surface_vertex.wgsl
+#import placed.wgsl
+#import coarse_point.wgsl
+#import tube.wgsl
+
 struct Bucket {
     start: u32,
     count: u32,

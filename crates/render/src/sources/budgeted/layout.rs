@@ -1,9 +1,8 @@
 //! What the shaders of exploration share with the host: constants and structs, twins of those in
 //! `explore.wgsl`.
 
-use std::fmt::Write;
-
 use bytemuck::{Pod, Zeroable};
+use neurotess_refine::wgsl::Constants;
 
 /// Most segments of a chunk.
 pub(crate) const MOST_SEGMENTS: usize = 64;
@@ -166,9 +165,9 @@ pub(crate) struct VisibleChunk {
     pub(crate) first: u32,
 }
 
-/// Constants, then `explore.wgsl`, then a shader's own text.
-pub(crate) fn compose(own: &[&str]) -> String {
-    let mut text = String::new();
+/// What the shaders of exploration need of Rust.
+pub(crate) fn constants() -> Constants {
+    let mut constants = Constants::default();
     for (name, value) in [
         ("LEVELS", LEVELS as u32),
         ("CLUSTER", CLUSTER as u32),
@@ -183,8 +182,7 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("CHUNK_ONE_COLOR_KEY", CHUNK_ONE_COLOR_KEY),
         ("HIDDEN", HIDDEN),
     ] {
-        // Writing to a String does not fail.
-        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+        constants.u32(name, value);
     }
     for (name, value) in [
         ("BINS_OF_OCTAVE", BINS_OF_OCTAVE),
@@ -193,9 +191,7 @@ pub(crate) fn compose(own: &[&str]) -> String {
         ("ERROR_OFFSET", ERROR_OFFSET),
         ("CELL", CELL as f32),
     ] {
-        let _ = writeln!(text, "const {name}: f32 = {value:?};");
+        constants.f32(name, value);
     }
-    text.push_str(include_str!("budgeted.wgsl"));
-    own.iter().for_each(|part| text.push_str(part));
-    text
+    constants
 }

@@ -24,17 +24,15 @@
 //! screen no one can tell.
 
 mod build;
-mod layout;
+pub(crate) mod layout;
 mod lod_requests;
 mod nested;
-mod passes;
+pub(crate) mod passes;
 mod paths;
 mod pick;
 mod proxy;
 mod quantized;
 mod residents;
-#[cfg(test)]
-mod shader_tests;
 mod somata;
 mod stats;
 
@@ -42,16 +40,18 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
+use neurotess_refine::wgsl::{ShaderParts, WgslFile};
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::growable::GrowableBuffer;
+use crate::gpu::shader;
 use crate::scene::Instance;
-use crate::sources::VertexSource;
+use crate::sources::{SourceKey, VertexSource};
 use crate::view::frame::{Frame, Tile};
 use crate::view::frustum::shows;
 use layout::{CELL, CLUSTER, Eye, GpuInstance};
-use passes::{Groups, Passes, Resident, Size, Work, visible_chunks_wgsl};
+use passes::{Groups, Passes, Resident, Size, Work, vertex_shader};
 use residents::Known;
 
 pub use lod_requests::{LodRequest, lod_requests};
@@ -223,12 +223,19 @@ impl VertexSource for Exploration {
         })
     }
 
-    fn wgsl(&self, _shader: usize) -> String {
-        visible_chunks_wgsl()
+    fn key(&self) -> SourceKey {
+        SourceKey {
+            name: "budgeted",
+            variant: 0,
+        }
     }
 
-    fn id_wgsl(&self) -> Option<&'static str> {
-        Some(pick::ID_WGSL)
+    fn shader(&self, _shader: usize) -> ShaderParts {
+        vertex_shader()
+    }
+
+    fn id_shader(&self) -> Option<WgslFile> {
+        Some(shader::file("visible_chunks_id.wgsl"))
     }
 
     fn layout(&self) -> &wgpu::BindGroupLayout {

@@ -2,13 +2,15 @@
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::gpu;
+use neurotess_refine::wgsl::{Shader, ShaderParts};
 use wgpu::BufferUsages;
 
-use super::layout::{BINS, BLOCK, CLUSTER, Eye, Sums, VisibleChunk, WIDE, compose};
-use crate::gpu::buffers::{storage, uniform};
+use super::layout::{BINS, BLOCK, CLUSTER, Eye, Sums, VisibleChunk, WIDE, constants};
+use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::growable::GrowableBuffer;
+use crate::gpu::shader;
 
 /// Twin of the struct in `select.wgsl`.
 #[repr(C)]
@@ -38,12 +40,27 @@ pub(crate) struct Resident<'a> {
 }
 
 /// A pass: what it is called, and the bindings that it uses.
-struct Step {
-    entry: &'static str,
+pub(crate) struct Step {
+    pub(crate) entry: &'static str,
     bindings: &'static [u32],
 }
 
-const STEPS: [Step; 7] = [
+impl Step {
+    /// Group 0 of the pass.
+    pub(crate) fn entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
+        self.bindings.iter().map(|&b| binding(b)).collect()
+    }
+}
+
+/// Group 0 of what makes vertices.
+pub(crate) fn drawing_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let vertex = wgpu::ShaderStages::VERTEX;
+    let mut entries = vec![uniform(0, vertex, false)];
+    entries.extend([1, 2, 3, 4, 5, 6].map(|binding| storage(binding, vertex, true)));
+    entries
+}
+
+pub(crate) const STEPS: [Step; 7] = [
     Step {
         entry: "cull_instances",
         bindings: &[0, 2, 3, 4],
@@ -118,18 +135,11 @@ pub(crate) struct Groups {
 impl Passes {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, DeviceError> {
         let device = &gpu.device;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("exploration"),
-            source: wgpu::ShaderSource::Wgsl(select_wgsl().into()),
-        });
+        let module = gpu.shader_module(&select_shader());
         let mut layouts = Vec::new();
         let mut pipelines = Vec::new();
         for step in STEPS {
-            let entries: Vec<_> = step.bindings.iter().map(|&b| binding(b)).collect();
-            let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(step.entry),
-                entries: &entries,
-            });
+            let layout = group_layout(device, step.entry, &step.entries());
             let of_pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(step.entry),
                 bind_group_layouts: &[Some(&layout)],
@@ -147,13 +157,7 @@ impl Passes {
             );
             layouts.push(layout);
         }
-        let vertex = wgpu::ShaderStages::VERTEX;
-        let mut entries = vec![uniform(0, vertex, false)];
-        entries.extend([1, 2, 3, 4, 5, 6].map(|binding| storage(binding, vertex, true)));
-        let drawing = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("visible_chunks"),
-            entries: &entries,
-        });
+        let drawing = group_layout(device, "visible chunks", &drawing_entries());
         gpu.check()?;
         Ok(Self {
             layouts,
@@ -340,16 +344,19 @@ fn indices() -> Vec<u32> {
         .collect()
 }
 
-/// The module of all passes that choose.
-pub(crate) fn select_wgsl() -> String {
-    compose(&[include_str!("select.wgsl")])
+/// The module of all passes that select.
+pub(crate) fn select_shader() -> Shader {
+    let mut parts = ShaderParts::new(&[shader::file("select.wgsl")]);
+    parts.constants = constants();
+    shader::shader("select", &parts)
 }
 
-/// What makes vertices.
-pub(crate) fn visible_chunks_wgsl() -> String {
-    // Somata near by are evaluated as everywhere.
-    let own = compose(&[include_str!("visible_chunks.wgsl")]);
-    [&gpu::prelude(), gpu::EVALUATE_WGSL, &own].concat()
+/// What makes vertices. Somata near by are evaluated as everywhere.
+pub(crate) fn vertex_shader() -> ShaderParts {
+    let mut parts = ShaderParts::new(&[shader::file("visible_chunks.wgsl")]);
+    parts.constants = gpu::constants();
+    parts.constants.extend(&constants());
+    parts
 }
 
 fn binding(binding: u32) -> wgpu::BindGroupLayoutEntry {

@@ -6,10 +6,7 @@ use super::Exploration;
 use super::layout::CHUNK_SOMA;
 use super::proxy::Proxy;
 use crate::sources::pick::PickId;
-use crate::sources::pick::{PickHit, PickTarget};
-
-/// Bits of an id's second color key for the point of a chunk; those above are the chunk's.
-const POINT_BITS: u32 = 7;
+use crate::sources::pick::{POINT_BITS, PickHit, PickTarget};
 
 /// What the points of a proxy's chunks are in its mesh.
 #[derive(Clone, Debug, Default)]
@@ -83,6 +80,3 @@ impl Exploration {
         }
     }
 }
-
-/// The text that tells ids.
-pub(super) const ID_WGSL: &str = include_str!("visible_chunks_id.wgsl");

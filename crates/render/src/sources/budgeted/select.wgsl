@@ -10,6 +10,8 @@
 //
 // Called by passes.rs; comes after explore.wgsl.
 
+#import budgeted.wgsl
+
 struct Shape {
     center: vec3<f32>,
     reach: f32,

@@ -5,6 +5,10 @@
 // A tube is drawn as the half of it that faces the eye: one strip as wide as the tube, or 5, 10 or 20
 // around it. A sphere is drawn as the cap that faces the eye.
 
+#import surface_vertex.wgsl
+#import evaluate.wgsl
+#import budgeted.wgsl
+
 @group(0) @binding(2) var<storage, read> visible_chunks: array<VisibleChunk>;
 @group(0) @binding(4) var<storage, read> quads: array<u32>;
 @group(0) @binding(6) var<storage, read> color_keys: array<u32>;

@@ -1,6 +1,6 @@
 // What a vertex of visible_chunks.wgsl is drawn for. Called by ids.wgsl; Rust twin: names.rs.
 
-const POINT_BITS: u32 = 7u;
+#import visible_chunks.wgsl
 
 // First: the instance. Second: the chunk, and the point of it that the segment leads to.
 fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {

@@ -10,11 +10,14 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, SurfaceVertex};
+use neurotess_refine::wgsl::ShaderParts;
 use neurotess_refine::{Lod, RefineOptions, Refinement};
 
+use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::sources::VertexSource;
+use crate::gpu::shader;
+use crate::sources::{SourceKey, VertexSource};
 use crate::view::bounds::{any_shows, bounds};
 use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
@@ -167,7 +170,7 @@ impl Prerefined {
             wgpu::BufferUsages::UNIFORM,
         )?;
         let mut made = Self {
-            layout: layout(&gpu.device),
+            layout: group_layout(&gpu.device, "prerefined", &entries()),
             placements,
             places: places
                 .iter()
@@ -308,9 +311,15 @@ impl VertexSource for Prerefined {
         any_shows(&self.bounds, frame)
     }
 
-    fn wgsl(&self, _shader: usize) -> String {
-        let barycentric = self.barycentric;
-        format!("const BARYCENTRIC: bool = {barycentric};\n{}", WGSL)
+    fn key(&self) -> SourceKey {
+        SourceKey {
+            name: "prerefined",
+            variant: self.barycentric.into(),
+        }
+    }
+
+    fn shader(&self, _shader: usize) -> ShaderParts {
+        vertex_shader(self.barycentric)
     }
 
     fn layout(&self) -> &wgpu::BindGroupLayout {
@@ -378,8 +387,12 @@ impl VertexSource for Prerefined {
     }
 }
 
-/// Defines `surface_vertex`.
-pub(crate) const WGSL: &str = include_str!("prerefined.wgsl");
+/// Defines `surface_vertex`. `barycentric`: every triangle has corners of its own.
+pub(crate) fn vertex_shader(barycentric: bool) -> ShaderParts {
+    let mut parts = ShaderParts::new(&[shader::file("prerefined.wgsl")]);
+    parts.constants.bool("BARYCENTRIC", barycentric);
+    parts
+}
 
 fn store(vertex: &SurfaceVertex, painted: &PrerefinedSurface<'_>) -> StoredVertex {
     let tracing = vertex.point as usize;
@@ -408,26 +421,14 @@ fn pack_normal(normal: Vec3) -> u32 {
     snorm(x) | (snorm(y) << 16)
 }
 
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let binding = |binding: u32, ty: wgpu::BufferBindingType| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: ty == wgpu::BufferBindingType::Uniform,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("prerefined"),
-        entries: &[
-            binding(0, storage),
-            binding(1, storage),
-            binding(2, wgpu::BufferBindingType::Uniform),
-        ],
-    })
+/// Group 0: vertices, corners, and the placement of an instance.
+pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let vertex = wgpu::ShaderStages::VERTEX;
+    vec![
+        storage(0, vertex, true),
+        storage(1, vertex, true),
+        uniform(2, vertex, true),
+    ]
 }
 
 fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {

@@ -1,6 +1,8 @@
 // Vertices of a surface that was refined beforehand and lies in buffers. Called by shade.wgsl.
 // Rust twin: prerefined.rs. BARYCENTRIC says whether every triangle has corners of its own.
 
+#import surface_vertex.wgsl
+
 struct StoredVertex {
     x: f32,
     y: f32,

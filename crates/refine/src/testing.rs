@@ -1,21 +1,29 @@
-//! Parses a shader, validates it, and writes it in every language that wgpu may need.
-#![allow(dead_code)]
+//! For tests of shaders: parses one, validates it, and writes it in every language that wgpu may need.
 
 use naga::back::{glsl, hlsl, msl, spv};
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
 
-/// The module, after it went through SPIR-V (Vulkan), MSL (Metal), HLSL (DirectX 12) and GLSL ES 3.2.
-pub(crate) fn check(name: &str, text: &str) -> Module {
+use crate::wgsl::Shader;
+
+pub use naga;
+
+/// The module, after it went through SPIR-V (Vulkan), MSL (Metal), HLSL (DirectX 12) and GLSL ES 3.2, and
+/// what the validator found out about it.
+///
+/// # Panics
+/// With file and line, if the shader is not valid in one of them.
+pub fn check(shader: &Shader) -> (Module, ModuleInfo) {
+    let Shader { name, text, .. } = shader;
     let module = match naga::front::wgsl::parse_str(text) {
         Ok(module) => module,
-        Err(error) => panic!("{name}: {}", error.emit_to_string(text)),
+        Err(error) => panic!("{name}: {}", shader.explain(&error.emit_to_string(text))),
     };
     let info = Validator::new(ValidationFlags::all(), Capabilities::default())
         .validate(&module)
-        .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(text)));
-    let words = spv::write_vec(&module, &info, &spv::Options::default(), None);
-    assert!(!words.expect("SPIR-V").is_empty(), "{name}");
+        .unwrap_or_else(|e| panic!("{name}: {}", shader.explain(&e.emit_to_string(text))));
+    let spirv = spv::write_vec(&module, &info, &spv::Options::default(), None);
+    assert!(!spirv.expect("SPIR-V").is_empty(), "{name}");
     let options = msl::Options {
         lang_version: (2, 4),
         fake_missing_bindings: true,
@@ -51,11 +59,14 @@ pub(crate) fn check(name: &str, text: &str) -> Module {
             .unwrap_or_else(|error| panic!("{name}, {}: GLSL: {error}", entry.name));
         assert!(!out.is_empty(), "{name}");
     }
-    module
+    (module, info)
 }
 
 /// Name, offset and size of each field of a struct, and the size of the whole.
-pub(crate) fn fields(module: &Module, name: &str) -> (Vec<(String, usize, usize)>, usize) {
+///
+/// # Panics
+/// If the shader has no such struct.
+pub fn fields(module: &Module, name: &str) -> (Vec<(String, usize, usize)>, usize) {
     let found = module
         .types
         .iter()
@@ -88,7 +99,7 @@ macro_rules! assert_layout {
             std::mem::offset_of!($rust, $field),
             size_of_val(&value.$field),
         )),+];
-        let (theirs, size) = languages::fields($module, $wgsl);
+        let (theirs, size) = $crate::testing::fields($module, $wgsl);
         assert_eq!(ours, theirs, "fields of {}", $wgsl);
         assert_eq!(size_of::<$rust>(), size, "size of {}", $wgsl);
     }};

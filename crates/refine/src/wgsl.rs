@@ -1,0 +1,265 @@
+//! Shaders from files that import one another.
+//!
+//! **Theory.** WGSL has no modules and no preprocessor. A file may begin with `#import other.wgsl`, which
+//! brings that file in once, and lines between `#ifdef NAME`, `#else` and `#endif` are kept by [`Constants`].
+//! Numbers that Rust knows come from there too, so that none is written twice.
+//!
+//! **Practice.** [`compose`] makes one text of all that a shader needs, with blank lines where a directive
+//! was, and knows the file and line that each line came from: [`Shader::explain`] puts them into what a
+//! compiler says of `wgsl:1234:5`.
+//!
+//! Why not naga_oil? It mangles names and parses each module by itself, for which every seam between our
+//! files (a source of vertices that the shading does not know) would need a stand-in.
+
+use std::collections::BTreeSet;
+use std::fmt::{self, Write};
+
+/// A file of WGSL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WgslFile {
+    /// The name that imports have it by, such as `evaluate.wgsl`.
+    pub name: &'static str,
+    /// What it says.
+    pub text: &'static str,
+}
+
+/// Names that Rust defines for shaders: constants, and flags for `#ifdef`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Constants {
+    text: String,
+    flags: BTreeSet<&'static str>,
+}
+
+impl Constants {
+    /// `const name: u32 = value;`
+    pub fn u32(&mut self, name: &str, value: u32) {
+        self.line(format_args!("const {name}: u32 = {value}u;"));
+    }
+
+    /// `const name: i32 = value;`
+    pub fn i32(&mut self, name: &str, value: i32) {
+        self.line(format_args!("const {name}: i32 = {value};"));
+    }
+
+    /// `const name: f32 = value;`
+    pub fn f32(&mut self, name: &str, value: f32) {
+        self.line(format_args!("const {name}: f32 = {value:?};"));
+    }
+
+    /// `const name: bool = value;`
+    pub fn bool(&mut self, name: &str, value: bool) {
+        self.line(format_args!("const {name}: bool = {value};"));
+    }
+
+    /// `const name = array<u32, n>(…);`
+    pub fn u32s(&mut self, name: &str, values: &[u32]) {
+        let list: Vec<String> = values.iter().map(|value| format!("{value}u")).collect();
+        let (count, list) = (values.len(), list.join(", "));
+        self.line(format_args!("const {name} = array<u32, {count}>({list});"));
+    }
+
+    /// Keeps what stands between `#ifdef name` and `#endif`.
+    pub fn flag(&mut self, name: &'static str) {
+        self.flags.insert(name);
+    }
+
+    /// Adds those of another.
+    pub fn extend(&mut self, other: &Self) {
+        self.text.push_str(&other.text);
+        self.flags.extend(&other.flags);
+    }
+
+    /// Whether all those of another are among these.
+    pub fn contains(&self, other: &Self) -> bool {
+        let mut lines = other.text.lines();
+        lines.all(|line| self.text.lines().any(|ours| ours == line))
+            && other.flags.is_subset(&self.flags)
+    }
+
+    fn line(&mut self, line: fmt::Arguments<'_>) {
+        // Writing to a String does not fail.
+        let _ = writeln!(self.text, "{line}");
+    }
+}
+
+/// What a shader is made of.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ShaderParts {
+    /// Files in their order; those that they import need not be here.
+    pub files: Vec<WgslFile>,
+    /// What Rust defines.
+    pub constants: Constants,
+}
+
+impl ShaderParts {
+    /// These files, without constants.
+    pub fn new(files: &[WgslFile]) -> Self {
+        Self {
+            files: files.to_vec(),
+            constants: Constants::default(),
+        }
+    }
+}
+
+/// A composed shader.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shader {
+    /// What it is called in errors.
+    pub name: &'static str,
+    /// WGSL.
+    pub text: String,
+    /// By file: its first line in the text, from 0 on.
+    starts: Vec<(&'static str, usize)>,
+}
+
+/// Where the constants are, in errors.
+const CONSTANTS: &str = "constants";
+
+/// One text of all parts and what they import, each file once. `libraries` are where imports are looked up,
+/// and the parts themselves.
+///
+/// # Panics
+/// If an import is nowhere, or an `#ifdef` is not closed: bugs of ours.
+pub fn compose(name: &'static str, parts: &ShaderParts, libraries: &[&[WgslFile]]) -> Shader {
+    let mut shader = Shader {
+        name,
+        text: parts.constants.text.clone(),
+        starts: vec![(CONSTANTS, 0)],
+    };
+    let known = |wanted: &str| {
+        let all = libraries.iter().copied().flatten().chain(&parts.files);
+        all.copied().find(|file| file.name == wanted)
+    };
+    let mut done = BTreeSet::new();
+    for &file in &parts.files {
+        add(&mut shader, file, &known, &parts.constants.flags, &mut done);
+    }
+    shader
+}
+
+/// Adds a file after what it imports.
+fn add(
+    shader: &mut Shader,
+    file: WgslFile,
+    known: &dyn Fn(&str) -> Option<WgslFile>,
+    flags: &BTreeSet<&'static str>,
+    done: &mut BTreeSet<&'static str>,
+) {
+    if !done.insert(file.name) {
+        return;
+    }
+    for line in file.text.lines() {
+        if let Some(import) = line.strip_prefix("#import ") {
+            let name = import.trim();
+            let imported = known(name);
+            let imported = imported.unwrap_or_else(|| panic!("{}: no {name}", file.name));
+            add(shader, imported, known, flags, done);
+        }
+    }
+    shader.starts.push((file.name, shader.text.lines().count()));
+    // For each #ifdef that is open: whether its lines are kept.
+    let mut kept: Vec<bool> = Vec::new();
+    for line in file.text.lines() {
+        let directive = match line.split_once(' ') {
+            Some(("#ifdef", flag)) => {
+                kept.push(flags.contains(flag.trim()));
+                true
+            }
+            Some(("#import", _)) => true,
+            _ if line == "#else" => {
+                let last = kept.last_mut();
+                let last = last.unwrap_or_else(|| panic!("{}: #else of nothing", file.name));
+                *last = !*last;
+                true
+            }
+            _ if line == "#endif" => {
+                assert!(kept.pop().is_some(), "{}: #endif of nothing", file.name);
+                true
+            }
+            _ => false,
+        };
+        if !directive && !kept.contains(&false) {
+            shader.text.push_str(line);
+        }
+        shader.text.push('\n');
+    }
+    assert!(kept.is_empty(), "{}: #ifdef without #endif", file.name);
+}
+
+impl Shader {
+    /// File and line, from 1 on, of a line of the text, from 1 on.
+    pub fn origin(&self, line: usize) -> (&'static str, usize) {
+        let at = line.saturating_sub(1);
+        let next = self.starts.partition_point(|&(_, start)| start <= at);
+        let (file, start) = self.starts[next.max(1) - 1];
+        (file, at - start + 1)
+    }
+
+    /// What a compiler says, with `FILE:LINE:COLUMN` in place of `wgsl:LINE:COLUMN`.
+    pub fn explain(&self, message: &str) -> String {
+        let mut parts = message.split("wgsl:");
+        let mut explained = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let digits = part
+                .find(|c: char| !c.is_ascii_digit())
+                .unwrap_or(part.len());
+            match part[..digits].parse() {
+                Ok(line) => {
+                    let (file, line) = self.origin(line);
+                    let _ = write!(explained, "{file}:{line}{}", &part[digits..]);
+                }
+                Err(_) => {
+                    let _ = write!(explained, "wgsl:{part}");
+                }
+            }
+        }
+        explained
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: WgslFile = WgslFile {
+        name: "a.wgsl",
+        text: "#import b.wgsl\nfn a() {}\n#ifdef MANY\nfn many() {}\n#else\nfn one() {}\n#endif\nfn z() {}\n",
+    };
+    const B: WgslFile = WgslFile {
+        name: "b.wgsl",
+        text: "// b\nfn b() {}\n",
+    };
+
+    #[test]
+    fn imports_come_once_and_before_and_flags_choose() {
+        let mut parts = ShaderParts::new(&[A, B]);
+        parts.constants.u32("N", 3);
+        let one = compose("one", &parts, &[&[B]]);
+        assert_eq!(
+            one.text,
+            "const N: u32 = 3u;\n// b\nfn b() {}\n\nfn a() {}\n\n\n\nfn one() {}\n\nfn z() {}\n"
+        );
+        parts.constants.flag("MANY");
+        let many = compose("many", &parts, &[&[B]]);
+        assert!(many.text.contains("fn many") && !many.text.contains("fn one"));
+    }
+
+    #[test]
+    fn lines_are_told_by_their_file() {
+        let mut parts = ShaderParts::new(&[A]);
+        parts.constants.u32("N", 3);
+        let shader = compose("one", &parts, &[&[B]]);
+        let line = |part: &str| 1 + shader.text.lines().position(|l| l == part).expect("there");
+        assert_eq!(shader.origin(line("fn b() {}")), ("b.wgsl", 2));
+        assert_eq!(shader.origin(line("fn z() {}")), ("a.wgsl", 8));
+        assert_eq!(shader.origin(1), ("constants", 1));
+        let said = format!("oh: wgsl:{}:4 and wgsl:x", line("fn z() {}"));
+        assert_eq!(shader.explain(&said), "oh: a.wgsl:8:4 and wgsl:x");
+    }
+
+    #[test]
+    #[should_panic(expected = "a.wgsl: no b.wgsl")]
+    fn an_import_that_is_nowhere_is_a_bug() {
+        compose("a", &ShaderParts::new(&[A]), &[]);
+    }
+}

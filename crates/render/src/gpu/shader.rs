@@ -1,0 +1,76 @@
+//! Our shaders: the files, and modules composed of them.
+
+use neurotess_refine::gpu;
+use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile, compose};
+
+use crate::gpu::device::Gpu;
+
+/// The file `$folder/$name` below `src`.
+macro_rules! file {
+    ($folder:literal, $name:literal) => {
+        WgslFile {
+            name: $name,
+            text: include_str!(concat!("../", $folder, "/", $name)),
+        }
+    };
+}
+
+/// All files of this crate, for imports.
+pub(crate) const FILES: [WgslFile; 28] = [
+    file!("sources", "surface_vertex.wgsl"),
+    file!("sources/adaptive", "placed.wgsl"),
+    file!("sources/adaptive", "clusters.wgsl"),
+    file!("sources/adaptive", "shown.wgsl"),
+    file!("sources/adaptive", "classify.wgsl"),
+    file!("sources/adaptive", "cull.wgsl"),
+    file!("sources/adaptive", "note.wgsl"),
+    file!("sources/adaptive", "coarse_point.wgsl"),
+    file!("sources/adaptive", "coarse.wgsl"),
+    file!("sources/adaptive", "scan.wgsl"),
+    file!("sources/adaptive", "flatten.wgsl"),
+    file!("sources/adaptive", "list.wgsl"),
+    file!("sources/adaptive", "tube.wgsl"),
+    file!("sources/adaptive", "vertices.wgsl"),
+    file!("sources/adaptive", "expand.wgsl"),
+    file!("sources/adaptive", "surface_id.wgsl"),
+    file!("sources/prerefined", "prerefined.wgsl"),
+    file!("sources/budgeted", "budgeted.wgsl"),
+    file!("sources/budgeted", "select.wgsl"),
+    file!("sources/budgeted", "visible_chunks.wgsl"),
+    file!("sources/budgeted", "visible_chunks_id.wgsl"),
+    file!("shading", "shade.wgsl"),
+    file!("shading", "finish.wgsl"),
+    file!("shading", "occlusion.wgsl"),
+    file!("shading", "accumulate.wgsl"),
+    file!("shading", "mask.wgsl"),
+    file!("shading", "present.wgsl"),
+    file!("output", "ids.wgsl"),
+];
+
+/// One of our files.
+///
+/// # Panics
+/// If there is none of that name: a bug.
+pub(crate) fn file(name: &str) -> WgslFile {
+    let found = FILES.iter().find(|file| file.name == name);
+    *found.unwrap_or_else(|| panic!("no shader file {name}"))
+}
+
+/// A shader of these parts and what they import.
+pub(crate) fn shader(name: &'static str, parts: &ShaderParts) -> Shader {
+    compose(name, parts, &[&FILES, &gpu::FILES])
+}
+
+impl Gpu {
+    /// Compiles a shader. What the compiler says of it, which [`Gpu::check`] tells, names files and lines.
+    pub(crate) fn shader_module(&self, shader: &Shader) -> wgpu::ShaderModule {
+        let module = self
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(shader.name),
+                source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
+            });
+        self.explain_fault(|message| shader.explain(message));
+        module
+    }
+}
