@@ -36,7 +36,7 @@ pub const TEMPLATE: WgslFile = file!("template.wgsl");
 /// Twin of `plan.rs`. Beside it, `CornerSource`, `base_of` and `corner_of` must be defined: they say where
 /// patches have their corners from. [`CORNER_SOURCE`] is one such file.
 pub const PLAN: WgslFile = file!("plan.wgsl");
-/// Corners as they are resident, for whoever has no others.
+/// Corners as they are resident, where nothing else makes them.
 pub const CORNER_SOURCE: WgslFile = file!("corner_source.wgsl");
 
 /// All files, for imports.

@@ -1,4 +1,4 @@
-//! What a refinement can be told.
+//! Options of a refinement.
 
 use glam::Vec3;
 

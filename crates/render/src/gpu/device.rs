@@ -99,7 +99,7 @@ impl Gpu {
         let fault = Fault::default();
         let (of_work, of_device) = (fault.clone(), fault.clone());
         device.on_uncaptured_error(Arc::new(move |error| of_work.keep(complaint(error))));
-        // Destroyed is lost too: whoever ends the program by himself does not ask any more.
+        // Destroyed is lost too: a program that ends by itself does not ask any more.
         device.set_device_lost_callback(move |_, message| {
             of_device.keep(DeviceError::Lost(one_line(&message)));
         });

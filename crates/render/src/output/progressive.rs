@@ -92,7 +92,7 @@ struct Canvas {
 /// How far a picture has come.
 #[derive(Clone, Copy, Debug)]
 struct UnderWay {
-    shot: ViewParams,
+    params: ViewParams,
     steps: Steps,
     draft: bool,
     step: u32,
@@ -170,17 +170,17 @@ impl ProgressiveRenderer {
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,
-        shot: &ViewParams,
+        params: &ViewParams,
     ) -> Result<(), DeviceError> {
         self.under_way = None;
         // As many samples as the first step at rest has: with one, lines thinner than a pixel are dots.
         let samples = samples_in_sub_pixel(gpu, 4);
-        let renderer = self.renderer(gpu, source, samples, shot)?;
-        self.make_canvas(gpu, true, shot.size, samples)?;
+        let renderer = self.renderer(gpu, source, samples, params)?;
+        self.make_canvas(gpu, true, params.size, samples)?;
         let way = UnderWay {
-            shot: ViewParams {
+            params: ViewParams {
                 occlusion: Occlusion::Off,
-                ..*shot
+                ..*params
             },
             steps: Steps {
                 steps: 1,
@@ -196,11 +196,11 @@ impl ProgressiveRenderer {
     }
 
     /// Begins a picture that [`ProgressiveRenderer::slice`] makes.
-    pub fn begin(&mut self, shot: ViewParams, steps: Steps) {
+    pub fn begin(&mut self, params: ViewParams, steps: Steps) {
         self.under_way = Some(UnderWay {
-            shot,
+            params,
             steps: Steps {
-                slices: steps.slices.clamp(1, shot.size[1].max(1)),
+                slices: steps.slices.clamp(1, params.size[1].max(1)),
                 steps: steps.steps.max(1),
             },
             draft: false,
@@ -232,12 +232,12 @@ impl ProgressiveRenderer {
             return Ok(false);
         };
         if (way.step, way.slice) == (0, 0) {
-            let rounds = source.prepare(gpu, &chosen(&way.shot, None))?;
+            let rounds = source.prepare(gpu, &chosen(&way.params, None))?;
             lay_out(&mut way, rounds, source);
         }
         let samples = samples_in_sub_pixel(gpu, 4);
-        let renderer = self.renderer(gpu, source, samples, &way.shot)?;
-        self.make_canvas(gpu, false, way.shot.size, samples)?;
+        let renderer = self.renderer(gpu, source, samples, &way.params)?;
+        self.make_canvas(gpu, false, way.params.size, samples)?;
         self.draw(gpu, source, renderer, &way)?;
         let mut next = way;
         next.slice += 1;
@@ -252,7 +252,7 @@ impl ProgressiveRenderer {
 
     /// Whether the device is still at work on what was submitted last. Must be asked for it to go on.
     pub fn is_busy(&self, gpu: &Gpu) -> bool {
-        // What went wrong is told by the next call that draws.
+        // The next call that draws returns what went wrong.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         let clock = &self.clock;
         clock.done.load(Ordering::Acquire) < clock.submitted.load(Ordering::Acquire)
@@ -292,9 +292,9 @@ impl ProgressiveRenderer {
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,
-        shot: &ViewParams,
+        params: &ViewParams,
     ) -> Result<(), DeviceError> {
-        let renderer = self.renderer(gpu, source, 1, shot)?;
+        let renderer = self.renderer(gpu, source, 1, params)?;
         let renderer = &self.renderers[renderer];
         if self.identifier.as_ref().is_none_or(|i| !i.fits(renderer)) {
             self.identifier = Identifier::new(gpu, renderer, source);
@@ -302,8 +302,15 @@ impl ProgressiveRenderer {
         let Some(identifier) = &mut self.identifier else {
             return Ok(());
         };
-        let shade = shade(renderer, shot);
-        identifier.draw(gpu, renderer, source, &chosen(shot, None), shade, shot.size)?;
+        let shade = shade(renderer, params);
+        identifier.draw(
+            gpu,
+            renderer,
+            source,
+            &chosen(params, None),
+            shade,
+            params.size,
+        )?;
         self.clock.start(gpu);
         Ok(())
     }
@@ -336,9 +343,9 @@ impl ProgressiveRenderer {
         gpu: &Gpu,
         source: &dyn VertexSource,
         samples: u32,
-        shot: &ViewParams,
+        params: &ViewParams,
     ) -> Result<usize, DeviceError> {
-        let cut = shot.look.clip.is_some();
+        let cut = params.look.clip.is_some();
         let key = PipelineKey {
             source: source.key(),
             samples,
@@ -394,7 +401,7 @@ impl ProgressiveRenderer {
         renderer: usize,
         way: &UnderWay,
     ) -> Result<(), DeviceError> {
-        let UnderWay { shot, steps, .. } = way;
+        let UnderWay { params, steps, .. } = way;
         let renderer = &self.renderers[renderer];
         let canvas = match way.draft {
             true => self.draft.as_ref(),
@@ -403,7 +410,7 @@ impl ProgressiveRenderer {
         let Some(canvas) = canvas else {
             return Ok(());
         };
-        let [width, height] = shot.size;
+        let [width, height] = params.size;
         let edge = |slice: u32, all: u32| {
             (u64::from(slice) * u64::from(all) / u64::from(steps.slices)) as u32
         };
@@ -416,13 +423,13 @@ impl ProgressiveRenderer {
             }
         };
         let (jitter, turn) = offset(way.step, steps.steps);
-        let shade = shade(renderer, shot).moved(jitter, turn);
+        let shade = shade(renderer, params).moved(jitter, turn);
         gpu.queue
             .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
         let group = renderer.shade_group(gpu);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let band = way.banded.then_some((rows.start, rows.end));
-        let rounds = source.prepare(gpu, &chosen(shot, band))?.max(1);
+        let rounds = source.prepare(gpu, &chosen(params, band))?.max(1);
         for round in 0..rounds {
             source.choose(round, &mut encoder, None);
             let part = MeshPart {
@@ -450,17 +457,20 @@ impl ProgressiveRenderer {
         encoder: &mut wgpu::CommandEncoder,
     ) {
         let UnderWay {
-            shot, steps, step, ..
+            params,
+            steps,
+            step,
+            ..
         } = way;
         let Some((_, finisher)) = self.finishers.iter().find(|(n, _)| *n == canvas.samples) else {
             return;
         };
-        let frame = whole(shot.camera, shot.near, shot.size);
-        let color_keys = finish_color_keys(shot, &frame, *step, steps.steps);
+        let frame = whole(params.camera, params.near, params.size);
+        let color_keys = finish_color_keys(params, &frame, *step, steps.steps);
         gpu.queue
             .write_buffer(&self.finish, 0, bytemuck::bytes_of(&color_keys));
         let group = canvas.group(gpu, finisher, &self.finish);
-        let over = shot.size.map(|n| n.div_ceil(8));
+        let over = params.size.map(|n| n.div_ceil(8));
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("finish"),
             timestamp_writes: None,
@@ -488,7 +498,7 @@ fn lay_out(way: &mut UnderWay, rounds: usize, source: &dyn VertexSource) {
     way.banded = rounds > 1 && way.steps.slices > 1;
     if !way.banded {
         way.steps.slices = way.steps.slices.min(source.shaders() as u32);
-    } else if way.shot.frozen.is_some() {
+    } else if way.params.frozen.is_some() {
         // Levels for another camera know no bands of this one.
         (way.banded, way.steps.slices) = (false, 1);
     }
@@ -568,11 +578,11 @@ fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
 /// Rows above and below a band whose things may reach into it: steps are moved by half a pixel.
 const SPARE_ROWS: u32 = 2;
 
-/// What the source is told: a band of rows, or all; levels for the frozen camera if there is one.
-fn chosen(shot: &ViewParams, band: Option<(u32, u32)>) -> Frame {
-    let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
-    let mut frame = whole(camera, near, shot.size);
-    let (top, bottom) = band.unwrap_or((0, shot.size[1]));
+/// What the source selects for: a band of rows, or all; levels for the frozen camera if there is one.
+fn chosen(params: &ViewParams, band: Option<(u32, u32)>) -> Frame {
+    let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
+    let mut frame = whole(camera, near, params.size);
+    let (top, bottom) = band.unwrap_or((0, params.size[1]));
     frame.tile.x -= SPARE_ROWS as i32;
     frame.tile.width += 2 * SPARE_ROWS;
     frame.tile.y = top as i32 - SPARE_ROWS as i32;
@@ -580,27 +590,27 @@ fn chosen(shot: &ViewParams, band: Option<(u32, u32)>) -> Frame {
     frame
 }
 
-fn shade(renderer: &TileRenderer, shot: &ViewParams) -> Shade {
-    let frame = whole(shot.camera, shot.near, shot.size);
-    let mut shade = Shade::new(&frame, &shot.look, 1, &renderer.sizes);
-    if let Some((frozen, _)) = shot.frozen {
-        shade.shift = (frozen.eye() - shot.camera.eye()).as_vec3().to_array();
+fn shade(renderer: &TileRenderer, params: &ViewParams) -> Shade {
+    let frame = whole(params.camera, params.near, params.size);
+    let mut shade = Shade::new(&frame, &params.look, 1, &renderer.sizes);
+    if let Some((frozen, _)) = params.frozen {
+        shade.shift = (frozen.eye() - params.camera.eye()).as_vec3().to_array();
     }
     shade
 }
 
-fn finish_color_keys(shot: &ViewParams, frame: &Frame, step: u32, steps: u32) -> Finish {
-    let (radius, most) = shot
+fn finish_color_keys(params: &ViewParams, frame: &Frame, step: u32, steps: u32) -> Finish {
+    let (radius, most) = params
         .occlusion
-        .reach(&shot.camera, shot.size[1])
+        .reach(&params.camera, params.size[1])
         .unwrap_or_default();
-    let [r, g, b] = linear(shot.background);
-    let [red, green, blue] = shot.background;
+    let [r, g, b] = linear(params.background);
+    let [red, green, blue] = params.background;
     Finish {
         radius,
         most,
         scale: 1,
-        kept: shot.size,
+        kept: params.size,
         spare: step,
         clear: u32::from(steps == 1),
         empty: u32::from_le_bytes([red, green, blue, 255]),

@@ -216,7 +216,7 @@ impl StillRenderer {
         self.states = states.to_vec();
     }
 
-    /// Tells how far pictures are, and ends them when it is told to.
+    /// Shows how far pictures are, and can end them.
     pub fn set_watch(&mut self, watch: Watch) {
         self.watch = Some(watch);
     }

@@ -1,4 +1,4 @@
-//! How far a picture is, and whether it is still wanted, for whoever waits for it on another thread.
+//! How far a picture is, and whether it is still wanted, for a thread that waits for it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -10,7 +10,7 @@ use crate::gpu::error::DeviceError;
 /// How often a picture that is watched is asked whether it is still wanted.
 const ASKS: Duration = Duration::from_millis(4);
 
-/// Shared by who draws and who waits.
+/// Shared by the thread that draws and the one that waits.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     /// Tiles that are done.

@@ -224,7 +224,7 @@ impl FromStr for ColorMap {
     }
 }
 
-/// Colors of the parts of a cell, by SWC type, and of things that are merely told apart.
+/// Colors of the parts of a cell, by SWC type, and of categories.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Palette {
     /// NeuroM's: soma black, axon blue, basal dendrites red, apical ones purple.
@@ -232,7 +232,7 @@ pub enum Palette {
     NeuroM,
     /// NeuroMorpho.org's: soma red, axon gray, basal dendrites green, apical ones magenta.
     NeuroMorpho,
-    /// Okabe and Ito's, told apart by the color-blind: axon blue, basal dendrites vermilion,
+    /// Okabe and Ito's, distinct for the color-blind too: axon blue, basal dendrites vermilion,
     /// apical ones reddish purple.
     OkabeIto,
 }
@@ -298,7 +298,7 @@ impl Palette {
         soma
     }
 
-    /// Number of different colors of things that are merely told apart.
+    /// Number of different colors of categories.
     pub fn distinct_count(self) -> usize {
         match self {
             Self::OkabeIto => OKABE_ITO.len(),
@@ -306,7 +306,7 @@ impl Palette {
         }
     }
 
-    /// Color of the index-th of things that are merely told apart; they repeat after ten.
+    /// Color of the index-th category; they repeat after ten.
     pub fn distinct(self, index: usize) -> Rgb {
         if self == Self::OkabeIto {
             return OKABE_ITO[index % OKABE_ITO.len()];

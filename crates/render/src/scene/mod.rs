@@ -66,7 +66,7 @@ pub struct Instance {
     pub placement: Placement,
     /// Not drawn.
     pub hidden: bool,
-    /// Free for whoever shades: selection, color.
+    /// What the shading reads: selection, visibility.
     pub state: u32,
 }
 
@@ -184,7 +184,7 @@ impl Scene {
         (self.templates, self.instances)
     }
 
-    /// Balls that together hold all that shows, in the world (µm): to fit a camera to.
+    /// Bounding spheres that together hold all that shows, in the world (µm): to fit a camera to.
     pub fn spheres(&self) -> Vec<BoundingSphere> {
         let shown = self.instances.iter().filter(|instance| !instance.hidden);
         shown

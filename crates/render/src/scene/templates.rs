@@ -69,7 +69,7 @@ impl Base {
 pub struct Template<'t> {
     /// The mesh.
     pub mesh: &'t CoarseMesh,
-    /// One color key per tracing point for whoever shades: its color. Missing ones are 0.
+    /// One color key per tracing point that its color is looked up by. Missing ones are 0.
     pub color_keys: &'t [u32],
     /// One level per tracing point, for [`LodCriterion::PerPoint`](crate::LodCriterion::PerPoint). Missing ones
     /// are 1.

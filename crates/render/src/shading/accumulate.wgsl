@@ -1,5 +1,5 @@
 // The last pass of a picture that gets better: adds this step's samples to those before, and makes the
-// bytes of their mean. Comes after finish.wgsl and occlusion.wgsl. Called by live.rs.
+// bytes of their mean. Called by progressive.rs.
 
 #import finish.wgsl
 #import occlusion.wgsl

@@ -1,5 +1,5 @@
 // What passes after the drawing share, and the last: from samples to the bytes of a picture.
-// Called by renderer.rs. Rust twin: finish.rs.
+// Called by tiles.rs. Rust twin: finish.rs.
 
 struct Finish {
     tile_size: vec2<u32>,

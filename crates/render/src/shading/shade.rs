@@ -33,7 +33,7 @@ pub struct Look {
     pub highlighted: (Rgb, f32),
     /// Share of the samples that instances which are [`GHOSTED`] cover, 0 to 1.
     pub ghosted: f32,
-    /// The background that colors of the scale must be told from: those that are as light as it have
+    /// The background that colors of the scale must differ from: those that are as light as it have
     /// edges, darker before a light background and lighter before a dark one. None, or [`Light::Flat`]: no
     /// edges.
     pub contrast: Option<Rgb>,

@@ -1,6 +1,5 @@
 // From a source's vertices to lit samples: projection, widening of thin tubes, color, light, wireframe.
-// Called by renderer.rs; comes after surface_vertex.wgsl and the source's text. Rust twin of the
-// uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
+// Called by tiles.rs, with a source of vertices. Rust twin of the uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
 
 #import surface_vertex.wgsl
 
@@ -105,7 +104,7 @@ fn luminance(color: vec3<f32>) -> f32 {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// How little a color is told from the background: 1 up to a contrast of 1.25, as the light end of viridis has
+// How little a color differs from the background: 1 up to a contrast of 1.25, as the light end of viridis has
 // before white, 0 from 1.8 on. Contrast as WCAG 2.2 defines it.
 fn lack_of_contrast(color: vec3<f32>) -> f32 {
     let own = luminance(color) + 0.05;
@@ -142,7 +141,7 @@ fn state_of(instance: u32) -> u32 {
     return select(0u, states[min(instance, last)], instance <= last);
 }
 
-// Coverage by what is left out. Somata are told by their radius of 0; their patches around a neurite
+// Coverage by what is left out. Somata are known by their radius of 0; their patches around a neurite
 // have corners on its first ring, whose radius is the neurite's. So what is left out or kept wins over
 // the ring by far, up to its very edge.
 fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {

@@ -1,4 +1,4 @@
-//! The seam between who makes vertices and who shades them.
+//! The seam between what makes vertices and what shades them.
 //!
 //! A **source** gives WGSL with one function, and draws by it:
 //!

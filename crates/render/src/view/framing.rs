@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::BoundingSphere;
 
-/// Sides to look from. Cells stand in y; x points right, z towards the one who looks from the front.
+/// Sides to look from. Cells stand in y; x points right, z towards the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Along −z.
@@ -25,7 +25,7 @@ pub enum Side {
     Iso,
 }
 
-/// Angle of view (radians) unless told otherwise: little distortion, as through a long lens.
+/// Angle of view (radians) by default: little distortion, as through a long lens.
 pub const DEFAULT_FOV: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 impl Side {

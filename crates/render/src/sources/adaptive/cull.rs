@@ -1,7 +1,7 @@
-//! Who is drawn: spheres against the frustum and against the smallest size. The levels themselves are
+//! What is drawn: bounding spheres against the frustum and against the smallest size. The levels themselves are
 //! refine's.
 //!
-//! Twin of the decisions in decide.wgsl. The host uses it for whole parts of templates, before anything
+//! Twin of the decisions in cull.wgsl. The host uses it for whole parts of templates, before anything
 //! reaches the device; tests, for every patch.
 
 use glam::{Vec3, Vec4};

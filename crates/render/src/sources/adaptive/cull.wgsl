@@ -2,7 +2,7 @@
 //
 // Called by refiner.rs for a batch, after classify.wgsl, for what is queued: `decide_plain` where a level
 // is known, `decide_tubes` for points with rings of their own, a lane for the four patches to the next;
-// `decide_singles` for all other patches. CPU twin: decide.rs.
+// `decide_singles` for all other patches. CPU twin: cull.rs.
 
 #import clusters.wgsl
 #import shown.wgsl

@@ -1,6 +1,6 @@
 // What was decided, counted: how many patches of each kind there are, and which corners they need.
 //
-// Called by refiner.rs for a batch, after decide.wgsl: a workgroup for each cluster that shows.
+// Called by refiner.rs for a batch, after cull.wgsl: a workgroup for each cluster that shows.
 
 #import clusters.wgsl
 

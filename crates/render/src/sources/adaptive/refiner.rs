@@ -1,4 +1,4 @@
-//! Who chooses levels: compute passes between the placed parts of a scene and draws that need nothing from
+//! Selection of levels: compute passes between the placed parts of a scene and draws that need nothing from
 //! the host.
 //!
 //! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016, cull
@@ -180,7 +180,7 @@ impl Refiner {
         pass.multi_draw_indexed_indirect(&self.work.buffers.draws, offset, count);
     }
 
-    /// Group 0 of whoever makes the vertices of a batch.
+    /// Group 0 of the shaders that make the vertices of a batch.
     pub(crate) fn drawing_group(&self, batch: &Batch) -> &wgpu::BindGroup {
         &self.drawing_groups[batch.page]
     }

@@ -1,4 +1,4 @@
-//! What one frame is told: from where, how finely, and which parts stand where.
+//! What one frame depends on: from where, how finely, and where parts are placed.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
@@ -87,7 +87,7 @@ pub struct AdaptiveSettings {
 }
 
 impl AdaptiveSettings {
-    /// What the reference on the CPU is told.
+    /// The same for the reference on the CPU.
     pub fn options(&self) -> RefineOptions {
         RefineOptions {
             path: self.path,

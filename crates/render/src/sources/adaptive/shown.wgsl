@@ -1,4 +1,4 @@
-// Who is seen. Called by classify.wgsl and decide.wgsl. CPU twin: decide.rs.
+// What is in view. Called by classify.wgsl and cull.wgsl. CPU twin: cull.rs.
 
 #import clusters.wgsl
 

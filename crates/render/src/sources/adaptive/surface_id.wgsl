@@ -1,5 +1,5 @@
 // What a vertex is drawn for: see `surface_vertex` in vertices.wgsl, whose places these are. Called by
-// ids.wgsl; Rust twin: named.rs.
+// ids.wgsl; Rust twin: resolver.rs.
 
 #import vertices.wgsl
 

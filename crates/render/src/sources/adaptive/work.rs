@@ -262,7 +262,7 @@ impl Work {
         })
     }
 
-    /// Group 0 of whoever makes vertices of a page's templates.
+    /// Group 0 of the shaders that make vertices of a page's templates.
     pub(crate) fn drawing_group(
         &self,
         gpu: &Gpu,

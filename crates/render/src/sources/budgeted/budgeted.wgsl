@@ -1,4 +1,4 @@
-// What the shaders of exploration share: structs, where instances cull_instances, what chunks ask for.
+// What the shaders of exploration share: structs, placements of instances, what chunks ask for.
 //
 // Comes after the constants of layout.rs, whose structs are twins of these. Called by select.wgsl and
 // visible_chunks.wgsl. `offers` has its twin in lod.rs.
@@ -93,8 +93,8 @@ fn enclosed(p: vec3<f32>, reach: f32) -> bool {
     return true;
 }
 
-fn byte_of(color_keys: vec2<u32>, k: u32) -> u32 {
-    return (select(color_keys.x, color_keys.y, k >= 4u) >> (8u * (k & 3u))) & 0xffu;
+fn byte_of(bytes: vec2<u32>, k: u32) -> u32 {
+    return (select(bytes.x, bytes.y, k >= 4u) >> (8u * (k & 3u))) & 0xffu;
 }
 
 // Segments of a lod; 0 where it is not there.
@@ -208,16 +208,35 @@ fn seen_part(chunk: Chunk, place: GpuInstance) -> Seen {
     return seen;
 }
 
-// How a visible chunk is drawn, in one color_key: lod, halvings of its segments, strips around it, what it is, and
-// how much of its width, of 63.
-const WHAT_TUBE: u32 = 0u;
-const WHAT_DOT: u32 = 1u;
-const WHAT_DISC: u32 = 2u;
-const WHAT_DOME: u32 = 3u;
-const WHAT_SOMA: u32 = 4u;
+// How a visible chunk is drawn, in one u32: see layout.rs.
 
 fn packed_lod(what: u32, level: u32, halvings: u32, strips: u32, width: u32) -> u32 {
-    return what | (level << 3u) | (halvings << 6u) | (strips << 8u) | (width << 16u);
+    return what
+        | (level << LOD_LEVEL_SHIFT)
+        | (halvings << LOD_HALVINGS_SHIFT)
+        | (strips << LOD_STRIPS_SHIFT)
+        | (width << LOD_WIDTH_SHIFT);
+}
+
+fn lod_what(lod: u32) -> u32 {
+    return lod & ((1u << LOD_LEVEL_SHIFT) - 1u);
+}
+
+fn lod_level(lod: u32) -> u32 {
+    return (lod >> LOD_LEVEL_SHIFT) & ((1u << (LOD_HALVINGS_SHIFT - LOD_LEVEL_SHIFT)) - 1u);
+}
+
+fn lod_halvings(lod: u32) -> u32 {
+    return (lod >> LOD_HALVINGS_SHIFT) & ((1u << (LOD_STRIPS_SHIFT - LOD_HALVINGS_SHIFT)) - 1u);
+}
+
+fn lod_strips(lod: u32) -> u32 {
+    return (lod >> LOD_STRIPS_SHIFT) & ((1u << (LOD_WIDTH_SHIFT - LOD_STRIPS_SHIFT)) - 1u);
+}
+
+// Share of the chunk's width.
+fn lod_width(lod: u32) -> f32 {
+    return f32(lod >> LOD_WIDTH_SHIFT) / f32(FULL_WIDTH);
 }
 
 // Quads of a sphere seen from the front: a fan of two sectors each, and a ring around it.
@@ -349,7 +368,7 @@ fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
     var all = no_offers();
     all.bins.x = bin_of(256.0 * max(area, 1.0));
     all.quads.x = 1u;
-    all.lods.x = packed_lod(WHAT_DOT, 0u, 0u, 1u, 63u);
+    all.lods.x = packed_lod(WHAT_DOT, 0u, 0u, 1u, FULL_WIDTH);
     if (radius <= 1.0) {
         return all;
     }
@@ -357,14 +376,14 @@ fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
     let sphere = select(DISC_QUADS, DOME_QUADS, dome);
     all.bins.y = min(bin_of(16.0 * area / f32(sphere)), all.bins.x);
     all.quads.y = sphere - 1u;
-    all.lods.y = packed_lod(select(WHAT_DISC, WHAT_DOME, dome), 0u, 0u, 1u, 63u);
+    all.lods.y = packed_lod(select(WHAT_DISC, WHAT_DOME, dome), 0u, 0u, 1u, FULL_WIDTH);
     let own = chunk.counts.x;
     if (radius <= 6.0 || own <= sphere) {
         return all;
     }
     all.bins.z = min(bin_of(8.0 * area / f32(own)), all.bins.y);
     all.quads.z = own - sphere;
-    all.lods.z = packed_lod(WHAT_SOMA, 0u, 0u, 1u, 63u);
+    all.lods.z = packed_lod(WHAT_SOMA, 0u, 0u, 1u, FULL_WIDTH);
     // Half a pixel where it bends four times as much as a sphere of its size.
     let off = 4.0 * (3.1416 / 2.0) * radius / f32(own) / eye.error;
     let halvings = u32(clamp(ceil(0.5 * log2(max(off, 1.0))), 0.0, 3.0));
@@ -372,7 +391,7 @@ fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
         let quads = (own << (2u * halvings)) - own;
         all.bins.w = min(bin_of(area / f32(quads)), all.bins.z);
         all.quads.w = quads;
-        all.lods.w = packed_lod(WHAT_SOMA, 0u, halvings, 1u, 63u);
+        all.lods.w = packed_lod(WHAT_SOMA, 0u, halvings, 1u, FULL_WIDTH);
     }
     return all;
 }

@@ -55,6 +55,21 @@ impl Chunk {
 /// Mark of an instance that is not drawn.
 pub(crate) const HIDDEN: u32 = 1;
 
+/// What a chunk is drawn as: the lowest bits of its level of detail.
+const WHAT_TUBE: u32 = 0;
+const WHAT_DOT: u32 = 1;
+const WHAT_DISC: u32 = 2;
+const WHAT_DOME: u32 = 3;
+const WHAT_SOMA: u32 = 4;
+/// Where the other fields of a level of detail begin: the simplified polyline, halvings of its segments,
+/// strips around it, and how much of its width is drawn.
+const LOD_LEVEL_SHIFT: u32 = 3;
+const LOD_HALVINGS_SHIFT: u32 = 6;
+const LOD_STRIPS_SHIFT: u32 = 8;
+const LOD_WIDTH_SHIFT: u32 = 16;
+/// All of the width.
+const FULL_WIDTH: u32 = 63;
+
 /// Up to 64 segments of a path, or a soma.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -159,7 +174,7 @@ pub(crate) struct Sums {
 pub(crate) struct VisibleChunk {
     pub(crate) instance: u32,
     pub(crate) chunk: u32,
-    /// How finely: see `explore.wgsl`.
+    /// Its level of detail: `packed_lod` in budgeted.wgsl.
     pub(crate) lod: u32,
     /// Place of its first quad.
     pub(crate) first: u32,
@@ -181,6 +196,16 @@ pub(crate) fn constants() -> Constants {
         ("CHUNK_FREE_END", CHUNK_FREE_END),
         ("CHUNK_ONE_COLOR_KEY", CHUNK_ONE_COLOR_KEY),
         ("HIDDEN", HIDDEN),
+        ("LOD_LEVEL_SHIFT", LOD_LEVEL_SHIFT),
+        ("LOD_HALVINGS_SHIFT", LOD_HALVINGS_SHIFT),
+        ("LOD_STRIPS_SHIFT", LOD_STRIPS_SHIFT),
+        ("LOD_WIDTH_SHIFT", LOD_WIDTH_SHIFT),
+        ("FULL_WIDTH", FULL_WIDTH),
+        ("WHAT_TUBE", WHAT_TUBE),
+        ("WHAT_DOT", WHAT_DOT),
+        ("WHAT_DISC", WHAT_DISC),
+        ("WHAT_DOME", WHAT_DOME),
+        ("WHAT_SOMA", WHAT_SOMA),
     ] {
         constants.u32(name, value);
     }

@@ -27,7 +27,7 @@ pub struct LodRequest {
     pub quads: u32,
 }
 
-/// What every chunk of a proxy asks for where an instance instance_pose; nothing where it does not show.
+/// What every chunk of a proxy asks for at an instance's placement; nothing where it does not show.
 /// `instance`: its place in the list.
 pub fn lod_requests(
     proxy: &Proxy,

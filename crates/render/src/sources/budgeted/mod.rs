@@ -60,7 +60,7 @@ pub use proxy::Proxy;
 pub use residents::ExplorationError;
 pub use stats::{DrawnChunk, ExplorationStats};
 
-/// Triangles of a frame unless told otherwise: what a laptop draws fluently.
+/// Triangles of a frame by default: what a laptop draws fluently.
 pub const DEFAULT_BUDGET: u32 = 100_000;
 /// Most triangles of a frame.
 pub const MOST_BUDGET: u32 = 1 << 23;

@@ -272,7 +272,7 @@ impl Work {
                 mapped_at_creation: false,
             }))
         };
-        // Every visible cluster draws a quad at least, and so does every visible_chunk.
+        // Every visible cluster draws a quad at least, and so does every visible chunk.
         let most_visible = size.clusters.min(quads);
         let book = size_of::<Sums>() as u64 + 4 * (size.instances as u64).max(1);
         let most_visible_chunks = size.chunks.min(quads);

@@ -187,7 +187,7 @@ impl Exploration {
         self.changed(false);
     }
 
-    /// Where an instance instance_pose, as shaders are told.
+    /// An instance as shaders have it.
     pub(super) fn cull_instances(&self, instance: &Instance) -> GpuInstance {
         let at = instance.placement;
         let origin = at.world_from_cell(self.known[instance.template.0 as usize].origin);

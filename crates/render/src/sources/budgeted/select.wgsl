@@ -1,6 +1,6 @@
-// Who is drawn in exploration, and how well, within a budget: seven passes, none of which is read back.
+// What is drawn in exploration, and how well, within a budget: seven passes, none of which is read back.
 //
-// cull_instances       by instance: clusters of 64 chunks of those that may show
+// cull_instances  by instance: clusters of 64 chunks of those that may show
 // sum_clusters  where the clusters of each instance begin
 // measure     by chunk: what it asks for, as a histogram of quads by worth
 // limit       the least worth that is within the budget, and the clusters that have any
@@ -8,7 +8,7 @@
 // sum_visible    where those of each cluster begin; arguments of the draws
 // write       the list of quads, in the order of instances and chunks: equal frames are equal
 //
-// Called by passes.rs; comes after explore.wgsl.
+// Called by passes.rs.
 
 #import budgeted.wgsl
 
@@ -246,14 +246,14 @@ fn drawn(offers: Offers) -> Drawn {
             it = Drawn(it.quads + offers.quads[k], offers.lods[k]);
         }
     }
-    if ((it.lod & 7u) == WHAT_TUBE) {
+    if (lod_what(it.lod) == WHAT_TUBE) {
         // What has hardly found room is drawn with part of its width: it fades in and out.
-        var width = 63u;
+        var width = FULL_WIDTH;
         if (threshold > 1u) {
             let over = f32(offers.bins.x - threshold) + 1.0;
-            width = u32(clamp(over / (0.5 * BINS_OF_OCTAVE), 0.1, 1.0) * 63.0);
+            width = u32(clamp(over / (0.5 * BINS_OF_OCTAVE), 0.1, 1.0) * f32(FULL_WIDTH));
         }
-        it.lod |= width << 16u;
+        it.lod |= width << LOD_WIDTH_SHIFT;
     }
     return it;
 }

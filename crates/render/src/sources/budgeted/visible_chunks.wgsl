@@ -29,7 +29,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let visible_chunk = visible_chunks[quads[place + 1u]];
     let index = place - visible_chunk.first;
     let corner = vertex_index & 3u;
-    let what = visible_chunk.lod & 7u;
+    let what = lod_what(visible_chunk.lod);
     if (what == WHAT_TUBE) {
         return tube_vertex(visible_chunk, index, corner);
     }
@@ -57,14 +57,6 @@ fn color_key_at(chunk: Chunk, point: u32) -> u32 {
     return color_keys[chunk.color_keys + point];
 }
 
-fn unit_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
-    let size = length(v);
-    if (size > 1e-20) {
-        return v / size;
-    }
-    return otherwise;
-}
-
 fn across(v: vec3<f32>) -> vec3<f32> {
     let axis = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(v.y) > 0.7);
     return normalize(cross(axis, v));
@@ -83,16 +75,16 @@ fn from_octahedral(p: vec2<f32>) -> vec3<f32> {
 fn direction(chunk: Chunk, level: u32, index: u32, here: vec3<f32>) -> vec3<f32> {
     let last = segments(chunk, level);
     if (index > 0u && index < last) {
-        let before = unit_or(here - stored(chunk, level, index - 1u).position, vec3<f32>(0.0));
-        let after = unit_or(stored(chunk, level, index + 1u).position - here, vec3<f32>(0.0));
-        return unit_or(before + after, unit_or(before, vec3<f32>(1.0, 0.0, 0.0)));
+        let before = normalize_or(here - stored(chunk, level, index - 1u).position, vec3<f32>(0.0));
+        let after = normalize_or(stored(chunk, level, index + 1u).position - here, vec3<f32>(0.0));
+        return normalize_or(before + after, normalize_or(before, vec3<f32>(1.0, 0.0, 0.0)));
     }
     let kept = from_octahedral(unpack2x16snorm(select(chunk.end, chunk.start, index == 0u)));
     if (level == 0u) {
         return kept;
     }
     let other = stored(chunk, level, select(last - 1u, 1u, index == 0u)).position;
-    let way = unit_or(select(here - other, other - here, index == 0u), kept);
+    let way = normalize_or(select(here - other, other - here, index == 0u), kept);
     return select(way, kept, dot(way, kept) > 0.8);
 }
 
@@ -118,23 +110,15 @@ fn station(chunk: Chunk, level: u32, segment: u32, t: f32) -> Station {
         return Station(b.position, far, b.radius, b.point, chord);
     }
     let near = direction(chunk, level, segment, a.position);
-    // The cubic of evaluate.wgsl.
-    let most = MOST_SWAY * min(a.radius, b.radius) * (27.0 / 4.0);
-    let m0 = swaying(near, chord, most);
-    let m1 = swaying(far, chord, most);
-    let t2 = t * t;
-    let t3 = t2 * t;
-    let center = a.position + chord * (3.0 * t2 - 2.0 * t3) + m0 * (t3 - 2.0 * t2 + t) + m1 * (t3 - t2);
-    let slope = chord * (6.0 * t - 6.0 * t2) + m0 * (3.0 * t2 - 4.0 * t + 1.0) + m1 * (3.0 * t2 - 2.0 * t);
+    let along = center_line(on_path(a, near), on_path(b, far), PATH_HERMITE, t);
     let radius = mix(a.radius, b.radius, t);
-    return Station(center, unit_or(slope, near), radius, select(a.point, b.point, t > 0.5), chord);
+    return Station(along.position, normalize_or(along.derivative, near), radius, select(a.point, b.point, t > 0.5), chord);
 }
 
-fn swaying(end: vec3<f32>, chord: vec3<f32>, most: f32) -> vec3<f32> {
-    let span = length(chord);
-    let along = unit_or(chord, end);
-    let sway = length(end - along * dot(end, along)) * span;
-    return end * (span * (most / max(max(sway, most), 1e-37)));
+// A point of a path, as evaluate.wgsl takes it.
+fn on_path(p: Stored, tangent: vec3<f32>) -> Corner {
+    let none = vec3<f32>(0.0);
+    return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY);
 }
 
 // How far (radians) beyond the half that faces the eye a tube is drawn on each side.
@@ -143,10 +127,10 @@ const BEYOND: f32 = 0.35;
 fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceVertex {
     let chunk = chunks[visible_chunk.chunk];
     let instance_pose = gpu_instances[visible_chunk.instance];
-    let level = (visible_chunk.lod >> 3u) & 7u;
-    let halvings = (visible_chunk.lod >> 6u) & 3u;
-    let strips = (visible_chunk.lod >> 8u) & 0xffu;
-    let width = f32(visible_chunk.lod >> 16u) / 63.0;
+    let level = lod_level(visible_chunk.lod);
+    let halvings = lod_halvings(visible_chunk.lod);
+    let strips = lod_strips(visible_chunk.lod);
+    let width = lod_width(visible_chunk.lod);
     let tube_quads = (segments(chunk, level) << halvings) * strips;
     if (index >= tube_quads) {
         return cap_vertex(visible_chunk, chunk, instance_pose, index - tube_quads, corner);
@@ -160,7 +144,7 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
 
     let axis = relative(instance_pose, there.center);
     let way = turn(instance_pose.rotation, there.direction);
-    let to_eye = unit_or(-axis, -eye.forward);
+    let to_eye = normalize_or(-axis, -eye.forward);
     let side = cross(way, to_eye);
     let square = dot(side, side) > 1e-8;
     let plain = select(across(way), normalize(side), square);
@@ -199,7 +183,7 @@ fn cap_vertex(visible_chunk: VisibleChunk, chunk: Chunk, instance_pose: GpuInsta
         point = 0u;
     }
     let end = stored(chunk, 0u, point);
-    let width = f32(visible_chunk.lod >> 16u) / 63.0;
+    let width = lod_width(visible_chunk.lod);
     let radius = end.radius * instance_pose.scale * width;
     var v = sphere_vertex(relative(instance_pose, end.position), radius, WHAT_DOME, index % DOME_QUADS, corner);
     v.radius = radius;
@@ -210,7 +194,7 @@ fn cap_vertex(visible_chunk: VisibleChunk, chunk: Chunk, instance_pose: GpuInsta
 
 // A sphere seen from the front.
 fn sphere_vertex(center: vec3<f32>, radius: f32, what: u32, index: u32, corner: u32) -> SurfaceVertex {
-    let front = unit_or(-center, -eye.forward);
+    let front = normalize_or(-center, -eye.forward);
     let right = across(front);
     let up = cross(front, right);
     let grid = corner_grid(corner);
@@ -258,7 +242,7 @@ fn soma_corner(chunk: Chunk, vertex: u32) -> Corner {
 fn soma_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceVertex {
     let chunk = chunks[visible_chunk.chunk];
     let instance_pose = gpu_instances[visible_chunk.instance];
-    let halvings = (visible_chunk.lod >> 6u) & 3u;
+    let halvings = lod_halvings(visible_chunk.lod);
     let own = chunk.first + 2u * chunk.counts.y + 2u * (index >> (2u * halvings));
     let vertices = vec4<u32>(packed[own], packed[own] >> 16u, packed[own + 1u], packed[own + 1u] >> 16u)
         & vec4<u32>(0xffffu);

@@ -13,13 +13,13 @@ fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {
 }
 
 fn leads_to(visible_chunk: VisibleChunk, index: u32) -> u32 {
-    if ((visible_chunk.lod & 7u) != WHAT_TUBE) {
+    if (lod_what(visible_chunk.lod) != WHAT_TUBE) {
         return 0u;
     }
     let chunk = chunks[visible_chunk.chunk];
-    let level = (visible_chunk.lod >> 3u) & 7u;
-    let halvings = (visible_chunk.lod >> 6u) & 3u;
-    let strips = max((visible_chunk.lod >> 8u) & 0xffu, 1u);
+    let level = lod_level(visible_chunk.lod);
+    let halvings = lod_halvings(visible_chunk.lod);
+    let strips = max(lod_strips(visible_chunk.lod), 1u);
     let tube_quads = (segments(chunk, level) << halvings) * strips;
     if (index < tube_quads) {
         return stored(chunk, level, ((index / strips) >> halvings) + 1u).point;

@@ -1,5 +1,5 @@
 // Vertices of a surface that was refined beforehand and lies in buffers. Called by shade.wgsl.
-// Rust twin: prerefined.rs. BARYCENTRIC says whether every triangle has corners of its own.
+// Rust twin: mod.rs beside it. BARYCENTRIC says whether every triangle has corners of its own.
 
 #import surface_vertex.wgsl
 
