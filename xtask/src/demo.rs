@@ -42,10 +42,11 @@ pub(crate) fn run() -> anyhow::Result<()> {
     let program = shown(&program()?);
     println!("Your own cell: {program} mesh cell.swc -o cell.ply");
     if !has_display() {
-        println!("On a desktop: {program} view samples");
+        println!("On a desktop: cargo build --release, then {program} view samples");
         return Ok(());
     }
-    println!("\nThe window opens on the samples; close it to end the demo.");
+    println!("\nNow the window is built, then it opens on the samples; close it to end the demo.");
+    build_all()?;
     steps::run(&mut neurotess("view samples")?)
 }
 
@@ -57,10 +58,19 @@ fn has_display() -> bool {
         || set("WAYLAND_DISPLAY")
 }
 
-/// Builds the program.
+/// Builds the program without the window: half of what a cold build takes, and nothing but the window
+/// needs it.
 pub(crate) fn build() -> anyhow::Result<String> {
-    let build = "build --release --locked --package neurotess-cli";
-    steps::run(&mut cargo(build)).map(|()| "the program neurotess".into())
+    let build =
+        "build --release --locked --package neurotess-cli --no-default-features --features render";
+    steps::run(&mut cargo(build)).map(|()| "the program neurotess, without its window".into())
+}
+
+/// Builds the whole program.
+fn build_all() -> anyhow::Result<()> {
+    steps::run(&mut cargo(
+        "build --release --locked --package neurotess-cli",
+    ))
 }
 
 /// The program with arguments, in the workspace.

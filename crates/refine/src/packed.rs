@@ -85,8 +85,9 @@ impl Packer<'_> {
                     self.implicit_point(part, first, &implicit, sphere, goes_on, color_keys)
                 }
                 None => {
-                    let ring = slot.ring.unwrap_or_default();
-                    let [a, b, c, d] = ring.map(|v| contents.explicit_id(v));
+                    // An empty slot is never drawn.
+                    let ids = slot.ring.map(|ring| ring.map(|v| contents.explicit_id(v)));
+                    let [a, b, c, d] = ids.unwrap_or_default();
                     let kind = POINT_EXPLICIT << POINT_KIND_SHIFT;
                     [a | (b << 16), kind | goes_on, c | (d << 16), 0]
                 }
@@ -147,8 +148,9 @@ impl Packer<'_> {
         }
         layout.caps = packed.len() as u32;
         for &cap in &contents.caps {
-            let (first, reversed) = cap_ring(self.mesh.patches[cap].corners).unwrap_or((0, false));
-            let point = point_of.get(&first).copied().unwrap_or(0);
+            let (first, reversed) = cap_ring(self.mesh.patches[cap].corners)
+                .expect("explicit.rs leaves only caps of whole rings");
+            let point = point_of[&first];
             packed.push((point << 1) | u32::from(reversed));
         }
     }
@@ -194,7 +196,9 @@ impl Packer<'_> {
 
 impl Contents {
     fn explicit_id(&self, v: u32) -> u32 {
-        self.explicit.binary_search(&v).unwrap_or(0) as u32
+        self.explicit
+            .binary_search(&v)
+            .expect("a part lists all its explicit vertices") as u32
     }
 }
 
@@ -222,7 +226,9 @@ impl ColorKeys {
 
     fn index_of(&self, key: u32) -> u32 {
         let key = key >> self.dropped << self.dropped;
-        self.list.binary_search(&key).unwrap_or(0) as u32
+        self.list
+            .binary_search(&key)
+            .expect("a part lists the color keys of all its points") as u32
     }
 }
 
@@ -264,7 +270,7 @@ impl Anchors {
             .all
             .get(&Self::key(packer, vertex.tracing))
             .copied()
-            .unwrap_or_default();
+            .expect("anchors are made of all explicit vertices");
         let center = packer.mesh.tracing[tracing as usize].center;
         let offset = (vertex.position - center) / reach;
         let [x, y, z] = offset.to_array().map(to_signed16);

@@ -147,7 +147,7 @@ impl<'m> Refinement<'m> {
         positions.sort_unstable_by_key(|&(index, _)| index);
         let at = |index: u32| {
             let found = positions.binary_search_by_key(&index, |&(i, _)| i);
-            found.map_or(DVec3::ZERO, |i| positions[i].1)
+            positions[found.expect("all vertices of the patch are listed")].1
         };
         faces.triangles.clear();
         faces.quads.clear();

@@ -1,4 +1,7 @@
 //! As much XML as VTK's files use: tags with attributes.
+//!
+//! Why not quick-xml, which reads NeuroML? Bytes that are no XML may follow a tag in VTK's files, and are
+//! found by their offset from it.
 
 use super::{FilePosition, ReadError, malformed};
 
@@ -26,7 +29,7 @@ impl<'a> Tag<'a> {
                 from = find(bytes, start + 4, b"-->").ok_or(cut)? + 3;
                 continue;
             }
-            let end = find(bytes, start, b">").ok_or(cut)?;
+            let end = tag_end(bytes, start).ok_or(cut)?;
             let inside = &bytes[start + 1..end];
             from = end + 1;
             if inside.starts_with(b"?") || inside.starts_with(b"!") {
@@ -67,6 +70,25 @@ impl<'a> Tag<'a> {
     }
 }
 
+/// Where the tag that begins here ends: the `>` that no quotation marks surround.
+fn tag_end(bytes: &[u8], start: usize) -> Option<usize> {
+    let mut quote = None;
+    let place = bytes[start..].iter().position(|&byte| match quote {
+        None if byte == b'>' => true,
+        None => {
+            quote = Some(byte).filter(|b| matches!(b, b'"' | b'\''));
+            false
+        }
+        Some(open) => {
+            if byte == open {
+                quote = None;
+            }
+            false
+        }
+    });
+    place.map(|place| start + place)
+}
+
 /// Where a pattern stands at or after an offset.
 pub(super) fn find(bytes: &[u8], from: usize, pattern: &[u8]) -> Option<usize> {
     let rest = bytes.get(from..)?;
@@ -74,4 +96,23 @@ pub(super) fn find(bytes: &[u8], from: usize, pattern: &[u8]) -> Option<usize> {
         .windows(pattern.len())
         .position(|window| window == pattern)?;
     Some(from + found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tag_does_not_end_within_quotation_marks() {
+        let text = b"<DataArray Name='a > b' type=\"Float32\">1 2";
+        let tag = Tag::next(text, 0).expect("valid").expect("a tag");
+        assert_eq!(tag.get("Name"), Some("a > b"));
+        assert_eq!(tag.get("type"), Some("Float32"));
+        assert_eq!(&text[tag.end..], b"1 2");
+    }
+
+    #[test]
+    fn a_tag_that_is_cut_off_is_an_error() {
+        assert!(Tag::next(b"<DataArray Name='a > b", 0).is_err());
+    }
 }

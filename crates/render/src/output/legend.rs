@@ -97,7 +97,7 @@ impl Legend {
         text.draw(&mut image, 0.0, all - 0.6 * line, &self.note, ink);
         match &self.kind {
             Kind::Swatches(entries) => {
-                for ((color, name), row) in entries.iter().zip(0_u8..) {
+                for ((color, name), row) in entries.iter().zip(0_u16..) {
                     let y = title + 1.3 * line * (f32::from(row) + 0.5);
                     disc(&mut image, [0.5 * line, y], 0.36 * line, *color);
                     text.draw(&mut image, 1.25 * line, y, name, ink);
