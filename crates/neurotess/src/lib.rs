@@ -68,14 +68,13 @@
 //! | [`output`] | files that are there whole or not at all |
 #![forbid(unsafe_code)]
 
-pub mod coloring;
-pub mod output;
-
 pub use neurotess_circuit as circuit;
+pub use neurotess_color as coloring;
 pub use neurotess_formats as formats;
 pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
+pub use neurotess_output as output;
 pub use neurotess_refine as refine;
 pub use neurotess_render as render;
 pub use neurotess_synth as synth;

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::circuit::{CircuitError, ReportPopulation};
-use crate::render::InstanceValues;
+use neurotess_circuit::{CircuitError, ReportPopulation};
+use neurotess_render::InstanceValues;
 
 /// Values of one time.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::{Cell, ColorScheme, Coloring, NOTHING};
-use crate::circuit::{Attribute, Circuit, NodeRef, color, natural};
-use crate::render::{ColorTable, InstanceValues, Legend, Rgb};
+use crate::{Cell, ColorScheme, Coloring, NOTHING};
+use neurotess_circuit::{Attribute, Circuit, NodeRef, color, natural};
+use neurotess_render::{ColorTable, InstanceValues, Legend, Rgb};
 
 /// A node and the circuit that it is of.
 #[derive(Clone, Copy, Debug)]
@@ -224,8 +224,8 @@ pub(super) fn first_values(cells: &[Cell<'_>]) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::circuit::Population;
-    use crate::render::Palette;
+    use neurotess_circuit::Population;
+    use neurotess_render::Palette;
 
     /// Thirty nodes with these attributes.
     fn circuit(attributes: Vec<(&str, Attribute)>) -> Circuit {

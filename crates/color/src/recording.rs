@@ -12,15 +12,15 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use super::by_node::first_values;
-use super::compartments::{matched, on_cell};
-use super::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
-use super::{Cell, ColorScheme, Coloring};
-use crate::circuit::{
+use crate::by_node::first_values;
+use crate::compartments::{matched, on_cell};
+use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
+use crate::{Cell, ColorScheme, Coloring};
+use neurotess_circuit::{
     Circuit, CircuitError, Compartment, NodeRef, RecordingFile, Report, ReportPopulation,
     SpikePopulation, Spikes, TimeAxis,
 };
-use crate::render::category;
+use neurotess_render::category;
 
 /// After this time (ms) a flash has a third of its light, unless told otherwise.
 pub const DECAY: f64 = 5.0;

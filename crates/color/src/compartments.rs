@@ -1,10 +1,10 @@
 //! Which compartment of a report each tracing point of a cell shows.
 
-use super::{Cell, path_distances};
-use crate::circuit::{Compartment, Location, SectionOrder};
-use crate::mesh::Role;
-use crate::morphology::shape;
-use crate::render::category;
+use crate::{Cell, path_distances};
+use neurotess_circuit::{Compartment, Location, SectionOrder};
+use neurotess_mesh::Role;
+use neurotess_morphology::shape;
+use neurotess_render::category;
 
 /// For each compartment of a cell that is cut in one way the nearest one of a cell cut in another.
 pub(super) fn matched(cut: &[Compartment], own: &[Compartment]) -> Vec<usize> {
@@ -91,9 +91,9 @@ mod tests {
             .chain(dendrite)
             .chain(axon)
             .collect();
-        let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
+        let read = neurotess_formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
         let morphology = read.expect("a cell").morphology;
-        let mesh = crate::generate::generate(&morphology, &Default::default())
+        let mesh = neurotess_generate::generate(&morphology, &Default::default())
             .expect("meshed")
             .mesh;
         let cell = Cell {

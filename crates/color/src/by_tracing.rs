@@ -1,25 +1,10 @@
-//! What colors tell: a color_key for every tracing point, the table of colors and the legend.
-//!
-//! Words belong to a cell, whatever shows it. What differs from neuron to neuron of one cell is in the
-//! table's values: a color for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
-//! ([`Recording`]).
-
-mod by_node;
-mod compartments;
-mod cut;
-mod recording;
-mod report_frame;
-
-pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
-pub use cut::{cuts, with_middles};
-pub use recording::{DECAY, Recording, RecordingError};
-pub use report_frame::ReportFrame;
+//! Colors by what a tracing says: types, neurites, sections, numbers along the path.
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::mesh::{CoarseMesh, Role, TracingPoint};
-use crate::morphology::{Morphology, NeuriteKind, Section, SectionId, shape};
-use crate::render::{ColorTable, Legend, Palette, Rgb, category, fraction};
+use neurotess_mesh::{CoarseMesh, Role, TracingPoint};
+use neurotess_morphology::{Morphology, NeuriteKind, Section, SectionId, shape};
+use neurotess_render::{ColorTable, Legend, Palette, Rgb, category, fraction};
 
 /// What colors tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

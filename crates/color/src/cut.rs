@@ -13,10 +13,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::circuit::{
+use neurotess_circuit::{
     Circuit, CircuitError, Compartment, Location, NodeRef, RecordingFile, SectionOrder,
 };
-use crate::morphology::{Morphology, Point, SectionId, shape};
+use neurotess_morphology::{Morphology, Point, SectionId, shape};
 
 /// A traced point this near to a compartment's middle, as a share of the compartment's length, will do.
 const NEAR: f64 = 0.05;
@@ -146,9 +146,9 @@ fn between(a: &Point, b: &Point, share: f32) -> Point {
 
 #[cfg(test)]
 mod tests {
-    use super::super::compartments::on_cell;
-    use super::super::{Cell, path_distances};
     use super::*;
+    use crate::compartments::on_cell;
+    use crate::{Cell, path_distances};
 
     const BALL_AND_STICK: &str = "1 1 0 0 0 5 -1\n2 3 0 6 0 1 1\n3 3 0 106 0 1 2\n";
     /// A fork: the second child has one point of its own.
@@ -172,9 +172,9 @@ mod tests {
     }
 
     fn shown(text: &str, compartments: &[Compartment]) -> Vec<u32> {
-        let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
+        let read = neurotess_formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
         let morphology = with_middles(&read.expect("a cell").morphology, compartments);
-        let mesh = crate::generate::generate(&morphology, &Default::default())
+        let mesh = neurotess_generate::generate(&morphology, &Default::default())
             .expect("meshed")
             .mesh;
         assert!(mesh.topology().closed);
@@ -216,7 +216,7 @@ mod tests {
             .map(|i| format!("{i} 3 0 {} 0 {} {}\n", 2 * i, 3.0 / f64::from(i), i - 1))
             .collect();
         let text = format!("1 1 0 0 0 2 -1\n{text}");
-        let read = crate::formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
+        let read = neurotess_formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
         let morphology = read.expect("a cell").morphology;
         let cut = with_middles(&morphology, &compartments(1, 4));
         let traced = morphology.points.iter().zip(&morphology.sample_ids);

@@ -11,6 +11,7 @@
 //! A program that is interrupted calls [`remove_unfinished`] and leaves. **Why not** a flag that
 //! everything polls: a long read or solve would answer late. Instead every temporary file is known
 //! here, and no file gets its final name but under the same lock.
+#![forbid(unsafe_code)]
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
