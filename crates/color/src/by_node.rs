@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use thiserror::Error;
-
-use crate::{Cell, ColorScheme, Coloring, NOTHING};
 use neurotess_circuit::{Attribute, Circuit, NodeRef, color, natural};
 use neurotess_render::{ColorTable, InstanceValues, Legend, Rgb};
+use thiserror::Error;
+
+use crate::scheme::{Cell, ColorScheme, Coloring, NOTHING};
 
 /// A node and the circuit that it is of.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ impl<'c> Node<'c> {
     }
 
     /// What it has of an attribute; numbers as text.
-    pub fn color_key(&self, attribute: &str) -> Option<String> {
+    pub fn text(&self, attribute: &str) -> Option<String> {
         let row = self.node.row as usize;
         match self.attribute(attribute) {
             Some(column @ Attribute::Text { .. }) => column.text(row).map(str::to_owned),
@@ -73,14 +73,14 @@ pub fn attributes<'c>(circuits: impl IntoIterator<Item = &'c Circuit>) -> Vec<St
     names
 }
 
-/// Every neuron its own color; `names`: of the neurons as they stand.
+/// Every neuron its own color; `names`: one for each neuron.
 pub fn each(cells: &[Cell<'_>], names: &[String], scheme: &ColorScheme) -> Coloring {
     let own: Vec<Option<usize>> = (0..names.len()).map(Some).collect();
     categorical(cells, &own, names, "neuron", scheme)
 }
 
 /// Neurons of equal attribute have one color; numbers of more kinds than there are colors are on the
-/// scale. `neurons`: as they stand; none: of no circuit.
+/// scale. `neurons`: in the order of the instances; none: of no circuit.
 ///
 /// # Errors
 /// No neuron's circuit has such an attribute.
@@ -100,25 +100,28 @@ pub fn by_attribute(
             there,
         });
     }
-    let color_keys: Vec<Option<String>> = neurons
+    let texts: Vec<Option<String>> = neurons
         .iter()
-        .map(|neuron| neuron.and_then(|node| node.color_key(attribute)))
+        .map(|neuron| neuron.and_then(|node| node.text(attribute)))
         .collect();
-    let mut names: Vec<String> = color_keys.iter().flatten().cloned().collect();
+    let mut names: Vec<String> = texts.iter().flatten().cloned().collect();
     names.sort_by(|a, b| natural(a, b));
     names.dedup();
     if names.len() > scheme.palette.distinct_count() {
         let number = |n: &Option<Node<'_>>| n.and_then(|node| node.number(attribute));
         let numbers: Vec<Option<f64>> = neurons.iter().map(number).collect();
-        let all = numbers.iter().zip(&color_keys);
-        if all.into_iter().all(|(n, w)| n.is_some() == w.is_some()) {
+        let all = numbers.iter().zip(&texts);
+        if all
+            .into_iter()
+            .all(|(number, text)| number.is_some() == text.is_some())
+        {
             return Ok(on_scale(cells, &numbers, attribute, scheme));
         }
     }
-    let place: BTreeMap<&str, usize> = names.iter().map(String::as_str).zip(0..).collect();
-    let own: Vec<Option<usize>> = color_keys
+    let number: BTreeMap<&str, usize> = names.iter().map(String::as_str).zip(0..).collect();
+    let own: Vec<Option<usize>> = texts
         .iter()
-        .map(|color_key| color_key.as_deref().map(|color_key| place[color_key]))
+        .map(|text| text.as_deref().map(|text| number[text]))
         .collect();
     Ok(categorical(cells, &own, &names, attribute, scheme))
 }
@@ -129,8 +132,8 @@ pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colorin
     let mut names: BTreeMap<String, Rgb> = BTreeMap::new();
     let mut own = Vec::new();
     for neuron in neurons {
-        let color_key = |attribute| neuron.and_then(|node| node.color_key(attribute));
-        let rgb = color_key("color").as_deref().and_then(color);
+        let text = |attribute| neuron.and_then(|node| node.text(attribute));
+        let rgb = text("color").as_deref().and_then(color);
         own.push(rgb.map(|rgb| {
             let known = colors.iter().position(|&other| other == rgb);
             known.unwrap_or_else(|| {
@@ -138,7 +141,7 @@ pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Colorin
                 colors.len() - 1
             })
         }));
-        if let (Some(rgb), Some(group)) = (rgb, color_key("group")) {
+        if let (Some(rgb), Some(group)) = (rgb, text("group")) {
             names.entry(group).or_insert(rgb);
         }
     }
@@ -165,7 +168,7 @@ fn categorical(
         let none = own.contains(&None).then(|| (NOTHING, "none".to_owned()));
         Legend::swatches(title, named.chain(none))
     };
-    let own: Vec<Option<usize>> = own.iter().map(|place| place.map(|p| p % count)).collect();
+    let own: Vec<Option<usize>> = own.iter().map(|number| number.map(|n| n % count)).collect();
     painted(cells, &own, colors, legend)
 }
 
@@ -177,8 +180,8 @@ fn painted(
 ) -> Coloring {
     let last = (colors.len().max(2) - 1) as f32;
     let mut values = InstanceValues::default();
-    for place in own {
-        values.push(&[place.map_or(f32::NAN, |place| place as f32 / last)]);
+    for number in own {
+        values.push(&[number.map_or(f32::NAN, |n| n as f32 / last)]);
     }
     Coloring {
         color_keys: first_values(cells),
@@ -276,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn neurons_of_equal_color_keys_have_one_color_and_those_without_none() {
+    fn neurons_of_equal_attributes_have_one_color_and_those_without_none() {
         let library = vec!["b".to_owned(), "a".to_owned()];
         let indices = (0..30)
             .map(|i| if i == 3 { Attribute::NONE } else { i % 2 })

@@ -1,10 +1,13 @@
 //! Colors by what a tracing says: types, neurites, sections, numbers along the path.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
-use neurotess_mesh::{CoarseMesh, Role, TracingPoint};
-use neurotess_morphology::{Morphology, NeuriteKind, Section, SectionId, shape};
-use neurotess_render::{ColorTable, Legend, Palette, Rgb, category, fraction};
+use neurotess_mesh::{Role, TracingPoint};
+use neurotess_morphology::{Morphology, NeuriteKind, shape};
+use neurotess_render::{ColorTable, Legend, Rgb, category, fraction};
+
+use crate::path_distance::path_distances;
+use crate::scheme::{Cell, ColorScheme, Coloring};
 
 /// What colors tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,88 +29,49 @@ pub enum ColorBy {
     Neuron,
 }
 
-/// What is colored.
-#[derive(Clone, Copy, Debug)]
-pub struct Cell<'c> {
-    /// Name for the legend.
-    pub name: &'c str,
-    /// The tracing.
-    pub morphology: &'c Morphology,
-    /// Its coarse mesh.
-    pub mesh: &'c CoarseMesh,
+/// A number that tracing points have.
+struct Quantity {
+    title: &'static str,
+    unit: &'static str,
+    span: Span,
 }
 
-/// Colors of all cells.
-#[derive(Clone, Debug)]
-pub struct Coloring {
-    /// By cell and tracing point.
-    pub color_keys: Vec<Vec<u32>>,
-    /// What color_keys mean.
-    pub table: ColorTable,
-    /// What colors mean.
-    pub legend: Legend,
+/// Which numbers stand at the ends of the scale, unless the scheme says so.
+enum Span {
+    /// 0 and the greatest.
+    FromZero,
+    /// The least, and what all but the greatest fiftieth are below: outliers would leave one color for the
+    /// rest.
+    WithoutOutliers,
 }
 
-/// The colors to choose from.
-#[derive(Clone, Debug)]
-pub struct ColorScheme {
-    /// Of types and of what is merely told apart.
-    pub palette: Palette,
-    /// Behind everything: black is not drawn on black.
-    pub background: Option<Rgb>,
-    /// Of numbers.
-    pub scale: Vec<Rgb>,
-    /// Numbers at both ends of the scale; none: those that fit.
-    pub range: Option<[f32; 2]>,
-}
+const BRANCH_ORDER: Quantity = Quantity {
+    title: "branch order",
+    unit: "",
+    span: Span::FromZero,
+};
+/// A few stems are far thicker than all else.
+const RADIUS: Quantity = Quantity {
+    title: "radius",
+    unit: "µm",
+    span: Span::WithoutOutliers,
+};
+const PATH_DISTANCE: Quantity = Quantity {
+    title: "path distance",
+    unit: "µm",
+    span: Span::FromZero,
+};
 
-/// Color of what has no value: a gray that no scale has.
-pub const NOTHING: Rgb = [160; 3];
-
-impl ColorScheme {
-    /// Words on the scale, from one number to another; the first category is for what has none.
-    pub fn scaled(
-        &self,
-        color_keys: Vec<Vec<u32>>,
-        title: &str,
-        unit: &str,
-        range: [f32; 2],
-    ) -> Coloring {
-        Coloring {
-            color_keys,
-            legend: Legend::bar(title, unit, self.scale.clone(), range, false),
-            table: ColorTable {
-                scale: self.scale.clone(),
-                categories: vec![NOTHING],
-                ..ColorTable::default()
-            },
-        }
-    }
-
-    fn of_type(&self, kind: i32) -> Rgb {
-        match NeuriteKind(kind) {
-            NeuriteKind::SOMA => self.palette.of_soma(self.background),
-            _ => self.palette.of_type(kind),
-        }
-    }
-}
-
-/// Chooses the colors.
+/// Colors of cells by what their tracings say.
 pub fn coloring(cells: &[Cell<'_>], by: ColorBy, scheme: &ColorScheme) -> Coloring {
     match by {
         ColorBy::Type => by_type(cells, scheme),
         ColorBy::Neuron => by_neuron(cells, scheme),
         ColorBy::Neurite => categorical(cells, scheme, "neurite", shape::neurites),
         ColorBy::Section => categorical(cells, scheme, "section", sections),
-        ColorBy::BranchOrder => continuous(cells, scheme, "branch order", "", |cell| {
-            let orders = shape::branch_orders(cell.morphology);
-            of_sections(cell, |section| orders.get(section).map(|&o| o as f32))
-        }),
-        ColorBy::Radius => continuous(cells, scheme, "radius", "µm", |cell| {
-            let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
-            cell.mesh.tracing.iter().map(radius).collect()
-        }),
-        ColorBy::PathDistance => continuous(cells, scheme, "path distance", "µm", path_distances),
+        ColorBy::BranchOrder => continuous(cells, scheme, &BRANCH_ORDER, branch_orders),
+        ColorBy::Radius => continuous(cells, scheme, &RADIUS, radii),
+        ColorBy::PathDistance => continuous(cells, scheme, &PATH_DISTANCE, path_distances),
     }
 }
 
@@ -224,25 +188,20 @@ fn sections(morphology: &Morphology) -> Vec<u32> {
 fn continuous(
     cells: &[Cell<'_>],
     scheme: &ColorScheme,
-    title: &str,
-    unit: &str,
+    quantity: &Quantity,
     values: impl Fn(&Cell<'_>) -> Vec<Option<f32>>,
 ) -> Coloring {
     let values: Vec<Vec<Option<f32>>> = cells.iter().map(&values).collect();
     let mut sorted: Vec<f32> = values.iter().flatten().flatten().copied().collect();
     sorted.sort_unstable_by(f32::total_cmp);
     let at = |share: f64| {
-        let place = share * sorted.len().saturating_sub(1) as f64;
-        sorted.get(place as usize).copied().unwrap_or(0.0)
+        let index = share * sorted.len().saturating_sub(1) as f64;
+        sorted.get(index as usize).copied().unwrap_or(0.0)
     };
-    // A few stems are far thicker than all else: they would leave one color for the rest.
-    let whole = title != "radius";
-    let (low, high) = if whole {
-        (0.0, at(1.0))
-    } else {
-        (at(0.0), at(0.98))
-    };
-    let [low, high] = scheme.range.unwrap_or([low, high]);
+    let [low, high] = scheme.range.unwrap_or(match quantity.span {
+        Span::FromZero => [0.0, at(1.0)],
+        Span::WithoutOutliers => [at(0.0), at(0.98)],
+    });
     let high = if high > low { high } else { low + 1.0 };
     let color_key = |value: &Option<f32>| match value {
         Some(value) => fraction((value - low) / (high - low)),
@@ -254,8 +213,8 @@ fn continuous(
     Coloring {
         color_keys: color_keys.collect(),
         legend: Legend::bar(
-            title,
-            unit,
+            quantity.title,
+            quantity.unit,
             scheme.scale.clone(),
             [low, high],
             at(1.0) > high,
@@ -268,53 +227,57 @@ fn continuous(
     }
 }
 
-fn of_sections(cell: &Cell<'_>, value: impl Fn(usize) -> Option<f32>) -> Vec<Option<f32>> {
+fn branch_orders(cell: &Cell<'_>) -> Vec<Option<f32>> {
+    let orders = shape::branch_orders(cell.morphology);
     let of_point = |point: &TracingPoint| {
         let section = usize::try_from(point.section - 1).ok();
-        section.and_then(&value)
+        section.and_then(|section| orders.get(section).map(|&order| order as f32))
     };
     cell.mesh.tracing.iter().map(of_point).collect()
 }
 
-/// Distance along the path (µm) along the neurite from its first point to each tracing point.
-pub fn path_distances(cell: &Cell<'_>) -> Vec<Option<f32>> {
-    let morphology = cell.morphology;
-    let ends = shape::path_lengths(morphology);
-    let mut of_sample: HashMap<i64, f32> = HashMap::new();
-    for (index, section) in morphology.sections.iter().enumerate() {
-        let start = section.parent().map_or(0.0, |parent| ends[parent.index()]);
-        along(morphology, index, section, start, &mut of_sample);
+fn radii(cell: &Cell<'_>) -> Vec<Option<f32>> {
+    let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
+    cell.mesh.tracing.iter().map(radius).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess_render::Palette;
+
+    use super::*;
+
+    /// A stem far thicker than the rest of a neurite, and where the scale ends.
+    fn legend(by: ColorBy) -> Legend {
+        let row = |i: i32| format!("{i} 3 0 {} 0 {} {}\n", 10 * i, 0.5, i - 1);
+        let text: String = ["1 1 0 0 0 5 -1\n".into(), "2 3 0 20 0 4 1\n".into()]
+            .into_iter()
+            .chain((3..200).map(row))
+            .collect();
+        let read = neurotess_formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
+        let morphology = read.expect("a cell").morphology;
+        let generated = neurotess_generate::generate(&morphology, &Default::default());
+        let cell = Cell {
+            name: "",
+            morphology: &morphology,
+            mesh: &generated.expect("meshed").mesh,
+        };
+        let scheme = ColorScheme {
+            palette: Palette::NeuroM,
+            background: None,
+            scale: vec![[0; 3], [255; 3]],
+            range: None,
+        };
+        coloring(&[cell], by, &scheme).legend
     }
-    let of_point = |point: &TracingPoint| match point.role {
-        Role::Soma => None,
-        _ => Some(
-            of_sample
-                .get(&i64::from(point.sample))
-                .copied()
-                .unwrap_or(0.0),
-        ),
-    };
-    cell.mesh.tracing.iter().map(of_point).collect()
-}
 
-fn along(
-    morphology: &Morphology,
-    index: usize,
-    section: &Section,
-    start: f64,
-    of_sample: &mut HashMap<i64, f32>,
-) {
-    let id = SectionId(index as u32);
-    let mut before = shape::branch_point(morphology, id);
-    let mut way = start;
-    for (point, sample) in morphology.points[section.range()]
-        .iter()
-        .zip(&morphology.sample_ids[section.range()])
-    {
-        if let Some(before) = before {
-            way += f64::from(point.position.distance(before.position));
-        }
-        before = Some(point);
-        of_sample.insert(*sample, way as f32);
+    #[test]
+    fn a_thick_stem_does_not_take_the_scale_of_radii() {
+        let scale = vec![[0; 3], [255; 3]];
+        let bar = |title, unit, range, above| Legend::bar(title, unit, scale.clone(), range, above);
+        let radii = bar("radius", "µm", [0.5, 0.5 + 1.0], true);
+        assert_eq!(legend(ColorBy::Radius), radii);
+        let orders = bar("branch order", "", [0.0, 1.0], false);
+        assert_eq!(legend(ColorBy::BranchOrder), orders);
     }
 }

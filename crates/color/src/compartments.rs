@@ -1,10 +1,12 @@
 //! Which compartment of a report each tracing point of a cell shows.
 
-use crate::{Cell, path_distances};
 use neurotess_circuit::{Compartment, Location, SectionOrder};
 use neurotess_mesh::Role;
 use neurotess_morphology::shape;
 use neurotess_render::category;
+
+use crate::path_distance::path_distances;
+use crate::scheme::Cell;
 
 /// For each compartment of a cell that is cut in one way the nearest one of a cell cut in another.
 pub(super) fn matched(cut: &[Compartment], own: &[Compartment]) -> Vec<usize> {
@@ -42,9 +44,9 @@ pub(super) fn on_cell(cell: &Cell<'_>, compartments: &[Compartment]) -> Vec<u32>
         shape::path_lengths(morphology),
         shape::section_lengths(morphology),
     );
-    let nearest = |section: usize, way: f32| {
+    let nearest = |section: usize, distance: f32| {
         let length = lengths[section].max(1e-9);
-        let along = ((f64::from(way) - (ends[section] - length)) / length) as f32;
+        let along = ((f64::from(distance) - (ends[section] - length)) / length) as f32;
         let far = |compartment: &&(f32, u32)| (compartment.0 - along).abs();
         let all = of_section[section].iter();
         all.min_by(|a, b| far(a).total_cmp(&far(b)))
@@ -52,12 +54,12 @@ pub(super) fn on_cell(cell: &Cell<'_>, compartments: &[Compartment]) -> Vec<u32>
     };
     let points = cell.mesh.tracing.iter().zip(path_distances(cell));
     points
-        .map(|(point, way)| {
+        .map(|(point, distance)| {
             let section = usize::try_from(point.section - 1).ok();
             let section = section.filter(|&section| section < of_section.len());
-            let compartment = match (point.role, section, way) {
+            let compartment = match (point.role, section, distance) {
                 (Role::Soma, ..) => soma,
-                (_, Some(section), Some(way)) => nearest(section, way),
+                (_, Some(section), Some(distance)) => nearest(section, distance),
                 _ => None,
             };
             compartment.unwrap_or(category(0))

@@ -2,13 +2,13 @@
 //!
 //! **Theory.** The membrane shows the value of the tracing point that it is nearest to, so a dendrite of
 //! two points would show two of its compartments, and a section of one point its parent's. Values belong to
-//! places along a section, wherever the tracer clicked. **Practice.** Before such a cell is meshed, points
+//! positions along a section, wherever the tracer clicked. **Practice.** Before such a cell is meshed, points
 //! are inserted on the straight line between two traced ones, with the radius between theirs, at the middle
 //! of each compartment; none where a traced point is there already. Colors then change half-way between two
 //! middles, which is where compartments meet.
 //!
-//! **Why not** a place along the section for each vertex, looked up in the shader: joints and somata have
-//! no such place, and every maker of vertices would carry another number.
+//! **Why not** a position along the section for each vertex, looked up in the shader: joints and somata have
+//! no such position, and every source of vertices would carry another number.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -22,14 +22,14 @@ use neurotess_morphology::{Morphology, Point, SectionId, shape};
 const NEAR: f64 = 0.05;
 
 /// How cells are cut in a report: for each that a neuron with values shows, the compartments of the first such
-/// neuron. `stand`: the cell that each neuron shows and its node. Empty for spikes.
+/// neuron. `instances`: the cell that each neuron shows and its node. Empty for spikes.
 ///
 /// # Errors
 /// What is wrong with the file, or that it is of another circuit.
 pub fn cuts(
     report: &Path,
     circuit: &Circuit,
-    stand: &[(usize, NodeRef)],
+    instances: &[(usize, NodeRef)],
 ) -> Result<HashMap<usize, Vec<Compartment>>, CircuitError> {
     let mut cuts = HashMap::new();
     let RecordingFile::Report(report) = RecordingFile::open(report)? else {
@@ -38,7 +38,7 @@ pub fn cuts(
     for population in &report.populations {
         let nodes = population.nodes_in(circuit)?;
         let rows: HashMap<NodeRef, usize> = nodes.into_iter().zip(0..).collect();
-        for (cell, node) in stand {
+        for (cell, node) in instances {
             if let Some(&row) = rows.get(node)
                 && !cuts.contains_key(cell)
             {
@@ -72,13 +72,13 @@ pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Mo
         let section = &morphology.sections[index];
         let first = cut.points.len() as u32;
         let mut before = shape::branch_point(morphology, SectionId(index as u32)).copied();
-        let mut ways = Ways::new(morphology, index, middles);
+        let mut ahead = MiddlesAhead::new(morphology, index, middles);
         for (point, sample) in morphology.points[section.range()]
             .iter()
             .zip(&morphology.sample_ids[section.range()])
         {
             if let Some(before) = before {
-                for share in ways.within(&before, point) {
+                for share in ahead.within(&before, point) {
                     cut.points.push(between(&before, point, share));
                     cut.sample_ids.push(next);
                     next += 1;
@@ -95,7 +95,7 @@ pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Mo
 }
 
 /// The middles that are still to come along a section.
-struct Ways<'m> {
+struct MiddlesAhead<'m> {
     /// Shares of the section's length, ascending.
     middles: &'m [f64],
     /// Of the section (µm).
@@ -104,7 +104,7 @@ struct Ways<'m> {
     way: f64,
 }
 
-impl<'m> Ways<'m> {
+impl<'m> MiddlesAhead<'m> {
     fn new(morphology: &Morphology, section: usize, middles: &'m [f64]) -> Self {
         let links = shape::links(morphology, SectionId(section as u32));
         let length = links.map(|(a, b)| f64::from(a.position.distance(b.position)));
@@ -148,7 +148,8 @@ fn between(a: &Point, b: &Point, share: f32) -> Point {
 mod tests {
     use super::*;
     use crate::compartments::on_cell;
-    use crate::{Cell, path_distances};
+    use crate::path_distance::path_distances;
+    use crate::scheme::Cell;
 
     const BALL_AND_STICK: &str = "1 1 0 0 0 5 -1\n2 3 0 6 0 1 1\n3 3 0 106 0 1 2\n";
     /// A fork: the second child has one point of its own.

@@ -1,6 +1,6 @@
-//! What colors tell: a color_key for every tracing point, the table of colors and the legend.
+//! What colors tell: a color key for every tracing point, the table of colors and the legend.
 //!
-//! Words belong to a cell, whatever shows it. What differs from neuron to neuron of one cell is in the
+//! Color keys belong to a cell, whichever neurons show it. What differs from neuron to neuron of one cell is in the
 //! table's values: a color for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
 //! ([`Recording`]).
 #![forbid(unsafe_code)]
@@ -9,11 +9,15 @@ mod by_node;
 mod by_tracing;
 mod compartments;
 mod cut;
+mod path_distance;
 mod recording;
 mod report_frame;
+mod scheme;
 
 pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
-pub use by_tracing::{Cell, ColorBy, ColorScheme, Coloring, NOTHING, coloring, path_distances};
+pub use by_tracing::{ColorBy, coloring};
 pub use cut::{cuts, with_middles};
+pub use path_distance::path_distances;
 pub use recording::{DECAY, Recording, RecordingError};
 pub use report_frame::ReportFrame;
+pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};

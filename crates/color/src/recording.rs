@@ -1,8 +1,8 @@
 //! Values of a simulation on the membrane: those of a report at a time, or spikes that fade.
 //!
 //! **Theory.** Opening matches compartments with neurons once; after that a time costs the values of the
-//! neurons that are asked for, and nothing of the scene changes. Words are places among a neuron's own
-//! values, so that neurons of one cell share it on the device.
+//! neurons that are asked for, and nothing of the scene changes. A color key is an index among a neuron's
+//! own values, so that neurons of one cell share it on the device.
 //!
 //! **Practice.** The first neuron of a cell that has values says where compartments are; another one of the
 //! same cell that was cut otherwise takes the nearest compartment of the same section.
@@ -10,17 +10,17 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use thiserror::Error;
-
-use crate::by_node::first_values;
-use crate::compartments::{matched, on_cell};
-use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
-use crate::{Cell, ColorScheme, Coloring};
 use neurotess_circuit::{
     Circuit, CircuitError, Compartment, NodeRef, RecordingFile, Report, ReportPopulation,
     SpikePopulation, Spikes, TimeAxis,
 };
 use neurotess_render::category;
+use thiserror::Error;
+
+use crate::by_node::first_values;
+use crate::compartments::{matched, on_cell};
+use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
+use crate::scheme::{Cell, ColorScheme, Coloring};
 
 /// After this time (ms) a flash has a third of its light, unless told otherwise.
 pub const DECAY: f64 = 5.0;
@@ -52,7 +52,7 @@ pub enum RecordingError {
     },
 }
 
-/// A recording, matched with the neurons that stand somewhere.
+/// A recording, matched with the instances of a scene.
 #[derive(Debug)]
 pub struct Recording {
     /// The file as it was named.
@@ -68,18 +68,18 @@ pub struct Recording {
     source: Source,
 }
 
-/// Where the nodes of a population of spikes stand, by id.
-type Places = HashMap<u64, Vec<usize>>;
+/// The instances that show each node of a population of spikes, by id.
+type InstancesOfNode = HashMap<u64, Vec<usize>>;
 
 #[derive(Debug)]
 enum Source {
     Report(Report, Vec<PopulationMatch>),
-    /// The place of each node that stands somewhere, by population of the file.
-    Spikes(Spikes, Vec<Places>),
+    /// By population of the file.
+    Spikes(Spikes, Vec<InstancesOfNode>),
 }
 
 impl Recording {
-    /// Opens a recording. `stand`: the cell that each neuron shows and its node; none: it is of no
+    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none: it is of no
     /// circuit, or of another one.
     ///
     /// # Errors
@@ -88,11 +88,11 @@ impl Recording {
         path: &Path,
         circuit: &Circuit,
         cells: &[Cell<'_>],
-        stand: &[(usize, Option<NodeRef>)],
+        instances: &[(usize, Option<NodeRef>)],
     ) -> Result<Self, RecordingError> {
         let mut recording = match RecordingFile::open(path)? {
-            RecordingFile::Report(report) => Self::of_report(report, circuit, cells, stand)?,
-            RecordingFile::Spikes(spikes) => Self::of_spikes(spikes, circuit, cells, stand)?,
+            RecordingFile::Report(report) => Self::of_report(report, circuit, cells, instances)?,
+            RecordingFile::Spikes(spikes) => Self::of_spikes(spikes, circuit, cells, instances)?,
         };
         let title = path.file_stem().unwrap_or_default().to_string_lossy();
         recording.file = path.display().to_string();
@@ -104,19 +104,19 @@ impl Recording {
         report: Report,
         circuit: &Circuit,
         cells: &[Cell<'_>],
-        stand: &[(usize, Option<NodeRef>)],
+        instances: &[(usize, Option<NodeRef>)],
     ) -> Result<Self, CircuitError> {
         let mut cuts: Vec<Option<Vec<Compartment>>> = vec![None; cells.len()];
         let points = cells.iter().map(|cell| cell.mesh.tracing.len());
         let mut color_keys: Vec<Vec<u32>> = points.map(|n| vec![category(0); n]).collect();
-        let mut has_values = vec![false; stand.len()];
+        let mut has_values = vec![false; instances.len()];
         let mut unit = String::new();
         let mut parts = Vec::new();
         for population in &report.populations {
             let nodes = population.nodes_in(circuit)?;
             let rows: HashMap<NodeRef, usize> = nodes.into_iter().zip(0..).collect();
             let mut part = PopulationMatch::default();
-            for (place, (cell, node)) in stand.iter().enumerate() {
+            for (instance, (cell, node)) in instances.iter().enumerate() {
                 let Some(&row) = node.as_ref().and_then(|node| rows.get(node)) else {
                     continue;
                 };
@@ -130,8 +130,8 @@ impl Recording {
                 let compartments = matched(cut, &own);
                 part.compartments
                     .extend(compartments.iter().map(|&k| first + k as u64));
-                part.spans.push((place, start..part.compartments.len()));
-                has_values[place] = true;
+                part.spans.push((instance, start..part.compartments.len()));
+                has_values[instance] = true;
             }
             parts.push(part);
             unit.clone_from(&population.units);
@@ -151,12 +151,12 @@ impl Recording {
         spikes: Spikes,
         circuit: &Circuit,
         cells: &[Cell<'_>],
-        stand: &[(usize, Option<NodeRef>)],
+        instances: &[(usize, Option<NodeRef>)],
     ) -> Result<Self, CircuitError> {
         let mut of_node: HashMap<NodeRef, Vec<usize>> = HashMap::new();
-        for (place, (_, node)) in stand.iter().enumerate() {
+        for (instance, (_, node)) in instances.iter().enumerate() {
             if let Some(node) = node {
-                of_node.entry(*node).or_default().push(place);
+                of_node.entry(*node).or_default().push(instance);
             }
         }
         let mut firing = Vec::new();
@@ -168,14 +168,14 @@ impl Recording {
                 .iter()
                 .zip(&population.nodes)
                 .filter_map(|(node, &id)| {
-                    let places = of_node.get(node)?;
-                    Some((id, places.clone()))
+                    let instances = of_node.get(node)?;
+                    Some((id, instances.clone()))
                 });
             firing.push(shown.collect());
         }
         // A neuron that never fires is silent, not without a value.
         let of_known = |node: &Option<NodeRef>| node.is_some_and(|n| known.contains(&n.population));
-        let has_values = stand.iter().map(|(_, node)| of_known(node)).collect();
+        let has_values = instances.iter().map(|(_, node)| of_known(node)).collect();
         Ok(Self {
             file: String::new(),
             title: String::new(),
@@ -202,7 +202,7 @@ impl Recording {
         self.has_values.iter().filter(|has| !**has).count()
     }
 
-    /// What points of cells say, whatever the time.
+    /// Color keys of cells, whatever the time.
     pub fn color_keys(&self) -> &[Vec<u32>] {
         &self.color_keys
     }
@@ -221,9 +221,13 @@ impl Recording {
         match &self.source {
             Source::Report(report, parts) => self.values_at(report, parts, time, shows),
             Source::Spikes(spikes, firing) => {
-                let flashes = |(population, places): (&SpikePopulation, &Places)| {
+                let flashes = |(population, instances): (&SpikePopulation, &InstancesOfNode)| {
                     let lit = population.flashes(time, decay).into_iter();
-                    let of = |(id, flash)| places.get(&id).map(|places| (places.clone(), flash));
+                    let of = |(id, flash)| {
+                        instances
+                            .get(&id)
+                            .map(|instances| (instances.clone(), flash))
+                    };
                     lit.filter_map(of).collect::<Vec<_>>()
                 };
                 let all = spikes.populations.iter().zip(firing).flat_map(flashes);
@@ -266,15 +270,15 @@ impl Recording {
         shows: &dyn Fn(usize) -> bool,
     ) -> ReportFrame {
         let mut flashes = vec![0.0; self.has_values.len()];
-        for (places, flash) in lit {
-            for place in places {
-                flashes[place] = flash;
+        for (instances, flash) in lit {
+            for instance in instances {
+                flashes[instance] = flash;
             }
         }
         let mut frame_values = ReportFrame::none(self.has_values.len());
-        for (place, flash) in flashes.into_iter().enumerate() {
-            if shows(place) && self.has_values[place] {
-                frame_values.put(place, [flash]);
+        for (instance, flash) in flashes.into_iter().enumerate() {
+            if shows(instance) && self.has_values[instance] {
+                frame_values.put(instance, [flash]);
             }
         }
         frame_values

@@ -9,30 +9,30 @@ use neurotess_render::InstanceValues;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReportFrame {
     values: Vec<f32>,
-    of_place: Vec<Range<usize>>,
+    of_instance: Vec<Range<usize>>,
 }
 
 /// What is shown of a population of a report.
 #[derive(Debug, Default)]
 pub(super) struct PopulationMatch {
-    /// Compartments of all places, one after another.
+    /// Compartments of all instances, one after another.
     pub(super) compartments: Vec<u64>,
-    /// Location, and where its compartments are in the list.
+    /// Instance, and where its compartments are in the list.
     pub(super) spans: Vec<(usize, Range<usize>)>,
 }
 
 impl ReportFrame {
-    pub(super) fn none(places: usize) -> Self {
+    pub(super) fn none(instances: usize) -> Self {
         Self {
             values: Vec::new(),
-            of_place: vec![0..0; places],
+            of_instance: vec![0..0; instances],
         }
     }
 
-    pub(super) fn put(&mut self, place: usize, values: impl IntoIterator<Item = f32>) {
+    pub(super) fn put(&mut self, instance: usize, values: impl IntoIterator<Item = f32>) {
         let start = self.values.len();
         self.values.extend(values);
-        self.of_place[place] = start..self.values.len();
+        self.of_instance[instance] = start..self.values.len();
     }
 
     pub(super) fn read(
@@ -42,15 +42,15 @@ impl ReportFrame {
         frame: u64,
         shows: &dyn Fn(usize) -> bool,
     ) -> Result<(), CircuitError> {
-        let shown = || part.spans.iter().filter(|(place, _)| shows(*place));
+        let shown = || part.spans.iter().filter(|(instance, _)| shows(*instance));
         // Together, so that neighbors in the file are read at once.
         let mut wanted = Vec::new();
         for (_, span) in shown() {
             wanted.extend_from_slice(&part.compartments[span.clone()]);
         }
         let mut values = population.values(frame, &wanted)?.into_iter();
-        for (place, span) in shown() {
-            self.put(*place, values.by_ref().take(span.len()));
+        for (instance, span) in shown() {
+            self.put(*instance, values.by_ref().take(span.len()));
         }
         Ok(())
     }
@@ -69,7 +69,7 @@ impl ReportFrame {
     pub fn values(&self, [low, high]: [f32; 2]) -> InstanceValues {
         let mut values = InstanceValues::default();
         let mut shares = Vec::new();
-        for range in &self.of_place {
+        for range in &self.of_instance {
             let own = self.values[range.clone()].iter();
             shares.clear();
             shares.extend(own.map(|value| (value - low) / (high - low)));
@@ -89,8 +89,8 @@ impl ReportFrame {
     }
 
     /// Values of a neuron; none: it does not show or has none.
-    pub fn of(&self, place: usize) -> &[f32] {
-        let range = self.of_place.get(place).cloned().unwrap_or_default();
+    pub fn of(&self, instance: usize) -> &[f32] {
+        let range = self.of_instance.get(instance).cloned().unwrap_or_default();
         &self.values[range]
     }
 }
