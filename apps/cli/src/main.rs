@@ -1,33 +1,20 @@
 //! The `neurotess` command.
 #![forbid(unsafe_code)]
 
-mod args;
-mod bench;
-mod check;
-mod circuit;
-mod convert;
+mod cli;
+mod commands;
 mod headless;
-mod info;
-mod inputs;
 mod interrupt;
-mod man;
-mod mesh;
-mod output;
-mod progress;
-mod render;
+mod io;
+mod options;
 mod report;
-mod rings;
-mod synth;
-mod targets;
-mod version;
-mod view;
-mod workers;
 
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
-use args::{Cli, Command};
+use cli::{Cli, Command};
+use commands::{bench, check, convert, info, man, mesh, render, synth, version, view};
 use report::{Reporter, Usage};
 
 fn main() -> ExitCode {

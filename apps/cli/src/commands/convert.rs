@@ -1,0 +1,133 @@
+//! `neurotess convert`: morphologies in another format.
+
+use std::collections::BTreeMap;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use neurotess::formats::{self, Format, ReadOptions};
+use neurotess::morphology::Morphology;
+use serde::Serialize;
+
+use crate::cli::ConvertArgs;
+use crate::commands::info::{Entry, MORPHOLOGIES, ReaderWarning, each};
+use crate::io::inputs::{Input, Inputs, morphology, readable};
+use crate::io::output::{self, OutputError};
+use crate::io::targets;
+use crate::report::{Failure, Reporter, usage};
+
+/// One object of the JSON list.
+#[derive(Serialize)]
+struct Converted {
+    file: String,
+    out: String,
+    format: &'static str,
+    warnings: Vec<ReaderWarning>,
+    /// What the format cannot say.
+    lost: Vec<ReaderWarning>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    reporter.leave_output_to(&args.out.out)?;
+    let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
+    let format = format(args, &inputs)?;
+    let named = args.out.out.extension().unwrap_or_default();
+    let named = Format::of_extension(&named.to_string_lossy());
+    reporter.warn_of_name(&args.out.out, format.name(), named.map(Format::name));
+    let extension = format.extensions()[0];
+    let jobs = targets::plan(&inputs, &args.out.out, extension)?;
+    let outs: BTreeMap<&PathBuf, &Path> = jobs
+        .iter()
+        .map(|job| (&job.input, job.out.as_path()))
+        .collect();
+    let options = ReadOptions {
+        strict: args.strict,
+    };
+    let converted = each(&inputs, reporter, |input: &Input| {
+        let out = outs[&input.path];
+        let file = input.path.display().to_string();
+        let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+        readable(&input.path)?;
+        output::check(out, args.out.force).map_err(failed)?;
+        let read = morphology(&input.path, None, &options)?;
+        let lost = write(&read.morphology, format, out, args.out.force).map_err(failed)?;
+        Ok(Converted {
+            out: out.display().to_string(),
+            format: extension,
+            lost: lost.into_iter().map(ReaderWarning::from).collect(),
+            warnings: read.warnings.into_iter().map(ReaderWarning::from).collect(),
+            file: file.clone(),
+        })
+    })?;
+    for entry in &converted {
+        if let Entry::Done(done) = entry {
+            reporter.result(&format!("{} → {}", done.file, done.out));
+            tell_losses(done, reporter);
+        }
+    }
+    reporter.document(&converted)
+}
+
+/// What OUT lacks: all of it for one file or where much is to be told, else that there is something.
+fn tell_losses(done: &Converted, reporter: &Reporter) {
+    if done.lost.is_empty() {
+        return;
+    }
+    if reporter.verbose() {
+        for loss in &done.lost {
+            reporter.warning(&format!("{}: {}", done.out, loss.message()));
+        }
+        return;
+    }
+    let codes: Vec<&str> = done.lost.iter().map(ReaderWarning::code).collect();
+    reporter.warning(&format!(
+        "{}: not all can be said in {}: {} (-v tells more)",
+        done.out,
+        done.format,
+        codes.join(", ")
+    ));
+}
+
+/// Writes a morphology to a file, whole or not at all; what the format cannot say.
+pub(crate) fn write(
+    morphology: &Morphology,
+    format: Format,
+    out: &Path,
+    force: bool,
+) -> Result<Vec<formats::Warning>, OutputError> {
+    let mut output = output::begin(out, force)?;
+    let writer = BufWriter::new(output.file());
+    let lost =
+        formats::write(morphology, format, writer).map_err(|e| OutputError::broken(out, e))?;
+    output.finish()?;
+    Ok(lost)
+}
+
+/// The format asked for by name or by OUT's extension; SWC for a folder.
+fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
+    let out = &args.out.out;
+    let asked = match &args.format {
+        Some(format) => format.clone(),
+        None if targets::is_folder(out, inputs) => return Ok(Format::Swc),
+        None => out
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned(),
+    };
+    let format = Format::of_extension(&asked).filter(|f| Format::WRITTEN.contains(f));
+    if let Some(format) = format {
+        return Ok(format);
+    }
+    let asked = if asked.is_empty() {
+        format!("{} has no extension", out.display())
+    } else {
+        format!("morphologies cannot be written as '{asked}'")
+    };
+    usage(format!("{asked}: use {}", written().join(", ")))
+}
+
+/// Formats that are written, by their extensions.
+pub(crate) fn written() -> [&'static str; Format::WRITTEN.len()] {
+    Format::WRITTEN.map(|format| format.extensions()[0])
+}

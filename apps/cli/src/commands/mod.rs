@@ -1,0 +1,12 @@
+//! What each command does.
+
+pub(crate) mod bench;
+pub(crate) mod check;
+pub(crate) mod convert;
+pub(crate) mod info;
+pub(crate) mod man;
+pub(crate) mod mesh;
+pub(crate) mod render;
+pub(crate) mod synth;
+pub(crate) mod version;
+pub(crate) mod view;

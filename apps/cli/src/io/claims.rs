@@ -1,0 +1,59 @@
+//! One file, one run: a cell is claimed before it is read, and may turn out to be done already.
+
+use std::time::Duration;
+
+use crate::io::output::{Output, OutputError, begin};
+use crate::io::record::{Made, Stamp};
+use crate::io::targets::Job;
+use crate::report::Reporter;
+
+/// How often another run is asked whether it is done.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// What a worker may do with a cell.
+pub(crate) enum Claim {
+    /// Make it, into this.
+    Ours(Output),
+    /// Leave it: another run has made it meanwhile.
+    Done,
+}
+
+/// Claims an output. With `--resume` (`made` and `resume`) another run that has it is waited for, and
+/// what we made ourselves of other options or another input is replaced.
+pub(crate) fn claim(
+    job: &Job,
+    force: bool,
+    resume: Option<&Made>,
+    reporter: &Reporter,
+) -> Result<Claim, OutputError> {
+    let Some(made) = resume else {
+        return begin(&job.out, force).map(Claim::Ours);
+    };
+    let mut told = false;
+    loop {
+        let before = Stamp::of(&job.out);
+        let mut standing = made.standing(job);
+        if before.is_some() && !standing.is_ours() {
+            // Perhaps another run's, which has recorded it.
+            made.read();
+            standing = made.standing(job);
+        }
+        if standing.stays() {
+            return Ok(Claim::Done);
+        }
+        match begin(&job.out, force || standing.is_ours()) {
+            Ok(output) if Stamp::of(&job.out) == before => return Ok(Claim::Ours(output)),
+            // It was finished between the look and the claim.
+            Ok(_) => {}
+            Err(OutputError::Taken { path }) => {
+                if !told {
+                    let path = path.display();
+                    reporter.note(&format!("{path} is being written by another run: waiting"));
+                    told = true;
+                }
+                std::thread::sleep(PATIENCE);
+            }
+            Err(e) => return Err(e),
+        }
+    }
+}

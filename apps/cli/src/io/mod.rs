@@ -1,0 +1,8 @@
+//! What is read, what is written, and by how many threads.
+
+pub(crate) mod claims;
+pub(crate) mod inputs;
+pub(crate) mod output;
+pub(crate) mod record;
+pub(crate) mod targets;
+pub(crate) mod workers;
