@@ -1,13 +1,35 @@
 //! `neurotess check`: what a mesh is and what is wrong with it.
 
+use std::path::PathBuf;
+
+use clap::Args;
 use neurotess::mesh::{self, FilePosition, Format, ReadError, Report};
 use serde::Serialize;
 
-use crate::cli::CheckArgs;
-use crate::commands::info::{Entry, each};
-use crate::io::inputs::{Input, Inputs, standard_input};
+use crate::io::batch::each;
+use crate::io::inputs::{Input, Inputs};
 use crate::io::output::is_standard;
-use crate::report::{Failure, Reporter, place};
+use crate::io::standard_input::standard_input;
+use crate::report::{Entry, Failure, Reporter, place};
+
+/// `neurotess check`
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Vertices are those of the file. STL repeats them for every face: use --merge.
+A mesh that is not closed is a verdict, not a failure: the exit code is 0 if all could be read."
+)]
+pub(crate) struct CheckArgs {
+    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs; - for standard
+    /// input, with --format
+    #[arg(required = true, value_name = "MESH")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+    /// Merge vertices of identical position first
+    #[arg(long)]
+    pub(crate) merge: bool,
+}
 
 /// One object of the JSON list.
 #[derive(Serialize)]

@@ -1,19 +1,37 @@
 //! `neurotess convert`: morphologies in another format.
 
 use std::collections::BTreeMap;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use neurotess::formats::{self, Format, ReadOptions};
-use neurotess::morphology::Morphology;
+use clap::Args;
+use neurotess::formats::{Format, ReadOptions};
 use serde::Serialize;
 
-use crate::cli::ConvertArgs;
-use crate::commands::info::{Entry, MORPHOLOGIES, ReaderWarning, each};
-use crate::io::inputs::{Input, Inputs, morphology, readable};
+use crate::io::batch::each;
+use crate::io::inputs::{Input, Inputs};
+use crate::io::morphologies::{
+    MORPHOLOGIES, ReaderWarning, read_morphology, readable, write_morphology, written,
+};
 use crate::io::output::{self, OutputError};
 use crate::io::targets;
-use crate::report::{Failure, Reporter, usage};
+use crate::options::out::OutArgs;
+use crate::report::{Entry, Failure, Reporter, usage};
+
+/// `neurotess convert`
+#[derive(Args, Debug)]
+pub(crate) struct ConvertArgs {
+    /// Morphology files, folders (searched recursively) or globs; - for standard input
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: OutArgs,
+    /// Format to write, where OUT's extension does not tell: swc, asc or h5
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<String>,
+    /// Take every warning of the reader as an error
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
 
 /// One object of the JSON list.
 #[derive(Serialize)]
@@ -28,7 +46,7 @@ struct Converted {
 
 /// Runs the command.
 pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    reporter.leave_output_to(&args.out.out)?;
+    output::reserve_standard(&args.out.out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let format = format(args, &inputs)?;
     let named = args.out.out.extension().unwrap_or_default();
@@ -49,8 +67,9 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
         readable(&input.path)?;
         output::check(out, args.out.force).map_err(failed)?;
-        let read = morphology(&input.path, None, &options)?;
-        let lost = write(&read.morphology, format, out, args.out.force).map_err(failed)?;
+        let read = read_morphology(&input.path, None, &options)?;
+        let lost =
+            write_morphology(&read.morphology, format, out, args.out.force).map_err(failed)?;
         Ok(Converted {
             out: out.display().to_string(),
             format: extension,
@@ -88,21 +107,6 @@ fn tell_losses(done: &Converted, reporter: &Reporter) {
     ));
 }
 
-/// Writes a morphology to a file, whole or not at all; what the format cannot say.
-pub(crate) fn write(
-    morphology: &Morphology,
-    format: Format,
-    out: &Path,
-    force: bool,
-) -> Result<Vec<formats::Warning>, OutputError> {
-    let mut output = output::begin(out, force)?;
-    let writer = BufWriter::new(output.file());
-    let lost =
-        formats::write(morphology, format, writer).map_err(|e| OutputError::broken(out, e))?;
-    output.finish()?;
-    Ok(lost)
-}
-
 /// The format asked for by name or by OUT's extension; SWC for a folder.
 fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     let out = &args.out.out;
@@ -125,9 +129,4 @@ fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
         format!("morphologies cannot be written as '{asked}'")
     };
     usage(format!("{asked}: use {}", written().join(", ")))
-}
-
-/// Formats that are written, by their extensions.
-pub(crate) fn written() -> [&'static str; Format::WRITTEN.len()] {
-    Format::WRITTEN.map(|format| format.extensions()[0])
 }

@@ -1,16 +1,23 @@
 //! `neurotess man`: manual pages, made of what --help says.
 
-use clap::CommandFactory;
+use crate::report::{Reporter, usage};
 
-use crate::cli::Cli;
-use crate::report::usage;
+/// Runs the command. `program`: the whole command line.
+pub(crate) fn run(
+    command: Option<&str>,
+    program: clap::Command,
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    let text = page(command, program)?;
+    reporter.answer(text.trim_end());
+    reporter.document(&serde_json::json!({ "man": text }))
+}
 
 /// The page of a command, or of the program, as roff.
 ///
 /// # Errors
 /// Wrong usage: there is no such command.
-pub(crate) fn page(command: Option<&str>) -> anyhow::Result<String> {
-    let mut program = Cli::command();
+fn page(command: Option<&str>, mut program: clap::Command) -> anyhow::Result<String> {
     program.build();
     let shown = match command {
         None => Some(&program),

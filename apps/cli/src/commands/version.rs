@@ -4,8 +4,7 @@ use neurotess::mesh::Format;
 use neurotess::render::{AdapterName, DeviceError, Gpu};
 use serde_json::json;
 
-use crate::commands::convert;
-use crate::commands::info::MORPHOLOGIES;
+use crate::io::morphologies::{MORPHOLOGIES, written};
 use crate::report::Reporter;
 
 /// The adapter that pictures would be drawn with.
@@ -24,7 +23,7 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
             Err(e) => format!("adapter: none: {e}"),
         });
         reporter.answer(&format!("reads: {}", MORPHOLOGIES.join(" ")));
-        reporter.answer(&format!("writes: {}", convert::written().join(" ")));
+        reporter.answer(&format!("writes: {}", written().join(" ")));
         reporter.answer(&format!("meshes: {}", meshes.join(" ")));
         let system = (std::env::consts::OS, std::env::consts::ARCH);
         reporter.answer(&format!("system: {} {}", system.0, system.1));
@@ -36,7 +35,7 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
         "version": version,
         "adapter": adapter().ok().map(|adapter| adapter.to_string()),
         "reads": MORPHOLOGIES,
-        "writes": convert::written(),
+        "writes": written(),
         "meshes": meshes,
     }))
 }

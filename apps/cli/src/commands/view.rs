@@ -7,8 +7,8 @@ use clap::Args;
 use neurotess_viewer::Hears;
 use neurotess_viewer::document::SomaEdit;
 
-use crate::commands::info::MORPHOLOGIES;
 use crate::io::inputs::Inputs;
+use crate::io::morphologies::MORPHOLOGIES;
 use crate::options::rings::RingArgs;
 use crate::report::Reporter;
 

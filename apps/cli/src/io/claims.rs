@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::io::output::{Output, OutputError, begin};
-use crate::io::record::{Made, Stamp};
-use crate::io::targets::Job;
+use super::output::{Output, OutputError, begin};
+use super::record::{Made, Stamp};
+use super::targets::Job;
 use crate::report::Reporter;
 
 /// How often another run is asked whether it is done.

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-use neurotess::formats::{self, Format, ReadOptions};
+use neurotess::formats;
 use rayon::prelude::*;
 use walkdir::WalkDir;
 
-use crate::io::output::is_standard;
+use super::output::is_standard;
 use crate::report::{Failure, Reporter, count};
 
 /// A file to read.
@@ -65,59 +64,6 @@ impl Inputs {
                 count(self.others, "HDF5 file")
             ));
         }
-    }
-}
-
-/// Reads the morphology of an input.
-pub(crate) fn morphology(
-    path: &Path,
-    format: Option<Format>,
-    options: &ReadOptions,
-) -> Result<formats::Read, Failure> {
-    let read = match is_standard(path) {
-        true => {
-            let no_text = |head: &[u8]| head.contains(&0) && !head.starts_with(b"\x89HDF");
-            formats::read_bytes(standard_input(no_text)?, "-", format, options)
-        }
-        false => formats::read(path, options),
-    };
-    read.map_err(|e| Failure(e.to_string()))
-}
-
-/// An error if an input cannot be read at all, told before anything is said of its output.
-pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
-    if is_standard(path) {
-        return Ok(());
-    }
-    formats::regular(formats::member(path).0).map_err(|e| {
-        let file = path.display();
-        Failure(format!(
-            "{file}: cannot be read ({e}): check the path and its permissions"
-        ))
-    })
-}
-
-/// Bytes by which it is seen whether the rest can be of use.
-const HEAD: u64 = 1 << 16;
-/// Most bytes of standard input.
-const MOST: u64 = 1 << 32;
-
-/// All of standard input, or its beginning if `useless` says that no more is needed to tell what is wrong.
-pub(crate) fn standard_input(useless: impl Fn(&[u8]) -> bool) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    let mut input = io::stdin().lock();
-    let mut read = input.by_ref().take(HEAD).read_to_end(&mut bytes);
-    if read.is_ok() && !useless(&bytes) {
-        read = input.take(MOST).read_to_end(&mut bytes);
-    }
-    match read {
-        Ok(_) if (bytes.len() as u64) < MOST => Ok(bytes),
-        Ok(_) => Err(Failure(
-            "-: standard input has no end, or more than 4 GB: give a file".into(),
-        )),
-        Err(e) => Err(Failure(format!(
-            "-: standard input cannot be read ({e}): check where it comes from"
-        ))),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::report::Reporter;
 pub(crate) use neurotess::output::{Existing, Output, OutputError};
 
 /// Only where the user says so.
@@ -15,6 +16,17 @@ pub(crate) fn existing(force: bool) -> Existing {
 /// Whether OUT is standard output.
 pub(crate) fn is_standard(out: &Path) -> bool {
     out == Path::new("-")
+}
+
+/// Leaves standard output to OUT, if that is where it goes.
+///
+/// # Errors
+/// Wrong usage: JSON is to be printed there too.
+pub(crate) fn reserve_standard(out: &Path, reporter: &Reporter) -> anyhow::Result<()> {
+    match is_standard(out) {
+        true => reporter.leave_output(),
+        false => Ok(()),
+    }
 }
 
 /// An error if the file exists and must not be replaced.

@@ -25,7 +25,7 @@ use std::time::UNIX_EPOCH;
 use neurotess::formats;
 use serde::{Deserialize, Serialize};
 
-use crate::io::targets::Job;
+use super::targets::Job;
 
 /// Name of the record.
 pub(crate) const NAME: &str = ".neurotess-made";

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use neurotess::formats;
 
-use crate::io::inputs::{Input, Inputs};
-use crate::io::output::is_standard;
+use super::inputs::{Input, Inputs};
+use super::output::is_standard;
 use crate::report::usage;
 
 /// A file and what it becomes.

@@ -1,12 +1,10 @@
 //! Circuits on the command line: which inputs are such, and which of their cells are meant.
 
-use std::path::{Path, PathBuf};
-
 use clap::Args;
 use glam::DVec3;
-use neurotess::circuit::{Circuit, NodeRef, Selection, is_circuit};
+use neurotess::circuit::{Circuit, NodeRef, Selection};
 
-use crate::report::{Failure, Reporter};
+use crate::report::Failure;
 
 /// Which cells of a circuit.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -63,23 +61,6 @@ impl CellArgs {
             .select(&selection)
             .map_err(|e| Failure(e.to_string()))
     }
-}
-
-/// Inputs that are circuits, and the others.
-pub(crate) fn partition(inputs: &[PathBuf]) -> (Vec<PathBuf>, Vec<PathBuf>) {
-    inputs.iter().cloned().partition(|path| is_circuit(path))
-}
-
-/// Opens a circuit; tells of what could not be opened of it, and of what is odd.
-pub(crate) fn open(path: &Path, reporter: &Reporter) -> Result<Circuit, Failure> {
-    let circuit = Circuit::open(path).map_err(|e| Failure(e.to_string()))?;
-    for failure in &circuit.failures {
-        reporter.failure(&Failure(failure.to_string()));
-    }
-    for warning in &circuit.warnings {
-        reporter.warning(&warning.to_string());
-    }
-    Ok(circuit)
 }
 
 fn ids(text: &str) -> Result<Ids, String> {

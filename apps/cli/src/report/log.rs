@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
 
-use crate::report::Failure;
+use super::failure::Failure;
 
 /// A file that lines are appended to, each before its mesh gets its name: a run that is killed between the
 /// two leaves a line too many, never one too few. Each line is one write, so that it is whole even if several

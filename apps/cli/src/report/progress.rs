@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::report::Reporter;
+use super::reporter::Reporter;
 
 /// Before this nothing is shown.
 const PATIENCE: Duration = Duration::from_secs(1);

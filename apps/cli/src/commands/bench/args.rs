@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use neurotess::render::{DEFAULT_BUDGET, MOST_BUDGET};
 
-use crate::commands::render::args::Size;
+use crate::options::size::Size;
 
 /// `neurotess bench`
 #[derive(Args, Debug)]
@@ -84,14 +84,14 @@ pub(crate) struct RefinementArgs {
     #[arg(long, value_name = "WxH", default_value = "600x600")]
     pub(crate) size: Size,
     /// Error (pixels) of adaptive refinement by error
-    #[arg(long, value_name = "P", default_value_t = 0.5, value_parser = crate::cli::positive)]
+    #[arg(long, value_name = "P", default_value_t = 0.5, value_parser = crate::options::numbers::positive)]
     pub(crate) pixels: f64,
     /// Frames that are timed of each; the median counts
     #[arg(long, value_name = "N", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,
     /// Seconds of a frame after which it is not repeated
-    #[arg(long, value_name = "S", default_value_t = 4.0, value_parser = crate::cli::positive)]
+    #[arg(long, value_name = "S", default_value_t = 4.0, value_parser = crate::options::numbers::positive)]
     pub(crate) patience: f64,
     /// Most memory (MiB) of stored surfaces: what needs more is left out
     #[arg(long, value_name = "MIB", default_value_t = 2048)]

@@ -17,10 +17,9 @@ use anyhow::Context;
 use neurotess::render::Gpu;
 use serde::Serialize;
 
-pub(crate) use args::BenchArgs;
-
 use crate::io::output::{Output, OutputError, existing};
 use crate::report::Reporter;
+pub(crate) use args::BenchArgs;
 use args::{Bench, RefinementArgs};
 use methods::{Drawing, Method, Row};
 use scenes::{Neuron, Scene};

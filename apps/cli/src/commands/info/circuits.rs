@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use neurotess::circuit::{Circuit, RecordingFile, ReportKind, TimeAxis};
 use serde::Serialize;
 
-use crate::commands::info::{Entry, Failed};
-use crate::options::cells::open;
-use crate::report::{Failure, Reporter, count};
+use crate::io::circuits;
+use crate::report::{Entry, Failed, Failure, Reporter, count};
 
 /// One object of the JSON list.
 #[derive(Serialize)]
@@ -94,7 +93,7 @@ pub(crate) fn describe_all(
 ) -> anyhow::Result<Vec<Entry<Description>>> {
     let mut entries = Vec::new();
     for path in circuits {
-        entries.push(match open(path, reporter) {
+        entries.push(match circuits::open(path, reporter) {
             Ok(circuit) => {
                 let description = describe(&circuit, reporter);
                 reporter.answer(&table(&description));

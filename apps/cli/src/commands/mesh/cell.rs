@@ -14,11 +14,10 @@ use serde::Serialize;
 use super::observed::Observed;
 use super::options::{Fineness, Recipe};
 use super::size;
-use crate::io::inputs::morphology;
+use crate::io::morphologies::read_morphology;
 use crate::io::output::{Output, OutputError};
 use crate::io::targets::Job;
-use crate::report::progress::Progress;
-use crate::report::{Failure, Reporter};
+use crate::report::{Failure, Progress, Reporter};
 
 /// One object of the JSON list, and one line of the log.
 #[derive(Clone, Debug, Serialize)]
@@ -121,7 +120,7 @@ pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure
     let options = ReadOptions {
         strict: recipe.strict,
     };
-    let read = morphology(input, None, &options)?;
+    let read = read_morphology(input, None, &options)?;
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();

@@ -11,19 +11,15 @@ use std::time::Instant;
 
 use neurotess::circuit::{Circuit, Instance};
 
+use super::args::MeshArgs;
 use super::cell::{self, Node, Told};
 use super::options::Recipe;
 use super::{Context, Entry, circuit_glb, summarize};
-use crate::cli::MeshArgs;
-use crate::commands::info::Failed;
 use crate::io::inputs::Inputs;
 use crate::io::record::Made;
 use crate::io::targets::Job;
-use crate::io::workers;
-use crate::options::cells as circuit;
-use crate::report::log::Log;
-use crate::report::progress::Progress;
-use crate::report::{Failure, Reporter, usage};
+use crate::io::{circuits, workers};
+use crate::report::{Failed, Failure, Log, Progress, Reporter, usage};
 
 /// A cell to write.
 struct Placing {
@@ -43,7 +39,7 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
             folder.display()
         ));
     }
-    let opened = circuit::open(path, reporter).and_then(|circuit| {
+    let opened = circuits::open(path, reporter).and_then(|circuit| {
         let nodes = args.cells.select(&circuit)?;
         Ok((circuit, nodes))
     });

@@ -8,15 +8,13 @@ use neurotess::mesh::{Format, GlbNode, Surface, WriteError, write_glb};
 use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
+use super::args::MeshArgs;
 use super::cell::{self, Prepared, levels};
 use super::options::Recipe;
-use crate::cli::MeshArgs;
-use crate::commands::info::bug;
 use crate::io::inputs::Inputs;
 use crate::io::output::{Output, OutputError, existing};
 use crate::io::workers;
-use crate::report::progress::Progress;
-use crate::report::{Reporter, count, usage};
+use crate::report::{Progress, Reporter, bug, count, usage};
 
 /// The object of the JSON list.
 #[derive(Serialize)]

@@ -5,6 +5,7 @@
 //!                  └────────▶ Recipe ──────────────────▲
 //! ```
 
+mod args;
 mod cell;
 mod circuit;
 mod circuit_glb;
@@ -19,17 +20,16 @@ use std::time::Instant;
 use neurotess::mesh::Format;
 use serde::Serialize;
 
-use crate::cli::MeshArgs;
-use crate::commands::info::{Failed, MORPHOLOGIES, bug};
+use crate::io::circuits::partition;
 use crate::io::claims::{Claim, claim};
-use crate::io::inputs::{Inputs, readable};
-use crate::io::output::{Output, OutputError};
+use crate::io::inputs::Inputs;
+use crate::io::morphologies::{MORPHOLOGIES, readable};
+use crate::io::output::{self, Output, OutputError};
 use crate::io::record::{Made, Standing};
 use crate::io::targets::{self, Job};
 use crate::io::workers;
-use crate::report::log::Log;
-use crate::report::progress::Progress;
-use crate::report::{Failure, Reporter, count, place, usage};
+use crate::report::{Failed, Failure, Log, Progress, Reporter, bug, count, place, usage};
+pub(crate) use args::MeshArgs;
 use cell::{Cell, Told};
 use options::Recipe;
 
@@ -50,7 +50,7 @@ enum Entry {
 /// Runs the command.
 pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let clock = Instant::now();
-    let (circuits, others) = crate::options::cells::partition(&args.inputs);
+    let (circuits, others) = partition(&args.inputs);
     if let [path] = &circuits[..]
         && others.is_empty()
     {
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
         return usage("no input is a circuit: leave out what chooses cells of one");
     }
     let out = &args.out.out;
-    reporter.leave_output_to(out)?;
+    output::reserve_standard(out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
     let recipe = Recipe::new(args, &inputs, measure)?;

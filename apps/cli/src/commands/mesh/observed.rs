@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use neurotess::mesh::{Faces, Surface, SurfaceVertex};
 
-use crate::report::progress::Progress;
+use crate::report::Progress;
 
 /// A surface and a clock for its blocks.
 pub(crate) struct Observed<'a> {

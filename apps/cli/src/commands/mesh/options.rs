@@ -4,7 +4,7 @@ use neurotess::generate::{GenerateOptions, SphereKind};
 use neurotess::mesh::Format;
 use neurotess::refine::{Caps, Path, RefineOptions};
 
-use crate::cli::{CapsArg, MeshArgs, PathArg, SphereArg};
+use super::args::{CapsArg, MeshArgs, PathArg, SphereArg};
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets;

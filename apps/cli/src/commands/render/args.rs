@@ -1,17 +1,18 @@
 //! `neurotess render`: its options.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use glam::{DVec3, Vec3};
-use neurotess::render::{ColorMap, LARGEST, Light, MOST_BUDGET, Palette, Rgb};
+use neurotess::render::{ColorMap, MOST_BUDGET, Palette};
 
 use super::times::{MOST, Time, times};
-use crate::cli::{SomaArg, Types};
+use super::values::{Fit, LightArg, RgbArg, Triple};
 use crate::options::cells::CellArgs;
 use crate::options::rings::RingArgs;
+use crate::options::size::Size;
+use crate::options::soma::SomaArg;
+use crate::options::types::Types;
 use crate::report::usage;
 
 /// `neurotess render`
@@ -121,7 +122,7 @@ pub(crate) struct RenderArgs {
     pub(crate) level: Option<u32>,
     /// Farthest that the surface may be from the level-64 one (pixels) [default: 0.25, with
     /// --wireframe 1]
-    #[arg(long, value_name = "P", value_parser = crate::cli::positive,
+    #[arg(long, value_name = "P", value_parser = crate::options::numbers::positive,
           allow_negative_numbers = true, help_heading = "Refinement")]
     pub(crate) pixels: Option<f64>,
     /// Most triangles of --lod exploration, for those that show most [default: 100000]
@@ -227,7 +228,9 @@ impl RenderArgs {
     /// Wrong usage: no series, or two that do not fit.
     pub(crate) fn series(&self) -> anyhow::Result<Option<u32>> {
         match self.time {
-            Some(Time::Series(..)) => Ok(times(self)?.map(|times| times.len() as u32)),
+            Some(Time::Series(..)) => {
+                Ok(times(self.time, self.frames)?.map(|times| times.len() as u32))
+            }
             _ if self.turntable => Ok(Some(self.frames.unwrap_or(36))),
             _ if self.frames.is_some() => {
                 usage("--frames is for --turntable, and for --time FROM:TO")
@@ -319,134 +322,4 @@ pub(crate) enum ViewArg {
     Bottom,
     /// From the right, above and before
     Iso,
-}
-
-/// `--size`
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Size(pub(crate) [u32; 2]);
-
-impl FromStr for Size {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let sides = text.split_once(['x', 'X', '×']);
-        let sides = sides.and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-        match sides {
-            Some(size) if size.iter().all(|n| (1..=LARGEST).contains(n)) => Ok(Self(size)),
-            _ => Err(format!(
-                "width x height is needed, 1 to {LARGEST}, as in 1280x960"
-            )),
-        }
-    }
-}
-
-/// Three numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Triple(pub(crate) DVec3);
-
-impl FromStr for Triple {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-        match numbers.as_deref() {
-            Ok(&[x, y, z]) => Ok(Self(DVec3::new(x, y, z))),
-            _ => Err("three numbers X,Y,Z are needed, as in 0,20,80".into()),
-        }
-    }
-}
-
-/// A color.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct RgbArg(pub(crate) Rgb);
-
-impl FromStr for RgbArg {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let rgb = match text.to_ascii_lowercase().as_str() {
-            "white" => [255; 3],
-            "black" => [0; 3],
-            "gray" | "grey" => [128; 3],
-            other => {
-                let digits = other.strip_prefix('#').unwrap_or(other);
-                let hexadecimal = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-                let digits: String = match digits.len() {
-                    6 if hexadecimal => digits.into(),
-                    // #fff is #ffffff.
-                    3 if hexadecimal => digits.chars().flat_map(|digit| [digit, digit]).collect(),
-                    _ => String::new(),
-                };
-                let [_, r, g, b] = u32::from_str_radix(&digits, 16)
-                    .map_err(|_| "white, black, gray, RRGGBB or RGB is needed, as in 102030")?
-                    .to_be_bytes();
-                [r, g, b]
-            }
-        };
-        Ok(Self(rgb))
-    }
-}
-
-/// A length, or whatever fits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fit {
-    /// What fits.
-    Auto,
-    /// µm
-    Length(f64),
-}
-
-impl FromStr for Fit {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.parse() {
-            Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(Self::Length(length)),
-            _ if text == "fit" => Ok(Self::Auto),
-            _ => Err("a length in µm is needed, or none".into()),
-        }
-    }
-}
-
-/// `--light`
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LightArg(pub(crate) Light);
-
-impl FromStr for LightArg {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let light = match text {
-            "soft" => Light::Soft,
-            "flat" => Light::Flat,
-            other => {
-                let direction = other.parse::<Triple>().map(|triple| triple.0.as_vec3());
-                let direction = direction.ok().filter(|d| d.is_finite() && *d != Vec3::ZERO);
-                Light::From(direction.ok_or("use soft, flat or a direction X,Y,Z, as in -1,1,1")?)
-            }
-        };
-        Ok(Self(light))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sizes_colors_and_places_are_read() {
-        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
-        for wrong in ["640", "0x1", "1x99999", "x", "1x1x1"] {
-            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
-        }
-        assert_eq!("#102030".parse(), Ok(RgbArg([16, 32, 48])));
-        assert_eq!("#fA0".parse(), Ok(RgbArg([255, 170, 0])));
-        assert_eq!("White".parse(), Ok(RgbArg([255; 3])));
-        for wrong in ["12345", "reddish", "#ééé", "+12345", "+12", "#ff"] {
-            assert!(wrong.parse::<RgbArg>().is_err(), "{wrong}");
-        }
-        assert_eq!("1,-2,3e1".parse(), Ok(Triple(DVec3::new(1.0, -2.0, 30.0))));
-        assert!("1,2".parse::<Triple>().is_err());
-        assert!("0,0,0".parse::<LightArg>().is_err());
-    }
 }

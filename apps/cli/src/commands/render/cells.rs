@@ -12,9 +12,10 @@ use neurotess::morphology::Morphology;
 use neurotess::render::BoundingSphere;
 
 use super::args::RenderArgs;
-use crate::commands::info::{Entry, each};
-use crate::io::inputs::{Input, Inputs, morphology};
-use crate::report::{Failure, Reporter, place};
+use crate::io::batch::each;
+use crate::io::inputs::{Input, Inputs};
+use crate::io::morphologies::read_morphology;
+use crate::report::{Entry, Failure, Reporter, place};
 
 /// A cell that can be drawn.
 pub(crate) struct Cell {
@@ -62,7 +63,7 @@ fn cell(
     read: ReadOptions,
     options: &GenerateOptions,
 ) -> Result<Cell, Failure> {
-    let mut read = morphology(&input.path, None, &read)?;
+    let mut read = read_morphology(&input.path, None, &read)?;
     if !cut.is_empty() {
         read.morphology = with_middles(&read.morphology, cut);
     }

@@ -130,7 +130,7 @@ fn over_time(
         let file = &replay.file;
         anyhow::bail!("{file}: spikes flash at a time: choose one with --time");
     }
-    let times = times::times(args)?.unwrap_or_else(|| vec![replay.time.start]);
+    let times = times::times(args.time, args.frames)?.unwrap_or_else(|| vec![replay.time.start]);
     let range = match args.range {
         Some(range) => range,
         None => {

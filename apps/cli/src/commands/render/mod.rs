@@ -4,7 +4,7 @@
 //! arguments ─read, mesh─▶ cells, places ─▶ cameras, coloring, maker ─paint─▶ bands ─▶ PNG, stats
 //! ```
 
-pub(crate) mod args;
+mod args;
 mod cameras;
 mod cells;
 mod circuit_instances;
@@ -12,6 +12,7 @@ mod coloring;
 mod scene;
 mod stats;
 mod times;
+mod values;
 mod vertex_source;
 
 use std::io::BufWriter;
@@ -23,15 +24,15 @@ use neurotess::render::{
     PictureOptions, Placement, PngWriter, StillRenderer,
 };
 
-use crate::commands::info::Entry;
 use crate::io::output::{self, OutputError};
-use crate::report::progress::Progress;
-use crate::report::{Failure, Reporter, count, usage};
-use args::{ColorBy, Fit, RenderArgs};
+use crate::report::{Entry, Failure, Progress, Reporter, count, usage};
+use args::ColorBy;
+pub(crate) use args::RenderArgs;
 use cells::Cell;
 use coloring::Colored;
 use scene::Cast;
 use stats::{Stage, Stages, Stats};
+use values::Fit;
 use vertex_source::Maker;
 
 /// Width (pixels) of the lines of a wireframe.
@@ -39,7 +40,7 @@ const WIRE: f32 = 1.0;
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    reporter.leave_output_to(&args.out)?;
+    output::reserve_standard(&args.out, reporter)?;
     let files = files(args)?;
     vertex_source::mode(args)?;
     for file in files.iter().chain(&args.stats) {

@@ -11,10 +11,9 @@ use rayon::prelude::*;
 use super::args::RenderArgs;
 use super::cells::{self, Cell};
 use super::circuit_instances::Shown;
-use crate::commands::info::{Entry, Failed};
+use crate::io::circuits::{self, partition};
 use crate::io::inputs::{Input, Inputs};
-use crate::options::cells as circuit;
-use crate::report::{Failure, Reporter, usage};
+use crate::report::{Entry, Failed, Failure, Reporter, usage};
 
 /// From so many places on, a cell is framed by a few balls instead of one per point.
 const MANY: usize = 64;
@@ -39,7 +38,7 @@ pub(crate) struct Cast {
 /// # Errors
 /// Wrong usage: a circuit beside other inputs, or a choice of cells without a circuit.
 pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cast> {
-    let (circuits, others) = circuit::partition(&args.inputs);
+    let (circuits, others) = partition(&args.inputs);
     match &circuits[..] {
         [path] if others.is_empty() => of_circuit(path, args, reporter),
         [] if args.cells.any() => {
@@ -52,7 +51,7 @@ pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cas
             usage("--report needs a circuit, whose cells have its values")
         }
         [] => {
-            let inputs = Inputs::find(&args.inputs, &crate::commands::info::MORPHOLOGIES);
+            let inputs = Inputs::find(&args.inputs, &crate::io::morphologies::MORPHOLOGIES);
             let entries = cells::read(&inputs, &HashMap::new(), args, reporter)?;
             let done = entries.iter().filter(|e| matches!(e, Entry::Done(_)));
             let places = (0..done.count()).map(|cell| (cell, Placement::default()));
@@ -67,7 +66,7 @@ pub(crate) fn cast(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cas
 }
 
 fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Cast> {
-    let opened = circuit::open(path, reporter).and_then(|circuit| {
+    let opened = circuits::open(path, reporter).and_then(|circuit| {
         let nodes = args.cells.select(&circuit)?;
         Ok((circuit, nodes))
     });

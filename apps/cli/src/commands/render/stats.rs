@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::cells::Cell;
 use super::vertex_source::Made;
-use crate::commands::info::{Entry, Failed};
+use crate::report::{Entry, Failed};
 
 /// The contract's object; times are of the last picture.
 #[derive(Clone, Debug, Default, Serialize)]

@@ -2,7 +2,6 @@
 
 use std::str::FromStr;
 
-use super::args::RenderArgs;
 use crate::report::usage;
 
 /// Most pictures of a series.
@@ -34,17 +33,17 @@ impl FromStr for Time {
     }
 }
 
-/// Times (ms) of all pictures; none: `--time` is not given.
+/// Times (ms) of all pictures, as `--time` and `--frames` say; none: `--time` is not given.
 ///
 /// # Errors
 /// Wrong usage: a series that has no number of pictures, or too many.
-pub(crate) fn times(args: &RenderArgs) -> anyhow::Result<Option<Vec<f64>>> {
-    let (from, to, step) = match args.time {
+pub(crate) fn times(time: Option<Time>, pictures: Option<u32>) -> anyhow::Result<Option<Vec<f64>>> {
+    let (from, to, step) = match time {
         None => return Ok(None),
         Some(Time::At(time)) => return Ok(Some(vec![time])),
         Some(Time::Series(from, to, step)) => (from, to, step),
     };
-    let (step, frames) = match (step, args.frames) {
+    let (step, frames) = match (step, pictures) {
         (None, None) => {
             return usage("--time FROM:TO needs a step, as in 0:100:0.5, or --frames N");
         }
@@ -57,7 +56,7 @@ pub(crate) fn times(args: &RenderArgs) -> anyhow::Result<Option<Vec<f64>>> {
             "--time makes {frames:.0} pictures: choose a larger step, for {MOST} at most"
         ));
     }
-    if step.is_sign_positive() && args.frames.is_some_and(|n| f64::from(n) != frames) {
+    if step.is_sign_positive() && pictures.is_some_and(|n| f64::from(n) != frames) {
         return usage(format!(
             "--time makes {frames:.0} pictures: leave out --frames, or the step"
         ));

@@ -15,13 +15,11 @@ use neurotess::synth::circuit::{
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::cli::SynthArgs;
-use crate::commands::convert;
-use crate::commands::info::bug;
+use super::args::SynthArgs;
+use crate::io::morphologies::write_morphology;
 use crate::io::output::{Output, OutputError, existing, is_standard};
 use crate::io::workers;
-use crate::report::progress::Progress;
-use crate::report::{Failure, Reporter, count, usage};
+use crate::report::{Failure, Progress, Reporter, bug, count, usage};
 
 /// The one JSON object.
 #[derive(Serialize)]
@@ -110,7 +108,7 @@ fn grow_all(
     };
     let results = workers::run(cells, &order, reporter.threads(), |cell| {
         let morphology = synth::grow(&cell.options);
-        let written = convert::write(&morphology, Format::Swc, &path(cell), force);
+        let written = write_morphology(&morphology, Format::Swc, &path(cell), force);
         progress.done();
         written.map_err(|e| Failure(e.to_string()))
     })?;

@@ -1,5 +1,6 @@
 //! `neurotess synth`: synthetic neurons.
 
+mod args;
 mod circuit;
 
 use std::path::{Path, PathBuf};
@@ -8,13 +9,11 @@ use neurotess::formats::Format;
 use neurotess::synth::{self, Kind, Options};
 use serde::Serialize;
 
-use crate::cli::{SynthArgs, What};
-use crate::commands::convert;
-use crate::commands::info::{Entry, Failed, bug};
-use crate::io::output;
-use crate::io::workers;
-use crate::report::progress::Progress;
-use crate::report::{Failure, Reporter, count, usage};
+use crate::io::morphologies::write_morphology;
+use crate::io::{output, workers};
+use crate::report::{Entry, Failed, Failure, Progress, Reporter, bug, count, usage};
+pub(crate) use args::SynthArgs;
+use args::What;
 
 /// One object of the JSON list.
 #[derive(Serialize)]
@@ -31,7 +30,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
         What::Cells(kind) => kind,
         What::Circuit => return circuit::run(args, reporter),
     };
-    reporter.leave_output_to(&args.out.out)?;
+    output::reserve_standard(&args.out.out, reporter)?;
     let cells = plan(args, kind)?;
     let progress = Progress::new(reporter, cells.len(), "cells");
     let order: Vec<usize> = (0..cells.len()).collect();
@@ -104,7 +103,7 @@ fn grow(options: &Options, out: &Path, force: bool) -> Result<Grown, Failure> {
     let failed = |e: output::OutputError| Failure(e.to_string());
     output::check(out, force).map_err(failed)?;
     let morphology = synth::grow(options);
-    convert::write(&morphology, Format::Swc, out, force).map_err(failed)?;
+    write_morphology(&morphology, Format::Swc, out, force).map_err(failed)?;
     Ok(Grown {
         out: out.display().to_string(),
         kind: options.kind.name(),
@@ -128,14 +127,4 @@ fn tell(entries: &[Entry<Grown>], out: &Path, reporter: &Reporter) {
             out.display()
         )),
     }
-}
-
-/// What a name stands for, for the command line.
-pub(crate) fn what(name: &str) -> Result<What, String> {
-    if name == "circuit" {
-        return Ok(What::Circuit);
-    }
-    let kind = name.parse::<Kind>();
-    kind.map(What::Cells)
-        .map_err(|e| format!("{e}, or circuit"))
 }
