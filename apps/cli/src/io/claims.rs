@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::output::{Output, OutputError, begin};
-use super::record::{Made, Stamp};
+use super::record::{OutputRecord, Stamp};
 use super::targets::Job;
 use crate::report::Reporter;
 
@@ -23,25 +23,25 @@ pub(crate) enum Claim {
 pub(crate) fn claim(
     job: &Job,
     force: bool,
-    resume: Option<&Made>,
+    resume: Option<&OutputRecord>,
     reporter: &Reporter,
 ) -> Result<Claim, OutputError> {
-    let Some(made) = resume else {
+    let Some(record) = resume else {
         return begin(&job.out, force).map(Claim::Ours);
     };
     let mut told = false;
     loop {
         let before = Stamp::of(&job.out);
-        let mut standing = made.standing(job);
-        if before.is_some() && !standing.is_ours() {
+        let mut state = record.state_of(job);
+        if before.is_some() && !state.is_ours() {
             // Perhaps another run's, which has recorded it.
-            made.read();
-            standing = made.standing(job);
+            record.read();
+            state = record.state_of(job);
         }
-        if standing.stays() {
+        if state.stays() {
             return Ok(Claim::Done);
         }
-        match begin(&job.out, force || standing.is_ours()) {
+        match begin(&job.out, force || state.is_ours()) {
             Ok(output) if Stamp::of(&job.out) == before => return Ok(Claim::Ours(output)),
             // It was finished between the look and the claim.
             Ok(_) => {}

@@ -64,7 +64,7 @@ struct Line {
 
 /// How an output stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Standing {
+pub(crate) enum OutputState {
     /// It is not there.
     Missing,
     /// It is what would be made.
@@ -79,7 +79,7 @@ pub(crate) enum Standing {
     Older,
 }
 
-impl Standing {
+impl OutputState {
     /// Whether it need not be made.
     pub(crate) fn stays(self) -> bool {
         matches!(self, Self::Right | Self::Newer)
@@ -92,7 +92,7 @@ impl Standing {
 }
 
 /// The record of a folder.
-pub(crate) struct Made {
+pub(crate) struct OutputRecord {
     folder: PathBuf,
     /// Those that matter, as text.
     options: String,
@@ -101,17 +101,17 @@ pub(crate) struct Made {
     file: Mutex<Option<File>>,
 }
 
-impl Made {
+impl OutputRecord {
     /// Reads the record, if there is one. `options`: all that files depend on, as text.
     pub(crate) fn open(folder: &Path, options: &str) -> Self {
-        let made = Self {
+        let record = Self {
             folder: folder.to_path_buf(),
             options: options.to_owned(),
             known: Mutex::default(),
             file: Mutex::default(),
         };
-        made.read();
-        made
+        record.read();
+        record
     }
 
     /// Reads what other runs have added, too.
@@ -126,19 +126,19 @@ impl Made {
     }
 
     /// How an output stands.
-    pub(crate) fn standing(&self, job: &Job) -> Standing {
+    pub(crate) fn state_of(&self, job: &Job) -> OutputState {
         let Some(is) = Stamp::of(&job.out) else {
-            return Standing::Missing;
+            return OutputState::Missing;
         };
         let of = Stamp::of(formats::member(&job.input).0);
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let lines = known.get(&self.name(&job.out)).into_iter().flatten();
         match lines.rev().find(|line| line.is == is) {
-            Some(line) if line.options != self.hash(job) => Standing::OtherOptions,
-            Some(line) if Some(line.of) != of => Standing::OtherInput,
-            Some(_) => Standing::Right,
-            None if of.is_some_and(|of| is.modified >= of.modified) => Standing::Newer,
-            None => Standing::Older,
+            Some(line) if line.options != self.hash(job) => OutputState::OtherOptions,
+            Some(line) if Some(line.of) != of => OutputState::OtherInput,
+            Some(_) => OutputState::Right,
+            None if of.is_some_and(|of| is.modified >= of.modified) => OutputState::Newer,
+            None => OutputState::Older,
         }
     }
 
@@ -203,11 +203,11 @@ mod tests {
             stands: String::new(),
         };
         fs::write(&job.input, "in").expect("written");
-        let made = Made::open(folder.path(), "level 1");
-        assert_eq!(made.standing(&job), Standing::Missing);
+        let record = OutputRecord::open(folder.path(), "level 1");
+        assert_eq!(record.state_of(&job), OutputState::Missing);
         fs::write(&job.out, "mesh").expect("written");
-        assert_eq!(made.standing(&job), Standing::Newer);
-        made.add(&job, &job.out).expect("recorded");
+        assert_eq!(record.state_of(&job), OutputState::Newer);
+        record.add(&job, &job.out).expect("recorded");
         // A torn line and one of a run that was killed do no harm.
         let mut file = OpenOptions::new();
         let mut file = file
@@ -215,12 +215,12 @@ mod tests {
             .open(folder.path().join(NAME))
             .expect("there");
         file.write_all(b"{\"out\":\"a.p\n").expect("written");
-        made.read();
-        assert_eq!(made.standing(&job), Standing::Right);
-        let other = Made::open(folder.path(), "level 2");
-        assert_eq!(other.standing(&job), Standing::OtherOptions);
+        record.read();
+        assert_eq!(record.state_of(&job), OutputState::Right);
+        let other = OutputRecord::open(folder.path(), "level 2");
+        assert_eq!(other.state_of(&job), OutputState::OtherOptions);
         fs::write(&job.input, "another").expect("written");
-        assert_eq!(made.standing(&job), Standing::OtherInput);
+        assert_eq!(record.state_of(&job), OutputState::OtherInput);
     }
 
     #[test]

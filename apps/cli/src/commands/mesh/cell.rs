@@ -8,11 +8,11 @@ use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
 use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
-use neurotess::refine::{CoarseSurface, LodCriterion, Refinement};
+use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
 use super::observed::Observed;
-use super::options::{Fineness, Recipe};
+use super::options::MeshOptions;
 use super::size;
 use crate::io::morphologies::read_morphology;
 use crate::io::output::{Output, OutputError};
@@ -21,19 +21,19 @@ use crate::report::{Failure, Progress, Reporter};
 
 /// One object of the JSON list, and one line of the log.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Cell {
+pub(crate) struct CellReport {
     pub(crate) file: String,
     pub(crate) out: String,
     /// Of a circuit: which cell this is.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub(crate) node: Option<Node>,
+    pub(crate) node: Option<NodeName>,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
     pub(crate) quads: usize,
     pub(crate) closed: bool,
     pub(crate) euler: i64,
     pub(crate) components: usize,
-    /// µm³, as written; not measured unless wanted.
+    /// µm³, as written; none: not measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) volume: Option<f64>,
     /// µm², likewise.
@@ -44,16 +44,16 @@ pub(crate) struct Cell {
     pub(crate) warnings: Vec<CellWarning>,
 }
 
-/// A cell of a circuit.
+/// Which cell of a circuit.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Node {
+pub(crate) struct NodeName {
     pub(crate) population: String,
     pub(crate) node_id: u64,
 }
 
 /// Where the time went.
 ///
-/// AdaptiveSettings and writing are one streamed pass over all threads: `refine` is the planning and what
+/// Refining and writing are one streamed pass over all threads: `refine` is the planning and what
 /// the blocks took, divided by the threads; `write` is the rest of the pass.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
@@ -76,7 +76,7 @@ pub(crate) struct CellWarning {
     pub(crate) count: u64,
 }
 
-/// A cell read and generated, to be written as often as it is wanted.
+/// A cell read and generated, to be written once or several times.
 pub(crate) struct Prepared {
     file: String,
     generated: Generated,
@@ -96,35 +96,35 @@ impl Prepared {
 /// Makes the mesh of one cell and writes it, into a file that has no name yet.
 pub(super) fn mesh(
     job: &Job,
-    recipe: &Recipe,
+    options: &MeshOptions,
     output: Output,
-    told: Told<'_>,
-) -> Result<(Cell, Output), Failure> {
-    let prepared = prepare(&job.input, recipe)?;
-    finish(&prepared, recipe, &job.out, output, None, told)
+    watchers: Watchers<'_>,
+) -> Result<(CellReport, Output), Failure> {
+    let prepared = prepare(&job.input, options)?;
+    finish(&prepared, options, &job.out, output, None, watchers)
 }
 
-/// Who hears of the work.
+/// What hears of the work.
 #[derive(Clone, Copy)]
-pub(super) struct Told<'t> {
+pub(super) struct Watchers<'t> {
     pub(super) reporter: &'t Reporter,
     /// Counts blocks of the surface.
     pub(super) progress: Option<&'t Progress<'t>>,
 }
 
 /// Reads a cell and generates its coarse mesh.
-pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure> {
+pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, Failure> {
     let file = input.display().to_string();
     let mut seconds = Seconds::default();
     let clock = Instant::now();
-    let options = ReadOptions {
-        strict: recipe.strict,
+    let read_options = ReadOptions {
+        strict: options.strict,
     };
-    let read = read_morphology(input, None, &options)?;
+    let read = read_morphology(input, None, &read_options)?;
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let generated = generate::generate(&read.morphology, &recipe.generate)
+    let generated = generate::generate(&read.morphology, &options.generate)
         .map_err(|e| Failure(format!("{file}: {e}")))?;
     seconds.soma = generated.soma_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
@@ -145,27 +145,27 @@ pub(crate) fn prepare(input: &Path, recipe: &Recipe) -> Result<Prepared, Failure
 /// Refines a cell and writes it, perhaps somewhere else than it was traced.
 pub(super) fn finish(
     prepared: &Prepared,
-    recipe: &Recipe,
+    options: &MeshOptions,
     out: &Path,
     mut output: Output,
     world_from_cell: Option<DAffine3>,
-    told: Told<'_>,
-) -> Result<(Cell, Output), Failure> {
+    watchers: Watchers<'_>,
+) -> Result<(CellReport, Output), Failure> {
     let Prepared {
         file, generated, ..
     } = prepared;
     let mut seconds = prepared.seconds;
     let mesh = &generated.mesh;
     let to = (out, &mut output);
-    let written = write(mesh, recipe, to, world_from_cell, told, &mut seconds);
+    let written = write(mesh, options, to, world_from_cell, watchers, &mut seconds);
     let written = written.map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
     let clock = Instant::now();
     let topology = mesh.topology();
-    let growth = world_from_cell.map_or(1.0, |placed| placed.matrix3.determinant());
-    let measured = recipe.measure.then(|| measure(mesh, recipe));
+    let growth = world_from_cell.map_or(1.0, |transform| transform.matrix3.determinant());
+    let measured = options.measure.then(|| measure(mesh, options));
     let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
     seconds.measure = clock.elapsed().as_secs_f64();
-    let cell = Cell {
+    let cell = CellReport {
         file: file.clone(),
         out: out.display().to_string(),
         node: None,
@@ -173,7 +173,7 @@ pub(super) fn finish(
         triangles: written.triangles,
         quads: written.quads,
         closed: topology.closed,
-        // AdaptiveSettings divides faces and edges; the shape stays.
+        // Refinement divides faces and edges; the shape stays.
         euler: topology.euler,
         components: topology.components,
         volume: measured.map(|(volume, _)| volume),
@@ -195,22 +195,22 @@ struct Written {
 
 fn write(
     mesh: &CoarseMesh,
-    recipe: &Recipe,
+    options: &MeshOptions,
     (out, output): (&Path, &mut Output),
     world_from_cell: Option<DAffine3>,
-    told: Told<'_>,
+    watchers: Watchers<'_>,
     seconds: &mut Seconds,
 ) -> Result<Written, Failure> {
     let clock = Instant::now();
     let refinement;
     let coarse;
-    let surface: &dyn Surface = match levels(recipe.fineness) {
-        Some(levels) => {
-            refinement = Refinement::new(mesh, levels, &recipe.refine);
+    let surface: &dyn Surface = match options.lod {
+        Some(lod) => {
+            refinement = Refinement::new(mesh, lod, &options.refine);
             &refinement
         }
         None => {
-            coarse = CoarseSurface::new(mesh, recipe.format.has_quads());
+            coarse = CoarseSurface::new(mesh, options.format.has_quads());
             &coarse
         }
     };
@@ -219,9 +219,9 @@ fn write(
     let planned = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    size::tell(surface, recipe.format, out, told.reporter)?;
-    let observed = Observed::new(surface, told.progress);
-    surfaces::write(&observed, recipe.format, output.file()).map_err(|e| {
+    size::tell(surface, options.format, out, watchers.reporter)?;
+    let observed = Observed::new(surface, watchers.progress);
+    surfaces::write(&observed, options.format, output.file()).map_err(|e| {
         let broken = match e {
             surfaces::WriteError::Io(e) => OutputError::broken(out, e),
             other => OutputError::broken(out, std::io::Error::other(other)),
@@ -239,18 +239,10 @@ fn write(
     })
 }
 
-pub(super) fn levels(fineness: Fineness) -> Option<LodCriterion> {
-    match fineness {
-        Fineness::Coarse => None,
-        Fineness::Level(level) => Some(LodCriterion::Homogeneous(level)),
-        Fineness::MaxError(error) => Some(LodCriterion::MaxError(error)),
-    }
-}
-
 /// Volume and area of what was written.
-fn measure(mesh: &CoarseMesh, recipe: &Recipe) -> (f64, f64) {
-    match levels(recipe.fineness) {
-        Some(levels) => Refinement::new(mesh, levels, &recipe.refine).volume_and_area(),
+fn measure(mesh: &CoarseMesh, options: &MeshOptions) -> (f64, f64) {
+    match options.lod {
+        Some(lod) => Refinement::new(mesh, lod, &options.refine).volume_and_area(),
         None => {
             let measure = mesh.measure();
             (measure.volume, measure.area)

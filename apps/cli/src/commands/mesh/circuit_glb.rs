@@ -9,8 +9,8 @@ use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
 use super::args::MeshArgs;
-use super::cell::{self, Prepared, levels};
-use super::options::Recipe;
+use super::cell::{self, Prepared};
+use super::options::MeshOptions;
 use crate::io::inputs::Inputs;
 use crate::io::output::{Output, OutputError, existing};
 use crate::io::workers;
@@ -18,7 +18,7 @@ use crate::report::{Progress, Reporter, bug, count, usage};
 
 /// The object of the JSON list.
 #[derive(Serialize)]
-struct Scene {
+struct GlbReport {
     file: String,
     out: String,
     /// Nodes, and cells left out because their morphology failed.
@@ -31,8 +31,8 @@ struct Scene {
     seconds: f64,
 }
 
-/// Whether one file is wanted: OUT has a name that ends in .glb.
-pub(super) fn is_wanted(args: &MeshArgs) -> bool {
+/// Whether OUT is one file: it has a name that ends in .glb.
+pub(super) fn is_one_file(args: &MeshArgs) -> bool {
     let out = &args.out.out;
     !out.is_dir() && Format::from_extension(out).is_ok_and(|format| format == Format::Glb)
 }
@@ -53,12 +53,12 @@ pub(super) fn run(
         one_file: true,
         ..Inputs::default()
     };
-    let recipe = Recipe::new(args, &one, false)?;
-    if recipe.format != Format::Glb {
+    let options = MeshOptions::new(args, &one, false)?;
+    if options.format != Format::Glb {
         return usage("only GLB holds a circuit in one file: leave out --format");
     }
-    existing(recipe.force).check(out)?;
-    let prepared = prepare_all(circuit, instances, &recipe, reporter)?;
+    existing(options.force).check(out)?;
+    let prepared = prepare_all(circuit, instances, &options, reporter)?;
     let shown: Vec<&Instance> = instances
         .iter()
         .filter(|instance| prepared.contains_key(&instance.template.0))
@@ -66,7 +66,9 @@ pub(super) fn run(
     if shown.is_empty() {
         anyhow::bail!("{}: no cell to write: choose others", circuit.file);
     }
-    let surfaces = prepared.values().map(|prepared| surface(prepared, &recipe));
+    let surfaces = prepared
+        .values()
+        .map(|prepared| surface(prepared, &options));
     let surfaces: Vec<Box<dyn Surface + '_>> = surfaces.collect();
     let surfaces: Vec<&dyn Surface> = surfaces.iter().map(|surface| &**surface).collect();
     let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
@@ -79,13 +81,13 @@ pub(super) fn run(
                 .world_from_cell(prepared[&instance.template.0].soma_center),
         })
         .collect();
-    let mut output = Output::create(out, existing(recipe.force))?;
+    let mut output = Output::create(out, existing(options.force))?;
     write_glb(&surfaces, &nodes, output.file()).map_err(|e| match e {
         WriteError::Io(e) => OutputError::broken(out, e),
         other => OutputError::broken(out, std::io::Error::other(other)),
     })?;
     output.finish()?;
-    let scene = Scene {
+    let report = GlbReport {
         file: circuit.file.clone(),
         out: out.display().to_string(),
         cells: nodes.len(),
@@ -97,21 +99,21 @@ pub(super) fn run(
     };
     reporter.result(&format!(
         "{} → {}: {} of {}, {} triangles, in {:.2} s",
-        scene.file,
-        scene.out,
-        count(scene.cells, "cell"),
-        count(scene.morphologies, "morphology file"),
-        scene.triangles,
-        scene.seconds
+        report.file,
+        report.out,
+        count(report.cells, "cell"),
+        count(report.morphologies, "morphology file"),
+        report.triangles,
+        report.seconds
     ));
-    reporter.document(&[scene])
+    reporter.document(&[report])
 }
 
 /// Reads and generates each morphology once, on all cores; tells of those that fail.
 fn prepare_all(
     circuit: &Circuit,
     instances: &[Instance],
-    recipe: &Recipe,
+    options: &MeshOptions,
     reporter: &Reporter,
 ) -> anyhow::Result<BTreeMap<u32, Prepared>> {
     let mut templates: Vec<u32> = instances.iter().map(|i| i.template.0).collect();
@@ -120,7 +122,7 @@ fn prepare_all(
     let order: Vec<usize> = (0..templates.len()).collect();
     let progress = Progress::new(reporter, templates.len(), "morphologies");
     let results = workers::run(&templates, &order, reporter.threads(), |&template| {
-        let prepared = cell::prepare(&circuit.templates[template as usize].path, recipe);
+        let prepared = cell::prepare(&circuit.templates[template as usize].path, options);
         progress.done();
         prepared
     })?;
@@ -138,10 +140,10 @@ fn prepare_all(
     Ok(prepared)
 }
 
-fn surface<'p>(prepared: &'p Prepared, recipe: &Recipe) -> Box<dyn Surface + 'p> {
+fn surface<'p>(prepared: &'p Prepared, options: &MeshOptions) -> Box<dyn Surface + 'p> {
     let mesh = prepared.mesh();
-    match levels(recipe.fineness) {
-        Some(levels) => Box::new(Refinement::new(mesh, levels, &recipe.refine)),
+    match options.lod {
+        Some(lod) => Box::new(Refinement::new(mesh, lod, &options.refine)),
         None => Box::new(CoarseSurface::new(mesh, false)),
     }
 }

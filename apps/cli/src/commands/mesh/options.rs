@@ -1,8 +1,8 @@
-//! From the command line's words to the library's options.
+//! From the command line's options to the library's.
 
 use neurotess::generate::{GenerateOptions, SphereKind};
 use neurotess::mesh::Format;
-use neurotess::refine::{Caps, Path, RefineOptions};
+use neurotess::refine::{Caps, LodCriterion, Path, RefineOptions};
 
 use super::args::{CapsArg, MeshArgs, PathArg, SphereArg};
 use crate::io::inputs::Inputs;
@@ -10,23 +10,13 @@ use crate::io::output::is_standard;
 use crate::io::targets;
 use crate::report::usage;
 
-/// How finely.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Fineness {
-    /// The coarse quads.
-    Coarse,
-    /// The same level everywhere.
-    Level(u32),
-    /// By error (µm).
-    MaxError(f32),
-}
-
 /// All that a cell's mesh depends on.
 #[derive(Clone, Debug)]
-pub(crate) struct Recipe {
+pub(crate) struct MeshOptions {
     pub(crate) strict: bool,
     pub(crate) generate: GenerateOptions,
-    pub(crate) fineness: Fineness,
+    /// None: the coarse quads themselves.
+    pub(crate) lod: Option<LodCriterion>,
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
     pub(crate) force: bool,
@@ -34,19 +24,25 @@ pub(crate) struct Recipe {
     pub(crate) measure: bool,
 }
 
-impl Recipe {
-    /// All options that a file depends on, as text.
-    pub(crate) fn matters(&self) -> String {
+impl MeshOptions {
+    /// All options that a file depends on, as text. It is hashed in records of earlier versions too: the same
+    /// options must give the same text for ever.
+    pub(crate) fn fingerprint(&self) -> String {
         let Self {
             generate,
-            fineness,
+            lod,
             refine,
             format,
             strict: _,
             force: _,
             measure: _,
         } = self;
-        format!("{fineness:?} {generate:?} {refine:?} {format:?}")
+        let lod = match lod {
+            None => "Coarse".to_owned(),
+            Some(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
+            Some(other) => format!("{other:?}"),
+        };
+        format!("{lod} {generate:?} {refine:?} {format:?}")
     }
 
     /// Checks what the options mean together.
@@ -57,15 +53,15 @@ impl Recipe {
                 "{format} holds triangles only: leave out --quads, or write ply, obj, off or vtu"
             ));
         }
-        let fineness = match (args.max_error, args.level) {
-            (Some(error), _) => Fineness::MaxError(error as f32),
-            (None, 0) => Fineness::Coarse,
-            (None, level) => Fineness::Level(level),
+        let lod = match (args.max_error, args.level) {
+            (Some(error), _) => Some(LodCriterion::MaxError(error as f32)),
+            (None, 0) => None,
+            (None, level) => Some(LodCriterion::Homogeneous(level)),
         };
         Ok(Self {
             strict: args.strict,
             generate: generate(args)?,
-            fineness,
+            lod,
             refine: RefineOptions {
                 path: match args.path {
                     PathArg::Hermite => Path::Hermite,
@@ -139,4 +135,46 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use neurotess::morphology::NeuriteKind;
+
+    use super::*;
+
+    /// What earlier versions have hashed into records: outputs of theirs are recognized.
+    #[test]
+    fn fingerprints_stay_for_ever() {
+        let mut options = MeshOptions {
+            strict: false,
+            generate: GenerateOptions::default(),
+            lod: Some(LodCriterion::Homogeneous(4)),
+            refine: RefineOptions::default(),
+            format: Format::Ply,
+            force: false,
+            measure: false,
+        };
+        assert_eq!(
+            options.fingerprint(),
+            "Level(4) GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, sphere: Cube, \
+             sphere_level: None, rings: {}, kinds: None } \
+             RefineOptions { path: Hermite, caps: Round, quads: false } Ply"
+        );
+        options.lod = None;
+        options.format = Format::Glb;
+        options.generate.rings = BTreeMap::from([(1, 0.5)]);
+        options.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
+        assert_eq!(
+            options.fingerprint(),
+            "Coarse GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, sphere: Cube, \
+             sphere_level: None, rings: {1: 0.5}, kinds: Some([NeuriteKind(2)]) } \
+             RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
+        );
+        options.lod = Some(LodCriterion::MaxError(0.05));
+        let text = options.fingerprint();
+        assert!(text.starts_with("MaxError(0.05) "), "{text}");
+    }
 }
