@@ -81,14 +81,14 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
     for entry in &converted {
         if let Entry::Done(done) = entry {
             reporter.result(&format!("{} → {}", done.file, done.out));
-            tell_losses(done, reporter);
+            report_losses(done, reporter);
         }
     }
     reporter.document(&converted)
 }
 
-/// What OUT lacks: all of it for one file or where much is to be told, else that there is something.
-fn tell_losses(done: &Converted, reporter: &Reporter) {
+/// What OUT lacks: everything with --verbose, else the codes.
+fn report_losses(done: &Converted, reporter: &Reporter) {
     if done.lost.is_empty() {
         return;
     }
@@ -107,10 +107,10 @@ fn tell_losses(done: &Converted, reporter: &Reporter) {
     ));
 }
 
-/// The format asked for by name or by OUT's extension; SWC for a folder.
+/// The format that --format or OUT's extension names; SWC for a folder.
 fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     let out = &args.out.out;
-    let asked = match &args.format {
+    let name = match &args.format {
         Some(format) => format.clone(),
         None if targets::is_folder(out, inputs) => return Ok(Format::Swc),
         None => out
@@ -119,14 +119,14 @@ fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
             .to_string_lossy()
             .into_owned(),
     };
-    let format = Format::of_extension(&asked).filter(|f| Format::WRITTEN.contains(f));
+    let format = Format::of_extension(&name).filter(|f| Format::WRITTEN.contains(f));
     if let Some(format) = format {
         return Ok(format);
     }
-    let asked = if asked.is_empty() {
+    let name = if name.is_empty() {
         format!("{} has no extension", out.display())
     } else {
-        format!("morphologies cannot be written as '{asked}'")
+        format!("morphologies cannot be written as '{name}'")
     };
-    usage(format!("{asked}: use {}", written().join(", ")))
+    usage(format!("{name}: use {}", written().join(", ")))
 }

@@ -7,7 +7,7 @@ use super::record::{OutputRecord, Stamp};
 use super::targets::Job;
 use crate::report::Reporter;
 
-/// How often another run is asked whether it is done.
+/// Between two looks whether another run is done.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// What a worker may do with a cell.
@@ -29,7 +29,7 @@ pub(crate) fn claim(
     let Some(record) = resume else {
         return begin(&job.out, force).map(Claim::Ours);
     };
-    let mut told = false;
+    let mut announced = false;
     loop {
         let before = Stamp::of(&job.out);
         let mut state = record.state_of(job);
@@ -46,10 +46,10 @@ pub(crate) fn claim(
             // It was finished between the look and the claim.
             Ok(_) => {}
             Err(OutputError::Taken { path }) => {
-                if !told {
+                if !announced {
                     let path = path.display();
                     reporter.note(&format!("{path} is being written by another run: waiting"));
-                    told = true;
+                    announced = true;
                 }
                 std::thread::sleep(PATIENCE);
             }

@@ -93,7 +93,7 @@ impl Search<'_> {
             );
         } else if argument.exists() || !is_pattern(argument) {
             let name = argument.file_name().unwrap_or(argument.as_os_str());
-            // A missing file is told of by whoever reads it, in the words of the system.
+            // A missing file is an error of the reader, with the system's reason.
             self.add(argument.to_path_buf(), PathBuf::from(name));
         } else {
             self.pattern(argument);
@@ -106,7 +106,7 @@ impl Search<'_> {
         for entry in WalkDir::new(folder).follow_links(true) {
             match entry {
                 Ok(entry) if entry.file_type().is_dir() || !self.is_readable(entry.path()) => {}
-                // What is no file, say a link to a device, is refused by whoever reads it.
+                // What is no file, say a link to a device, is refused by the reader.
                 Ok(entry) => paths.push(entry.into_path()),
                 Err(e) => {
                     let at = e.path().unwrap_or(folder).to_path_buf();

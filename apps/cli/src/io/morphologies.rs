@@ -72,7 +72,7 @@ pub(crate) fn read_morphology(
     read.map_err(|e| Failure(e.to_string()))
 }
 
-/// An error if an input cannot be read at all, told before anything is said of its output.
+/// An error if an input cannot be read at all, before anything is reported of its output.
 pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
     if is_standard(path) {
         return Ok(());

@@ -5,12 +5,12 @@
 //! ```
 //!
 //! **Theory.** A file is still right if it is the one that was recorded (length and time), was made with
-//! the options that are asked for now (a hash), and its input is the one that was read (length and time).
+//! the same options (a hash), and its input is the one that was read (length and time).
 //! Options that change nothing in the file, like --threads, are not in the hash.
 //!
 //! **Practice.** The line is appended before the file gets its name: a run that is killed between the two
 //! leaves a line that no file answers to, never a file whose line tells of other options. Lines of
-//! several runs and shards stand in one file; the one that fits counts. A line that is torn is skipped.
+//! several runs and shards share one file; the one that fits counts. A line that is torn is skipped.
 //!
 //! **Why not** within the mesh files: not all formats have room for it, and equal meshes of different
 //! inputs would differ.
@@ -62,7 +62,7 @@ struct Line {
     of: Stamp,
 }
 
-/// How an output stands.
+/// What is known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OutputState {
     /// It is not there.
@@ -125,7 +125,7 @@ impl OutputRecord {
         *self.known.lock().unwrap_or_else(PoisonError::into_inner) = known;
     }
 
-    /// How an output stands.
+    /// What is known of an output, and whether it is still right.
     pub(crate) fn state_of(&self, job: &Job) -> OutputState {
         let Some(is) = Stamp::of(&job.out) else {
             return OutputState::Missing;
@@ -175,7 +175,10 @@ impl OutputRecord {
 
     /// Of all that the file depends on but its input, in hexadecimal.
     fn hash(&self, job: &Job) -> String {
-        format!("{:016x}", hash(&format!("{} {}", self.options, job.stands)))
+        format!(
+            "{:016x}",
+            hash(&format!("{} {}", self.options, job.placement))
+        )
     }
 
     fn name(&self, out: &Path) -> String {
@@ -200,7 +203,7 @@ mod tests {
         let job = Job {
             input: folder.path().join("a.swc"),
             out: folder.path().join("a.ply"),
-            stands: String::new(),
+            placement: String::new(),
         };
         fs::write(&job.input, "in").expect("written");
         let record = OutputRecord::open(folder.path(), "level 1");

@@ -20,8 +20,8 @@ pub(crate) struct Job {
     pub(crate) input: PathBuf,
     /// The file to write.
     pub(crate) out: PathBuf,
-    /// Of a circuit: where the cell stands, as text; else empty.
-    pub(crate) stands: String,
+    /// Of a circuit: the instance with its placement, as text; else empty.
+    pub(crate) placement: String,
 }
 
 /// Whether OUT is a folder: for anything but one file, and where it is one already.
@@ -65,7 +65,7 @@ pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Resu
         jobs.push(Job {
             input: path.clone(),
             out: target,
-            stands: String::new(),
+            placement: String::new(),
         });
     }
     Ok(jobs)

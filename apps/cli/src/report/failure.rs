@@ -30,7 +30,7 @@ pub(crate) struct Failed {
     pub(crate) error: String,
 }
 
-/// What stands in the JSON list for an input.
+/// The JSON list's entry for an input.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub(crate) enum Entry<T> {

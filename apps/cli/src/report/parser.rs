@@ -7,7 +7,7 @@ use serde_json::json;
 use super::reporter::{unwritable, write_line};
 
 /// What the command line's parser says instead of a command: help, or what is wrong. Gives the exit code;
-/// where JSON is wanted, an error is a document too.
+/// with --json, an error is a document too.
 pub(crate) fn report_parser_error(error: &clap::Error) -> u8 {
     let printed = error.print();
     let json = std::env::args_os()

@@ -18,7 +18,7 @@ const THREADS: usize = 16;
 /// More threads than this for a core gain nothing: each has a cell in memory.
 const PER_CORE: usize = 4;
 
-/// What is told to people and machines. Messages never tear: one at a time, around the bar.
+/// All messages and results go through it: one at a time, so that they never tear, and around the bar.
 pub(crate) struct Reporter {
     common: Common,
     color: bool,
@@ -49,10 +49,10 @@ impl Reporter {
             occupied: AtomicBool::new(false),
             broken: AtomicBool::new(false),
         };
-        if let Some(asked) = common.threads.filter(|&n| n > most_threads()) {
+        if let Some(threads) = common.threads.filter(|&n| n > most_threads()) {
             let most = most_threads();
             reporter.warning(&format!(
-                "--threads {asked}: {most} are used, more gain nothing here"
+                "--threads {threads}: {most} are used, more gain nothing here"
             ));
         }
         reporter
@@ -80,7 +80,7 @@ impl Reporter {
         }
     }
 
-    /// What to do where the program is interrupted: the one document is printed, if it is wanted and was not.
+    /// What to do where the program is interrupted: the JSON document is printed, unless it was.
     pub(crate) fn on_interrupt(&self) -> impl Fn() + Send + use<> {
         let (json, documented) = (self.common.json, Arc::clone(&self.documented));
         move || {
@@ -91,12 +91,12 @@ impl Reporter {
         }
     }
 
-    /// Whether results are wanted as JSON.
+    /// Whether results are printed as JSON.
     pub(crate) fn json(&self) -> bool {
         self.common.json
     }
 
-    /// Whether everything shall be told.
+    /// Whether every warning is printed.
     pub(crate) fn verbose(&self) -> bool {
         self.common.verbose
     }
@@ -110,7 +110,7 @@ impl Reporter {
     pub(crate) fn threads(&self) -> usize {
         self.common
             .threads
-            .map_or_else(cores, |asked| asked.min(most_threads()))
+            .map_or_else(cores, |threads| threads.min(most_threads()))
     }
 
     /// Puts messages above this bar from now on, or under none.
@@ -123,7 +123,7 @@ impl Reporter {
         self.error(&failure.0);
     }
 
-    /// How many errors were told.
+    /// How many errors were printed.
     pub(crate) fn failures(&self) -> usize {
         self.errors().len()
     }
@@ -152,7 +152,7 @@ impl Reporter {
         }
     }
 
-    /// What was done, for people; silent where JSON is wanted or nothing at all.
+    /// What was done, for people; silent with --json and --quiet.
     pub(crate) fn result(&self, text: &str) {
         if self.common.quiet || self.common.json {
             return;
@@ -163,7 +163,7 @@ impl Reporter {
         self.to_stdout(&plain(text));
     }
 
-    /// What was asked for, for people: told even when nothing else is.
+    /// What the command is for, for people: printed with --quiet too.
     pub(crate) fn answer(&self, text: &str) {
         if !self.common.json {
             self.to_stdout(&plain(text));
@@ -178,13 +178,13 @@ impl Reporter {
         Ok(())
     }
 
-    /// The end: where JSON is wanted and there was none, the errors are the document.
+    /// The end: with --json, if there was no document, the errors are it.
     pub(crate) fn close(&self) -> anyhow::Result<()> {
         let errors = self.errors().clone();
         self.document(&json!({ "errors": errors }))
     }
 
-    /// A reader that has gone away, as in `neurotess info … | head`, is no error; any other is told once.
+    /// A reader that has gone away, as in `neurotess info … | head`, is no error; any other is reported once.
     fn to_stdout(&self, text: &str) {
         let mut failed = None;
         self.print(|| failed = write_line(text).err());

@@ -1,4 +1,4 @@
-//! What `neurotess bench` is told.
+//! `neurotess bench`: its options.
 
 use std::path::PathBuf;
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::args::ExplorationArgs;
 use super::methods::{adaptive, instances, median};
-use super::scenes::{self, Neuron, Scene};
+use super::scenes::{self, BenchScene, Neuron};
 use crate::report::Reporter;
 
 /// Angle (radians) from frame to frame: what lists were chosen for does not stay.
@@ -66,15 +66,15 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
     let gpu = Gpu::open(args.adapter.as_deref())?;
     let neurons = scenes::neurons(args.distinct, args.points);
     let clock = std::time::Instant::now();
-    let sketches: Vec<Proxy> = neurons
+    let proxies: Vec<Proxy> = neurons
         .par_iter()
-        .map(|neuron| Proxy::new(&neuron.mesh, &neuron.words))
+        .map(|neuron| Proxy::new(&neuron.mesh, &neuron.color_keys))
         .collect();
     let sketch_ms = clock.elapsed().as_secs_f64() * 1e3;
-    let mut maker = Exploration::new(&gpu, 1)?;
-    maker.set_budget(args.budget);
+    let mut source = Exploration::new(&gpu, 1)?;
+    source.set_budget(args.budget);
     let clock = std::time::Instant::now();
-    let ids = maker.add(&gpu, &sketches)?;
+    let ids = source.add(&gpu, &proxies)?;
     gpu.wait()?;
     let mut document = Document {
         adapter: &gpu.adapter.name,
@@ -83,28 +83,30 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
         size: args.size.0,
         budget: args.budget,
         distinct: neurons.len(),
-        points: sketches.iter().map(Proxy::point_count).sum::<usize>() as f64
-            / neurons.len() as f64,
+        points: proxies.iter().map(Proxy::point_count).sum::<usize>() as f64 / neurons.len() as f64,
         sketch_ms,
         upload_ms: clock.elapsed().as_secs_f64() * 1e3,
-        bytes_per_point: maker.bytes_per_point(),
+        bytes_per_point: source.bytes_per_point(),
         rows: Vec::new(),
     };
     reporter.result(&head(&document));
     let colors = scenes::colors();
     for &count in &args.neurons {
-        let scene = Scene::new(&neurons, count, args.size.0)?;
-        maker.set_instances(&gpu, instances(&scene, &ids))?;
-        let times = times(&gpu, &mut maker, &scene.frame, &colors, args.frames)?;
-        let stats = maker.stats(&gpu)?;
-        let points = scene.places.iter().map(|&(n, _)| sketches[n].point_count());
+        let scene = BenchScene::new(&neurons, count, args.size.0)?;
+        source.set_instances(&gpu, instances(&scene, &ids))?;
+        let times = times(&gpu, &mut source, &scene.frame, &colors, args.frames)?;
+        let stats = source.stats(&gpu)?;
+        let points = scene
+            .placements
+            .iter()
+            .map(|&(n, _)| proxies[n].point_count());
         let mut row = Row {
             neurons: count,
             points: points.map(|n| n as u64).sum(),
             exploration: times,
             triangles: stats.triangles,
             wanted: stats.wanted,
-            bytes: maker.bytes().iter().map(|(_, bytes)| bytes).sum(),
+            bytes: source.bytes().iter().map(|(_, bytes)| bytes).sum(),
             adaptive: None,
             adaptive_triangles: None,
             adaptive_bytes: None,
@@ -124,39 +126,39 @@ fn compare(
     row: &mut Row,
     gpu: &Gpu,
     neurons: &[Neuron],
-    scene: &Scene,
+    scene: &BenchScene,
     colors: &ColorTable,
     frames: u32,
 ) -> anyhow::Result<()> {
-    let refining = AdaptiveSettings {
+    let settings = AdaptiveSettings {
         lod: LodCriterion::PixelError(ERROR),
         ..AdaptiveSettings::default()
     };
-    let mut maker = adaptive(gpu, neurons, scene, refining)?;
-    let times = times(gpu, &mut maker, &scene.frame, colors, frames)?;
+    let mut source = adaptive(gpu, neurons, scene, settings)?;
+    let times = times(gpu, &mut source, &scene.frame, colors, frames)?;
     row.ratio = Some(times.waited / row.exploration.waited);
     row.adaptive = Some(times);
-    row.adaptive_triangles = Some(maker.stats(gpu)?.triangles);
-    row.adaptive_bytes = Some(maker.bytes().iter().map(|(_, bytes)| bytes).sum());
+    row.adaptive_triangles = Some(source.stats(gpu)?.triangles);
+    row.adaptive_bytes = Some(source.bytes().iter().map(|(_, bytes)| bytes).sum());
     Ok(())
 }
 
 /// Frames from a camera that turns, after one that is not counted.
 fn times(
     gpu: &Gpu,
-    maker: &mut dyn VertexSource,
+    source: &mut dyn VertexSource,
     frame: &Frame,
     colors: &ColorTable,
     frames: u32,
 ) -> anyhow::Result<Times> {
-    let mut meter = Meter::new(gpu, maker, colors)?;
+    let mut meter = Meter::new(gpu, source, colors)?;
     let mut times: Vec<FrameTime> = Vec::new();
     for i in 0..=frames {
         let turned = Frame {
             camera: frame.camera.turned(TURN * f64::from(i)),
             ..*frame
         };
-        times.push(meter.time(maker, &turned)?);
+        times.push(meter.time(source, &turned)?);
     }
     let times = &times[1..];
     let part = |k: usize| median(times.iter().filter_map(|t| Some(t.gpu_ms?[k])).collect());

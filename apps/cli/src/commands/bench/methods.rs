@@ -1,21 +1,21 @@
-//! The ways of drawing that are compared, and how a frame of each is timed.
+//! The methods that are compared, and how a frame of each is timed.
 
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, Surface};
 use neurotess::refine::{Lod, LodCriterion, RefineOptions, Refinement};
 use neurotess::render::{
     Adaptive, AdaptiveSettings, ColorTable, FrameTime, Gpu, Instance, Meter, Place, Placement,
-    Prerefined, PrerefinedSurface, Scene as Placed, Template, TemplateId, Templates, VertexSource,
+    Prerefined, PrerefinedSurface, Scene, Template, TemplateId, Templates, VertexSource,
 };
 use serde::Serialize;
 
 use super::args::RefinementArgs;
-use super::scenes::{Neuron, Scene};
+use super::scenes::{BenchScene, Neuron};
 
 /// Bytes of a stored triangle: its corners, and half a vertex.
 const BYTES_OF_TRIANGLE: u64 = 12 + 12;
 
-/// Ways of drawing.
+/// Methods that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Method {
@@ -49,18 +49,18 @@ pub(crate) struct Row {
     pub(crate) bytes: u64,
 }
 
-/// Draws scenes.
-pub(crate) struct Drawing<'a> {
+/// Draws scenes by each method, and times it.
+pub(crate) struct MethodTimer<'a> {
     pub(crate) gpu: &'a Gpu,
     pub(crate) args: &'a RefinementArgs,
     pub(crate) neurons: &'a [Neuron],
     pub(crate) colors: ColorTable,
 }
 
-impl Drawing<'_> {
+impl MethodTimer<'_> {
     /// Stored surfaces of a level; none if they need more memory than is allowed.
-    pub(crate) fn prerefined(&self, scene: &Scene, level: u32) -> anyhow::Result<Option<Row>> {
-        let used = self.neurons.len().min(scene.places.len());
+    pub(crate) fn prerefined(&self, scene: &BenchScene, level: u32) -> anyhow::Result<Option<Row>> {
+        let used = self.neurons.len().min(scene.placements.len());
         let patches: usize = self.neurons[..used]
             .iter()
             .map(|n| n.mesh.patches.len())
@@ -69,20 +69,20 @@ impl Drawing<'_> {
         if triangles * BYTES_OF_TRIANGLE > self.args.memory << 20 {
             return Ok(None);
         }
-        let painted: Vec<PrerefinedSurface<'_>> =
-            self.neurons[..used].iter().map(Neuron::painted).collect();
+        let surfaces: Vec<PrerefinedSurface<'_>> =
+            self.neurons[..used].iter().map(Neuron::surface).collect();
         let places: Vec<Place> = scene
-            .places
+            .placements
             .iter()
             .map(|&(mesh, translation)| Place { mesh, translation })
             .collect();
         let levels = |_| LodCriterion::Homogeneous(level).into();
         let options = RefineOptions::default();
-        let mut maker = Prerefined::placed(self.gpu, &painted, &places, levels, &options, false)?;
-        let times = self.times(&mut maker, scene)?;
-        let resident = maker.resident();
+        let mut source = Prerefined::placed(self.gpu, &surfaces, &places, levels, &options, false)?;
+        let times = self.times(&mut source, scene)?;
+        let resident = source.resident();
         let bytes = resident.vertex_bytes + resident.corner_bytes;
-        let triangles = maker.shown() as u64;
+        let triangles = source.shown() as u64;
         Ok(Some(row(
             scene,
             Method::Prerefined,
@@ -94,9 +94,9 @@ impl Drawing<'_> {
     }
 
     /// Stored surfaces with the levels that the error in pixels asks for, each neuron for itself.
-    pub(crate) fn prerefined_by_error(&self, scene: &Scene) -> anyhow::Result<Row> {
+    pub(crate) fn prerefined_by_error(&self, scene: &BenchScene) -> anyhow::Result<Row> {
         let moved: Vec<CoarseMesh> = scene
-            .places
+            .placements
             .iter()
             .map(|&(neuron, translation)| {
                 let mut mesh = self.neurons[neuron].mesh.clone();
@@ -104,13 +104,13 @@ impl Drawing<'_> {
                 mesh
             })
             .collect();
-        let painted: Vec<PrerefinedSurface<'_>> = scene
-            .places
+        let surfaces: Vec<PrerefinedSurface<'_>> = scene
+            .placements
             .iter()
             .zip(&moved)
             .map(|(&(neuron, _), mesh)| PrerefinedSurface {
                 mesh,
-                color_keys: &self.neurons[neuron].words,
+                color_keys: &self.neurons[neuron].color_keys,
             })
             .collect();
         let frame = &scene.frame;
@@ -124,11 +124,11 @@ impl Drawing<'_> {
             )
         };
         let options = RefineOptions::default();
-        let mut maker = Prerefined::new(self.gpu, &painted, levels, &options, false)?;
-        let times = self.times(&mut maker, scene)?;
-        let resident = maker.resident();
+        let mut source = Prerefined::new(self.gpu, &surfaces, levels, &options, false)?;
+        let times = self.times(&mut source, scene)?;
+        let resident = source.resident();
         let bytes = resident.vertex_bytes + resident.corner_bytes;
-        let triangles = maker.shown() as u64;
+        let triangles = source.shown() as u64;
         Ok(row(
             scene,
             Method::PrerefinedPixelError,
@@ -140,16 +140,16 @@ impl Drawing<'_> {
     }
 
     /// What draws a scene on the fly.
-    pub(crate) fn on_the_fly(&self, scene: &Scene) -> anyhow::Result<Adaptive> {
+    pub(crate) fn on_the_fly(&self, scene: &BenchScene) -> anyhow::Result<Adaptive> {
         adaptive(self.gpu, self.neurons, scene, AdaptiveSettings::default())
     }
 
-    /// Times a way of refining on the fly. `count`: whether triangles are counted, which reads lists
+    /// Times a way of settings on the fly. `count`: whether triangles are counted, which reads lists
     /// back.
     pub(crate) fn refined(
         &self,
-        maker: &mut Adaptive,
-        scene: &Scene,
+        source: &mut Adaptive,
+        scene: &BenchScene,
         (method, level): (Method, Option<u32>),
         count: bool,
     ) -> anyhow::Result<Row> {
@@ -162,50 +162,54 @@ impl Drawing<'_> {
             },
             _ => LodCriterion::PixelError(self.args.pixels as f32),
         };
-        maker.set_settings(AdaptiveSettings {
+        source.set_settings(AdaptiveSettings {
             lod,
             ..AdaptiveSettings::default()
         });
-        let times = self.times(maker, scene)?;
+        let times = self.times(source, scene)?;
         let triangles = if count {
-            maker.stats(self.gpu)?.triangles
+            source.stats(self.gpu)?.triangles
         } else {
             0
         };
-        let bytes = maker.bytes().iter().map(|(_, bytes)| bytes).sum();
+        let bytes = source.bytes().iter().map(|(_, bytes)| bytes).sum();
         Ok(row(scene, method, level, &times, triangles, bytes))
     }
 
     /// Times of some frames, after one that is not counted; of one only where it takes long.
-    fn times(&self, maker: &mut dyn VertexSource, scene: &Scene) -> anyhow::Result<Vec<FrameTime>> {
-        let mut meter = Meter::new(self.gpu, maker, &self.colors)?;
-        let first = meter.time(maker, &scene.frame)?;
+    fn times(
+        &self,
+        source: &mut dyn VertexSource,
+        scene: &BenchScene,
+    ) -> anyhow::Result<Vec<FrameTime>> {
+        let mut meter = Meter::new(self.gpu, source, &self.colors)?;
+        let first = meter.time(source, &scene.frame)?;
         if first.waited_ms > 1e3 * self.args.patience {
             return Ok(vec![first]);
         }
         (0..self.args.frames)
-            .map(|_| Ok(meter.time(maker, &scene.frame)?))
+            .map(|_| Ok(meter.time(source, &scene.frame)?))
             .collect()
     }
 }
 
-/// What refines a scene as it is drawn.
+/// A scene that is refined as it is drawn.
 pub(crate) fn adaptive(
     gpu: &Gpu,
     neurons: &[Neuron],
-    scene: &Scene,
-    refining: AdaptiveSettings,
+    scene: &BenchScene,
+    settings: AdaptiveSettings,
 ) -> anyhow::Result<Adaptive> {
-    let used = neurons.len().min(scene.places.len());
+    let used = neurons.len().min(scene.placements.len());
     let list: Vec<Template<'_>> = neurons[..used].iter().map(Neuron::template).collect();
     let mut templates = Templates::new();
     let ids = templates.add(gpu, &list)?;
-    let placed = Placed::new(templates, instances(scene, &ids))?;
-    Ok(Adaptive::new(gpu, placed, refining, 1)?)
+    let scene = Scene::new(templates, instances(scene, &ids))?;
+    Ok(Adaptive::new(gpu, scene, settings, 1)?)
 }
 
-/// Where a scene's neurons stand.
-pub(crate) fn instances(scene: &Scene, ids: &[TemplateId]) -> Vec<Instance> {
+/// The instances of a scene.
+pub(crate) fn instances(scene: &BenchScene, ids: &[TemplateId]) -> Vec<Instance> {
     let instance = |&(neuron, translation): &(usize, DVec3)| {
         // Placements start from the template's coordinates, as translations do.
         let placement = Placement {
@@ -217,21 +221,21 @@ pub(crate) fn instances(scene: &Scene, ids: &[TemplateId]) -> Vec<Instance> {
             ..Instance::new(ids[neuron])
         }
     };
-    scene.places.iter().map(instance).collect()
+    scene.placements.iter().map(instance).collect()
 }
 
 impl Neuron {
-    fn painted(&self) -> PrerefinedSurface<'_> {
+    fn surface(&self) -> PrerefinedSurface<'_> {
         PrerefinedSurface {
             mesh: &self.mesh,
-            color_keys: &self.words,
+            color_keys: &self.color_keys,
         }
     }
 
     fn template(&self) -> Template<'_> {
         Template {
             mesh: &self.mesh,
-            color_keys: &self.words,
+            color_keys: &self.color_keys,
             values: &[],
         }
     }
@@ -244,7 +248,7 @@ impl Neuron {
 }
 
 fn row(
-    scene: &Scene,
+    scene: &BenchScene,
     method: Method,
     level: Option<u32>,
     times: &[FrameTime],
@@ -256,7 +260,7 @@ fn row(
         .filter_map(|time| Some(time.gpu_ms?[0]))
         .collect();
     Row {
-        neurons: scene.places.len() as u32,
+        neurons: scene.placements.len() as u32,
         method,
         level,
         ms: median(times.iter().map(FrameTime::best_ms).collect()).unwrap_or(0.0),

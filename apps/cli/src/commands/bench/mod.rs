@@ -21,8 +21,8 @@ use crate::io::output::{Output, OutputError, existing};
 use crate::report::Reporter;
 pub(crate) use args::BenchArgs;
 use args::{Bench, RefinementArgs};
-use methods::{Drawing, Method, Row};
-use scenes::{Neuron, Scene};
+use methods::{Method, MethodTimer, Row};
+use scenes::{BenchScene, Neuron};
 use verdict::{Ratio, ratios};
 
 /// The JSON document.
@@ -87,14 +87,14 @@ fn refinement(args: &RefinementArgs, reporter: &Reporter) -> anyhow::Result<()> 
         document.tracing_points,
         document.patches
     ));
-    let drawing = Drawing {
+    let timer = MethodTimer {
         gpu: &gpu,
         args,
         neurons: &neurons,
         colors: scenes::colors(),
     };
-    let rows = levels(&drawing, reporter)?;
-    let growth = growth(&drawing, reporter)?;
+    let rows = levels(&timer, reporter)?;
+    let growth = growth(&timer, reporter)?;
     let ratios = ratios(&rows);
     reporter.result(&format!("\n{}", Ratio::head()));
     for ratio in &ratios {
@@ -120,24 +120,24 @@ const JSON: &str = "refinement.json";
 const SVG: &str = "refinement.svg";
 
 /// All scenes at all levels, in all ways.
-fn levels(drawing: &Drawing<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>> {
+fn levels(timer: &MethodTimer<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
-    let args = drawing.args;
+    let args = timer.args;
     for &count in &args.neurons {
-        let scene = Scene::new(drawing.neurons, count, args.size.0)?;
-        let mut maker = drawing.on_the_fly(&scene)?;
+        let scene = BenchScene::new(timer.neurons, count, args.size.0)?;
+        let mut source = timer.on_the_fly(&scene)?;
         reporter.result(&format!("\n{}", head(count)));
         for &level in &args.levels {
             let of_level = (count, level);
-            match drawing.prerefined(&scene, level)? {
+            match timer.prerefined(&scene, level)? {
                 Some(row) => tell(&mut rows, row, reporter),
-                None => reporter.warning(&left_out(drawing, of_level)),
+                None => reporter.warning(&left_out(timer, of_level)),
             }
             for method in [Method::Homogeneous, Method::Adaptive] {
                 let way = (method, Some(level));
                 tell(
                     &mut rows,
-                    drawing.refined(&mut maker, &scene, way, true)?,
+                    timer.refined(&mut source, &scene, way, true)?,
                     reporter,
                 );
             }
@@ -145,20 +145,20 @@ fn levels(drawing: &Drawing<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>
         let way = (Method::PixelError, None);
         tell(
             &mut rows,
-            drawing.refined(&mut maker, &scene, way, true)?,
+            timer.refined(&mut source, &scene, way, true)?,
             reporter,
         );
-        tell(&mut rows, drawing.prerefined_by_error(&scene)?, reporter);
+        tell(&mut rows, timer.prerefined_by_error(&scene)?, reporter);
     }
     Ok(rows)
 }
 
 /// Adaptive refinement in ever larger scenes.
-fn growth(drawing: &Drawing<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>> {
+fn growth(timer: &MethodTimer<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
-    for &count in &drawing.args.grow {
-        let scene = Scene::new(drawing.neurons, count, drawing.args.size.0)?;
-        let mut maker = drawing.on_the_fly(&scene)?;
+    for &count in &timer.args.grow {
+        let scene = BenchScene::new(timer.neurons, count, timer.args.size.0)?;
+        let mut source = timer.on_the_fly(&scene)?;
         if rows.is_empty() {
             reporter.result("\nby the error in pixels, ever more neurons");
         }
@@ -167,23 +167,23 @@ fn growth(drawing: &Drawing<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>
         let way = (Method::PixelError, None);
         tell(
             &mut rows,
-            drawing.refined(&mut maker, &scene, way, counted)?,
+            timer.refined(&mut source, &scene, way, counted)?,
             reporter,
         );
     }
     Ok(rows)
 }
 
-fn left_out(drawing: &Drawing<'_>, (count, level): (u32, u32)) -> String {
-    let used = drawing.neurons.len().min(count as usize);
-    let triangles: usize = drawing.neurons[..used]
+fn left_out(timer: &MethodTimer<'_>, (count, level): (u32, u32)) -> String {
+    let used = timer.neurons.len().min(count as usize);
+    let triangles: usize = timer.neurons[..used]
         .iter()
         .map(|n| n.triangles(level))
         .sum();
     format!(
         "{count} neurons stored at level {level} ({triangles} triangles) need more than {} MiB: \
          left out (--memory allows more)",
-        drawing.args.memory
+        timer.args.memory
     )
 }
 

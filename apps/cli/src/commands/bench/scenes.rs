@@ -19,8 +19,8 @@ const TYPES: i32 = 8;
 /// A neuron and its colors.
 pub(crate) struct Neuron {
     pub(crate) mesh: CoarseMesh,
-    pub(crate) words: Vec<u32>,
-    balls: Vec<BoundingSphere>,
+    pub(crate) color_keys: Vec<u32>,
+    spheres: Vec<BoundingSphere>,
     /// What moves its soma to the origin (µm).
     to_origin: DVec3,
 }
@@ -39,8 +39,8 @@ pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
                 .expect("a synthetic cell is within 32 bits")
                 .mesh;
             Neuron {
-                words: words(&mesh),
-                balls: bounds(&mesh),
+                color_keys: color_keys(&mesh),
+                spheres: bounds(&mesh),
                 to_origin: -(mesh.origin + soma.unwrap_or(DVec3::ZERO)),
                 mesh,
             }
@@ -48,12 +48,12 @@ pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
         .collect()
 }
 
-fn words(mesh: &CoarseMesh) -> Vec<u32> {
-    let word = |point: &neurotess::mesh::TracingPoint| match point.role {
+fn color_keys(mesh: &CoarseMesh) -> Vec<u32> {
+    let color_key = |point: &neurotess::mesh::TracingPoint| match point.role {
         Role::Soma => category(1),
         _ => category(point.kind.clamp(0, TYPES - 1) as u32),
     };
-    mesh.tracing.iter().map(word).collect()
+    mesh.tracing.iter().map(color_key).collect()
 }
 
 /// Colors of types.
@@ -70,18 +70,18 @@ pub(crate) fn colors() -> ColorTable {
 }
 
 /// A scene: neurons on a square grid in the plane, seen as a whole.
-pub(crate) struct Scene {
+pub(crate) struct BenchScene {
     /// Neuron, and what is added to its coordinates (µm).
-    pub(crate) places: Vec<(usize, DVec3)>,
+    pub(crate) placements: Vec<(usize, DVec3)>,
     pub(crate) frame: Frame,
     /// Distance (µm) from the eye to the farthest neuron.
     pub(crate) far: f64,
 }
 
-impl Scene {
+impl BenchScene {
     pub(crate) fn new(neurons: &[Neuron], count: u32, size: [u32; 2]) -> anyhow::Result<Self> {
         let side = f64::from(count).sqrt().ceil() as u32;
-        let places: Vec<(usize, DVec3)> = (0..count)
+        let placements: Vec<(usize, DVec3)> = (0..count)
             .map(|i| {
                 let neuron = i as usize % neurons.len();
                 let middle = f64::from(side - 1) / 2.0;
@@ -89,20 +89,20 @@ impl Scene {
                 (neuron, DVec3::new(x, 0.0, z) + neurons[neuron].to_origin)
             })
             .collect();
-        let balls: Vec<BoundingSphere> = places
+        let spheres: Vec<BoundingSphere> = placements
             .iter()
             .flat_map(|&(neuron, translation)| {
-                let balls = neurons[neuron].balls.iter();
-                balls.map(move |&(center, radius)| (center + translation, radius))
+                let spheres = neurons[neuron].spheres.iter();
+                spheres.map(move |&(center, radius)| (center + translation, radius))
             })
             .collect();
         let aspect = f64::from(size[0]) / f64::from(size[1]);
-        let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &balls)?;
+        let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &spheres)?;
         let distance = |&(center, radius): &BoundingSphere| center.distance(camera.eye()) + radius;
         Ok(Self {
             frame: Frame {
                 camera,
-                near: camera.near(&balls),
+                near: camera.near(&spheres),
                 size,
                 tile: Tile {
                     x: 0,
@@ -111,8 +111,8 @@ impl Scene {
                     height: size[1],
                 },
             },
-            far: balls.iter().map(distance).fold(0.0, f64::max),
-            places,
+            far: spheres.iter().map(distance).fold(0.0, f64::max),
+            placements,
         })
     }
 }

@@ -95,7 +95,7 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
     reporter.document(&entries)
 }
 
-/// Names the file of each cell: population and id; the row too where an id stands for several.
+/// Names the file of each cell: population and id; the row too where several rows share an id.
 fn plan(
     circuit: &Circuit,
     instances: &[Instance],
@@ -130,7 +130,7 @@ fn plan(
             job: Job {
                 input,
                 out,
-                stands: format!("{instance:?}"),
+                placement: format!("{instance:?}"),
             },
             node: NodeName {
                 population: population.clone(),

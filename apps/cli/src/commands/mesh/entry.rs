@@ -1,4 +1,4 @@
-//! What stands in the JSON list for a cell.
+//! The JSON list's entry for a cell.
 
 use serde::Serialize;
 
@@ -6,7 +6,6 @@ use super::cell::CellReport;
 use crate::io::targets::Job;
 use crate::report::Failed;
 
-/// What stands in the JSON list for an input.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub(super) enum Entry {

@@ -1,4 +1,4 @@
-//! What people are told of meshes.
+//! Messages for people: a line per cell, warnings, the summary.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -10,19 +10,19 @@ use crate::report::{Reporter, count, place};
 
 /// What is made again although it is there, and what stays although little is known of it.
 pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
-    let number = |wanted: OutputState| states.iter().filter(|&&s| s == wanted).count();
-    let told = |state, what: &str| {
+    let number = |state: OutputState| states.iter().filter(|&&s| s == state).count();
+    let note = |state, what: &str| {
         let n = number(state);
         if n > 0 {
             reporter.note(&format!("{} {what}", count(n, "output")));
         }
     };
-    told(
+    note(
         OutputState::OtherOptions,
         "made with other options: made again",
     );
-    told(OutputState::OtherInput, "made of another input: made again");
-    told(
+    note(OutputState::OtherInput, "made of another input: made again");
+    note(
         OutputState::Newer,
         "kept, though it is not written down with which options they were made: --force makes them again",
     );

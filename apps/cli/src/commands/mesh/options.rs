@@ -20,7 +20,7 @@ pub(crate) struct MeshOptions {
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
     pub(crate) force: bool,
-    /// Whether volume and area are wanted: they cost a pass over the surface.
+    /// Whether volume and area are measured: they cost a pass over the surface.
     pub(crate) measure: bool,
 }
 

@@ -63,7 +63,7 @@ pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
 
 fn folder_of(out: &Path) -> &Path {
     let folder = out.parent().unwrap_or(Path::new("."));
-    // The folder has been made by whoever claimed the file.
+    // The folder has been made when the file was claimed.
     match folder.as_os_str().is_empty() {
         true => Path::new("."),
         false => folder,

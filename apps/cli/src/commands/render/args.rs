@@ -115,7 +115,7 @@ pub(crate) struct RenderArgs {
     pub(crate) scale_bar: Option<Fit>,
     /// How vertices are made [default: adaptive; homogeneous where --level is given]
     #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
-    pub(crate) lod: Option<LodArg>,
+    pub(crate) lod: Option<LodMode>,
     /// Subdivisions per coarse edge everywhere, 1 to 64, instead of --pixels
     #[arg(long, value_name = "N", help_heading = "Refinement", conflicts_with = "pixels",
           allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
@@ -130,9 +130,9 @@ pub(crate) struct RenderArgs {
           value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
     pub(crate) budget: Option<u32>,
     /// Look from this side; the camera fits the scene
-    #[arg(long, value_enum, default_value_t = ViewArg::Front, value_name = "SIDE",
+    #[arg(long, value_enum, default_value_t = ViewSide::Front, value_name = "SIDE",
           help_heading = "Camera")]
-    pub(crate) view: ViewArg,
+    pub(crate) view: ViewSide,
     /// Position of the eye (µm)
     #[arg(
         long,
@@ -292,7 +292,7 @@ pub(crate) enum ColorBy {
 
 /// `--lod`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum LodArg {
+pub(crate) enum LodMode {
     /// As it is drawn, as fine as --pixels asks for
     Adaptive,
     /// As it is drawn, at --level everywhere
@@ -307,7 +307,7 @@ pub(crate) enum LodArg {
 
 /// `--view`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ViewArg {
+pub(crate) enum ViewSide {
     /// Along −z, y upwards
     Front,
     /// Along +z

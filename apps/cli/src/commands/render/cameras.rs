@@ -2,7 +2,7 @@
 
 use neurotess::render::{BoundingSphere, Camera, CameraError, Side};
 
-use super::args::{RenderArgs, ViewArg};
+use super::args::{RenderArgs, ViewSide};
 use crate::report::usage;
 
 /// Share of the picture that stays free on each side.
@@ -14,8 +14,11 @@ const MOST_BESIDE: f64 = 0.35;
 ///
 /// # Errors
 /// Wrong usage: a camera that sees nothing.
-pub(crate) fn cameras(args: &RenderArgs, balls: &[BoundingSphere]) -> anyhow::Result<Vec<Camera>> {
-    let first = match camera(args, balls, [MARGIN; 4]) {
+pub(crate) fn cameras(
+    args: &RenderArgs,
+    spheres: &[BoundingSphere],
+) -> anyhow::Result<Vec<Camera>> {
+    let first = match camera(args, spheres, [MARGIN; 4]) {
         Ok(camera) => camera,
         Err(e) => return usage(e.to_string()),
     };
@@ -30,8 +33,8 @@ pub(crate) fn cameras(args: &RenderArgs, balls: &[BoundingSphere]) -> anyhow::Re
 }
 
 /// The camera that leaves a share of the width free for the legend, on the left (negative) or the
-/// right; none where that is too much, or where the camera was told its place.
-pub(crate) fn beside(args: &RenderArgs, balls: &[BoundingSphere], share: f64) -> Option<Camera> {
+/// right; none where that is too much, or where --eye says where the camera is.
+pub(crate) fn beside(args: &RenderArgs, spheres: &[BoundingSphere], share: f64) -> Option<Camera> {
     if args.eye.is_some() || args.turntable || share.abs() > MOST_BESIDE {
         return None;
     }
@@ -41,12 +44,12 @@ pub(crate) fn beside(args: &RenderArgs, balls: &[BoundingSphere], share: f64) ->
     } else {
         (MARGIN, free)
     };
-    camera(args, balls, [left, right, MARGIN, MARGIN]).ok()
+    camera(args, spheres, [left, right, MARGIN, MARGIN]).ok()
 }
 
 fn camera(
     args: &RenderArgs,
-    balls: &[BoundingSphere],
+    spheres: &[BoundingSphere],
     margins: [f64; 4],
 ) -> Result<Camera, CameraError> {
     let fov = args.fov.to_radians();
@@ -56,16 +59,16 @@ fn camera(
         return Camera::new(eye.0, target.0, args.up.0, fov);
     }
     let side = match args.view {
-        ViewArg::Front => Side::Front,
-        ViewArg::Back => Side::Back,
-        ViewArg::Left => Side::Left,
-        ViewArg::Right => Side::Right,
-        ViewArg::Top => Side::Top,
-        ViewArg::Bottom => Side::Bottom,
-        ViewArg::Iso => Side::Iso,
+        ViewSide::Front => Side::Front,
+        ViewSide::Back => Side::Back,
+        ViewSide::Left => Side::Left,
+        ViewSide::Right => Side::Right,
+        ViewSide::Top => Side::Top,
+        ViewSide::Bottom => Side::Bottom,
+        ViewSide::Iso => Side::Iso,
     };
     if args.turntable {
-        return Camera::fit_turning(side, fov, aspect, MARGIN, balls);
+        return Camera::fit_turning(side, fov, aspect, MARGIN, spheres);
     }
-    Camera::fit_within(side, fov, aspect, margins, balls)
+    Camera::fit_within(side, fov, aspect, margins, spheres)
 }

@@ -7,9 +7,8 @@ use neurotess::circuit::Compartment;
 use neurotess::coloring::with_middles;
 use neurotess::formats::{ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions};
-use neurotess::mesh::{CoarseMesh, TracingPoint};
+use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
-use neurotess::render::BoundingSphere;
 
 use super::args::RenderArgs;
 use crate::io::batch::each;
@@ -18,7 +17,7 @@ use crate::io::morphologies::read_morphology;
 use crate::report::{Entry, Failure, Reporter, place};
 
 /// A cell that can be drawn.
-pub(crate) struct Cell {
+pub(crate) struct MeshedCell {
     pub(crate) file: String,
     pub(crate) morphology: Morphology,
     pub(crate) mesh: CoarseMesh,
@@ -33,7 +32,7 @@ pub(crate) fn read(
     cuts: &HashMap<PathBuf, Vec<Compartment>>,
     args: &RenderArgs,
     reporter: &Reporter,
-) -> anyhow::Result<Vec<Entry<Cell>>> {
+) -> anyhow::Result<Vec<Entry<MeshedCell>>> {
     let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
     let options = GenerateOptions {
         soma: args.soma.method(),
@@ -62,7 +61,7 @@ fn cell(
     cut: &[Compartment],
     read: ReadOptions,
     options: &GenerateOptions,
-) -> Result<Cell, Failure> {
+) -> Result<MeshedCell, Failure> {
     let mut read = read_morphology(&input.path, None, &read)?;
     if !cut.is_empty() {
         read.morphology = with_middles(&read.morphology, cut);
@@ -71,7 +70,7 @@ fn cell(
     let generated = generate::generate(&read.morphology, options)
         .map_err(|e| Failure(format!("{file}: {e}")))?;
     let mended = generated.warnings.iter();
-    Ok(Cell {
+    Ok(MeshedCell {
         file,
         mended: mended.map(|w| format!("{w} ({})", w.code)).collect(),
         morphology: read.morphology,
@@ -80,7 +79,7 @@ fn cell(
     })
 }
 
-fn warn(cell: &Cell, all: bool, reporter: &Reporter) {
+fn warn(cell: &MeshedCell, all: bool, reporter: &Reporter) {
     let file = &cell.file;
     if cell.mesh.patches.is_empty() {
         reporter.warning(&format!(
@@ -103,21 +102,4 @@ fn warn(cell: &Cell, all: bool, reporter: &Reporter) {
     for mended in &cell.mended {
         reporter.warning(&format!("{file}: {mended}"));
     }
-}
-
-/// Bounding spheres around all that the cell's surface shows.
-pub(crate) fn balls(cell: &Cell) -> impl Iterator<Item = BoundingSphere> {
-    let origin = cell.mesh.origin;
-    let used = cell
-        .mesh
-        .vertices
-        .iter()
-        .map(|vertex| vertex.tracing as usize);
-    let mut seen = vec![false; cell.mesh.tracing.len()];
-    used.for_each(|index| seen[index] = true);
-    let tracing = cell.mesh.tracing.iter().zip(seen);
-    let shown = tracing.filter(|(_, seen)| *seen).map(|(point, _)| point);
-    shown.map(move |TracingPoint { center, radius, .. }| {
-        (origin + center.as_dvec3(), f64::from(radius.max(0.0)))
-    })
 }

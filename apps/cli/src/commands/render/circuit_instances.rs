@@ -1,18 +1,18 @@
-//! What a circuit shows, cell by cell as they stand.
+//! Instances of a circuit that are drawn, and what colors need to know of them.
 
 use neurotess::circuit::{Circuit, Instance, NodeRef};
 use neurotess::coloring::Node;
 
 /// A circuit and those of its cells that are drawn.
-pub(crate) struct Shown {
+pub(crate) struct CircuitInstances {
     pub(crate) circuit: Circuit,
-    /// As many as places.
+    /// In the order of the placements.
     pub(crate) instances: Vec<Instance>,
 }
 
-impl Shown {
-    /// The node at each place.
-    pub(crate) fn neurons(&self) -> Vec<Option<Node<'_>>> {
+impl CircuitInstances {
+    /// The node of each instance.
+    pub(crate) fn nodes(&self) -> Vec<Option<Node<'_>>> {
         let circuit = &self.circuit;
         let node = |instance: &Instance| {
             let node = instance.node;
@@ -21,13 +21,13 @@ impl Shown {
         self.instances.iter().map(node).collect()
     }
 
-    /// The cell and the node at each place.
-    pub(crate) fn stand(&self, places: &[usize]) -> Vec<(usize, Option<NodeRef>)> {
+    /// The cell that each instance shows, as given, and its node.
+    pub(crate) fn with_cells(&self, cells: &[usize]) -> Vec<(usize, Option<NodeRef>)> {
         let nodes = self.instances.iter().map(|instance| Some(instance.node));
-        places.iter().copied().zip(nodes).collect()
+        cells.iter().copied().zip(nodes).collect()
     }
 
-    /// Name of the cell at each place.
+    /// The name of each instance.
     pub(crate) fn names(&self) -> Vec<String> {
         let name = |instance: &Instance| {
             let population = &self.circuit.populations[instance.node.population as usize];

@@ -6,57 +6,57 @@ use neurotess::coloring::{self, Cell, ColorScheme, Coloring, DECAY, Recording, b
 use neurotess::render::{ColorTable, Legend};
 
 use super::args::{ColorBy, RenderArgs};
-use super::cells;
-use super::circuit_instances::Shown;
-use super::times::{self, said};
+use super::cells::MeshedCell;
+use super::circuit_instances::CircuitInstances;
+use super::times::{self, time_text};
 use crate::report::Reporter;
 
 /// Colors of all pictures.
-pub(crate) struct Colored {
+pub(crate) struct PictureColors {
     /// Of the first.
     pub(crate) coloring: Coloring,
     /// Of a series over time: what differs.
-    film: Option<Film>,
+    series: Option<RecordedSeries>,
 }
 
 /// A recording, and the time (ms) of each picture.
-struct Film {
-    replay: Recording,
+struct RecordedSeries {
+    recording: Recording,
     times: Vec<f64>,
     range: [f32; 2],
 }
 
-impl Colored {
+impl PictureColors {
     /// Table and legend of a picture: of a series only the values differ.
     pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColorTable, Legend)> {
         let Coloring { table, legend, .. } = &self.coloring;
-        let time = |film: &Film| film.times.get(number).copied();
-        let Some((film, time)) = self.film.as_ref().and_then(|f| Some((f, time(f)?))) else {
+        let time = |series: &RecordedSeries| series.times.get(number).copied();
+        let Some((series, time)) = self.series.as_ref().and_then(|f| Some((f, time(f)?))) else {
             return Ok((table.clone(), legend.clone()));
         };
-        let moment = film.replay.at(time, DECAY, &|_| true).map_err(told)?;
+        let frame = series.recording.at(time, DECAY, &|_| true).map_err(whole)?;
         let table = ColorTable {
             scale: table.scale.clone(),
             categories: table.categories.clone(),
-            values: moment.values(film.range),
+            values: frame.values(series.range),
         };
-        Ok((table, legend.clone().noted(&said(&film.times, time))))
+        Ok((table, legend.clone().noted(&time_text(&series.times, time))))
     }
 }
 
-/// Chooses the colors. `shown`: what a circuit shows; `places`: the cell at each.
+/// Colors of cells. `instances`: those of a circuit; `of_cells`: the cell that each instance shows.
 ///
 /// # Errors
 /// What is wrong with a report.
-pub(crate) fn colored(
-    cells: &[&cells::Cell],
-    shown: Option<&Shown>,
-    places: &[usize],
+pub(crate) fn of_pictures(
+    cells: &[&MeshedCell],
+    instances: Option<&CircuitInstances>,
+    of_cells: &[usize],
     args: &RenderArgs,
     reporter: &Reporter,
-) -> anyhow::Result<Colored> {
+) -> anyhow::Result<PictureColors> {
     let background = (!args.transparent).then_some(args.background.0);
-    let paint = ColorScheme {
+    let scheme = ColorScheme {
         palette: args.palette,
         background,
         scale: match background.filter(|_| args.trim_colormap) {
@@ -75,38 +75,41 @@ pub(crate) fn colored(
             mesh: &cell.mesh,
         })
         .collect();
-    if let (Some(report), Some(shown)) = (&args.report, shown) {
-        let stand = shown.stand(places);
-        let replay = Recording::open(report, &shown.circuit, &cells, &stand).map_err(told)?;
-        return over_time(replay, args, &paint, reporter);
+    if let (Some(report), Some(instances)) = (&args.report, instances) {
+        let nodes = instances.with_cells(of_cells);
+        let recording =
+            Recording::open(report, &instances.circuit, &cells, &nodes).map_err(whole)?;
+        return over_time(recording, args, &scheme, reporter);
     }
-    let coloring = match shown {
-        Some(shown) => of_circuit(&cells, shown, args, &paint)?,
+    let coloring = match instances {
+        Some(instances) => of_circuit(&cells, instances, args, &scheme)?,
         None => None,
     };
     let by = by(args.color_by.unwrap_or(ColorBy::Type));
-    let of_cells = || coloring::coloring(&cells, by, &paint);
-    Ok(Colored {
-        coloring: coloring.unwrap_or_else(of_cells),
-        film: None,
+    let by_tracing = || coloring::coloring(&cells, by, &scheme);
+    Ok(PictureColors {
+        coloring: coloring.unwrap_or_else(by_tracing),
+        series: None,
     })
 }
 
-/// Colors that cells of a circuit have as a whole, if those are wanted.
+/// Colors that cells of a circuit have as a whole, if the options say so.
 fn of_circuit(
     cells: &[Cell<'_>],
-    shown: &Shown,
+    instances: &CircuitInstances,
     args: &RenderArgs,
-    paint: &ColorScheme,
+    scheme: &ColorScheme,
 ) -> anyhow::Result<Option<Coloring>> {
-    let neurons = shown.neurons();
+    let neurons = instances.nodes();
     match (&args.color_by_attribute, args.color_by) {
         (Some(attribute), _) => {
-            let named = |e| anyhow::anyhow!("{}: {e}", shown.circuit.file);
-            let coloring = by_attribute(cells, &neurons, attribute, paint);
+            let named = |e| anyhow::anyhow!("{}: {e}", instances.circuit.file);
+            let coloring = by_attribute(cells, &neurons, attribute, scheme);
             coloring.map(Some).map_err(named)
         }
-        (None, Some(ColorBy::Neuron)) => Ok(Some(coloring::each(cells, &shown.names(), paint))),
+        (None, Some(ColorBy::Neuron)) => {
+            Ok(Some(coloring::each(cells, &instances.names(), scheme)))
+        }
         (None, None) => Ok(coloring::given(cells, &neurons)),
         (None, Some(_)) => Ok(None),
     }
@@ -114,44 +117,44 @@ fn of_circuit(
 
 /// Values of a recording: at one time, or of a series.
 fn over_time(
-    replay: Recording,
+    recording: Recording,
     args: &RenderArgs,
-    paint: &ColorScheme,
+    scheme: &ColorScheme,
     reporter: &Reporter,
-) -> anyhow::Result<Colored> {
-    let without = replay.without();
+) -> anyhow::Result<PictureColors> {
+    let without = recording.without();
     if without > 0 {
-        let (all, file) = (replay.places(), &replay.file);
+        let (all, file) = (recording.places(), &recording.file);
         reporter.warning(&format!(
             "{file}: no values for {without} of {all} cells: drawn gray"
         ));
     }
-    if args.time.is_none() && replay.is_of_spikes() {
-        let file = &replay.file;
+    if args.time.is_none() && recording.is_of_spikes() {
+        let file = &recording.file;
         anyhow::bail!("{file}: spikes flash at a time: choose one with --time");
     }
-    let times = times::times(args.time, args.frames)?.unwrap_or_else(|| vec![replay.time.start]);
+    let times = times::times(args.time, args.frames)?.unwrap_or_else(|| vec![recording.time.start]);
     let range = match args.range {
         Some(range) => range,
         None => {
             let times = times.iter().copied();
-            replay.range_at(times, &|_| true).map_err(told)?
+            recording.range_at(times, &|_| true).map_err(whole)?
         }
     };
-    let coloring = replay.coloring(range, paint);
-    let film = Some(Film {
-        replay,
+    let coloring = recording.coloring(range, scheme);
+    let series = Some(RecordedSeries {
+        recording,
         times,
         range,
     });
-    let mut colored = Colored { coloring, film };
+    let mut colored = PictureColors { coloring, series };
     let (table, legend) = colored.picture(0)?;
     (colored.coloring.table, colored.coloring.legend) = (table, legend);
     Ok(colored)
 }
 
-/// The whole message is the error's own: its source would be told twice.
-fn told(error: impl std::fmt::Display) -> anyhow::Error {
+/// The whole message is the error's own: with its source it would be printed twice.
+fn whole(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow::anyhow!("{error}")
 }
 

@@ -7,8 +7,8 @@ use std::time::Instant;
 use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
 
-use super::cells::Cell;
-use super::vertex_source::Made;
+use super::cells::MeshedCell;
+use super::vertex_source::SourceStats;
 use crate::report::{Entry, Failed};
 
 /// The contract's object; times are of the last picture.
@@ -30,7 +30,7 @@ pub(crate) struct Stats {
     pictures: usize,
     seconds: Stages,
     #[serde(skip_serializing_if = "Option::is_none")]
-    exploration: Option<Explored>,
+    exploration: Option<BudgetStats>,
 }
 
 /// Seconds since the command began, stage by stage.
@@ -86,7 +86,7 @@ impl Stages {
 
 /// What `--lod exploration` drew of what it would have, in triangles.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct Explored {
+struct BudgetStats {
     budget: u64,
     wanted: u64,
     /// Left out, or drawn more coarsely than within half a pixel.
@@ -116,7 +116,7 @@ impl Stats {
     }
 
     /// One more picture.
-    pub(crate) fn add(&mut self, cost: &Cost, made: Made) {
+    pub(crate) fn add(&mut self, cost: &Cost, made: SourceStats) {
         self.pictures += 1;
         self.tiles = cost.tiles;
         self.patches = made.patches;
@@ -126,7 +126,7 @@ impl Stats {
         self.level_histogram = made.levels;
         self.bytes_per_point = made.bytes_per_point;
         self.gpu_bytes = made.bytes;
-        self.exploration = made.exploration.map(|stats| Explored {
+        self.exploration = made.exploration.map(|stats| BudgetStats {
             budget: stats.budget,
             wanted: stats.wanted,
             left_out: stats.wanted - stats.triangles.min(stats.wanted),
@@ -141,7 +141,7 @@ impl Stats {
 
     /// What was left out or lowered.
     pub(crate) fn lowered(&self) -> Option<String> {
-        let Explored {
+        let BudgetStats {
             budget,
             wanted,
             left_out,
@@ -187,11 +187,11 @@ enum Input<'a> {
 
 impl<'a> Document<'a> {
     pub(crate) fn new(
-        entries: &'a [Entry<Cell>],
+        entries: &'a [Entry<MeshedCell>],
         files: &[PathBuf],
         stats: Option<&'a Stats>,
     ) -> Self {
-        let input = |entry: &'a Entry<Cell>| match entry {
+        let input = |entry: &'a Entry<MeshedCell>| match entry {
             Entry::Done(cell) => Input::Done { file: &cell.file },
             Entry::Failed(failed) => Input::Failed(failed),
         };

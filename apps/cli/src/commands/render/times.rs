@@ -12,7 +12,7 @@ pub(crate) const MOST: u32 = 100_000;
 pub(crate) enum Time {
     /// One picture.
     At(f64),
-    /// A series: from, to (excluded), and the step between if it is told.
+    /// A series: from, to (excluded), and the step between, if it is given.
     Series(f64, f64, Option<f64>),
 }
 
@@ -66,7 +66,7 @@ pub(crate) fn times(time: Option<Time>, pictures: Option<u32>) -> anyhow::Result
 }
 
 /// A time for people, with as many digits as tell it from its neighbors.
-pub(crate) fn said(times: &[f64], time: f64) -> String {
+pub(crate) fn time_text(times: &[f64], time: f64) -> String {
     let rounded = |digits: i32| {
         let unit = 10f64.powi(digits);
         times
@@ -94,9 +94,9 @@ mod tests {
 
     #[test]
     fn times_have_the_digits_that_they_need() {
-        assert_eq!(said(&[0.0, 1.0], 1.0), "1 ms");
-        assert_eq!(said(&[0.0, 0.5], 0.0), "0.0 ms");
-        assert_eq!(said(&[0.1 + 0.2], 0.1 + 0.2), "0.3 ms");
-        assert_eq!(said(&[1.0 / 3.0], 1.0 / 3.0), "0.333333 ms");
+        assert_eq!(time_text(&[0.0, 1.0], 1.0), "1 ms");
+        assert_eq!(time_text(&[0.0, 0.5], 0.0), "0.0 ms");
+        assert_eq!(time_text(&[0.1 + 0.2], 0.1 + 0.2), "0.3 ms");
+        assert_eq!(time_text(&[1.0 / 3.0], 1.0 / 3.0), "0.333333 ms");
     }
 }

@@ -1,4 +1,4 @@
-//! Who makes the vertices: `--lod`, and what it says of itself.
+//! The source of vertices that `--lod` names, and its statistics.
 
 use std::collections::BTreeMap;
 
@@ -10,25 +10,25 @@ use neurotess::render::{
 };
 use rayon::prelude::*;
 
-use super::Sitting;
-use super::args::{LodArg, RenderArgs};
-use super::cells::Cell;
-use super::scene::covering;
+use super::args::{LodMode, RenderArgs};
+use super::bounds::covering;
+use super::cells::MeshedCell;
+use super::job::RenderJob;
 use crate::report::usage;
 
-/// A maker of any kind.
-pub(crate) enum Maker {
-    /// In memory.
-    Stored(Box<Prerefined>),
-    /// As it is drawn.
-    OnTheFly(Box<Adaptive>),
+/// A source of vertices for whole pictures.
+pub(crate) enum PictureSource {
+    /// Refined beforehand, in memory.
+    Prerefined(Box<Prerefined>),
+    /// Refined as it is drawn.
+    Adaptive(Box<Adaptive>),
     /// Within a budget.
-    Exploring(Box<Exploration>),
+    Budgeted(Box<Exploration>),
 }
 
-/// What a maker draws and holds.
+/// What a source of vertices draws and holds.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Made {
+pub(crate) struct SourceStats {
     pub(crate) patches: u64,
     pub(crate) patches_drawn: u64,
     pub(crate) vertices: u64,
@@ -43,8 +43,8 @@ pub(crate) struct Made {
 ///
 /// # Errors
 /// Wrong usage: a level where levels follow from the error.
-pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodArg> {
-    let exploring = args.lod == Some(LodArg::Exploration);
+pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
+    let exploring = args.lod == Some(LodMode::Exploration);
     if args.budget.is_some() && !exploring {
         return usage("--budget is for --lod exploration");
     }
@@ -52,41 +52,41 @@ pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodArg> {
         return usage("--lod exploration is within half a pixel: leave out --pixels");
     }
     match (args.lod, args.level) {
-        (Some(LodArg::Adaptive), Some(_)) => usage(
+        (Some(LodMode::Adaptive), Some(_)) => usage(
             "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
         ),
-        (Some(LodArg::Exploration | LodArg::Static), Some(_)) => {
+        (Some(LodMode::Exploration | LodMode::Static), Some(_)) => {
             usage("this --lod has no levels: leave out --level, or use --lod homogeneous")
         }
-        (Some(LodArg::Static), None) if args.pixels.is_some() => {
+        (Some(LodMode::Static), None) if args.pixels.is_some() => {
             usage("--lod static is within half a pixel: leave out --pixels, or use --lod adaptive")
         }
         (Some(mode), _) => Ok(mode),
-        (None, Some(_)) => Ok(LodArg::Homogeneous),
-        (None, None) => Ok(LodArg::Adaptive),
+        (None, Some(_)) => Ok(LodMode::Homogeneous),
+        (None, None) => Ok(LodMode::Adaptive),
     }
 }
 
-impl Maker {
+impl PictureSource {
     /// Uploads the cells.
     pub(crate) fn new(
         gpu: &Gpu,
         options: &PictureOptions,
-        sitting: &Sitting<'_>,
+        job: &RenderJob<'_>,
     ) -> anyhow::Result<Self> {
-        let Sitting {
+        let RenderJob {
             args,
             cells,
-            places,
+            placements,
             colored,
             ..
-        } = *sitting;
+        } = *job;
         let lod = match mode(args)? {
-            LodArg::Prerefined => return stored(gpu, sitting),
-            LodArg::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
-            LodArg::Adaptive => LodCriterion::PixelError(args.error() as f32),
-            LodArg::Static => LodCriterion::PixelError(0.5),
-            LodArg::Exploration => return exploring(gpu, options, sitting),
+            LodMode::Prerefined => return prerefined(gpu, job),
+            LodMode::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
+            LodMode::Adaptive => LodCriterion::PixelError(args.error() as f32),
+            LodMode::Static => LodCriterion::PixelError(0.5),
+            LodMode::Exploration => return budgeted(gpu, options, job),
         };
         let list: Vec<Template<'_>> = cells
             .iter()
@@ -99,67 +99,67 @@ impl Maker {
             .collect();
         let mut templates = Templates::new();
         let ids = templates.add(gpu, &list)?;
-        let instances = places.iter().map(|&(cell, placement)| Instance {
+        let instances = placements.iter().map(|&(cell, placement)| Instance {
             placement,
             ..Instance::new(ids[cell])
         });
         let scene = Scene::new(templates, instances.collect())?;
-        let refining = AdaptiveSettings {
+        let settings = AdaptiveSettings {
             lod,
             wireframe: args.wireframe,
             ..AdaptiveSettings::default()
         };
-        let mut maker = Adaptive::new(gpu, scene, refining, options.sub_pixels(gpu))?;
-        maker.set_bounds(covering(cells, places));
-        Ok(Self::OnTheFly(Box::new(maker)))
+        let mut source = Adaptive::new(gpu, scene, settings, options.sub_pixels(gpu))?;
+        source.set_bounds(covering(cells, placements));
+        Ok(Self::Adaptive(Box::new(source)))
     }
 
-    /// As the painter takes it.
-    pub(crate) fn as_maker(&mut self) -> &mut dyn VertexSource {
+    /// As the renderer takes it.
+    pub(crate) fn as_vertex_source(&mut self) -> &mut dyn VertexSource {
         match self {
-            Self::Stored(maker) => maker.as_mut(),
-            Self::OnTheFly(maker) => maker.as_mut(),
-            Self::Exploring(maker) => maker.as_mut(),
+            Self::Prerefined(source) => source.as_mut(),
+            Self::Adaptive(source) => source.as_mut(),
+            Self::Budgeted(source) => source.as_mut(),
         }
     }
 
     /// What it draws of a whole picture.
-    pub(crate) fn made(
+    pub(crate) fn stats(
         &mut self,
         gpu: &Gpu,
         camera: &Camera,
         near: f64,
         options: &PictureOptions,
-    ) -> anyhow::Result<Made> {
+    ) -> anyhow::Result<SourceStats> {
         match self {
-            Self::Stored(maker) => Ok(resident(maker)),
-            Self::OnTheFly(maker) => {
-                maker.prepare(gpu, &whole(gpu, camera, near, options))?;
-                let stats = maker.stats(gpu)?;
+            Self::Prerefined(source) => Ok(resident(source)),
+            Self::Adaptive(source) => {
+                source.prepare(gpu, &whole(gpu, camera, near, options))?;
+                let stats = source.stats(gpu)?;
                 let levels = (0..).zip(&stats.level_histogram);
                 let levels = levels.filter(|&(_, &sides)| sides > 0);
-                Ok(Made {
+                Ok(SourceStats {
                     patches: stats.patches,
                     patches_drawn: stats.patches_drawn,
                     vertices: stats.vertices,
                     triangles: stats.triangles,
                     levels: levels.map(|(level, &sides)| (level, sides)).collect(),
-                    bytes: maker.bytes().into_iter().collect(),
-                    bytes_per_point: maker.bytes_per_point(),
+                    bytes: source.bytes().into_iter().collect(),
+                    bytes_per_point: source.bytes_per_point(),
                     exploration: None,
                 })
             }
-            Self::Exploring(maker) => {
-                maker.prepare(gpu, &whole(gpu, camera, near, options))?;
-                let stats = maker.stats(gpu)?;
-                Ok(Made {
+            Self::Budgeted(source) => {
+                source.prepare(gpu, &whole(gpu, camera, near, options))?;
+                let stats = source.stats(gpu)?;
+                Ok(SourceStats {
                     patches_drawn: stats.visible_chunks,
                     vertices: 2 * stats.triangles,
                     triangles: stats.triangles,
-                    bytes: maker.bytes().into_iter().collect(),
-                    bytes_per_point: maker.bytes_per_point(),
+                    bytes: source.bytes().into_iter().collect(),
+                    bytes_per_point: source.bytes_per_point(),
                     exploration: Some(stats),
-                    ..Made::default()
+                    ..SourceStats::default()
                 })
             }
         }
@@ -182,49 +182,53 @@ fn whole(gpu: &Gpu, camera: &Camera, near: f64, options: &PictureOptions) -> Fra
     }
 }
 
-fn exploring(gpu: &Gpu, options: &PictureOptions, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
-    let Sitting {
+fn budgeted(
+    gpu: &Gpu,
+    options: &PictureOptions,
+    job: &RenderJob<'_>,
+) -> anyhow::Result<PictureSource> {
+    let RenderJob {
         args,
         cells,
-        places,
+        placements,
         colored,
         ..
-    } = *sitting;
-    let sketches: Vec<Proxy> = cells
+    } = *job;
+    let proxies: Vec<Proxy> = cells
         .par_iter()
         .zip(&colored.coloring.color_keys)
-        .map(|(cell, words)| Proxy::new(&cell.mesh, words))
+        .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
         .collect();
-    let mut maker = Exploration::new(gpu, options.sub_pixels(gpu))?;
-    maker.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
-    let ids = maker.add(gpu, &sketches)?;
-    let instances = places.iter().map(|&(cell, placement)| Instance {
+    let mut source = Exploration::new(gpu, options.sub_pixels(gpu))?;
+    source.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
+    let ids = source.add(gpu, &proxies)?;
+    let instances = placements.iter().map(|&(cell, placement)| Instance {
         placement,
         ..Instance::new(ids[cell])
     });
-    maker.set_instances(gpu, instances.collect())?;
-    Ok(Maker::Exploring(Box::new(maker)))
+    source.set_instances(gpu, instances.collect())?;
+    Ok(PictureSource::Budgeted(Box::new(source)))
 }
 
 /// Level where none is given.
 const DEFAULT_LEVEL: u32 = 4;
 
-fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
-    let Sitting {
+fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<PictureSource> {
+    let RenderJob {
         args,
         cells,
-        places,
+        placements,
         colored,
         cameras,
-        balls,
+        spheres,
         ..
-    } = *sitting;
-    if places.iter().any(|(_, at)| *at != Placement::default()) {
+    } = *job;
+    if placements.iter().any(|(_, at)| *at != Placement::default()) {
         return usage(
             "--lod prerefined draws tracings where they are: circuits need another --lod",
         );
     }
-    let painted: Vec<PrerefinedSurface<'_>> = cells
+    let surfaces: Vec<PrerefinedSurface<'_>> = cells
         .iter()
         .zip(&colored.coloring.color_keys)
         .map(|(cell, color_keys)| PrerefinedSurface {
@@ -232,22 +236,22 @@ fn stored(gpu: &Gpu, sitting: &Sitting<'_>) -> anyhow::Result<Maker> {
             color_keys,
         })
         .collect();
-    let levels = |cell: usize| levels(args, cells[cell], cameras, balls);
+    let levels = |cell: usize| levels(args, cells[cell], cameras, spheres);
     let options = RefineOptions::default();
-    let maker = Prerefined::new(gpu, &painted, levels, &options, args.wireframe)?;
-    Ok(Maker::Stored(Box::new(maker)))
+    let source = Prerefined::new(gpu, &surfaces, levels, &options, args.wireframe)?;
+    Ok(PictureSource::Prerefined(Box::new(source)))
 }
 
-/// Levels of a cell: as told, or by the error that shows from the one camera; where it moves, from
+/// Levels of a cell: those of --level, or by the error that shows from the one camera; where it moves, from
 /// the nearest that anything seen ever is.
 fn levels(
     args: &RenderArgs,
-    cell: &Cell,
+    cell: &MeshedCell,
     cameras: &[Camera],
-    balls: &[BoundingSphere],
+    spheres: &[BoundingSphere],
 ) -> Lod<'static> {
     let [width, height] = args.size.0.map(f64::from);
-    let nearest = |camera: &Camera| camera.nearest_seen(width / height, balls);
+    let nearest = |camera: &Camera| camera.nearest_seen(width / height, spheres);
     match (args.level, cameras) {
         (Some(level), _) => LodCriterion::Homogeneous(level).into(),
         (None, [camera]) => Lod::seen_from(
@@ -263,16 +267,16 @@ fn levels(
     }
 }
 
-fn resident(maker: &Prerefined) -> Made {
-    let resident = maker.resident();
+fn resident(source: &Prerefined) -> SourceStats {
+    let resident = source.resident();
     let bytes = [
         ("vertices", resident.vertex_bytes),
         ("corners", resident.corner_bytes),
     ];
     let sum: u64 = bytes.iter().map(|(_, bytes)| bytes).sum();
-    Made {
+    SourceStats {
         patches: resident.patches as u64,
-        patches_drawn: maker.patches_drawn() as u64,
+        patches_drawn: source.patches_drawn() as u64,
         vertices: resident.vertices as u64,
         triangles: resident.triangles as u64,
         levels: resident
