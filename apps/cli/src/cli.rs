@@ -2,14 +2,18 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::commands::bench::{self, BenchArgs};
 use crate::commands::check::{self, CheckArgs};
 use crate::commands::convert::{self, ConvertArgs};
 use crate::commands::info::{self, InfoArgs};
 use crate::commands::mesh::{self, MeshArgs};
-use crate::commands::render::{self, RenderArgs};
 use crate::commands::synth::{self, SynthArgs};
+#[cfg(feature = "view")]
 use crate::commands::view::{self, ViewArgs};
+#[cfg(feature = "render")]
+use crate::commands::{
+    bench::{self, BenchArgs},
+    render::{self, RenderArgs},
+};
 use crate::commands::{completions, man, version};
 use crate::report::{Common, Reporter, usage};
 
@@ -46,8 +50,10 @@ pub(crate) enum Command {
     /// From tracings to closed surface meshes
     Mesh(Box<MeshArgs>),
     /// Draw cells, without a window
+    #[cfg(feature = "render")]
     Render(Box<RenderArgs>),
     /// Open the window: look, pick, tune somata, save
+    #[cfg(feature = "view")]
     View(ViewArgs),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
     Check(CheckArgs),
@@ -56,6 +62,7 @@ pub(crate) enum Command {
     /// Grow synthetic neurons, the same for the same seed on every machine
     Synth(SynthArgs),
     /// Benchmarks to repeat on one's own machine
+    #[cfg(feature = "render")]
     Bench(Box<BenchArgs>),
     /// Print the completions of a shell
     Completions {
@@ -71,6 +78,7 @@ pub(crate) enum Command {
 
 impl Cli {
     /// Whether something may be drawn without a window.
+    #[cfg(feature = "render")]
     pub(crate) fn draws(&self) -> bool {
         self.version || matches!(self.command, Some(Command::Render(_) | Command::Bench(_)))
     }
@@ -85,8 +93,11 @@ impl Cli {
             Some(Command::Mesh(args)) => mesh::run(args, reporter),
             Some(Command::Check(args)) => check::run(args, reporter),
             Some(Command::Convert(args)) => convert::run(args, reporter),
+            #[cfg(feature = "render")]
             Some(Command::Render(args)) => render::run(args, reporter),
+            #[cfg(feature = "view")]
             Some(Command::View(args)) => view::run(args, reporter),
+            #[cfg(feature = "render")]
             Some(Command::Bench(args)) => bench::run(args, reporter),
             Some(Command::Synth(args)) => synth::run(args, reporter),
             Some(Command::Completions { shell }) => {

@@ -9,6 +9,7 @@ const INTERRUPTED: i32 = 130;
 pub(crate) fn watch(on_interrupt: impl Fn() + Send + 'static) -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(move || {
         // First: afterwards nothing is written any more.
+        #[cfg(feature = "view")]
         drop(neurotess_viewer::settings::write_noted());
         let _ended = output::remove_unfinished();
         on_interrupt();

@@ -3,6 +3,7 @@
 
 mod cli;
 mod commands;
+#[cfg(feature = "render")]
 mod headless;
 mod interrupt;
 mod io;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
+    #[cfg(feature = "render")]
     if cli.draws() {
         headless::stay_away_from_windows();
     }

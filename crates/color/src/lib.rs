@@ -5,19 +5,28 @@
 //! ([`Recording`]).
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "circuit")]
 mod by_node;
 mod by_tracing;
+#[cfg(feature = "circuit")]
 mod compartments;
+#[cfg(feature = "circuit")]
 mod cut;
 mod path_distance;
+#[cfg(feature = "circuit")]
 mod recording;
+#[cfg(feature = "circuit")]
 mod report_frame;
 mod scheme;
 
+#[cfg(feature = "circuit")]
 pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
 pub use by_tracing::{ColorBy, coloring};
+#[cfg(feature = "circuit")]
 pub use cut::{cuts, with_middles};
 pub use path_distance::path_distances;
+#[cfg(feature = "circuit")]
 pub use recording::{DECAY, Recording, RecordingError};
+#[cfg(feature = "circuit")]
 pub use report_frame::ReportFrame;
 pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};

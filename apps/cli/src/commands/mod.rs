@@ -1,5 +1,6 @@
 //! What each command does.
 
+#[cfg(feature = "render")]
 pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod completions;
@@ -7,7 +8,9 @@ pub(crate) mod convert;
 pub(crate) mod info;
 pub(crate) mod man;
 pub(crate) mod mesh;
+#[cfg(feature = "render")]
 pub(crate) mod render;
 pub(crate) mod synth;
 pub(crate) mod version;
+#[cfg(feature = "view")]
 pub(crate) mod view;

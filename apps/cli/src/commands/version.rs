@@ -1,15 +1,24 @@
 //! `neurotess --version`.
 
 use neurotess::mesh::Format;
-use neurotess::render::{AdapterName, DeviceError, Gpu};
 use serde_json::json;
 
 use crate::io::morphologies::{MORPHOLOGIES, written};
 use crate::report::Reporter;
 
-/// The adapter that pictures would be drawn with.
-fn adapter() -> Result<AdapterName, DeviceError> {
-    Gpu::open(None).map(|gpu| gpu.adapter)
+/// The adapter that pictures would be drawn with, or why there is none.
+#[cfg(feature = "render")]
+fn adapter() -> Result<String, String> {
+    match neurotess::render::Gpu::open(None) {
+        Ok(gpu) => Ok(gpu.adapter.to_string()),
+        Err(e) => Err(e.to_string()),
+    }
+}
+
+/// Pictures are not built in.
+#[cfg(not(feature = "render"))]
+fn adapter() -> Result<String, String> {
+    Err("this build draws no pictures: build it with the feature 'render'".into())
 }
 
 /// Prints the version; with -v what this build can do.
@@ -33,7 +42,7 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
     }
     reporter.document(&json!({
         "version": version,
-        "adapter": adapter().ok().map(|adapter| adapter.to_string()),
+        "adapter": adapter().ok(),
         "reads": MORPHOLOGIES,
         "writes": written(),
         "meshes": meshes,

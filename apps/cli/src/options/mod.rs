@@ -5,6 +5,7 @@ pub(crate) mod numbers;
 pub(crate) mod out;
 pub(crate) mod rings;
 pub(crate) mod shard;
+#[cfg(feature = "render")]
 pub(crate) mod size;
 pub(crate) mod soma;
 pub(crate) mod types;

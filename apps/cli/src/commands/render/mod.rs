@@ -40,7 +40,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         output::check(file, args.force)?;
     }
     if let [path] = &args.inputs[..]
-        && neurotess_viewer::session::is_session(path)
+        && session::is_session(path)
     {
         return session::draw(path, &files, args, reporter);
     }

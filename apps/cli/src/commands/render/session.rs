@@ -3,10 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::args::RenderArgs;
+#[cfg(feature = "view")]
 use super::stats;
-use crate::report::{Failure, Reporter, count, usage};
+#[cfg(feature = "view")]
+use crate::report::{Failure, count};
+use crate::report::{Reporter, usage};
 
 /// A session of the window: its own view and look, at the size and smoothness of the options.
+#[cfg(feature = "view")]
 pub(super) fn draw(
     session: &Path,
     files: &[PathBuf],
@@ -35,4 +39,29 @@ pub(super) fn draw(
         session.display()
     ));
     reporter.document(&stats::Document::new(&[], files, None))
+}
+
+/// Sessions are not built in.
+#[cfg(not(feature = "view"))]
+pub(super) fn draw(
+    session: &Path,
+    _files: &[PathBuf],
+    _args: &RenderArgs,
+    _reporter: &Reporter,
+) -> anyhow::Result<()> {
+    usage(format!(
+        "{}: this build has no window, whose session this is: build it with the feature 'view'",
+        session.display()
+    ))
+}
+
+/// Whether a file is a session of the window.
+#[cfg(feature = "view")]
+pub(super) use neurotess_viewer::session::is_session;
+
+/// Whether a file is named as sessions of the window are.
+#[cfg(not(feature = "view"))]
+pub(super) fn is_session(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("neurotess"))
 }
