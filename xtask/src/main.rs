@@ -12,6 +12,7 @@ mod bench;
 mod demo;
 mod licenses;
 mod metadata;
+mod packages;
 mod pictures;
 mod python;
 mod setup;
@@ -24,7 +25,10 @@ use std::process::ExitCode;
 const USAGE: &str = "cargo xtask COMMAND
 
   demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
-  test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture
+  test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture,
+            each feature alone, packages
+  features  check each feature of the library and the command line alone
+  package   pack every crate as for a registry
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   setup     a software Vulkan driver where there is none, and the Python environment in which other
@@ -37,6 +41,8 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
+        Some("features") => packages::features().map(|said| println!("{said}")),
+        Some("package") => packages::package().map(|said| println!("{said}")),
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
         Some("setup") => setup::run().map(|said| println!("{said}")),
