@@ -33,6 +33,16 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
     ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
+    ("neurotess-output", &[]),
+    (
+        "neurotess-color",
+        &[
+            "neurotess-morphology",
+            "neurotess-mesh",
+            "neurotess-circuit",
+            "neurotess-render",
+        ],
+    ),
     (
         "neurotess",
         &[
@@ -44,6 +54,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-generate",
             "neurotess-refine",
             "neurotess-render",
+            "neurotess-color",
+            "neurotess-output",
         ],
     ),
     ("neurotess-viewer", &["neurotess"]),

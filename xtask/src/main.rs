@@ -13,6 +13,7 @@ mod demo;
 mod licenses;
 mod metadata;
 mod modules;
+mod packages;
 mod pictures;
 mod python;
 mod setup;
@@ -25,7 +26,10 @@ use std::process::ExitCode;
 const USAGE: &str = "cargo xtask COMMAND
 
   demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
-  test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture
+  test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture,
+            each feature alone, packages
+  features  check each feature of the library and the command line alone
+  package   pack every crate as for a registry
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
@@ -40,6 +44,8 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("test") => tests::run(),
+        Some("features") => packages::features().map(|said| println!("{said}")),
+        Some("package") => packages::package().map(|said| println!("{said}")),
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
         Some("architecture") => architecture(),

@@ -5,7 +5,7 @@ use std::fmt;
 use anyhow::bail;
 
 use crate::steps::{self, Steps, cargo, run_listening};
-use crate::{architecture, licenses, metadata, setup};
+use crate::{architecture, licenses, metadata, packages, setup};
 
 /// Runs the command. The last line tells how many tests there were.
 pub(crate) fn run() -> anyhow::Result<()> {
@@ -41,6 +41,8 @@ fn all(steps: &mut Steps) -> anyhow::Result<Counts> {
         let mut doc = cargo("doc --workspace --no-deps --locked");
         steps::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| "no warning".into())
     })?;
+    steps.step("features", packages::features)?;
+    steps.step("package", packages::package)?;
     steps.step("test", || {
         let mut tests = cargo("test --workspace --locked --no-fail-fast");
         let ended = run_listening(&mut tests, |line| counts.hear(line));

@@ -6,12 +6,13 @@ use neurotess::output;
 const INTERRUPTED: i32 = 130;
 
 /// From now on, Ctrl-C and requests to end remove what is half written, say the last words and leave.
-pub(crate) fn watch(last_words: impl Fn() + Send + 'static) -> Result<(), ctrlc::Error> {
+pub(crate) fn watch(on_interrupt: impl Fn() + Send + 'static) -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(move || {
         // First: afterwards nothing is written any more.
+        #[cfg(feature = "view")]
         drop(neurotess_viewer::settings::write_noted());
         let _ended = output::remove_unfinished();
-        last_words();
+        on_interrupt();
         std::process::exit(INTERRUPTED);
     })
 }

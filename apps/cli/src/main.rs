@@ -1,39 +1,26 @@
 //! The `neurotess` command.
 #![forbid(unsafe_code)]
 
-mod args;
-mod bench;
-mod check;
-mod circuit;
-mod convert;
+mod cli;
+mod commands;
+#[cfg(feature = "render")]
 mod headless;
-mod info;
-mod inputs;
 mod interrupt;
-mod man;
-mod mesh;
-mod output;
-mod progress;
-mod render;
+mod io;
+mod options;
 mod report;
-mod rings;
-mod synth;
-mod targets;
-mod version;
-mod view;
-mod workers;
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser};
+use clap::Parser;
 
-use args::{Cli, Command};
+use cli::Cli;
 use report::{Reporter, Usage};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(e) => return ExitCode::from(report::told_by_parser(&e)),
+        Err(e) => return ExitCode::from(report::report_parser_error(&e)),
     };
     let reporter = Reporter::new(cli.common);
     let mut code = 1;
@@ -53,35 +40,10 @@ fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
-    let draws = matches!(cli.command, Some(Command::Render(_) | Command::Bench(_)));
-    if draws || cli.version {
+    #[cfg(feature = "render")]
+    if cli.draws() {
         headless::stay_away_from_windows();
     }
-    interrupt::watch(reporter.last_words())?;
-    if cli.version {
-        return version::run(reporter);
-    }
-    match &cli.command {
-        Some(Command::Info(args)) => info::run(args, reporter),
-        Some(Command::Mesh(args)) => mesh::run(args, reporter),
-        Some(Command::Check(args)) => check::run(args, reporter),
-        Some(Command::Convert(args)) => convert::run(args, reporter),
-        Some(Command::Render(args)) => render::run(args, reporter),
-        Some(Command::View(args)) => view::run(args, reporter),
-        Some(Command::Bench(args)) => bench::run(args, reporter),
-        Some(Command::Synth(args)) => synth::run(args, reporter),
-        Some(Command::Completions { shell }) => {
-            let mut text = Vec::new();
-            clap_complete::generate(*shell, &mut Cli::command(), "neurotess", &mut text);
-            let text = String::from_utf8_lossy(&text);
-            reporter.answer(text.trim_end());
-            reporter.document(&serde_json::json!({ "completions": text }))
-        }
-        Some(Command::Man { command }) => {
-            let text = man::page(command.as_deref())?;
-            reporter.answer(text.trim_end());
-            reporter.document(&serde_json::json!({ "man": text }))
-        }
-        None => report::usage("no command: neurotess --help lists them"),
-    }
+    interrupt::watch(reporter.on_interrupt())?;
+    cli.run(reporter)
 }

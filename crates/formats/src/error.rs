@@ -58,6 +58,12 @@ pub enum Fault {
         "not a format known by its name or content: give SWC (.swc, .eswc), Neurolucida (.asc), H5 (.h5) or NeuroML (.nml)"
     )]
     UnknownFormat,
+    /// The format is known, but this build was made without it.
+    #[error("this build of neurotess has no '{feature}': build it with that feature")]
+    NotBuiltIn {
+        /// The feature, which is named as the format is.
+        feature: &'static str,
+    },
     /// Not a byte.
     #[error("the file is empty: fetch or export it again")]
     Empty,

@@ -17,20 +17,33 @@
 //! assert_eq!(written, file);
 //! # Ok::<(), neurotess_formats::ReadError>(())
 //! ```
+//!
+//! # Features
+//! SWC is always there. `asc`, `h5` and `neuroml` add the other formats, all of them by default. A file of a
+//! format that is not built in is an error that names the feature.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "asc")]
 pub mod asc;
+#[cfg(feature = "h5")]
 pub mod capacity;
 mod error;
 mod format;
+#[cfg(feature = "h5")]
 pub mod h5;
+#[cfg(feature = "h5")]
 mod hdf5;
+#[cfg(any(feature = "asc", feature = "h5"))]
 mod losses;
+#[cfg(feature = "neuroml")]
 pub mod neuroml;
 mod number;
 mod regular;
+#[cfg(any(feature = "asc", feature = "h5", feature = "neuroml"))]
+mod sample;
 pub mod swc;
 mod text;
+#[cfg(any(feature = "asc", feature = "h5"))]
 mod traced;
 mod warning;
 
@@ -78,7 +91,10 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
     };
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match (Format::of_extension(&extension), member) {
+        #[cfg(feature = "h5")]
         (_, Some(member)) => h5::read_member(bytes, &name, member, options),
+        #[cfg(not(feature = "h5"))]
+        (_, Some(_)) => Err(ReadError::of_file(&name, Format::H5.missing())),
         (format, None) => read_bytes(bytes, &name, format, options),
     }
 }
@@ -96,9 +112,14 @@ pub fn read_bytes(
 ) -> Result<Read, ReadError> {
     match format.or_else(|| Format::of_content(&bytes)) {
         Some(Format::Swc) => swc::read_bytes(&bytes, name, options),
+        #[cfg(feature = "asc")]
         Some(Format::Asc) => asc::read_bytes(&bytes, name, options),
+        #[cfg(feature = "neuroml")]
         Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, name, options),
+        #[cfg(feature = "h5")]
         Some(Format::H5) => h5::read_bytes(bytes, name, options),
+        #[cfg(not(all(feature = "asc", feature = "h5", feature = "neuroml")))]
+        Some(other) => Err(ReadError::of_file(name, other.missing())),
         None if bytes.is_empty() => Err(ReadError::of_file(name, Fault::Empty)),
         None => Err(ReadError::of_file(name, Fault::UnknownFormat)),
     }

@@ -52,6 +52,7 @@ impl Losses {
         losses
     }
 
+    #[cfg(feature = "h5")]
     pub(crate) fn header(&mut self, morphology: &Morphology) {
         let lines = morphology.header.len() as u64;
         self.add("header_lost", "a header's line is not kept", lines);

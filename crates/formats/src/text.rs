@@ -52,8 +52,9 @@ pub(crate) fn stem<'a>(name: &'a str, extensions: &[&str]) -> &'a str {
     }
 }
 
-/// A word of a file as an error shows it: not longer than a line of a terminal.
-pub(crate) fn shown(word: &[u8]) -> String {
-    let text = String::from_utf8_lossy(&word[..word.len().min(40)]);
+/// A piece of a file as an error shows it: not longer than a line of a terminal.
+#[cfg(feature = "asc")]
+pub(crate) fn shown(text: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&text[..text.len().min(40)]);
     text.chars().filter(|c| !c.is_control()).collect()
 }

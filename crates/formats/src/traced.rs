@@ -13,17 +13,9 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
 use crate::Fault;
+use crate::sample::Sample;
 use crate::text::Located;
 use crate::warning::Warnings;
-
-/// A point with its radius (µm) and where the file has it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sample {
-    pub(crate) position: DVec3,
-    pub(crate) radius: f64,
-    /// Line, or row of a dataset; from 1 on.
-    pub(crate) line: u64,
-}
 
 /// A point of a neurite.
 #[derive(Clone, Copy, Debug)]

@@ -54,28 +54,33 @@
 //!
 //! # Where things are
 //!
-//! | module | what |
-//! | --- | --- |
-//! | [`morphology`] | the traced cell and its measures |
-//! | [`formats`] | morphology files, there and back |
-//! | [`circuit`] | many neurons: circuits, scenes, reports |
-//! | [`synth`] | synthetic neurons and circuits |
-//! | [`generate`] | from a morphology to a coarse mesh |
-//! | [`refine`] | from a coarse mesh to a surface |
-//! | [`render`] | from coarse meshes to pictures |
-//! | [`coloring`] | what the colors of pictures tell |
-//! | [`mesh`] | coarse meshes, surfaces, checks, mesh files |
-//! | [`output`] | files that are there whole or not at all |
+//! | module | what | feature |
+//! | --- | --- | --- |
+//! | [`morphology`] | the traced cell and its measures | |
+//! | [`formats`] | morphology files, there and back | SWC; `asc`, `h5`, `neuroml` |
+//! | [`circuit`] | many neurons: circuits, scenes, reports | `circuit` |
+//! | [`synth`] | synthetic neurons and circuits | `synth` |
+//! | [`generate`] | from a morphology to a coarse mesh | |
+//! | [`refine`] | from a coarse mesh to a surface | |
+//! | [`render`] | from coarse meshes to pictures | `render` |
+//! | [`coloring`] | what the colors of pictures tell | `render` |
+//! | [`mesh`] | coarse meshes, surfaces, checks, mesh files | |
+//! | [`output`] | files that are there whole or not at all | |
+//!
+//! All features are on by default. Without any, the crate meshes SWC files and needs neither wgpu nor HDF5.
 #![forbid(unsafe_code)]
 
-pub mod coloring;
-pub mod output;
-
+#[cfg(feature = "circuit")]
 pub use neurotess_circuit as circuit;
+#[cfg(feature = "render")]
+pub use neurotess_color as coloring;
 pub use neurotess_formats as formats;
 pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
+pub use neurotess_output as output;
 pub use neurotess_refine as refine;
+#[cfg(feature = "render")]
 pub use neurotess_render as render;
+#[cfg(feature = "synth")]
 pub use neurotess_synth as synth;

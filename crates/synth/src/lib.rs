@@ -26,6 +26,7 @@
 #![forbid(unsafe_code)]
 
 mod branch;
+#[cfg(feature = "circuit")]
 pub mod circuit;
 mod kind;
 mod kinds;

@@ -17,9 +17,6 @@ use crate::warning::Warnings;
 use crate::{Format, Read, ReadError, ReadOptions, read_text};
 pub use write::write;
 
-/// Extensions of the format's files, in lower case.
-pub const EXTENSIONS: [&str; 1] = ["asc"];
-
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
 /// Linear in the bytes and without recursion. Points are numbered from 1 on, the soma's first.
@@ -30,12 +27,6 @@ pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Rea
     read_text(Format::Asc, name, options, |name, warnings| {
         interpret(bytes, name, warnings)
     })
-}
-
-/// Whether the first thing that is no comment is a bracket.
-pub(crate) fn looks_like(bytes: &[u8]) -> bool {
-    refuse_other_text(bytes).is_ok()
-        && lexer::Lexer::new(bytes.strip_prefix(BOM).unwrap_or(bytes)).next() == lexer::Token::Open
 }
 
 fn interpret(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Located<Morphology> {

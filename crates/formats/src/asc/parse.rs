@@ -16,8 +16,9 @@ use neurotess_morphology::{Morphology, NeuriteKind};
 
 use super::lexer::{Lexer, Token};
 use crate::Fault;
+use crate::sample::Sample;
 use crate::text::{Located, shown};
-use crate::traced::{Sample, Traced, Tracing};
+use crate::traced::{Traced, Tracing};
 use crate::warning::Warnings;
 
 /// Words after which a branch must not go on.

@@ -16,17 +16,12 @@ use std::path::Path;
 use neurotess_morphology::{Morphology, NeuriteKind};
 
 use crate::hdf5::{Store, Table};
+use crate::sample::Sample;
 use crate::text::stem;
-use crate::traced::{Sample, Traced, Tracing};
+use crate::traced::{Traced, Tracing};
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, regular};
 pub use write::write;
-
-/// Extensions of the format's files, in lower case.
-pub const EXTENSIONS: [&str; 2] = ["h5", "hdf5"];
-
-/// First bytes of every HDF5 file without a user block.
-const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Stages of version 2, the best first.
 const STAGES: [&str; 3] = ["repaired", "unraveled", "raw"];
@@ -54,7 +49,7 @@ pub fn read_member(
 ) -> Result<Read, ReadError> {
     let mut warnings = Warnings::default();
     let own = match member.rsplit('/').next().unwrap_or_default() {
-        "" => stem(name, &EXTENSIONS),
+        "" => stem(name, Format::H5.extensions()),
         last => last,
     };
     let morphology = interpret(bytes, own, member, &mut warnings)
@@ -67,11 +62,6 @@ pub fn read_member(
         format: "h5",
         warnings,
     })
-}
-
-/// Whether the bytes are HDF5.
-pub(crate) fn looks_like(bytes: &[u8]) -> bool {
-    bytes.starts_with(SIGNATURE)
 }
 
 /// Whether a file is named as HDF5 is and is sound, but holds something else: a report, nodes of a circuit.

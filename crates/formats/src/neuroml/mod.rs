@@ -14,14 +14,11 @@ use std::collections::HashMap;
 use glam::DVec3;
 use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
 
+use crate::sample::Sample;
 use crate::text::{Located, refuse_other_text};
-use crate::traced::Sample;
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 use xml::{Records, Segment};
-
-/// Extensions of the format's files, in lower case.
-pub const EXTENSIONS: [&str; 2] = ["nml", "neuroml"];
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
@@ -31,12 +28,6 @@ pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Rea
     read_text(Format::NeuroMl, name, options, |name, warnings| {
         interpret(bytes, name, warnings)
     })
-}
-
-/// Whether there is an element of NeuroML near the start.
-pub(crate) fn looks_like(bytes: &[u8]) -> bool {
-    let start = &bytes[..bytes.len().min(4096)];
-    memchr::memmem::find(start, b"<neuroml").is_some()
 }
 
 fn interpret(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Located<Morphology> {

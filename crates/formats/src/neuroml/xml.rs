@@ -6,8 +6,8 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
 use crate::Fault;
+use crate::sample::Sample;
 use crate::text::Located;
-use crate::traced::Sample;
 
 /// A frustum of a cell.
 #[derive(Clone, Debug, Default)]

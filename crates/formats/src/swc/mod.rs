@@ -29,9 +29,6 @@ use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 use rows::Records;
 pub use write::write;
 
-/// Extensions of the format's files, in lower case.
-pub const EXTENSIONS: [&str; 2] = ["swc", "eswc"];
-
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
 /// Linear in the bytes, but n log n where the numbers of n samples are sparse; needs about 90 bytes

@@ -1,0 +1,112 @@
+//! The program's options and commands, as types: their documentation is what --help prints.
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+use crate::commands::check::{self, CheckArgs};
+use crate::commands::convert::{self, ConvertArgs};
+use crate::commands::info::{self, InfoArgs};
+use crate::commands::mesh::{self, MeshArgs};
+use crate::commands::synth::{self, SynthArgs};
+#[cfg(feature = "view")]
+use crate::commands::view::{self, ViewArgs};
+#[cfg(feature = "render")]
+use crate::commands::{
+    bench::{self, BenchArgs},
+    render::{self, RenderArgs},
+};
+use crate::commands::{completions, man, version};
+use crate::report::{Common, Reporter, usage};
+
+/// From tracings of neurons to closed surface meshes. Lengths are micrometers (µm).
+#[derive(Debug, Parser)]
+#[command(
+    name = "neurotess",
+    disable_version_flag = true,
+    arg_required_else_help = true
+)]
+#[command(after_help = "Examples:
+  neurotess mesh cell.swc -o cell.ply
+  neurotess render cell.swc -o cell.png
+  neurotess info cells/ --json
+  neurotess mesh cells/ -o meshes/ --format glb --resume --log meshes.jsonl
+  neurotess check cell.ply
+
+Exit codes: 0 all inputs done, 1 some failed, 2 wrong usage, 130 interrupted.")]
+pub(crate) struct Cli {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    /// Print the version; with -v the formats and features of this build
+    #[arg(short = 'V', long)]
+    pub(crate) version: bool,
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// What is in a morphology or a circuit: counts, lengths, the soma, populations, warnings
+    Info(InfoArgs),
+    /// From tracings to closed surface meshes
+    Mesh(Box<MeshArgs>),
+    /// Draw cells, without a window
+    #[cfg(feature = "render")]
+    Render(Box<RenderArgs>),
+    /// Open the window: look, pick, tune somata, save
+    #[cfg(feature = "view")]
+    View(ViewArgs),
+    /// Judge meshes: closed, manifold, oriented, self-intersections, volume
+    Check(CheckArgs),
+    /// Write morphologies in another format
+    Convert(ConvertArgs),
+    /// Grow synthetic neurons, the same for the same seed on every machine
+    Synth(SynthArgs),
+    /// Benchmarks to repeat on one's own machine
+    #[cfg(feature = "render")]
+    Bench(Box<BenchArgs>),
+    /// Print the completions of a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print a manual page, as in: neurotess man mesh > neurotess-mesh.1
+    Man {
+        /// The command [default: the program]
+        command: Option<String>,
+    },
+}
+
+impl Cli {
+    /// Whether something may be drawn without a window.
+    #[cfg(feature = "render")]
+    pub(crate) fn draws(&self) -> bool {
+        self.version || matches!(self.command, Some(Command::Render(_) | Command::Bench(_)))
+    }
+
+    /// Runs the command.
+    pub(crate) fn run(&self, reporter: &Reporter) -> anyhow::Result<()> {
+        if self.version {
+            return version::run(reporter);
+        }
+        match &self.command {
+            Some(Command::Info(args)) => info::run(args, reporter),
+            Some(Command::Mesh(args)) => mesh::run(args, reporter),
+            Some(Command::Check(args)) => check::run(args, reporter),
+            Some(Command::Convert(args)) => convert::run(args, reporter),
+            #[cfg(feature = "render")]
+            Some(Command::Render(args)) => render::run(args, reporter),
+            #[cfg(feature = "view")]
+            Some(Command::View(args)) => view::run(args, reporter),
+            #[cfg(feature = "render")]
+            Some(Command::Bench(args)) => bench::run(args, reporter),
+            Some(Command::Synth(args)) => synth::run(args, reporter),
+            Some(Command::Completions { shell }) => {
+                completions::run(*shell, &mut Self::command(), reporter)
+            }
+            Some(Command::Man { command }) => {
+                man::run(command.as_deref(), Self::command(), reporter)
+            }
+            None => usage("no command: neurotess --help lists them"),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The neurons that are drawn, and from where.
+
+use glam::DVec3;
+use neurotess::generate::{GenerateOptions, generate};
+use neurotess::mesh::{CoarseMesh, Role};
+use neurotess::render::{
+    BoundingSphere, Camera, ColorTable, Frame, Palette, Side, Tile, bounds, category,
+};
+use neurotess::synth::{Kind, Options, grow};
+use rayon::prelude::*;
+
+/// Distance (µm) of neighbors: dendrites meet.
+const APART: f64 = 120.0;
+/// Angle of view (radians): wide, so that some neurons are near and others far.
+const FOV: f64 = 60.0 * std::f64::consts::PI / 180.0;
+/// Types that colors are told by; the others look like the last.
+const TYPES: i32 = 8;
+
+/// A neuron and its colors.
+pub(crate) struct Neuron {
+    pub(crate) mesh: CoarseMesh,
+    pub(crate) color_keys: Vec<u32>,
+    spheres: Vec<BoundingSphere>,
+    /// What moves its soma to the origin (µm).
+    to_origin: DVec3,
+}
+
+/// Grows and meshes distinct neurons of all kinds.
+pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
+    (0..distinct)
+        .into_par_iter()
+        .map(|seed| {
+            let kind = Kind::ALL[seed as usize % Kind::ALL.len()];
+            let mut options = Options::new(kind, u64::from(seed) + 1);
+            options.points = Some(points as usize);
+            let morphology = grow(&options);
+            let soma = morphology.soma().map(|soma| soma.center.as_dvec3());
+            let mesh = generate(&morphology, &GenerateOptions::default())
+                .expect("a synthetic cell is within 32 bits")
+                .mesh;
+            Neuron {
+                color_keys: color_keys(&mesh),
+                spheres: bounds(&mesh),
+                to_origin: -(mesh.origin + soma.unwrap_or(DVec3::ZERO)),
+                mesh,
+            }
+        })
+        .collect()
+}
+
+fn color_keys(mesh: &CoarseMesh) -> Vec<u32> {
+    let color_key = |point: &neurotess::mesh::TracingPoint| match point.role {
+        Role::Soma => category(1),
+        _ => category(point.kind.clamp(0, TYPES - 1) as u32),
+    };
+    mesh.tracing.iter().map(color_key).collect()
+}
+
+/// Colors of types.
+pub(crate) fn colors() -> ColorTable {
+    let of_type = |kind| match kind {
+        1 => Palette::NeuroM.of_soma(Some([255; 3])),
+        _ => Palette::NeuroM.of_type(kind),
+    };
+    ColorTable {
+        scale: Vec::new(),
+        categories: (0..TYPES).map(of_type).collect(),
+        ..ColorTable::default()
+    }
+}
+
+/// A scene: neurons on a square grid in the plane, seen as a whole.
+pub(crate) struct BenchScene {
+    /// Neuron, and what is added to its coordinates (µm).
+    pub(crate) placements: Vec<(usize, DVec3)>,
+    pub(crate) frame: Frame,
+    /// Distance (µm) from the eye to the farthest neuron.
+    pub(crate) far: f64,
+}
+
+impl BenchScene {
+    pub(crate) fn new(neurons: &[Neuron], count: u32, size: [u32; 2]) -> anyhow::Result<Self> {
+        let side = f64::from(count).sqrt().ceil() as u32;
+        let placements: Vec<(usize, DVec3)> = (0..count)
+            .map(|i| {
+                let neuron = i as usize % neurons.len();
+                let middle = f64::from(side - 1) / 2.0;
+                let [x, z] = [i % side, i / side].map(|n| (f64::from(n) - middle) * APART);
+                (neuron, DVec3::new(x, 0.0, z) + neurons[neuron].to_origin)
+            })
+            .collect();
+        let spheres: Vec<BoundingSphere> = placements
+            .iter()
+            .flat_map(|&(neuron, translation)| {
+                let spheres = neurons[neuron].spheres.iter();
+                spheres.map(move |&(center, radius)| (center + translation, radius))
+            })
+            .collect();
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &spheres)?;
+        let distance = |&(center, radius): &BoundingSphere| center.distance(camera.eye()) + radius;
+        Ok(Self {
+            frame: Frame {
+                camera,
+                near: camera.near(&spheres),
+                size,
+                tile: Tile {
+                    x: 0,
+                    y: 0,
+                    width: size[0],
+                    height: size[1],
+                },
+            },
+            far: spheres.iter().map(distance).fold(0.0, f64::max),
+            placements,
+        })
+    }
+}

@@ -1,0 +1,134 @@
+//! `neurotess check`: what a mesh is and what is wrong with it.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use neurotess::mesh::{self, FilePosition, Format, ReadError, Report};
+use serde::Serialize;
+
+use crate::io::batch::each;
+use crate::io::inputs::{Input, Inputs};
+use crate::io::output::is_standard;
+use crate::io::standard_input::standard_input;
+use crate::report::{Entry, Failure, Reporter, place};
+
+/// `neurotess check`
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Vertices are those of the file. STL repeats them for every face: use --merge.
+A mesh that is not closed is a verdict, not a failure: the exit code is 0 if all could be read."
+)]
+pub(crate) struct CheckArgs {
+    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs; - for standard
+    /// input, with --format
+    #[arg(required = true, value_name = "MESH")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+    /// Merge vertices of identical position first
+    #[arg(long)]
+    pub(crate) merge: bool,
+}
+
+/// One object of the JSON list.
+#[derive(Serialize)]
+struct Verdict {
+    file: String,
+    #[serde(flatten)]
+    report: Report,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &CheckArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    let mut extensions = Format::ALL.map(Format::extension).to_vec();
+    extensions.push("gltf");
+    let inputs = Inputs::find(&args.inputs, &extensions);
+    let verdicts = each(&inputs, reporter, |input| judge(input, args))?;
+    for entry in &verdicts {
+        if let Entry::Done(verdict) = entry {
+            reporter.answer(&text(verdict));
+        }
+    }
+    reporter.document(&verdicts)
+}
+
+fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
+    let file = input.path.display().to_string();
+    let read = match (is_standard(&input.path), args.format) {
+        (true, None) => {
+            let what =
+                "standard input has no extension: say --format ply, obj, stl, glb, off or vtu";
+            return Err(Failure(format!("{file}: {what}")));
+        }
+        (true, Some(format)) => {
+            let nothing = |head: &[u8]| head.len() > 1 << 15 && head.iter().all(|&byte| byte == 0);
+            mesh::read_bytes(&standard_input(nothing)?, format)
+        }
+        (false, Some(format)) => mesh::read_as(&input.path, format),
+        (false, None) => mesh::read(&input.path),
+    };
+    let mut surface = read.map_err(|e| Failure(named(&file, &e)))?;
+    if args.merge {
+        mesh::merge_identical(&mut surface);
+    }
+    Ok(Verdict {
+        file,
+        report: mesh::check(&surface),
+    })
+}
+
+/// `FILE:LINE: what: what to do`
+fn named(file: &str, error: &ReadError) -> String {
+    match error.place() {
+        FilePosition::Line(line) => {
+            let text = error.to_string();
+            let what = text
+                .strip_prefix(&format!("line {line}: "))
+                .unwrap_or(&text);
+            format!("{} {what}", place(file, Some(line as u64)))
+        }
+        FilePosition::Byte(_) | FilePosition::File => match error {
+            ReadError::Io(e) => {
+                format!("{file}: cannot be read ({e}): check the path and its permissions")
+            }
+            other => {
+                let text = other.to_string();
+                format!("{file}: {}", text.strip_prefix("file: ").unwrap_or(&text))
+            }
+        },
+    }
+}
+
+/// One mesh for people.
+fn text(verdict: &Verdict) -> String {
+    let r = &verdict.report;
+    let yes = |is: bool| if is { "yes" } else { "NO" };
+    let genus = r.genus.map_or("none".into(), |genus| genus.to_string());
+    format!(
+        "{}\n  {} vertices, {} triangles, {} quads, {} degenerate\n  \
+         closed {} · manifold at edges {}, at vertices {} · oriented {}\n  \
+         components {} · Euler characteristic {} · genus {genus}\n  \
+         volume {:.3} µm³ · area {:.3} µm²\n  \
+         self-intersecting pairs of faces: {}{}",
+        verdict.file,
+        r.vertices,
+        r.triangles,
+        r.quads,
+        r.degenerate_faces,
+        yes(r.closed),
+        yes(r.edge_manifold),
+        yes(r.vertex_manifold),
+        yes(r.oriented),
+        r.components,
+        r.euler,
+        r.volume,
+        r.area,
+        if r.self_intersections_complete {
+            ""
+        } else {
+            "at least "
+        },
+        r.self_intersections,
+    )
+}

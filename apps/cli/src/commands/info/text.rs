@@ -1,0 +1,91 @@
+//! Cells for people.
+
+use super::Info;
+use crate::report::count;
+
+/// One cell for people.
+pub(super) fn table(info: &Info) -> String {
+    let m = &info.measures;
+    let mut lines = vec![format!("{} ({})", info.file, info.format)];
+    let mut line = |name: &str, value: String| lines.push(format!("  {name:<10} {value}"));
+    line(
+        "points",
+        format!(
+            "{} in {} of {}",
+            m.n_points,
+            count(m.n_sections, "section"),
+            count(m.n_neurites, "neurite")
+        ),
+    );
+    line(
+        "forks",
+        format!(
+            "{} with 2 children, {} with more; {}; branch order up to {}",
+            m.n_bifurcations,
+            m.n_multifurcations,
+            count(m.n_ends, "end"),
+            m.max_branch_order
+        ),
+    );
+    line("length", format!("{:.1} µm", m.length));
+    let by_type = [
+        ("axon", m.length_by_type.axon),
+        ("basal", m.length_by_type.basal_dendrite),
+        ("apical", m.length_by_type.apical_dendrite),
+        ("other", m.length_by_type.other),
+    ];
+    for (kind, length) in by_type.into_iter().filter(|&(_, length)| length > 0.0) {
+        line("", format!("{kind:<7} {length:.1} µm"));
+    }
+    line("area", format!("{:.1} µm²", m.area));
+    line("volume", format!("{:.1} µm³", m.volume));
+    line(
+        "soma",
+        match m.soma.kind {
+            "none" => "none".into(),
+            kind => format!(
+                "{kind}, radius {:.2} µm, area {:.1} µm², volume {:.1} µm³",
+                m.soma.radius, m.soma.area, m.soma.volume
+            ),
+        },
+    );
+    if let Some(bounds) = &m.bbox {
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| bounds.max[axis] - bounds.min[axis]);
+        line("extent", format!("{x:.1} × {y:.1} × {z:.1} µm"));
+    }
+    line("warnings", info.warnings.len().to_string());
+    lines.join("\n")
+}
+
+pub(super) fn header() -> String {
+    format!(
+        "{:>9} {:>8} {:>8} {:>6} {:>6} {:>11} {:>11}  {:<11} {:>8}  file",
+        "points",
+        "sections",
+        "neurites",
+        "forks",
+        "ends",
+        "length/µm",
+        "volume/µm³",
+        "soma",
+        "warnings"
+    )
+}
+
+/// One of many cells for people.
+pub(super) fn row(info: &Info) -> String {
+    let m = &info.measures;
+    format!(
+        "{:>9} {:>8} {:>8} {:>6} {:>6} {:>11.1} {:>11.1}  {:<11} {:>8}  {}",
+        m.n_points,
+        m.n_sections,
+        m.n_neurites,
+        m.n_bifurcations + m.n_multifurcations,
+        m.n_ends,
+        m.length,
+        m.volume,
+        m.soma.kind,
+        info.warnings.len(),
+        info.file
+    )
+}

@@ -1,0 +1,135 @@
+//! `neurotess mesh`: its options.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use neurotess::mesh::Format;
+
+use crate::options::cells::CellArgs;
+use crate::options::numbers::positive;
+use crate::options::out::OutArgs;
+use crate::options::rings::RingArgs;
+use crate::options::shard::Shard;
+use crate::options::soma::SomaArg;
+use crate::options::types::Types;
+
+/// `neurotess mesh`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  neurotess mesh cell.swc -o cell.ply
+  neurotess mesh cell.swc -o cell.glb --max-error 0.05
+  neurotess mesh cell.swc -o cell.ply --poisson 0.1 --ring 1=0.5 --ring 2=1.5
+  neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
+  neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
+  neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
+  neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
+
+PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
+and radius (µm).")]
+pub(crate) struct MeshArgs {
+    /// Morphology files, folders (searched recursively) or globs, - for standard input; or one circuit,
+    /// whose cells are written in its coordinates
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: OutArgs,
+    /// Subdivisions per coarse edge, 1 to 64; 0 writes the coarse quads themselves
+    #[arg(long, default_value_t = 4, value_name = "N", help_heading = "Refinement",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=64))]
+    pub(crate) level: u32,
+    /// As fine as keeps the surface within E µm of the level-64 one, instead of --level
+    #[arg(long, value_name = "E", conflicts_with = "level", value_parser = positive,
+          allow_negative_numbers = true, help_heading = "Refinement")]
+    pub(crate) max_error: Option<f64>,
+    /// Course between traced points
+    #[arg(long, value_enum, default_value_t = PathArg::Hermite, value_name = "COURSE",
+          help_heading = "Refinement")]
+    pub(crate) path: PathArg,
+    /// Shape of the ends of neurites
+    #[arg(long, value_enum, default_value_t = CapsArg::Round, value_name = "SHAPE",
+          help_heading = "Refinement")]
+    pub(crate) caps: CapsArg,
+    /// How the soma is made
+    #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD",
+          help_heading = "Soma")]
+    pub(crate) soma: SomaArg,
+    /// Poisson's ratio ν of the soma's material, 0 ≤ ν < 0.5
+    #[arg(long, default_value_t = 0.3, value_name = "NU", value_parser = poisson,
+          allow_negative_numbers = true, help_heading = "Soma")]
+    pub(crate) poisson: f64,
+    /// Factor on the soma's radius
+    #[arg(long, default_value_t = 1.0, value_name = "S", value_parser = positive,
+          allow_negative_numbers = true, help_heading = "Soma")]
+    pub(crate) soma_scale: f64,
+    /// Reference sphere [default: cube]
+    #[arg(long, value_enum, value_name = "SPHERE", help_heading = "Soma")]
+    pub(crate) soma_sphere: Option<SphereArg>,
+    /// Resolution of the sphere: octahedron 1 to 5, cube 2 to 32 [default: what fits the neurites]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        help_heading = "Soma"
+    )]
+    pub(crate) soma_level: Option<u32>,
+    #[command(flatten)]
+    pub(crate) rings: RingArgs,
+    /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
+    #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
+    pub(crate) types: Vec<Types>,
+    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu
+    #[arg(long, value_name = "FORMAT", help_heading = "Output")]
+    pub(crate) format: Option<Format>,
+    /// Quads instead of triangles (ply, obj, off, vtu)
+    #[arg(long, help_heading = "Output")]
+    pub(crate) quads: bool,
+    /// Do every N-th input only, from the I-th on, 1 ≤ I ≤ N
+    #[arg(long, value_name = "I/N", help_heading = "Many inputs")]
+    pub(crate) shard: Option<Shard>,
+    /// Skip inputs whose output is there, newer than they are and made with the same options; outputs of
+    /// other options are made again. Several runs may share a folder
+    #[arg(long, help_heading = "Many inputs")]
+    pub(crate) resume: bool,
+    /// Append one JSON line per cell to this file as it finishes
+    #[arg(long, value_name = "FILE.jsonl", help_heading = "Many inputs")]
+    pub(crate) log: Option<PathBuf>,
+    /// Take every warning of the reader as an error
+    #[arg(long)]
+    pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
+}
+
+/// `--path`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PathArg {
+    /// A smooth curve
+    Hermite,
+    /// Straight
+    Linear,
+}
+
+/// `--caps`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum CapsArg {
+    /// Half spheres
+    Round,
+    /// Disks
+    Flat,
+}
+
+/// `--soma-sphere`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SphereArg {
+    /// The paper's
+    Octahedron,
+    /// Six faces of quads
+    Cube,
+}
+
+fn poisson(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (0.0..0.5).contains(&number) => Ok(number),
+        _ => Err("a number from 0 to below 0.5 is needed".into()),
+    }
+}

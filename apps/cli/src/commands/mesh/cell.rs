@@ -1,0 +1,269 @@
+//! One cell: read, generate, refine and write.
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::{DAffine3, DVec3};
+use neurotess::circuit::soma_center;
+use neurotess::formats::{self, ReadOptions};
+use neurotess::generate::{self, Generated};
+use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
+use neurotess::refine::{CoarseSurface, Refinement};
+use serde::Serialize;
+
+use super::observed::Observed;
+use super::options::MeshOptions;
+use super::size;
+use crate::io::morphologies::read_morphology;
+use crate::io::output::{Output, OutputError};
+use crate::io::targets::Job;
+use crate::report::{Failure, Progress, Reporter};
+
+/// One object of the JSON list, and one line of the log.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CellReport {
+    pub(crate) file: String,
+    pub(crate) out: String,
+    /// Of a circuit: which cell this is.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub(crate) node: Option<NodeName>,
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    pub(crate) quads: usize,
+    pub(crate) closed: bool,
+    pub(crate) euler: i64,
+    pub(crate) components: usize,
+    /// µm³, as written; none: not measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) volume: Option<f64>,
+    /// µm², likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) area: Option<f64>,
+    pub(crate) soma_volume: f64,
+    pub(crate) seconds: Seconds,
+    pub(crate) warnings: Vec<CellWarning>,
+}
+
+/// Which cell of a circuit.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct NodeName {
+    pub(crate) population: String,
+    pub(crate) node_id: u64,
+}
+
+/// Where the time went.
+///
+/// Refining and writing are one streamed pass over all threads: `refine` is the planning and what
+/// the blocks took, divided by the threads; `write` is the rest of the pass.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) soma: f64,
+    pub(crate) coarse: f64,
+    pub(crate) refine: f64,
+    pub(crate) write: f64,
+    /// Topology, volume and area, for the report only.
+    pub(crate) measure: f64,
+}
+
+/// Something odd in the file (with a line), or mended in the mesh (with a sample).
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CellWarning {
+    pub(crate) line: Option<u64>,
+    pub(crate) sample: Option<i64>,
+    pub(crate) code: &'static str,
+    pub(crate) message: String,
+    pub(crate) count: u64,
+}
+
+/// A cell read and generated, to be written once or several times.
+pub(crate) struct Prepared {
+    file: String,
+    generated: Generated,
+    read: Vec<formats::Warning>,
+    seconds: Seconds,
+    /// Of the tracing, in its own coordinates (µm).
+    pub(crate) soma_center: DVec3,
+}
+
+impl Prepared {
+    /// The coarse mesh.
+    pub(super) fn mesh(&self) -> &CoarseMesh {
+        &self.generated.mesh
+    }
+}
+
+/// Makes the mesh of one cell and writes it, into a file that has no name yet.
+pub(super) fn mesh(
+    job: &Job,
+    options: &MeshOptions,
+    output: Output,
+    watchers: Watchers<'_>,
+) -> Result<(CellReport, Output), Failure> {
+    let prepared = prepare(&job.input, options)?;
+    finish(&prepared, options, &job.out, output, None, watchers)
+}
+
+/// What hears of the work.
+#[derive(Clone, Copy)]
+pub(super) struct Watchers<'t> {
+    pub(super) reporter: &'t Reporter,
+    /// Counts blocks of the surface.
+    pub(super) progress: Option<&'t Progress<'t>>,
+}
+
+/// Reads a cell and generates its coarse mesh.
+pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, Failure> {
+    let file = input.display().to_string();
+    let mut seconds = Seconds::default();
+    let clock = Instant::now();
+    let read_options = ReadOptions {
+        strict: options.strict,
+    };
+    let read = read_morphology(input, None, &read_options)?;
+    seconds.read = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let generated = generate::generate(&read.morphology, &options.generate)
+        .map_err(|e| Failure(format!("{file}: {e}")))?;
+    seconds.soma = generated.soma_seconds;
+    seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
+    if generated.mesh.patches.is_empty() {
+        return Err(Failure(format!(
+            "{file}: nothing is left to mesh: check --types and --soma"
+        )));
+    }
+    Ok(Prepared {
+        file,
+        generated,
+        soma_center: soma_center(&read.morphology),
+        read: read.warnings,
+        seconds,
+    })
+}
+
+/// Refines a cell and writes it, perhaps somewhere else than it was traced.
+pub(super) fn finish(
+    prepared: &Prepared,
+    options: &MeshOptions,
+    out: &Path,
+    mut output: Output,
+    world_from_cell: Option<DAffine3>,
+    watchers: Watchers<'_>,
+) -> Result<(CellReport, Output), Failure> {
+    let Prepared {
+        file, generated, ..
+    } = prepared;
+    let mut seconds = prepared.seconds;
+    let mesh = &generated.mesh;
+    let to = (out, &mut output);
+    let written = write(mesh, options, to, world_from_cell, watchers, &mut seconds);
+    let written = written.map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
+    let clock = Instant::now();
+    let topology = mesh.topology();
+    let growth = world_from_cell.map_or(1.0, |transform| transform.matrix3.determinant());
+    let measured = options.measure.then(|| measure(mesh, options));
+    let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
+    seconds.measure = clock.elapsed().as_secs_f64();
+    let cell = CellReport {
+        file: file.clone(),
+        out: out.display().to_string(),
+        node: None,
+        vertices: written.vertices,
+        triangles: written.triangles,
+        quads: written.quads,
+        closed: topology.closed,
+        // Refinement divides faces and edges; the shape stays.
+        euler: topology.euler,
+        components: topology.components,
+        volume: measured.map(|(volume, _)| volume),
+        area: measured.map(|(_, area)| area),
+        // An empty sum is −0.
+        soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
+        seconds,
+        warnings: warnings(&prepared.read, generated),
+    };
+    Ok((cell, output))
+}
+
+/// What a file holds.
+struct Written {
+    vertices: usize,
+    triangles: usize,
+    quads: usize,
+}
+
+fn write(
+    mesh: &CoarseMesh,
+    options: &MeshOptions,
+    (out, output): (&Path, &mut Output),
+    world_from_cell: Option<DAffine3>,
+    watchers: Watchers<'_>,
+    seconds: &mut Seconds,
+) -> Result<Written, Failure> {
+    let clock = Instant::now();
+    let refinement;
+    let coarse;
+    let surface: &dyn Surface = match options.lod {
+        Some(lod) => {
+            refinement = Refinement::new(mesh, lod, &options.refine);
+            &refinement
+        }
+        None => {
+            coarse = CoarseSurface::new(mesh, options.format.has_quads());
+            &coarse
+        }
+    };
+    let placed = world_from_cell.map(|placed| Placed::new(surface, placed));
+    let surface: &dyn Surface = placed.as_ref().map_or(surface, |placed| placed);
+    let planned = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    size::tell(surface, options.format, out, watchers.reporter)?;
+    let observed = Observed::new(surface, watchers.progress);
+    surfaces::write(&observed, options.format, output.file()).map_err(|e| {
+        let broken = match e {
+            surfaces::WriteError::Io(e) => OutputError::broken(out, e),
+            other => OutputError::broken(out, std::io::Error::other(other)),
+        };
+        Failure(broken.to_string())
+    })?;
+    let pass = clock.elapsed().as_secs_f64();
+    let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
+    seconds.refine = planned + blocks;
+    seconds.write = pass - blocks;
+    Ok(Written {
+        vertices: surface.vertex_count(),
+        triangles: surface.triangle_count(),
+        quads: surface.quad_count(),
+    })
+}
+
+/// Volume and area of what was written.
+fn measure(mesh: &CoarseMesh, options: &MeshOptions) -> (f64, f64) {
+    match options.lod {
+        Some(lod) => Refinement::new(mesh, lod, &options.refine).volume_and_area(),
+        None => {
+            let measure = mesh.measure();
+            (measure.volume, measure.area)
+        }
+    }
+}
+
+fn warnings(read: &[formats::Warning], generated: &Generated) -> Vec<CellWarning> {
+    let of_file = read.iter().map(|w| CellWarning {
+        line: w.line,
+        sample: None,
+        code: w.code,
+        message: w.message.clone(),
+        count: w.count,
+    });
+    let of_mesh = generated.warnings.iter().map(|w| CellWarning {
+        line: None,
+        sample: w.sample,
+        code: w.code,
+        message: w.to_string(),
+        count: w.count as u64,
+    });
+    of_file.chain(of_mesh).collect()
+}

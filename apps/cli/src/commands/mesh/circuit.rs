@@ -1,0 +1,212 @@
+//! `neurotess mesh CIRCUIT`: each cell in the circuit's coordinates, in a file of its own, or all in one GLB
+//! (circuit_glb.rs).
+//!
+//! ```text
+//! circuit ─select─▶ instances ─by morphology─▶ workers: prepare once ─▶ finish for each instance
+//! ```
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use neurotess::circuit::{Circuit, Instance};
+
+use super::args::MeshArgs;
+use super::cell::{self, NodeName, Watchers};
+use super::circuit_glb;
+use super::entry::{self, Entry};
+use super::messages::{summarize, tell};
+use super::options::MeshOptions;
+use super::run::MeshRun;
+use crate::io::inputs::Inputs;
+use crate::io::record::OutputRecord;
+use crate::io::targets::Job;
+use crate::io::{circuits, workers};
+use crate::report::{Failed, Failure, Log, Progress, Reporter, usage};
+
+/// A cell to write.
+struct InstanceJob {
+    instance: Instance,
+    job: Job,
+    node: NodeName,
+}
+
+/// Runs the command for one circuit.
+pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::Result<()> {
+    let clock = Instant::now();
+    let folder = &args.out.out;
+    let in_one_file = circuit_glb::is_one_file(args);
+    if folder.is_file() && !in_one_file {
+        return usage(format!(
+            "{} is a file, but the cells of a circuit need a folder, or one .glb: give another OUT",
+            folder.display()
+        ));
+    }
+    let opened = circuits::open(path, reporter).and_then(|circuit| {
+        let nodes = args.cells.select(&circuit)?;
+        Ok((circuit, nodes))
+    });
+    let (circuit, nodes) = match opened {
+        Ok(opened) => opened,
+        Err(failure) => {
+            reporter.failure(&failure);
+            let failed = Entry::Failed(Failed {
+                file: path.display().to_string(),
+                error: failure.0,
+            });
+            return reporter.document(&[failed]);
+        }
+    };
+    let instances = circuit.instances(&nodes, None);
+    if instances.len() < nodes.len() {
+        let without = nodes.len() - instances.len();
+        let total = nodes.len();
+        reporter.warning(&format!(
+            "{}: {without} of {total} chosen cells have no morphology or place: left out",
+            circuit.file
+        ));
+    }
+    if in_one_file {
+        return circuit_glb::run(args, &circuit, &instances, reporter);
+    }
+    let measure = reporter.json() || args.log.is_some();
+    // Many inputs, whatever their names: OUT is a folder.
+    let options = MeshOptions::new(args, &Inputs::default(), measure)?;
+    let mut instance_jobs = plan(&circuit, &instances, folder, options.format.extension());
+    if let Some(shard) = args.shard {
+        instance_jobs = shard.of(instance_jobs);
+    }
+    let record = OutputRecord::open(folder, &options.fingerprint());
+    let run = MeshRun {
+        options: &options,
+        reporter,
+        log: args.log.as_deref().map(Log::open).transpose()?,
+        resume: args.resume,
+        records: true,
+    };
+    let (skipped, to_do) = run.sort_out(instance_jobs, &record, |instance_job| &instance_job.job);
+    let mut entries = mesh_all(&circuit, to_do, &record, &run)?;
+    summarize(&entries, skipped.len(), clock, reporter);
+    entries.extend(
+        skipped
+            .iter()
+            .map(|instance_job| entry::skipped(&instance_job.job)),
+    );
+    reporter.document(&entries)
+}
+
+/// Names the file of each cell: population and id; the row too where several rows share an id.
+fn plan(
+    circuit: &Circuit,
+    instances: &[Instance],
+    folder: &Path,
+    extension: &str,
+) -> Vec<InstanceJob> {
+    let mut taken: BTreeSet<PathBuf> = BTreeSet::new();
+    let job = |instance: &Instance| {
+        let population = &circuit.populations[instance.node.population as usize].name;
+        // A population's name is the file's own and may hold anything.
+        let plain: String = population
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || "-_.".contains(c) {
+                    c
+                } else {
+                    '_'
+                }
+            })
+            .collect();
+        let plain = plain.trim_start_matches('.');
+        let id = instance.id;
+        let mut out = folder.join(format!("{plain}_{id}.{extension}"));
+        if !taken.insert(out.clone()) {
+            let row = instance.node.row;
+            out = folder.join(format!("{plain}_{id}_row{row}.{extension}"));
+            taken.insert(out.clone());
+        }
+        let input = circuit.templates[instance.template.index()].path.clone();
+        InstanceJob {
+            instance: *instance,
+            job: Job {
+                input,
+                out,
+                placement: format!("{instance:?}"),
+            },
+            node: NodeName {
+                population: population.clone(),
+                node_id: id,
+            },
+        }
+    };
+    instances.iter().map(job).collect()
+}
+
+/// Meshes each morphology once and writes it for all of its cells. Entries are in the order of the
+/// cells.
+fn mesh_all(
+    circuit: &Circuit,
+    instance_jobs: Vec<InstanceJob>,
+    record: &OutputRecord,
+    run: &MeshRun<'_>,
+) -> anyhow::Result<Vec<Entry>> {
+    let MeshRun {
+        options, reporter, ..
+    } = *run;
+    let progress = Progress::new(reporter, instance_jobs.len(), "cells");
+    let mut of_template: BTreeMap<u32, Vec<(usize, InstanceJob)>> = BTreeMap::new();
+    for (index, instance_job) in instance_jobs.into_iter().enumerate() {
+        let template = instance_job.instance.template.0;
+        of_template
+            .entry(template)
+            .or_default()
+            .push((index, instance_job));
+    }
+    let groups: Vec<(u32, Vec<(usize, InstanceJob)>)> = of_template.into_iter().collect();
+    // The morphologies of most cells first.
+    let mut order: Vec<usize> = (0..groups.len()).collect();
+    order.sort_by_key(|&g| (std::cmp::Reverse(groups[g].1.len()), g));
+    let results = workers::run(&groups, &order, reporter.threads(), |(template, cells)| {
+        let input = &circuit.templates[*template as usize].path;
+        let prepared = cell::prepare(input, options);
+        let watchers = Watchers {
+            reporter,
+            progress: None,
+        };
+        let one = |(index, instance_job): &(usize, InstanceJob)| {
+            let entry = run.cell(&instance_job.job, record, |output| match &prepared {
+                Ok(prepared) => {
+                    let placed = instance_job.instance.world_from_cell(prepared.soma_center);
+                    let out = &instance_job.job.out;
+                    let written =
+                        cell::finish(prepared, options, out, output, Some(placed), watchers);
+                    written.map(|(mut cell, output)| {
+                        cell.node = Some(instance_job.node.clone());
+                        (cell, output)
+                    })
+                }
+                Err(failure) => Err(Failure(format!(
+                    "{} (cell {} of {})",
+                    failure.0, instance_job.node.node_id, instance_job.node.population
+                ))),
+            });
+            tell(&entry, false, reporter);
+            progress.done();
+            (*index, entry)
+        };
+        cells.iter().map(one).collect::<Vec<_>>()
+    })?;
+    drop(progress);
+    let mut entries: Vec<(usize, Entry)> = Vec::new();
+    for ((_, cells), result) in groups.iter().zip(results) {
+        match result {
+            Ok(done) => entries.extend(done),
+            Err(panic) => entries.extend(cells.iter().map(|(index, instance_job)| {
+                let entry = run.panicked(&instance_job.job, &panic);
+                tell(&entry, false, reporter);
+                (*index, entry)
+            })),
+        }
+    }
+    entries.sort_by_key(|&(index, _)| index);
+    Ok(entries.into_iter().map(|(_, entry)| entry).collect())
+}

@@ -1,0 +1,154 @@
+//! `neurotess mesh CIRCUIT -o FILE.glb`: one file, in which each morphology is once and each cell a node.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use neurotess::circuit::{Circuit, Instance};
+use neurotess::mesh::{Format, GlbNode, Surface, WriteError, write_glb};
+use neurotess::refine::{CoarseSurface, Refinement};
+use serde::Serialize;
+
+use super::args::MeshArgs;
+use super::cell::{self, Prepared};
+use super::options::MeshOptions;
+use crate::io::inputs::Inputs;
+use crate::io::output::{Output, OutputError, existing};
+use crate::io::workers;
+use crate::report::{Progress, Reporter, bug, count, usage};
+
+/// The object of the JSON list.
+#[derive(Serialize)]
+struct GlbReport {
+    file: String,
+    out: String,
+    /// Nodes, and cells left out because their morphology failed.
+    cells: usize,
+    failed: usize,
+    morphologies: usize,
+    /// Of all morphologies, each once.
+    vertices: usize,
+    triangles: usize,
+    seconds: f64,
+}
+
+/// Whether OUT is one file: it has a name that ends in .glb.
+pub(super) fn is_one_file(args: &MeshArgs) -> bool {
+    let out = &args.out.out;
+    !out.is_dir() && Format::from_extension(out).is_ok_and(|format| format == Format::Glb)
+}
+
+/// Writes the chosen cells of a circuit.
+pub(super) fn run(
+    args: &MeshArgs,
+    circuit: &Circuit,
+    instances: &[Instance],
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    let clock = Instant::now();
+    if args.shard.is_some() || args.resume || args.log.is_some() {
+        return usage("--shard, --resume and --log are for a file per cell: give a folder as OUT");
+    }
+    let out = &args.out.out;
+    let one = Inputs {
+        one_file: true,
+        ..Inputs::default()
+    };
+    let options = MeshOptions::new(args, &one, false)?;
+    if options.format != Format::Glb {
+        return usage("only GLB holds a circuit in one file: leave out --format");
+    }
+    existing(options.force).check(out)?;
+    let prepared = prepare_all(circuit, instances, &options, reporter)?;
+    let shown: Vec<&Instance> = instances
+        .iter()
+        .filter(|instance| prepared.contains_key(&instance.template.0))
+        .collect();
+    if shown.is_empty() {
+        anyhow::bail!("{}: no cell to write: choose others", circuit.file);
+    }
+    let surfaces = prepared
+        .values()
+        .map(|prepared| surface(prepared, &options));
+    let surfaces: Vec<Box<dyn Surface + '_>> = surfaces.collect();
+    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(|surface| &**surface).collect();
+    let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
+    let nodes: Vec<GlbNode> = shown
+        .iter()
+        .map(|instance| GlbNode {
+            name: name(circuit, instance),
+            surface: numbers[&instance.template.0],
+            world_from_surface: instance
+                .world_from_cell(prepared[&instance.template.0].soma_center),
+        })
+        .collect();
+    let mut output = Output::create(out, existing(options.force))?;
+    write_glb(&surfaces, &nodes, output.file()).map_err(|e| match e {
+        WriteError::Io(e) => OutputError::broken(out, e),
+        other => OutputError::broken(out, std::io::Error::other(other)),
+    })?;
+    output.finish()?;
+    let report = GlbReport {
+        file: circuit.file.clone(),
+        out: out.display().to_string(),
+        cells: nodes.len(),
+        failed: instances.len() - nodes.len(),
+        morphologies: surfaces.len(),
+        vertices: surfaces.iter().map(|s| s.vertex_count()).sum(),
+        triangles: surfaces.iter().map(|s| s.triangle_count()).sum(),
+        seconds: clock.elapsed().as_secs_f64(),
+    };
+    reporter.result(&format!(
+        "{} → {}: {} of {}, {} triangles, in {:.2} s",
+        report.file,
+        report.out,
+        count(report.cells, "cell"),
+        count(report.morphologies, "morphology file"),
+        report.triangles,
+        report.seconds
+    ));
+    reporter.document(&[report])
+}
+
+/// Reads and generates each morphology once, on all cores; tells of those that fail.
+fn prepare_all(
+    circuit: &Circuit,
+    instances: &[Instance],
+    options: &MeshOptions,
+    reporter: &Reporter,
+) -> anyhow::Result<BTreeMap<u32, Prepared>> {
+    let mut templates: Vec<u32> = instances.iter().map(|i| i.template.0).collect();
+    templates.sort_unstable();
+    templates.dedup();
+    let order: Vec<usize> = (0..templates.len()).collect();
+    let progress = Progress::new(reporter, templates.len(), "morphologies");
+    let results = workers::run(&templates, &order, reporter.threads(), |&template| {
+        let prepared = cell::prepare(&circuit.templates[template as usize].path, options);
+        progress.done();
+        prepared
+    })?;
+    drop(progress);
+    let mut prepared = BTreeMap::new();
+    for (&template, result) in templates.iter().zip(results) {
+        let path = &circuit.templates[template as usize].path;
+        match result.unwrap_or_else(|panic| Err(bug(&path.display().to_string(), &panic))) {
+            Ok(cell) => {
+                prepared.insert(template, cell);
+            }
+            Err(failure) => reporter.failure(&failure),
+        }
+    }
+    Ok(prepared)
+}
+
+fn surface<'p>(prepared: &'p Prepared, options: &MeshOptions) -> Box<dyn Surface + 'p> {
+    let mesh = prepared.mesh();
+    match options.lod {
+        Some(lod) => Box::new(Refinement::new(mesh, lod, &options.refine)),
+        None => Box::new(CoarseSurface::new(mesh, false)),
+    }
+}
+
+fn name(circuit: &Circuit, instance: &Instance) -> String {
+    let population = &circuit.populations[instance.node.population as usize].name;
+    format!("{population} {}", instance.id)
+}

@@ -1,0 +1,105 @@
+//! Messages for people: a line per cell, warnings, the summary.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::cell::CellReport;
+use super::entry::Entry;
+use crate::io::record::OutputState;
+use crate::report::{Reporter, count, place};
+
+/// What is made again although it is there, and what stays although little is known of it.
+pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
+    let number = |state: OutputState| states.iter().filter(|&&s| s == state).count();
+    let note = |state, what: &str| {
+        let n = number(state);
+        if n > 0 {
+            reporter.note(&format!("{} {what}", count(n, "output")));
+        }
+    };
+    note(
+        OutputState::OtherOptions,
+        "made with other options: made again",
+    );
+    note(OutputState::OtherInput, "made of another input: made again");
+    note(
+        OutputState::Newer,
+        "kept, though it is not written down with which options they were made: --force makes them again",
+    );
+}
+
+/// Tells of a cell as it finishes.
+pub(super) fn tell(entry: &Entry, one: bool, reporter: &Reporter) {
+    match entry {
+        Entry::Done(cell) => {
+            reporter.result(&line(cell));
+            if one || reporter.verbose() {
+                warn(cell, reporter);
+            }
+        }
+        Entry::Failed(failed) => reporter.error(&failed.error),
+        Entry::Skipped { .. } => {}
+    }
+}
+
+/// One cell for people.
+pub(super) fn line(cell: &CellReport) -> String {
+    let s = &cell.seconds;
+    format!(
+        "{} → {}: {} vertices, {} faces, {}, {} in {:.3} s",
+        cell.file,
+        cell.out,
+        cell.vertices,
+        cell.triangles + cell.quads,
+        if cell.closed { "closed" } else { "NOT CLOSED" },
+        count(cell.components, "part"),
+        s.read + s.soma + s.coarse + s.refine + s.write,
+    )
+}
+
+pub(super) fn warn(cell: &CellReport, reporter: &Reporter) {
+    for warning in &cell.warnings {
+        let place = place(&cell.file, warning.line);
+        let (message, code) = (&warning.message, warning.code);
+        reporter.warning(&format!("{place} {message} ({code})"));
+    }
+}
+
+/// The last words on standard error.
+pub(super) fn summarize(entries: &[Entry], skipped: usize, clock: Instant, reporter: &Reporter) {
+    let mut done = 0;
+    let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
+    let skipped = skipped
+        + entries
+            .iter()
+            .filter(|e| matches!(e, Entry::Skipped { .. }))
+            .count();
+    for entry in entries {
+        if let Entry::Done(cell) = entry {
+            done += 1;
+            for warning in &cell.warnings {
+                *causes.entry(warning.code).or_default() += 1;
+            }
+        }
+    }
+    if entries.len() > 1 && !causes.is_empty() {
+        let causes: Vec<String> = causes
+            .iter()
+            .map(|(code, n)| format!("{code} {n}"))
+            .collect();
+        let hint = if reporter.verbose() {
+            ""
+        } else {
+            " (-v tells all)"
+        };
+        reporter.warning(&format!("cells concerned: {}{hint}", causes.join(", ")));
+    }
+    if entries.len() != 1 || skipped > 0 {
+        reporter.note(&format!(
+            "{} meshed, {skipped} skipped, {} failed in {:.2} s",
+            count(done, "cell"),
+            reporter.failures(),
+            clock.elapsed().as_secs_f64()
+        ));
+    }
+}

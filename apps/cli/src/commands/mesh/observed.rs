@@ -1,0 +1,78 @@
+//! A surface that notes how long its blocks take to make, and ticks the progress.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use neurotess::mesh::{Faces, Surface, SurfaceVertex};
+
+use crate::report::Progress;
+
+/// A surface and a clock for its blocks.
+pub(crate) struct Observed<'a> {
+    surface: &'a dyn Surface,
+    progress: Option<&'a Progress<'a>>,
+    nanoseconds: AtomicU64,
+}
+
+impl<'a> Observed<'a> {
+    /// Watches a surface; the progress, if there is one, counts its blocks.
+    pub(crate) fn new(surface: &'a dyn Surface, progress: Option<&'a Progress<'a>>) -> Self {
+        if let Some(progress) = progress {
+            progress.expect(surface.vertex_blocks() + surface.face_blocks());
+        }
+        Self {
+            surface,
+            progress,
+            nanoseconds: AtomicU64::new(0),
+        }
+    }
+
+    /// Seconds that blocks took, of all threads together.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9
+    }
+
+    fn timed(&self, make: impl FnOnce()) {
+        let clock = Instant::now();
+        make();
+        let nanoseconds = u64::try_from(clock.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.nanoseconds.fetch_add(nanoseconds, Ordering::Relaxed);
+        if let Some(progress) = self.progress {
+            progress.done();
+        }
+    }
+}
+
+impl Surface for Observed<'_> {
+    fn origin(&self) -> glam::DVec3 {
+        self.surface.origin()
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.surface.vertex_count()
+    }
+
+    fn triangle_count(&self) -> usize {
+        self.surface.triangle_count()
+    }
+
+    fn quad_count(&self) -> usize {
+        self.surface.quad_count()
+    }
+
+    fn vertex_blocks(&self) -> usize {
+        self.surface.vertex_blocks()
+    }
+
+    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
+        self.timed(|| self.surface.vertices(block, out));
+    }
+
+    fn face_blocks(&self) -> usize {
+        self.surface.face_blocks()
+    }
+
+    fn faces(&self, block: usize, out: &mut Faces) {
+        self.timed(|| self.surface.faces(block, out));
+    }
+}

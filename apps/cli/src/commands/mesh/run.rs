@@ -1,0 +1,119 @@
+//! What all cells of a run have in common: which are skipped, claimed, recorded and logged.
+
+use super::cell::CellReport;
+use super::entry::{Entry, skipped};
+use super::messages::tell_states;
+use super::options::MeshOptions;
+use crate::io::claims::{Claim, claim};
+use crate::io::morphologies::readable;
+use crate::io::output::{Output, OutputError};
+use crate::io::record::{self, OutputRecord};
+use crate::io::targets::Job;
+use crate::report::{Failed, Failure, Log, Reporter, bug};
+
+/// What all cells of a run have in common.
+pub(super) struct MeshRun<'a> {
+    pub(super) options: &'a MeshOptions,
+    pub(super) reporter: &'a Reporter,
+    pub(super) log: Option<Log>,
+    pub(super) resume: bool,
+    /// Whether it is written down what files were made of.
+    pub(super) records: bool,
+}
+
+impl MeshRun<'_> {
+    fn log(&self, entry: &Entry) {
+        if let Some(log) = &self.log
+            && let Err(failure) = log.line(entry)
+        {
+            self.reporter.failure(&failure);
+        }
+    }
+
+    /// What stays and what is to be made; tells why.
+    pub(super) fn sort_out<T>(
+        &self,
+        all: Vec<T>,
+        record: &OutputRecord,
+        job: impl Fn(&T) -> &Job,
+    ) -> (Vec<T>, Vec<T>) {
+        if !self.resume {
+            return (Vec::new(), all);
+        }
+        let mut states = Vec::with_capacity(all.len());
+        let (skipped, to_do) = all.into_iter().partition(|item| {
+            let state = record.state_of(job(item));
+            states.push(state);
+            if state.stays() {
+                self.left(job(item));
+            }
+            state.stays()
+        });
+        tell_states(&states, self.reporter);
+        (skipped, to_do)
+    }
+
+    /// An output that stays. A line that the log lacks, say since it is a new one, is added.
+    fn left(&self, job: &Job) {
+        let known = |log: &Log| log.knows(&job.out.display().to_string());
+        if self.log.as_ref().is_some_and(|log| !known(log)) {
+            self.log(&skipped(job));
+        }
+    }
+
+    /// Claims a cell's file, makes it, writes down what it is and gives it its name.
+    pub(super) fn cell(
+        &self,
+        job: &Job,
+        record: &OutputRecord,
+        make: impl FnOnce(Output) -> Result<(CellReport, Output), Failure>,
+    ) -> Entry {
+        let file = job.input.display();
+        let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+        let resume = self.resume.then_some(record);
+        let claimed = readable(&job.input)
+            .and_then(|()| claim(job, self.options.force, resume, self.reporter).map_err(failed));
+        let result = match claimed {
+            Ok(Claim::Done) => return skipped(job),
+            Ok(Claim::Ours(output)) => make(output),
+            Err(failure) => Err(failure),
+        };
+        let failure = match result {
+            Ok((cell, output)) => {
+                let cell = Box::new(cell);
+                if self.records
+                    && let Err(e) = record.add(job, output.part())
+                {
+                    let name = record::NAME;
+                    self.reporter.warning(&format!(
+                        "{name} beside {} cannot be written ({e}): --resume will know less",
+                        job.out.display()
+                    ));
+                }
+                let entry = Entry::Done(cell);
+                self.log(&entry);
+                match output.finish().map_err(failed) {
+                    Ok(()) => return entry,
+                    Err(failure) => failure,
+                }
+            }
+            Err(failure) => failure,
+        };
+        self.failed(job, failure)
+    }
+
+    /// A cell that failed, in the log too.
+    pub(super) fn failed(&self, job: &Job, failure: Failure) -> Entry {
+        let entry = Entry::Failed(Failed {
+            file: job.input.display().to_string(),
+            error: failure.0,
+        });
+        self.log(&entry);
+        entry
+    }
+
+    /// A cell over which the program stumbled.
+    pub(super) fn panicked(&self, job: &Job, panic: &str) -> Entry {
+        self.failed(job, bug(&job.input.display().to_string(), panic))
+    }
+}

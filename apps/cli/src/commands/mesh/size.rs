@@ -1,0 +1,108 @@
+//! How large a file will be, before it is written.
+
+use std::path::Path;
+
+use neurotess::mesh::{Format, Surface};
+
+use crate::report::{Failure, Reporter};
+
+/// From so many bytes on it is said beforehand.
+const LARGE: u64 = 1 << 30;
+
+/// Says that a file will be large.
+///
+/// # Errors
+/// The disk has less room than it needs.
+pub(super) fn tell(
+    surface: &dyn Surface,
+    format: Format,
+    out: &Path,
+    reporter: &Reporter,
+) -> Result<(), Failure> {
+    let bytes = estimate(surface, format);
+    if bytes < LARGE {
+        return Ok(());
+    }
+    let (out, folder) = (out.display(), folder_of(out));
+    let faces = surface.triangle_count() + surface.quad_count();
+    if let Ok(free) = fs4::available_space(folder)
+        && free < bytes
+    {
+        return Err(Failure(format!(
+            "{out} would have about {}, but only {} are free: choose a lower --level or another disk",
+            gigabytes(bytes),
+            gigabytes(free)
+        )));
+    }
+    reporter.warning(&format!(
+        "{out} will have about {} ({faces} faces): a lower --level or --max-error makes it smaller",
+        gigabytes(bytes)
+    ));
+    Ok(())
+}
+
+/// Bytes of a file, to within some tenths: numbers of text have as many digits as they need.
+pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
+    let [vertices, triangles, quads] = [
+        surface.vertex_count(),
+        surface.triangle_count(),
+        surface.quad_count(),
+    ]
+    .map(|n| n as u64);
+    let [vertex, triangle, quad] = match format {
+        Format::Ply => [40, 13, 17],
+        Format::Stl => [0, 50, 100],
+        Format::Glb => [40, 12, 24],
+        Format::Vtu => [40, 21, 25],
+        // As measured on a cell of a million faces.
+        Format::Obj => [64, 48, 64],
+        Format::Off => [30, 26, 34],
+    };
+    vertices * vertex + triangles * triangle + quads * quad
+}
+
+fn folder_of(out: &Path) -> &Path {
+    let folder = out.parent().unwrap_or(Path::new("."));
+    // The folder has been made when the file was claimed.
+    match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    }
+}
+
+fn gigabytes(bytes: u64) -> String {
+    format!("{:.1} GB", bytes as f64 / 1e9)
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess::generate::{GenerateOptions, generate};
+    use neurotess::mesh::write;
+    use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
+    use neurotess::synth::{Kind, Options, grow};
+
+    use super::*;
+
+    #[test]
+    fn estimates_are_near_what_is_written() {
+        let cell = grow(&Options {
+            kind: Kind::Star,
+            seed: 1,
+            points: Some(100),
+        });
+        let mesh = generate(&cell, &GenerateOptions::default())
+            .expect("meshed")
+            .mesh;
+        for format in Format::ALL {
+            let options = RefineOptions {
+                quads: format.has_quads(),
+                ..RefineOptions::default()
+            };
+            let surface = Refinement::new(&mesh, LodCriterion::Homogeneous(8), &options);
+            let mut file = std::io::Cursor::new(Vec::new());
+            write(&surface, format, &mut file).expect("written");
+            let ratio = estimate(&surface, format) as f64 / file.into_inner().len() as f64;
+            assert!((0.7..1.4).contains(&ratio), "{format}: {ratio}");
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! `neurotess render`: its options.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
+use neurotess::render::{ColorMap, MOST_BUDGET, Palette};
+
+use super::times::{MOST, Time, times};
+use super::values::{Fit, LightArg, RgbArg, Triple};
+use crate::options::cells::CellArgs;
+use crate::options::rings::RingArgs;
+use crate::options::size::Size;
+use crate::options::soma::SomaArg;
+use crate::options::types::Types;
+use crate::report::usage;
+
+/// `neurotess render`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  neurotess render cell.swc -o cell.png
+  neurotess render cell.swc -o cell.png --color-by depth --colormap magma --scale-bar
+  neurotess render cell.swc -o close.png --eye 0,20,80 --target 0,20,0 --wireframe --level 3
+  neurotess render a.swc b.swc -o both.png --color-by neuron --transparent
+  neurotess render cell.swc -o turn.png --turntable --frames 120
+  neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
+  neurotess render circuit/ -o all.png --lod exploration --budget 1000000
+  neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30
+  neurotess render circuit/ -o film.png --report voltage.h5 --time 0:100:0.5")]
+pub(crate) struct RenderArgs {
+    /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit, or
+    /// one session of neurotess view, in its own view and look
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The picture, - for standard output; of a series NAME_0000.png and so on
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(crate) out: PathBuf,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Width and height (pixels), up to 32768
+    #[arg(
+        long,
+        default_value = "1280x960",
+        value_name = "WxH",
+        help_heading = "Picture"
+    )]
+    pub(crate) size: Size,
+    /// Samples of a pixel, 1 to 64: smoother edges; 1, 4, 16, 36 and 64 are there
+    #[arg(long, default_value_t = 16, value_name = "N", help_heading = "Picture",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) samples: u32,
+    /// Color behind everything: a name (white, black, gray), RRGGBB or RGB
+    #[arg(
+        long,
+        default_value = "white",
+        value_name = "COLOR",
+        help_heading = "Picture"
+    )]
+    pub(crate) background: RgbArg,
+    /// Leave the background out
+    #[arg(long, conflicts_with = "background", help_heading = "Picture")]
+    pub(crate) transparent: bool,
+    /// What colors tell [default: type; what a scene says; value, if there is a --report]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Colors")]
+    pub(crate) color_by: Option<ColorBy>,
+    /// Cells of a circuit by an attribute, like layer, mtype, population or group
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["color_by", "report"],
+          help_heading = "Colors")]
+    pub(crate) color_by_attribute: Option<String>,
+    /// Values of a simulation: a SONATA report, or a file of spikes
+    #[arg(long, value_name = "FILE", help_heading = "Colors")]
+    pub(crate) report: Option<PathBuf>,
+    /// Time (ms) in the report [default: its first]; FROM:TO:STEP, TO left out, makes a series of pictures
+    #[arg(
+        long,
+        value_name = "MS",
+        requires = "report",
+        allow_hyphen_values = true,
+        help_heading = "Colors"
+    )]
+    pub(crate) time: Option<Time>,
+    /// Numbers at both ends of the color map [default: the least and the greatest of all pictures]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range,
+          allow_hyphen_values = true, help_heading = "Colors")]
+    pub(crate) range: Option<[f32; 2]>,
+    /// Colors of types and of things told apart
+    #[arg(
+        long,
+        default_value = "neurom",
+        value_name = "NAME",
+        value_parser = palettes(),
+        help_heading = "Colors"
+    )]
+    pub(crate) palette: Palette,
+    /// Colors of numbers
+    #[arg(
+        long,
+        default_value = "viridis",
+        value_name = "NAME",
+        value_parser = color_maps(),
+        help_heading = "Colors"
+    )]
+    pub(crate) colormap: ColorMap,
+    /// Leave out the end of the color map that is as light or as dark as the background. Without it that
+    /// end has edges
+    #[arg(long, help_heading = "Colors")]
+    pub(crate) trim_colormap: bool,
+    /// Draw no legend
+    #[arg(long, help_heading = "Colors")]
+    pub(crate) no_legend: bool,
+    /// Draw a scale bar, of this length (µm) or one that fits
+    #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
+          help_heading = "Picture")]
+    pub(crate) scale_bar: Option<Fit>,
+    /// How vertices are made [default: adaptive; homogeneous where --level is given]
+    #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
+    pub(crate) lod: Option<LodMode>,
+    /// Subdivisions per coarse edge everywhere, 1 to 64, instead of --pixels
+    #[arg(long, value_name = "N", help_heading = "Refinement", conflicts_with = "pixels",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) level: Option<u32>,
+    /// Farthest that the surface may be from the level-64 one (pixels) [default: 0.25, with
+    /// --wireframe 1]
+    #[arg(long, value_name = "P", value_parser = crate::options::numbers::positive,
+          allow_negative_numbers = true, help_heading = "Refinement")]
+    pub(crate) pixels: Option<f64>,
+    /// Most triangles of --lod exploration, for those that show most [default: 100000]
+    #[arg(long, value_name = "N", help_heading = "Refinement",
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+    pub(crate) budget: Option<u32>,
+    /// Look from this side; the camera fits the scene
+    #[arg(long, value_enum, default_value_t = ViewSide::Front, value_name = "SIDE",
+          help_heading = "Camera")]
+    pub(crate) view: ViewSide,
+    /// Position of the eye (µm)
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        requires = "target",
+        conflicts_with = "view",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    pub(crate) eye: Option<Triple>,
+    /// What the eye looks at (µm)
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        requires = "eye",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    pub(crate) target: Option<Triple>,
+    /// What is upwards in the picture
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        default_value = "0,1,0",
+        requires = "eye",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    pub(crate) up: Triple,
+    /// Vertical angle of view (degrees)
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 20.0,
+        help_heading = "Camera"
+    )]
+    pub(crate) fov: f64,
+    /// Go once around the scene, in --frames pictures
+    #[arg(long, help_heading = "Camera")]
+    pub(crate) turntable: bool,
+    /// Number of pictures of --turntable [default: 36] or of --time FROM:TO: OUT_0000.png and so on
+    #[arg(long, value_name = "N", help_heading = "Camera",
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST)))]
+    pub(crate) frames: Option<u32>,
+    /// Show the triangles by thin lines
+    #[arg(long, help_heading = "Look")]
+    pub(crate) wireframe: bool,
+    /// soft, flat (bare colors), or where the light comes from: right, up, towards you
+    #[arg(
+        long,
+        default_value = "soft",
+        value_name = "LIGHT",
+        allow_hyphen_values = true,
+        help_heading = "Look"
+    )]
+    pub(crate) light: LightArg,
+    /// Radius (µm) within which corners darken one another; 0: not at all [default: what fits]
+    #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
+          help_heading = "Look")]
+    pub(crate) ao: Option<Fit>,
+    /// How the soma is made
+    #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD",
+          help_heading = "Soma")]
+    pub(crate) soma: SomaArg,
+    #[command(flatten)]
+    pub(crate) rings: RingArgs,
+    /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
+    #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
+    pub(crate) types: Vec<Types>,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// Write what the picture cost to this file (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stats: Option<PathBuf>,
+    /// Take every warning of the reader as an error
+    #[arg(long)]
+    pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
+}
+
+impl RenderArgs {
+    /// Greatest error (pixels): unseen, or such that a wireframe shows triangles and not a grid.
+    pub(crate) fn error(&self) -> f64 {
+        self.pixels
+            .unwrap_or(if self.wireframe { 1.0 } else { 0.25 })
+    }
+
+    /// Number of pictures of a series; none: one picture.
+    ///
+    /// # Errors
+    /// Wrong usage: no series, or two that do not fit.
+    pub(crate) fn series(&self) -> anyhow::Result<Option<u32>> {
+        match self.time {
+            Some(Time::Series(..)) => {
+                Ok(times(self.time, self.frames)?.map(|times| times.len() as u32))
+            }
+            _ if self.turntable => Ok(Some(self.frames.unwrap_or(36))),
+            _ if self.frames.is_some() => {
+                usage("--frames is for --turntable, and for --time FROM:TO")
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether colors tell numbers.
+    pub(crate) fn is_number(&self) -> bool {
+        let by = [ColorBy::BranchOrder, ColorBy::Radius, ColorBy::PathDistance];
+        let number = self.color_by.is_some_and(|what| by.contains(&what));
+        number || self.report.is_some() || self.color_by_attribute.is_some()
+    }
+}
+
+/// Palettes by name; shells complete them.
+fn palettes() -> impl TypedValueParser<Value = Palette> {
+    PossibleValuesParser::new(Palette::ALL.map(Palette::name))
+        .try_map(|name| name.parse::<Palette>())
+}
+
+/// Color maps by name, likewise.
+fn color_maps() -> impl TypedValueParser<Value = ColorMap> {
+    let names = ColorMap::ALL.map(ColorMap::name);
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<ColorMap>())
+}
+
+fn range(text: &str) -> Result<[f32; 2], String> {
+    let ends: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match ends.as_deref() {
+        Some(&[low, high]) if low.is_finite() && high.is_finite() && low < high => Ok([low, high]),
+        _ => Err("two numbers are needed, the lower first, as in -80,30".into()),
+    }
+}
+
+/// `--color-by`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorBy {
+    /// SWC type
+    Type,
+    /// Every neurite its own
+    Neurite,
+    /// Neighboring sections differ
+    Section,
+    /// Number of forks from the neurite's start
+    #[value(name = "order", alias = "branch-order")]
+    BranchOrder,
+    /// Radius (µm)
+    Radius,
+    /// Distance along the neurite from its start (µm)
+    #[value(name = "depth", alias = "path-distance")]
+    PathDistance,
+    /// Every input its own, and every cell of a circuit
+    Neuron,
+    /// Values of a --report
+    Value,
+}
+
+/// `--lod`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LodMode {
+    /// As it is drawn, as fine as --pixels asks for
+    Adaptive,
+    /// As it is drawn, at --level everywhere
+    Homogeneous,
+    /// Refined beforehand, whole in the adapter's memory
+    Prerefined,
+    /// As the viewer draws while the camera moves: any scene within --budget triangles
+    Exploration,
+    /// As the viewer draws at rest: adaptive, within half a pixel
+    Static,
+}
+
+/// `--view`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewSide {
+    /// Along −z, y upwards
+    Front,
+    /// Along +z
+    Back,
+    /// Along +x
+    Left,
+    /// Along −x
+    Right,
+    /// Along −y
+    Top,
+    /// Along +y
+    Bottom,
+    /// From the right, above and before
+    Iso,
+}

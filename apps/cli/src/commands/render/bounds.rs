@@ -1,0 +1,89 @@
+//! Bounding spheres of all that is shown.
+
+use neurotess::mesh::TracingPoint;
+use neurotess::render::{BoundingSphere, Placement, bounds, merged};
+use rayon::prelude::*;
+
+use super::cells::MeshedCell;
+
+/// From so many placements on, a cell is framed by a few spheres instead of one per point.
+const MANY: usize = 64;
+
+/// Most spheres that a scene is framed by, and its tiles are tested with: milliseconds of work.
+const MOST_SPHERES: usize = 400_000;
+
+/// Fewest of a cell.
+const FEWEST: usize = 16;
+
+/// Bounding spheres around all that is shown, to fit a camera to.
+pub(crate) fn spheres(
+    cells: &[&MeshedCell],
+    placements: &[(usize, Placement)],
+) -> Vec<BoundingSphere> {
+    if placements.len() >= MANY {
+        return covering(cells, placements);
+    }
+    let own: Vec<Vec<BoundingSphere>> = cells.iter().map(|cell| of_cell(cell).collect()).collect();
+    placed(&own, placements)
+}
+
+/// Bounding spheres that hold all surfaces, at any level.
+pub(crate) fn covering(
+    cells: &[&MeshedCell],
+    placements: &[(usize, Placement)],
+) -> Vec<BoundingSphere> {
+    let most = (MOST_SPHERES / placements.len().max(1)).max(FEWEST);
+    let own: Vec<Vec<BoundingSphere>> = cells
+        .par_iter()
+        .map(|cell| merged(&bounds(&cell.mesh), most))
+        .collect();
+    placed(&own, placements)
+}
+
+/// Spheres of cells where their instances are.
+fn placed(own: &[Vec<BoundingSphere>], placements: &[(usize, Placement)]) -> Vec<BoundingSphere> {
+    let at = |&(cell, placement): &(usize, Placement)| {
+        let spheres = own[cell].iter();
+        spheres.map(move |&(center, radius)| {
+            (placement.world_from_cell(center), radius * placement.scale)
+        })
+    };
+    placements.iter().flat_map(at).collect()
+}
+
+/// Bounding spheres around all that the cell's surface shows.
+fn of_cell(cell: &MeshedCell) -> impl Iterator<Item = BoundingSphere> {
+    let origin = cell.mesh.origin;
+    let used = cell
+        .mesh
+        .vertices
+        .iter()
+        .map(|vertex| vertex.tracing as usize);
+    let mut seen = vec![false; cell.mesh.tracing.len()];
+    used.for_each(|index| seen[index] = true);
+    let tracing = cell.mesh.tracing.iter().zip(seen);
+    let shown = tracing.filter(|(_, seen)| *seen).map(|(point, _)| point);
+    shown.map(move |TracingPoint { center, radius, .. }| {
+        (origin + center.as_dvec3(), f64::from(radius.max(0.0)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+
+    use super::*;
+
+    #[test]
+    fn spheres_go_where_cells_are_placed() {
+        let own = [vec![(DVec3::X, 1.0)]];
+        let turned = Placement {
+            rotation: DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2),
+            scale: 2.0,
+            translation: DVec3::new(0.0, 0.0, 5.0),
+        };
+        let spheres = placed(&own, &[(0, Placement::default()), (0, turned)]);
+        assert_eq!(spheres[0], (DVec3::X, 1.0));
+        assert!(spheres[1].0.distance(DVec3::new(0.0, 2.0, 5.0)) < 1e-12 && spheres[1].1 == 2.0);
+    }
+}

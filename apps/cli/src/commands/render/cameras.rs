@@ -1,0 +1,74 @@
+//! From where: the camera that the options ask for, and its frames.
+
+use neurotess::render::{BoundingSphere, Camera, CameraError, Side};
+
+use super::args::{RenderArgs, ViewSide};
+use crate::report::usage;
+
+/// Share of the picture that stays free on each side.
+const MARGIN: f64 = 0.04;
+/// Most of the width that a legend gets for itself.
+const MOST_BESIDE: f64 = 0.35;
+
+/// Cameras of all pictures, one or as many as there are frames.
+///
+/// # Errors
+/// Wrong usage: a camera that sees nothing.
+pub(crate) fn cameras(
+    args: &RenderArgs,
+    spheres: &[BoundingSphere],
+) -> anyhow::Result<Vec<Camera>> {
+    let first = match camera(args, spheres, [MARGIN; 4]) {
+        Ok(camera) => camera,
+        Err(e) => return usage(e.to_string()),
+    };
+    let frames = args.series()?.unwrap_or(1);
+    let turn = match args.turntable {
+        true => std::f64::consts::TAU / f64::from(frames),
+        false => 0.0,
+    };
+    Ok((0..frames)
+        .map(|frame| first.turned(turn * f64::from(frame)))
+        .collect())
+}
+
+/// The camera that leaves a share of the width free for the legend, on the left (negative) or the
+/// right; none where that is too much, or where --eye says where the camera is.
+pub(crate) fn beside(args: &RenderArgs, spheres: &[BoundingSphere], share: f64) -> Option<Camera> {
+    if args.eye.is_some() || args.turntable || share.abs() > MOST_BESIDE {
+        return None;
+    }
+    let free = share.abs() + MARGIN;
+    let (left, right) = if share < 0.0 {
+        (free, MARGIN)
+    } else {
+        (MARGIN, free)
+    };
+    camera(args, spheres, [left, right, MARGIN, MARGIN]).ok()
+}
+
+fn camera(
+    args: &RenderArgs,
+    spheres: &[BoundingSphere],
+    margins: [f64; 4],
+) -> Result<Camera, CameraError> {
+    let fov = args.fov.to_radians();
+    let [width, height] = args.size.0.map(f64::from);
+    let aspect = width / height;
+    if let (Some(eye), Some(target)) = (args.eye, args.target) {
+        return Camera::new(eye.0, target.0, args.up.0, fov);
+    }
+    let side = match args.view {
+        ViewSide::Front => Side::Front,
+        ViewSide::Back => Side::Back,
+        ViewSide::Left => Side::Left,
+        ViewSide::Right => Side::Right,
+        ViewSide::Top => Side::Top,
+        ViewSide::Bottom => Side::Bottom,
+        ViewSide::Iso => Side::Iso,
+    };
+    if args.turntable {
+        return Camera::fit_turning(side, fov, aspect, MARGIN, spheres);
+    }
+    Camera::fit_within(side, fov, aspect, margins, spheres)
+}

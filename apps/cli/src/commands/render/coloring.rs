@@ -1,0 +1,177 @@
+//! What colors tell, as the options say.
+
+use std::path::Path;
+
+use neurotess::coloring::{self, Cell, ColorScheme, Coloring, DECAY, Recording, by_attribute};
+use neurotess::render::{ColorTable, Legend};
+
+use super::args::{ColorBy, RenderArgs};
+use super::cells::MeshedCell;
+use super::circuit_instances::CircuitInstances;
+use super::times::{self, time_text};
+use crate::report::Reporter;
+
+/// Colors of all pictures.
+pub(crate) struct PictureColors {
+    /// Of the first.
+    pub(crate) coloring: Coloring,
+    /// Of a series over time: what differs.
+    series: Option<RecordedSeries>,
+}
+
+/// A recording, and the time (ms) of each picture.
+struct RecordedSeries {
+    recording: Recording,
+    times: Vec<f64>,
+    range: [f32; 2],
+}
+
+impl PictureColors {
+    /// Table and legend of a picture: of a series only the values differ.
+    pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColorTable, Legend)> {
+        let Coloring { table, legend, .. } = &self.coloring;
+        let time = |series: &RecordedSeries| series.times.get(number).copied();
+        let Some((series, time)) = self.series.as_ref().and_then(|f| Some((f, time(f)?))) else {
+            return Ok((table.clone(), legend.clone()));
+        };
+        let frame = series.recording.at(time, DECAY, &|_| true).map_err(whole)?;
+        let table = ColorTable {
+            scale: table.scale.clone(),
+            categories: table.categories.clone(),
+            values: frame.values(series.range),
+        };
+        Ok((table, legend.clone().noted(&time_text(&series.times, time))))
+    }
+}
+
+/// Colors of cells. `instances`: those of a circuit; `of_cells`: the cell that each instance shows.
+///
+/// # Errors
+/// What is wrong with a report.
+pub(crate) fn of_pictures(
+    cells: &[&MeshedCell],
+    instances: Option<&CircuitInstances>,
+    of_cells: &[usize],
+    args: &RenderArgs,
+    reporter: &Reporter,
+) -> anyhow::Result<PictureColors> {
+    let background = (!args.transparent).then_some(args.background.0);
+    let scheme = ColorScheme {
+        palette: args.palette,
+        background,
+        scale: match background.filter(|_| args.trim_colormap) {
+            Some(background) => args.colormap.scale_before(background),
+            None => args.colormap.scale(),
+        },
+        range: args.range,
+    };
+    let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();
+    let cells: Vec<Cell<'_>> = cells
+        .iter()
+        .zip(&names)
+        .map(|(cell, name)| Cell {
+            name,
+            morphology: &cell.morphology,
+            mesh: &cell.mesh,
+        })
+        .collect();
+    if let (Some(report), Some(instances)) = (&args.report, instances) {
+        let nodes = instances.with_cells(of_cells);
+        let recording =
+            Recording::open(report, &instances.circuit, &cells, &nodes).map_err(whole)?;
+        return over_time(recording, args, &scheme, reporter);
+    }
+    let coloring = match instances {
+        Some(instances) => of_circuit(&cells, instances, args, &scheme)?,
+        None => None,
+    };
+    let by = by(args.color_by.unwrap_or(ColorBy::Type));
+    let by_tracing = || coloring::coloring(&cells, by, &scheme);
+    Ok(PictureColors {
+        coloring: coloring.unwrap_or_else(by_tracing),
+        series: None,
+    })
+}
+
+/// Colors that cells of a circuit have as a whole, if the options say so.
+fn of_circuit(
+    cells: &[Cell<'_>],
+    instances: &CircuitInstances,
+    args: &RenderArgs,
+    scheme: &ColorScheme,
+) -> anyhow::Result<Option<Coloring>> {
+    let neurons = instances.nodes();
+    match (&args.color_by_attribute, args.color_by) {
+        (Some(attribute), _) => {
+            let named = |e| anyhow::anyhow!("{}: {e}", instances.circuit.file);
+            let coloring = by_attribute(cells, &neurons, attribute, scheme);
+            coloring.map(Some).map_err(named)
+        }
+        (None, Some(ColorBy::Neuron)) => {
+            Ok(Some(coloring::each(cells, &instances.names(), scheme)))
+        }
+        (None, None) => Ok(coloring::given(cells, &neurons)),
+        (None, Some(_)) => Ok(None),
+    }
+}
+
+/// Values of a recording: at one time, or of a series.
+fn over_time(
+    recording: Recording,
+    args: &RenderArgs,
+    scheme: &ColorScheme,
+    reporter: &Reporter,
+) -> anyhow::Result<PictureColors> {
+    let without = recording.without();
+    if without > 0 {
+        let (all, file) = (recording.places(), &recording.file);
+        reporter.warning(&format!(
+            "{file}: no values for {without} of {all} cells: drawn gray"
+        ));
+    }
+    if args.time.is_none() && recording.is_of_spikes() {
+        let file = &recording.file;
+        anyhow::bail!("{file}: spikes flash at a time: choose one with --time");
+    }
+    let times = times::times(args.time, args.frames)?.unwrap_or_else(|| vec![recording.time.start]);
+    let range = match args.range {
+        Some(range) => range,
+        None => {
+            let times = times.iter().copied();
+            recording.range_at(times, &|_| true).map_err(whole)?
+        }
+    };
+    let coloring = recording.coloring(range, scheme);
+    let series = Some(RecordedSeries {
+        recording,
+        times,
+        range,
+    });
+    let mut colored = PictureColors { coloring, series };
+    let (table, legend) = colored.picture(0)?;
+    (colored.coloring.table, colored.coloring.legend) = (table, legend);
+    Ok(colored)
+}
+
+/// The whole message is the error's own: with its source it would be printed twice.
+fn whole(error: impl std::fmt::Display) -> anyhow::Error {
+    anyhow::anyhow!("{error}")
+}
+
+fn stem(file: &str) -> String {
+    let stem = Path::new(file).file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+fn by(what: ColorBy) -> coloring::ColorBy {
+    match what {
+        // Arguments have been checked: a value comes with a report.
+        ColorBy::Type | ColorBy::Value => coloring::ColorBy::Type,
+        ColorBy::Neurite => coloring::ColorBy::Neurite,
+        ColorBy::Section => coloring::ColorBy::Section,
+        ColorBy::BranchOrder => coloring::ColorBy::BranchOrder,
+        ColorBy::Radius => coloring::ColorBy::Radius,
+        ColorBy::PathDistance => coloring::ColorBy::PathDistance,
+        ColorBy::Neuron => coloring::ColorBy::Neuron,
+    }
+}

@@ -1,0 +1,150 @@
+//! Draws all pictures of a job, and writes them as their bands come.
+
+use std::io::BufWriter;
+use std::path::Path;
+
+use neurotess::render::{
+    BoundingSphere, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions,
+    PictureOptions, PngWriter, StillRenderer,
+};
+
+use super::args::RenderArgs;
+use super::cameras;
+use super::coloring::PictureColors;
+use super::job::RenderJob;
+use super::stats::{Stage, Stages, Stats};
+use super::values::Fit;
+use super::vertex_source::PictureSource;
+use crate::io::output::{self, OutputError};
+use crate::report::{Progress, Reporter, count};
+
+/// Width (pixels) of the lines of a wireframe.
+const WIRE: f32 = 1.0;
+
+/// Legend and scale bar, and the cameras: where the legend would cover something, the scene makes
+/// room for it if it can.
+pub(super) fn overlay(
+    args: &RenderArgs,
+    colored: &PictureColors,
+    mut cameras: Vec<Camera>,
+    spheres: &[BoundingSphere],
+) -> (Overlay, Vec<Camera>) {
+    let options = OverlayOptions {
+        legend: (!args.no_legend).then(|| colored.coloring.legend.clone()),
+        scale_bar: args.scale_bar.map(|bar| match bar {
+            Fit::Auto => 0.0,
+            Fit::Length(length) => length,
+        }),
+        background: (!args.transparent).then_some(args.background.0),
+    };
+    let mut overlay = Overlay::new(&options, args.size.0, &cameras, spheres);
+    let beside = overlay
+        .covering
+        .and_then(|share| cameras::beside(args, spheres, share));
+    if let Some(camera) = beside {
+        cameras = vec![camera];
+        overlay = Overlay::new(&options, args.size.0, &cameras, spheres);
+    }
+    (overlay, cameras)
+}
+
+pub(super) fn draw(
+    gpu: &Gpu,
+    job: &RenderJob<'_>,
+    stages: &mut Stages,
+    reporter: &Reporter,
+) -> anyhow::Result<Stats> {
+    let RenderJob {
+        args,
+        placements,
+        colored,
+        cameras,
+        spheres,
+        overlay,
+        files,
+        ..
+    } = *job;
+    let options = picture_options(args);
+    if options.samples_taken() != args.samples {
+        let taken = options.samples_taken();
+        reporter.warning(&format!("{} samples: {taken} are taken", args.samples));
+    }
+    if overlay.legend_left_out {
+        reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
+    }
+    let mut source = PictureSource::new(gpu, &options, job)?;
+    let mut renderer = StillRenderer::new();
+    stages.end(Stage::Upload);
+    let mut stats = Stats::new(gpu, placements.len());
+    let progress = Progress::new(reporter, files.len(), "pictures");
+    for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
+        let near = camera.near(spheres);
+        let (table, legend) = colored.picture(number)?;
+        let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);
+        let cost = write(file, args, |take| {
+            let lay = |top: u32, mut band: Image| {
+                overlay.lay_on(top, &mut band);
+                take(&band)
+            };
+            renderer
+                .paint(
+                    gpu,
+                    source.as_vertex_source(),
+                    camera,
+                    near,
+                    &table,
+                    &options,
+                    lay,
+                )
+                .map_err(|e| anyhow::anyhow!("{e}"))
+        })?;
+        stats.add(&cost, source.stats(gpu, camera, near, &options)?);
+        if let Some(lowered) = stats.lowered() {
+            reporter.warning(&lowered);
+        }
+        progress.done();
+    }
+    drop(progress);
+    reporter.note(&count(files.len(), "picture"));
+    Ok(stats)
+}
+
+fn picture_options(args: &RenderArgs) -> PictureOptions {
+    PictureOptions {
+        size: args.size.0,
+        samples: args.samples,
+        background: (!args.transparent).then_some(args.background.0),
+        look: Look {
+            light: args.light.0,
+            wire: if args.wireframe { WIRE } else { 0.0 },
+            contrast: (!args.transparent).then_some(args.background.0),
+            ..Look::default()
+        },
+        occlusion: match args.ao {
+            None | Some(Fit::Auto) => Occlusion::Fit,
+            Some(Fit::Length(0.0)) => Occlusion::Off,
+            Some(Fit::Length(radius)) => Occlusion::Within(radius as f32),
+        },
+        ..PictureOptions::default()
+    }
+}
+
+/// Writes a picture as its bands come; it appears whole or not at all.
+fn write(
+    path: &Path,
+    args: &RenderArgs,
+    paint: impl FnOnce(&mut dyn FnMut(&Image) -> Result<(), OutputError>) -> anyhow::Result<Cost>,
+) -> anyhow::Result<Cost> {
+    let mut output = output::begin(path, args.force)?;
+    let file = output
+        .file()
+        .try_clone()
+        .map_err(|e| OutputError::broken(path, e))?;
+    let fault = |e: std::io::Error| OutputError::broken(path, e);
+    let mut png =
+        PngWriter::new(BufWriter::new(file), args.size.0, args.transparent).map_err(fault)?;
+    let cost = paint(&mut |band| png.write(band).map_err(fault))?;
+    png.finish().map_err(fault)?;
+    output.finish()?;
+    Ok(cost)
+}

@@ -1,0 +1,21 @@
+//! What a run draws, from where, and into which files.
+
+use std::path::PathBuf;
+
+use neurotess::render::{BoundingSphere, Camera, Overlay, Placement};
+
+use super::args::RenderArgs;
+use super::cells::MeshedCell;
+use super::coloring::PictureColors;
+
+/// What is drawn, from where, and into which files.
+pub(super) struct RenderJob<'a> {
+    pub(super) args: &'a RenderArgs,
+    pub(super) cells: &'a [&'a MeshedCell],
+    pub(super) placements: &'a [(usize, Placement)],
+    pub(super) colored: &'a PictureColors,
+    pub(super) cameras: &'a [Camera],
+    pub(super) spheres: &'a [BoundingSphere],
+    pub(super) overlay: &'a Overlay,
+    pub(super) files: &'a [PathBuf],
+}

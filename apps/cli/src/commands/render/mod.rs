@@ -1,0 +1,99 @@
+//! `neurotess render`: pictures of cells and circuits, without a window.
+//!
+//! ```text
+//! arguments ─read, mesh─▶ cells, placements ─▶ cameras, colors, source ─draw─▶ bands ─▶ PNG, stats
+//! ```
+
+mod args;
+mod bounds;
+mod cameras;
+mod cells;
+mod checks;
+mod circuit_instances;
+mod coloring;
+mod draw;
+mod job;
+mod scene;
+mod session;
+mod stats;
+mod times;
+mod values;
+mod vertex_source;
+
+use anyhow::Context;
+use neurotess::render::Gpu;
+
+use crate::io::output;
+use crate::report::{Entry, Reporter};
+pub(crate) use args::RenderArgs;
+use cells::MeshedCell;
+use job::RenderJob;
+use scene::RenderScene;
+use stats::{Stage, Stages};
+
+/// Runs the command.
+pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    output::reserve_standard(&args.out, reporter)?;
+    let files = checks::files(args)?;
+    vertex_source::mode(args)?;
+    for file in files.iter().chain(&args.stats) {
+        output::check(file, args.force)?;
+    }
+    if let [path] = &args.inputs[..]
+        && session::is_session(path)
+    {
+        return session::draw(path, &files, args, reporter);
+    }
+    checks::check_value(args)?;
+    let mut stages = Stages::begin();
+    let RenderScene {
+        entries,
+        placements,
+        instances,
+    } = scene::read(args, reporter)?;
+    stages.end(Stage::Read);
+    let cells: Vec<&MeshedCell> = entries
+        .iter()
+        .filter_map(|entry| match entry {
+            Entry::Done(cell) => Some(cell),
+            Entry::Failed(_) => None,
+        })
+        .collect();
+    if placements.is_empty() {
+        return reporter.document(&stats::Document::new(&entries, &[], None));
+    }
+    let spheres = bounds::spheres(&cells, &placements);
+    let cameras = cameras::cameras(args, &spheres)?;
+    stages.end(Stage::Frame);
+    let gpu = Gpu::open(args.adapter.as_deref())?;
+    stages.end(Stage::Adapter);
+    if gpu.adapter.software {
+        reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
+    }
+    let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
+    let colored = coloring::of_pictures(&cells, instances.as_ref(), &of_cells, args, reporter)?;
+    let (overlay, cameras) = draw::overlay(args, &colored, cameras, &spheres);
+    let job = RenderJob {
+        args,
+        cells: &cells,
+        placements: &placements,
+        colored: &colored,
+        cameras: &cameras,
+        spheres: &spheres,
+        overlay: &overlay,
+        files: &files,
+    };
+    stages.end(Stage::Frame);
+    let mut stats = draw::draw(&gpu, &job, &mut stages, reporter)?;
+    stages.end(Stage::Draw);
+    stats.took(stages);
+    if let Some(path) = &args.stats {
+        let mut output = output::begin(path, args.force)?;
+        serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
+        output.finish()?;
+    }
+    for file in &files {
+        reporter.result(&format!("{}: {}", file.display(), stats.line()));
+    }
+    reporter.document(&stats::Document::new(&entries, &files, Some(&stats)))
+}

@@ -1,0 +1,67 @@
+//! Pictures of sessions that the window saved.
+
+use std::path::{Path, PathBuf};
+
+use super::args::RenderArgs;
+#[cfg(feature = "view")]
+use super::stats;
+#[cfg(feature = "view")]
+use crate::report::{Failure, count};
+use crate::report::{Reporter, usage};
+
+/// A session of the window: its own view and look, at the size and smoothness of the options.
+#[cfg(feature = "view")]
+pub(super) fn draw(
+    session: &Path,
+    files: &[PathBuf],
+    args: &RenderArgs,
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    let [out] = files else {
+        return usage("a session is one picture: leave out --turntable and times");
+    };
+    let picture = neurotess_viewer::save::PictureFile {
+        out: out.clone(),
+        size: args.size.0,
+        samples: args.samples,
+        transparent: args.transparent,
+        replace: args.force,
+    };
+    let drawn = neurotess_viewer::draw_session(session, &picture, args.adapter.as_deref());
+    let drawn = drawn.map_err(anyhow::Error::msg)?;
+    for (file, why) in &drawn.failures {
+        reporter.failure(&Failure(format!("{file}: {why}")));
+    }
+    reporter.result(&format!(
+        "{}: {} of {}",
+        out.display(),
+        count(drawn.neurons, "neuron"),
+        session.display()
+    ));
+    reporter.document(&stats::Document::new(&[], files, None))
+}
+
+/// Sessions are not built in.
+#[cfg(not(feature = "view"))]
+pub(super) fn draw(
+    session: &Path,
+    _files: &[PathBuf],
+    _args: &RenderArgs,
+    _reporter: &Reporter,
+) -> anyhow::Result<()> {
+    usage(format!(
+        "{}: this build has no window, whose session this is: build it with the feature 'view'",
+        session.display()
+    ))
+}
+
+/// Whether a file is a session of the window.
+#[cfg(feature = "view")]
+pub(super) use neurotess_viewer::session::is_session;
+
+/// Whether a file is named as sessions of the window are.
+#[cfg(not(feature = "view"))]
+pub(super) fn is_session(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("neurotess"))
+}

@@ -1,0 +1,204 @@
+//! What a picture cost: `--stats` and `--json`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use neurotess::render::{Cost, Gpu};
+use serde::Serialize;
+
+use super::cells::MeshedCell;
+use super::vertex_source::SourceStats;
+use crate::report::{Entry, Failed};
+
+/// The contract's object; times are of the last picture.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Stats {
+    adapter: String,
+    backend: String,
+    software: bool,
+    neurons: usize,
+    patches: u64,
+    patches_drawn: u64,
+    vertices: u64,
+    triangles: u64,
+    gpu_bytes: BTreeMap<&'static str, u64>,
+    bytes_per_point: f64,
+    frame_ms: FrameTime,
+    level_histogram: BTreeMap<u32, u64>,
+    tiles: usize,
+    pictures: usize,
+    seconds: Stages,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exploration: Option<BudgetStats>,
+}
+
+/// Seconds since the command began, stage by stage.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Stages {
+    /// Reading and meshing.
+    read: f64,
+    /// Cameras, colors, legend.
+    frame: f64,
+    /// Opening the adapter.
+    adapter: f64,
+    /// Making what is drawn from, and uploading it.
+    upload: f64,
+    /// All pictures, and counting what they took.
+    draw: f64,
+    #[serde(skip)]
+    began: Option<Instant>,
+}
+
+/// A stage that has ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stage {
+    Read,
+    Frame,
+    Adapter,
+    Upload,
+    Draw,
+}
+
+impl Stages {
+    /// Starts the clock.
+    pub(crate) fn begin() -> Self {
+        Self {
+            began: Some(Instant::now()),
+            ..Self::default()
+        }
+    }
+
+    /// Adds the time since the last stage ended.
+    pub(crate) fn end(&mut self, stage: Stage) {
+        let now = Instant::now();
+        let seconds = self.began.map_or(0.0, |at| (now - at).as_secs_f64());
+        self.began = Some(now);
+        *match stage {
+            Stage::Read => &mut self.read,
+            Stage::Frame => &mut self.frame,
+            Stage::Adapter => &mut self.adapter,
+            Stage::Upload => &mut self.upload,
+            Stage::Draw => &mut self.draw,
+        } += seconds;
+    }
+}
+
+/// What `--lod exploration` drew of what it would have, in triangles.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct BudgetStats {
+    budget: u64,
+    wanted: u64,
+    /// Left out, or drawn more coarsely than within half a pixel.
+    left_out: u64,
+    neurons_in_picture: u64,
+}
+
+/// Milliseconds.
+#[derive(Clone, Debug, Default, Serialize)]
+struct FrameTime {
+    /// From the first command to the last byte.
+    cpu: f64,
+    /// By pass, where the GPU can tell.
+    gpu: Option<BTreeMap<&'static str, f64>>,
+}
+
+impl Stats {
+    /// Of nothing drawn yet.
+    pub(crate) fn new(gpu: &Gpu, neurons: usize) -> Self {
+        Self {
+            adapter: gpu.adapter.name.clone(),
+            backend: gpu.adapter.backend.clone(),
+            software: gpu.adapter.software,
+            neurons,
+            ..Self::default()
+        }
+    }
+
+    /// One more picture.
+    pub(crate) fn add(&mut self, cost: &Cost, made: SourceStats) {
+        self.pictures += 1;
+        self.tiles = cost.tiles;
+        self.patches = made.patches;
+        self.patches_drawn = made.patches_drawn;
+        self.vertices = made.vertices;
+        self.triangles = made.triangles;
+        self.level_histogram = made.levels;
+        self.bytes_per_point = made.bytes_per_point;
+        self.gpu_bytes = made.bytes;
+        self.exploration = made.exploration.map(|stats| BudgetStats {
+            budget: stats.budget,
+            wanted: stats.wanted,
+            left_out: stats.wanted - stats.triangles.min(stats.wanted),
+            neurons_in_picture: stats.instances,
+        });
+        self.gpu_bytes.insert("targets", cost.target_bytes);
+        self.frame_ms = FrameTime {
+            cpu: cost.cpu_ms,
+            gpu: cost.gpu_ms.as_ref().map(|ms| ms.iter().copied().collect()),
+        };
+    }
+
+    /// What was left out or lowered.
+    pub(crate) fn lowered(&self) -> Option<String> {
+        let BudgetStats {
+            budget,
+            wanted,
+            left_out,
+            ..
+        } = self.exploration.filter(|explored| explored.left_out > 0)?;
+        Some(format!(
+            "the budget of {budget} triangles: {left_out} of {wanted} are left out, those that show \
+             least; --budget allows more"
+        ))
+    }
+
+    /// How long it took.
+    pub(crate) fn took(&mut self, stages: Stages) {
+        self.seconds = stages;
+    }
+
+    /// For people.
+    pub(crate) fn line(&self) -> String {
+        format!(
+            "{} triangles of {} neurons in {:.2} s",
+            self.triangles,
+            self.neurons,
+            self.frame_ms.cpu / 1e3
+        )
+    }
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+pub(crate) struct Document<'a> {
+    files: Vec<String>,
+    inputs: Vec<Input<'a>>,
+    #[serde(flatten)]
+    stats: Option<&'a Stats>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Input<'a> {
+    Done { file: &'a str },
+    Failed(&'a Failed),
+}
+
+impl<'a> Document<'a> {
+    pub(crate) fn new(
+        entries: &'a [Entry<MeshedCell>],
+        files: &[PathBuf],
+        stats: Option<&'a Stats>,
+    ) -> Self {
+        let input = |entry: &'a Entry<MeshedCell>| match entry {
+            Entry::Done(cell) => Input::Done { file: &cell.file },
+            Entry::Failed(failed) => Input::Failed(failed),
+        };
+        Self {
+            files: files.iter().map(|f| f.display().to_string()).collect(),
+            inputs: entries.iter().map(input).collect(),
+            stats,
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! What options of pictures hold: colors, positions, lengths, light.
+
+use std::str::FromStr;
+
+use glam::{DVec3, Vec3};
+use neurotess::render::{Light, Rgb};
+
+/// Three numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Triple(pub(crate) DVec3);
+
+impl FromStr for Triple {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y, z]) => Ok(Self(DVec3::new(x, y, z))),
+            _ => Err("three numbers X,Y,Z are needed, as in 0,20,80".into()),
+        }
+    }
+}
+
+/// A color.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RgbArg(pub(crate) Rgb);
+
+impl FromStr for RgbArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let rgb = match text.to_ascii_lowercase().as_str() {
+            "white" => [255; 3],
+            "black" => [0; 3],
+            "gray" | "grey" => [128; 3],
+            other => {
+                let digits = other.strip_prefix('#').unwrap_or(other);
+                let hexadecimal = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+                let digits: String = match digits.len() {
+                    6 if hexadecimal => digits.into(),
+                    // #fff is #ffffff.
+                    3 if hexadecimal => digits.chars().flat_map(|digit| [digit, digit]).collect(),
+                    _ => String::new(),
+                };
+                let [_, r, g, b] = u32::from_str_radix(&digits, 16)
+                    .map_err(|_| "white, black, gray, RRGGBB or RGB is needed, as in 102030")?
+                    .to_be_bytes();
+                [r, g, b]
+            }
+        };
+        Ok(Self(rgb))
+    }
+}
+
+/// A length, or whatever fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fit {
+    /// What fits.
+    Auto,
+    /// µm
+    Length(f64),
+}
+
+impl FromStr for Fit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse() {
+            Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(Self::Length(length)),
+            _ if text == "fit" => Ok(Self::Auto),
+            _ => Err("a length in µm is needed, or none".into()),
+        }
+    }
+}
+
+/// `--light`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightArg(pub(crate) Light);
+
+impl FromStr for LightArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let light = match text {
+            "soft" => Light::Soft,
+            "flat" => Light::Flat,
+            other => {
+                let direction = other.parse::<Triple>().map(|triple| triple.0.as_vec3());
+                let direction = direction.ok().filter(|d| d.is_finite() && *d != Vec3::ZERO);
+                Light::From(direction.ok_or("use soft, flat or a direction X,Y,Z, as in -1,1,1")?)
+            }
+        };
+        Ok(Self(light))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colors_and_positions_are_read() {
+        assert_eq!("#102030".parse(), Ok(RgbArg([16, 32, 48])));
+        assert_eq!("#fA0".parse(), Ok(RgbArg([255, 170, 0])));
+        assert_eq!("White".parse(), Ok(RgbArg([255; 3])));
+        for wrong in ["12345", "reddish", "#ééé", "+12345", "+12", "#ff"] {
+            assert!(wrong.parse::<RgbArg>().is_err(), "{wrong}");
+        }
+        assert_eq!("1,-2,3e1".parse(), Ok(Triple(DVec3::new(1.0, -2.0, 30.0))));
+        assert!("1,2".parse::<Triple>().is_err());
+        assert!("0,0,0".parse::<LightArg>().is_err());
+    }
+}

@@ -1,0 +1,291 @@
+//! The source of vertices that `--lod` names, and its statistics.
+
+use std::collections::BTreeMap;
+
+use neurotess::refine::{Lod, LodCriterion, RefineOptions};
+use neurotess::render::{
+    Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
+    ExplorationStats, Frame, Gpu, Instance, PictureOptions, Placement, Prerefined,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, Tile, VertexSource,
+};
+use rayon::prelude::*;
+
+use super::args::{LodMode, RenderArgs};
+use super::bounds::covering;
+use super::cells::MeshedCell;
+use super::job::RenderJob;
+use crate::report::usage;
+
+/// A source of vertices for whole pictures.
+pub(crate) enum PictureSource {
+    /// Refined beforehand, in memory.
+    Prerefined(Box<Prerefined>),
+    /// Refined as it is drawn.
+    Adaptive(Box<Adaptive>),
+    /// Within a budget.
+    Budgeted(Box<Exploration>),
+}
+
+/// What a source of vertices draws and holds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SourceStats {
+    pub(crate) patches: u64,
+    pub(crate) patches_drawn: u64,
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) levels: BTreeMap<u32, u64>,
+    pub(crate) bytes: BTreeMap<&'static str, u64>,
+    pub(crate) bytes_per_point: f64,
+    pub(crate) exploration: Option<ExplorationStats>,
+}
+
+/// The mode that options ask for.
+///
+/// # Errors
+/// Wrong usage: a level where levels follow from the error.
+pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
+    let exploring = args.lod == Some(LodMode::Exploration);
+    if args.budget.is_some() && !exploring {
+        return usage("--budget is for --lod exploration");
+    }
+    if exploring && args.pixels.is_some() {
+        return usage("--lod exploration is within half a pixel: leave out --pixels");
+    }
+    match (args.lod, args.level) {
+        (Some(LodMode::Adaptive), Some(_)) => usage(
+            "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
+        ),
+        (Some(LodMode::Exploration | LodMode::Static), Some(_)) => {
+            usage("this --lod has no levels: leave out --level, or use --lod homogeneous")
+        }
+        (Some(LodMode::Static), None) if args.pixels.is_some() => {
+            usage("--lod static is within half a pixel: leave out --pixels, or use --lod adaptive")
+        }
+        (Some(mode), _) => Ok(mode),
+        (None, Some(_)) => Ok(LodMode::Homogeneous),
+        (None, None) => Ok(LodMode::Adaptive),
+    }
+}
+
+impl PictureSource {
+    /// Uploads the cells.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        options: &PictureOptions,
+        job: &RenderJob<'_>,
+    ) -> anyhow::Result<Self> {
+        let RenderJob {
+            args,
+            cells,
+            placements,
+            colored,
+            ..
+        } = *job;
+        let lod = match mode(args)? {
+            LodMode::Prerefined => return prerefined(gpu, job),
+            LodMode::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
+            LodMode::Adaptive => LodCriterion::PixelError(args.error() as f32),
+            LodMode::Static => LodCriterion::PixelError(0.5),
+            LodMode::Exploration => return budgeted(gpu, options, job),
+        };
+        let list: Vec<Template<'_>> = cells
+            .iter()
+            .zip(&colored.coloring.color_keys)
+            .map(|(cell, color_keys)| Template {
+                mesh: &cell.mesh,
+                color_keys,
+                values: &[],
+            })
+            .collect();
+        let mut templates = Templates::new();
+        let ids = templates.add(gpu, &list)?;
+        let instances = placements.iter().map(|&(cell, placement)| Instance {
+            placement,
+            ..Instance::new(ids[cell])
+        });
+        let scene = Scene::new(templates, instances.collect())?;
+        let settings = AdaptiveSettings {
+            lod,
+            wireframe: args.wireframe,
+            ..AdaptiveSettings::default()
+        };
+        let mut source = Adaptive::new(gpu, scene, settings, options.sub_pixels(gpu))?;
+        source.set_bounds(covering(cells, placements));
+        Ok(Self::Adaptive(Box::new(source)))
+    }
+
+    /// As the renderer takes it.
+    pub(crate) fn as_vertex_source(&mut self) -> &mut dyn VertexSource {
+        match self {
+            Self::Prerefined(source) => source.as_mut(),
+            Self::Adaptive(source) => source.as_mut(),
+            Self::Budgeted(source) => source.as_mut(),
+        }
+    }
+
+    /// What it draws of a whole picture.
+    pub(crate) fn stats(
+        &mut self,
+        gpu: &Gpu,
+        camera: &Camera,
+        near: f64,
+        options: &PictureOptions,
+    ) -> anyhow::Result<SourceStats> {
+        match self {
+            Self::Prerefined(source) => Ok(resident(source)),
+            Self::Adaptive(source) => {
+                source.prepare(gpu, &whole(gpu, camera, near, options))?;
+                let stats = source.stats(gpu)?;
+                let levels = (0..).zip(&stats.level_histogram);
+                let levels = levels.filter(|&(_, &sides)| sides > 0);
+                Ok(SourceStats {
+                    patches: stats.patches,
+                    patches_drawn: stats.patches_drawn,
+                    vertices: stats.vertices,
+                    triangles: stats.triangles,
+                    levels: levels.map(|(level, &sides)| (level, sides)).collect(),
+                    bytes: source.bytes().into_iter().collect(),
+                    bytes_per_point: source.bytes_per_point(),
+                    exploration: None,
+                })
+            }
+            Self::Budgeted(source) => {
+                source.prepare(gpu, &whole(gpu, camera, near, options))?;
+                let stats = source.stats(gpu)?;
+                Ok(SourceStats {
+                    patches_drawn: stats.visible_chunks,
+                    vertices: 2 * stats.triangles,
+                    triangles: stats.triangles,
+                    bytes: source.bytes().into_iter().collect(),
+                    bytes_per_point: source.bytes_per_point(),
+                    exploration: Some(stats),
+                    ..SourceStats::default()
+                })
+            }
+        }
+    }
+}
+
+/// The whole picture as one frame.
+fn whole(gpu: &Gpu, camera: &Camera, near: f64, options: &PictureOptions) -> Frame {
+    let size = options.size.map(|n| n * options.sub_pixels(gpu));
+    Frame {
+        camera: *camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
+    }
+}
+
+fn budgeted(
+    gpu: &Gpu,
+    options: &PictureOptions,
+    job: &RenderJob<'_>,
+) -> anyhow::Result<PictureSource> {
+    let RenderJob {
+        args,
+        cells,
+        placements,
+        colored,
+        ..
+    } = *job;
+    let proxies: Vec<Proxy> = cells
+        .par_iter()
+        .zip(&colored.coloring.color_keys)
+        .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
+        .collect();
+    let mut source = Exploration::new(gpu, options.sub_pixels(gpu))?;
+    source.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
+    let ids = source.add(gpu, &proxies)?;
+    let instances = placements.iter().map(|&(cell, placement)| Instance {
+        placement,
+        ..Instance::new(ids[cell])
+    });
+    source.set_instances(gpu, instances.collect())?;
+    Ok(PictureSource::Budgeted(Box::new(source)))
+}
+
+/// Level where none is given.
+const DEFAULT_LEVEL: u32 = 4;
+
+fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<PictureSource> {
+    let RenderJob {
+        args,
+        cells,
+        placements,
+        colored,
+        cameras,
+        spheres,
+        ..
+    } = *job;
+    if placements.iter().any(|(_, at)| *at != Placement::default()) {
+        return usage(
+            "--lod prerefined draws tracings where they are: circuits need another --lod",
+        );
+    }
+    let surfaces: Vec<PrerefinedSurface<'_>> = cells
+        .iter()
+        .zip(&colored.coloring.color_keys)
+        .map(|(cell, color_keys)| PrerefinedSurface {
+            mesh: &cell.mesh,
+            color_keys,
+        })
+        .collect();
+    let levels = |cell: usize| levels(args, cells[cell], cameras, spheres);
+    let options = RefineOptions::default();
+    let source = Prerefined::new(gpu, &surfaces, levels, &options, args.wireframe)?;
+    Ok(PictureSource::Prerefined(Box::new(source)))
+}
+
+/// Levels of a cell: those of --level, or by the error that shows from the one camera; where it moves, from
+/// the nearest that anything seen ever is.
+fn levels(
+    args: &RenderArgs,
+    cell: &MeshedCell,
+    cameras: &[Camera],
+    spheres: &[BoundingSphere],
+) -> Lod<'static> {
+    let [width, height] = args.size.0.map(f64::from);
+    let nearest = |camera: &Camera| camera.nearest_seen(width / height, spheres);
+    match (args.level, cameras) {
+        (Some(level), _) => LodCriterion::Homogeneous(level).into(),
+        (None, [camera]) => Lod::seen_from(
+            LodCriterion::PixelError(args.error() as f32),
+            camera.refine_view(cell.mesh.origin, height, nearest(camera)),
+        ),
+        (None, _) => {
+            let error =
+                |camera: &Camera| camera.pixel_slope(height) * nearest(camera) * args.error();
+            let least = cameras.iter().map(error).fold(f64::MAX, f64::min);
+            LodCriterion::MaxError(least as f32).into()
+        }
+    }
+}
+
+fn resident(source: &Prerefined) -> SourceStats {
+    let resident = source.resident();
+    let bytes = [
+        ("vertices", resident.vertex_bytes),
+        ("corners", resident.corner_bytes),
+    ];
+    let sum: u64 = bytes.iter().map(|(_, bytes)| bytes).sum();
+    SourceStats {
+        patches: resident.patches as u64,
+        patches_drawn: source.patches_drawn() as u64,
+        vertices: resident.vertices as u64,
+        triangles: resident.triangles as u64,
+        levels: resident
+            .levels
+            .iter()
+            .map(|(&l, &n)| (l, n as u64))
+            .collect(),
+        bytes: bytes.into_iter().collect(),
+        bytes_per_point: sum as f64 / resident.points.max(1) as f64,
+        exploration: None,
+    }
+}

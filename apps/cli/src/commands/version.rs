@@ -1,0 +1,50 @@
+//! `neurotess --version`.
+
+use neurotess::mesh::Format;
+use serde_json::json;
+
+use crate::io::morphologies::{MORPHOLOGIES, written};
+use crate::report::Reporter;
+
+/// The adapter that pictures would be drawn with, or why there is none.
+#[cfg(feature = "render")]
+fn adapter() -> Result<String, String> {
+    match neurotess::render::Gpu::open(None) {
+        Ok(gpu) => Ok(gpu.adapter.to_string()),
+        Err(e) => Err(e.to_string()),
+    }
+}
+
+/// Pictures are not built in.
+#[cfg(not(feature = "render"))]
+fn adapter() -> Result<String, String> {
+    Err("this build draws no pictures: build it with the feature 'render'".into())
+}
+
+/// Prints the version; with -v what this build can do.
+pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
+    let version = env!("CARGO_PKG_VERSION");
+    let meshes = Format::ALL.map(Format::extension);
+    reporter.answer(&format!("neurotess {version}"));
+    if reporter.verbose() {
+        reporter.answer(&match adapter() {
+            Ok(adapter) => format!("adapter: {adapter}"),
+            Err(e) => format!("adapter: none: {e}"),
+        });
+        reporter.answer(&format!("reads: {}", MORPHOLOGIES.join(" ")));
+        reporter.answer(&format!("writes: {}", written().join(" ")));
+        reporter.answer(&format!("meshes: {}", meshes.join(" ")));
+        let system = (std::env::consts::OS, std::env::consts::ARCH);
+        reporter.answer(&format!("system: {} {}", system.0, system.1));
+    }
+    if !reporter.json() {
+        return Ok(());
+    }
+    reporter.document(&json!({
+        "version": version,
+        "adapter": adapter().ok(),
+        "reads": MORPHOLOGIES,
+        "writes": written(),
+        "meshes": meshes,
+    }))
+}

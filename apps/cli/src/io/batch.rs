@@ -1,0 +1,37 @@
+//! One piece of work for every input, on all cores.
+
+use super::inputs::{Input, Inputs};
+use super::workers;
+use crate::report::{Entry, Failed, Failure, Progress, Reporter, bug};
+
+/// Does some work for all inputs in parallel, and tells of failures. Results are in order.
+pub(crate) fn each<T: Send>(
+    inputs: &Inputs,
+    reporter: &Reporter,
+    work: impl Fn(&Input) -> Result<T, Failure> + Sync,
+) -> anyhow::Result<Vec<Entry<T>>> {
+    inputs.tell(reporter);
+    let progress = Progress::new(reporter, inputs.files.len(), "files");
+    let order: Vec<usize> = (0..inputs.files.len()).collect();
+    let results = workers::run(&inputs.files, &order, reporter.threads(), |input| {
+        let result = work(input);
+        progress.done();
+        result
+    })?;
+    drop(progress);
+    let named = inputs.files.iter().zip(results);
+    let entries = named.map(|(input, result)| {
+        let file = input.path.display().to_string();
+        match result.unwrap_or_else(|panic| Err(bug(&file, &panic))) {
+            Ok(done) => Entry::Done(done),
+            Err(failure) => {
+                reporter.failure(&failure);
+                Entry::Failed(Failed {
+                    file,
+                    error: failure.0,
+                })
+            }
+        }
+    });
+    Ok(entries.collect())
+}

@@ -1,0 +1,12 @@
+//! What is read, what is written, and by how many threads.
+
+pub(crate) mod batch;
+pub(crate) mod circuits;
+pub(crate) mod claims;
+pub(crate) mod inputs;
+pub(crate) mod morphologies;
+pub(crate) mod output;
+pub(crate) mod record;
+pub(crate) mod standard_input;
+pub(crate) mod targets;
+pub(crate) mod workers;

@@ -1,0 +1,106 @@
+//! Morphologies from files or standard input, and into files.
+
+use std::io::BufWriter;
+use std::path::Path;
+
+use neurotess::formats::{self, Format, ReadOptions};
+use neurotess::morphology::Morphology;
+use serde::Serialize;
+
+use super::output::{self, OutputError, is_standard};
+use super::standard_input::standard_input;
+use crate::report::{Failure, place};
+
+/// Something odd that the reader took.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ReaderWarning {
+    line: Option<u64>,
+    code: &'static str,
+    message: String,
+    count: u64,
+}
+
+impl ReaderWarning {
+    pub(crate) fn code(&self) -> &'static str {
+        self.code
+    }
+
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// For people: `FILE:LINE: message (code)`.
+    pub(crate) fn in_file(&self, file: &str) -> String {
+        let place = place(file, self.line);
+        format!("{place} {} ({})", self.message, self.code)
+    }
+}
+
+impl From<formats::Warning> for ReaderWarning {
+    fn from(warning: formats::Warning) -> Self {
+        let formats::Warning {
+            line,
+            code,
+            message,
+            count,
+        } = warning;
+        Self {
+            line,
+            code,
+            message,
+            count,
+        }
+    }
+}
+
+/// Extensions of morphologies that are looked for in folders.
+pub(crate) const MORPHOLOGIES: [&str; 7] = formats::EXTENSIONS;
+
+/// Reads the morphology of an input.
+pub(crate) fn read_morphology(
+    path: &Path,
+    format: Option<Format>,
+    options: &ReadOptions,
+) -> Result<formats::Read, Failure> {
+    let read = match is_standard(path) {
+        true => {
+            let no_text = |head: &[u8]| head.contains(&0) && !head.starts_with(b"\x89HDF");
+            formats::read_bytes(standard_input(no_text)?, "-", format, options)
+        }
+        false => formats::read(path, options),
+    };
+    read.map_err(|e| Failure(e.to_string()))
+}
+
+/// An error if an input cannot be read at all, before anything is reported of its output.
+pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) {
+        return Ok(());
+    }
+    formats::regular(formats::member(path).0).map_err(|e| {
+        let file = path.display();
+        Failure(format!(
+            "{file}: cannot be read ({e}): check the path and its permissions"
+        ))
+    })
+}
+
+/// Writes a morphology to a file, whole or not at all; what the format cannot say.
+pub(crate) fn write_morphology(
+    morphology: &Morphology,
+    format: Format,
+    out: &Path,
+    force: bool,
+) -> Result<Vec<formats::Warning>, OutputError> {
+    let mut output = output::begin(out, force)?;
+    let writer = BufWriter::new(output.file());
+    let lost =
+        formats::write(morphology, format, writer).map_err(|e| OutputError::broken(out, e))?;
+    output.finish()?;
+    Ok(lost)
+}
+
+/// Formats that are written, by their extensions.
+pub(crate) fn written() -> [&'static str; Format::WRITTEN.len()] {
+    Format::WRITTEN.map(|format| format.extensions()[0])
+}

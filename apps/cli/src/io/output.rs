@@ -1,0 +1,46 @@
+//! When a file is replaced, and what goes to standard output.
+
+use std::path::Path;
+
+use crate::report::Reporter;
+pub(crate) use neurotess::output::{Existing, Output, OutputError};
+
+/// Only where the user says so.
+pub(crate) fn existing(force: bool) -> Existing {
+    match force {
+        true => Existing::Replace,
+        false => Existing::Refuse("use --force to replace it"),
+    }
+}
+
+/// Whether OUT is standard output.
+pub(crate) fn is_standard(out: &Path) -> bool {
+    out == Path::new("-")
+}
+
+/// Leaves standard output to OUT, if that is where it goes.
+///
+/// # Errors
+/// Wrong usage: JSON is to be printed there too.
+pub(crate) fn reserve_standard(out: &Path, reporter: &Reporter) -> anyhow::Result<()> {
+    match is_standard(out) {
+        true => reporter.leave_output(),
+        false => Ok(()),
+    }
+}
+
+/// An error if the file exists and must not be replaced.
+pub(crate) fn check(out: &Path, force: bool) -> Result<(), OutputError> {
+    match is_standard(out) {
+        true => Ok(()),
+        false => existing(force).check(out),
+    }
+}
+
+/// Begins a file, or what goes to standard output.
+pub(crate) fn begin(out: &Path, force: bool) -> Result<Output, OutputError> {
+    match is_standard(out) {
+        true => Output::standard(),
+        false => Output::create(out, existing(force)),
+    }
+}

@@ -1,0 +1,234 @@
+//! What a folder's files were made of, so that --resume knows which are still right.
+//!
+//! ```text
+//! .neurotess-made   {"out":"sub/a.ply","is":{…},"options":"9f3c…","of":{…}}   one line per file, appended
+//! ```
+//!
+//! **Theory.** A file is still right if it is the one that was recorded (length and time), was made with
+//! the same options (a hash), and its input is the one that was read (length and time).
+//! Options that change nothing in the file, like --threads, are not in the hash.
+//!
+//! **Practice.** The line is appended before the file gets its name: a run that is killed between the two
+//! leaves a line that no file answers to, never a file whose line tells of other options. Lines of
+//! several runs and shards share one file; the one that fits counts. A line that is torn is skipped.
+//!
+//! **Why not** within the mesh files: not all formats have room for it, and equal meshes of different
+//! inputs would differ.
+
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::UNIX_EPOCH;
+
+use neurotess::formats;
+use serde::{Deserialize, Serialize};
+
+use super::targets::Job;
+
+/// Name of the record.
+pub(crate) const NAME: &str = ".neurotess-made";
+
+/// What tells a file from another one of the same name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Stamp {
+    bytes: u64,
+    /// Nanoseconds since 1970.
+    modified: u64,
+}
+
+impl Stamp {
+    /// None if there is no such file.
+    pub(crate) fn of(path: &Path) -> Option<Self> {
+        fs::metadata(path).ok().and_then(|data| Self::new(&data))
+    }
+
+    fn new(data: &fs::Metadata) -> Option<Self> {
+        let since = data.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+        Some(Self {
+            bytes: data.len(),
+            modified: u64::try_from(since.as_nanos()).ok()?,
+        })
+    }
+}
+
+/// A line of the record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Line {
+    out: String,
+    is: Stamp,
+    options: String,
+    of: Stamp,
+}
+
+/// What is known of an output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OutputState {
+    /// It is not there.
+    Missing,
+    /// It is what would be made.
+    Right,
+    /// It was made with other options.
+    OtherOptions,
+    /// Its input has changed.
+    OtherInput,
+    /// Nothing is known of it but that it is newer than its input.
+    Newer,
+    /// Nothing is known of it but that it is older than its input.
+    Older,
+}
+
+impl OutputState {
+    /// Whether it need not be made.
+    pub(crate) fn stays(self) -> bool {
+        matches!(self, Self::Right | Self::Newer)
+    }
+
+    /// Whether we made it and it may be replaced.
+    pub(crate) fn is_ours(self) -> bool {
+        matches!(self, Self::OtherOptions | Self::OtherInput)
+    }
+}
+
+/// The record of a folder.
+pub(crate) struct OutputRecord {
+    folder: PathBuf,
+    /// Those that matter, as text.
+    options: String,
+    known: Mutex<HashMap<String, Vec<Line>>>,
+    /// Opened with the first line.
+    file: Mutex<Option<File>>,
+}
+
+impl OutputRecord {
+    /// Reads the record, if there is one. `options`: all that files depend on, as text.
+    pub(crate) fn open(folder: &Path, options: &str) -> Self {
+        let record = Self {
+            folder: folder.to_path_buf(),
+            options: options.to_owned(),
+            known: Mutex::default(),
+            file: Mutex::default(),
+        };
+        record.read();
+        record
+    }
+
+    /// Reads what other runs have added, too.
+    pub(crate) fn read(&self) {
+        let text = fs::read(self.folder.join(NAME)).unwrap_or_default();
+        let mut known: HashMap<String, Vec<Line>> = HashMap::new();
+        let lines = text.split(|&byte| byte == b'\n');
+        for line in lines.filter_map(|line| serde_json::from_slice::<Line>(line).ok()) {
+            known.entry(line.out.clone()).or_default().push(line);
+        }
+        *self.known.lock().unwrap_or_else(PoisonError::into_inner) = known;
+    }
+
+    /// What is known of an output, and whether it is still right.
+    pub(crate) fn state_of(&self, job: &Job) -> OutputState {
+        let Some(is) = Stamp::of(&job.out) else {
+            return OutputState::Missing;
+        };
+        let of = Stamp::of(formats::member(&job.input).0);
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let lines = known.get(&self.name(&job.out)).into_iter().flatten();
+        match lines.rev().find(|line| line.is == is) {
+            Some(line) if line.options != self.hash(job) => OutputState::OtherOptions,
+            Some(line) if Some(line.of) != of => OutputState::OtherInput,
+            Some(_) => OutputState::Right,
+            None if of.is_some_and(|of| is.modified >= of.modified) => OutputState::Newer,
+            None => OutputState::Older,
+        }
+    }
+
+    /// Records a file that is about to get its name. `part`: where it is until then.
+    pub(crate) fn add(&self, job: &Job, part: &Path) -> io::Result<()> {
+        let input = Stamp::of(formats::member(&job.input).0);
+        let (Some(is), Some(of)) = (Stamp::of(part), input) else {
+            return Ok(());
+        };
+        let line = Line {
+            out: self.name(&job.out),
+            is,
+            options: self.hash(job),
+            of,
+        };
+        let mut text = serde_json::to_vec(&line)?;
+        text.push(b'\n');
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        if file.is_none() {
+            let mut options = OpenOptions::new();
+            *file = Some(
+                options
+                    .create(true)
+                    .append(true)
+                    .open(self.folder.join(NAME))?,
+            );
+        }
+        match &mut *file {
+            // One write, so that lines of several runs stay whole.
+            Some(file) => file.write_all(&text),
+            None => Ok(()),
+        }
+    }
+
+    /// Of all that the file depends on but its input, in hexadecimal.
+    fn hash(&self, job: &Job) -> String {
+        format!(
+            "{:016x}",
+            hash(&format!("{} {}", self.options, job.placement))
+        )
+    }
+
+    fn name(&self, out: &Path) -> String {
+        let below = out.strip_prefix(&self.folder).unwrap_or(out);
+        below.to_string_lossy().into_owned()
+    }
+}
+
+/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): the same in all versions, unlike the standard library's.
+fn hash(text: &str) -> u64 {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_right_only_as_it_was_recorded() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let job = Job {
+            input: folder.path().join("a.swc"),
+            out: folder.path().join("a.ply"),
+            placement: String::new(),
+        };
+        fs::write(&job.input, "in").expect("written");
+        let record = OutputRecord::open(folder.path(), "level 1");
+        assert_eq!(record.state_of(&job), OutputState::Missing);
+        fs::write(&job.out, "mesh").expect("written");
+        assert_eq!(record.state_of(&job), OutputState::Newer);
+        record.add(&job, &job.out).expect("recorded");
+        // A torn line and one of a run that was killed do no harm.
+        let mut file = OpenOptions::new();
+        let mut file = file
+            .append(true)
+            .open(folder.path().join(NAME))
+            .expect("there");
+        file.write_all(b"{\"out\":\"a.p\n").expect("written");
+        record.read();
+        assert_eq!(record.state_of(&job), OutputState::Right);
+        let other = OutputRecord::open(folder.path(), "level 2");
+        assert_eq!(other.state_of(&job), OutputState::OtherOptions);
+        fs::write(&job.input, "another").expect("written");
+        assert_eq!(record.state_of(&job), OutputState::OtherInput);
+    }
+
+    #[test]
+    fn the_hash_is_the_published_one() {
+        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
+    }
+}

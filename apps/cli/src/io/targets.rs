@@ -1,0 +1,144 @@
+//! Which file each input becomes.
+//!
+//! One file goes to the file OUT (or into OUT, where that is a folder). Several, a folder or a glob
+//! go into the folder OUT, which repeats the structure below the input's folder, so that equal
+//! names in different folders do not meet.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use neurotess::formats;
+
+use super::inputs::{Input, Inputs};
+use super::output::is_standard;
+use crate::report::usage;
+
+/// A file and what it becomes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Job {
+    /// The file to read.
+    pub(crate) input: PathBuf,
+    /// The file to write.
+    pub(crate) out: PathBuf,
+    /// Of a circuit: the instance with its placement, as text; else empty.
+    pub(crate) placement: String,
+}
+
+/// Whether OUT is a folder: for anything but one file, and where it is one already.
+pub(crate) fn is_folder(out: &Path, inputs: &Inputs) -> bool {
+    !inputs.one_file || !is_standard(out) && (out.is_dir() || ends_in_separator(out))
+}
+
+/// One job per input; `extension` is that of files in a folder.
+///
+/// # Errors
+/// Wrong usage: two inputs would become one file.
+pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Result<Vec<Job>> {
+    let folder = is_folder(out, inputs);
+    if folder && is_standard(out) {
+        return usage(
+            "standard output takes one file, but there are several inputs: give a folder",
+        );
+    }
+    if folder && out.is_file() {
+        return usage(format!(
+            "{} is a file, but several inputs need a folder: give another OUT",
+            out.display()
+        ));
+    }
+    let mut taken: BTreeMap<PathBuf, &Path> = BTreeMap::new();
+    let mut jobs = Vec::with_capacity(inputs.files.len());
+    for Input { path, relative } in &inputs.files {
+        let target = if folder {
+            named(&out.join(relative), extension)
+        } else {
+            out.to_path_buf()
+        };
+        if let Some(other) = taken.insert(target.clone(), path) {
+            return usage(format!(
+                "{} and {} would both become {}: give their common folder, or run them apart",
+                other.display(),
+                path.display(),
+                target.display()
+            ));
+        }
+        jobs.push(Job {
+            input: path.clone(),
+            out: target,
+            placement: String::new(),
+        });
+    }
+    Ok(jobs)
+}
+
+/// The path with this extension instead of its own; dots within the name stay.
+fn named(path: &Path, extension: &str) -> PathBuf {
+    path.with_extension(extension)
+}
+
+fn ends_in_separator(path: &Path) -> bool {
+    let text = path.as_os_str().as_encoded_bytes();
+    text.last()
+        .is_some_and(|&byte| std::path::is_separator(char::from(byte)))
+}
+
+/// Positions of the jobs, those with the largest files first, so that a great one does not come
+/// last and keep one core busy while the others wait.
+pub(crate) fn largest_first(jobs: &[Job]) -> Vec<usize> {
+    let size =
+        |job: &Job| std::fs::metadata(formats::member(&job.input).0).map_or(0, |data| data.len());
+    let mut order: Vec<(u64, usize)> = jobs.iter().map(size).zip(0..).collect();
+    order.sort_by_key(|&(size, index)| (std::cmp::Reverse(size), index));
+    order.into_iter().map(|(_, index)| index).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn inputs(relatives: &[&str], one_file: bool) -> Inputs {
+        let input = |relative: &&str| Input {
+            path: Path::new("in").join(relative),
+            relative: relative.into(),
+        };
+        Inputs {
+            files: relatives.iter().map(input).collect(),
+            failures: vec![],
+            one_file,
+            others: 0,
+        }
+    }
+
+    #[test]
+    fn structure_is_repeated() {
+        let files = inputs(&["a.CNG.swc", "sub/a.CNG.swc"], false);
+        let jobs = plan(&files, Path::new("missing-out"), "ply").expect("a plan");
+        let out: Vec<_> = jobs.iter().map(|job| job.out.clone()).collect();
+        let expected =
+            ["a.CNG.ply", "sub/a.CNG.ply"].map(|name| Path::new("missing-out").join(name));
+        assert_eq!(out, expected);
+    }
+
+    #[test]
+    fn one_file_becomes_one_file() {
+        let jobs = plan(&inputs(&["a.swc"], true), Path::new("x/b.ply"), "ply").expect("a plan");
+        assert_eq!(jobs[0].out, Path::new("x/b.ply"));
+        let jobs = plan(&inputs(&["a.swc"], true), Path::new("x/"), "ply").expect("a plan");
+        assert_eq!(jobs[0].out, Path::new("x/a.ply"));
+    }
+
+    #[test]
+    fn equal_targets_are_wrong_usage() {
+        let error = plan(
+            &inputs(&["a.swc", "a.eswc"], false),
+            Path::new("out"),
+            "ply",
+        );
+        assert!(
+            error
+                .expect_err("they collide")
+                .to_string()
+                .contains("both become")
+        );
+    }
+}

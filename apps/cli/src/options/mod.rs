@@ -1,0 +1,11 @@
+//! Options that several commands share.
+
+pub(crate) mod cells;
+pub(crate) mod numbers;
+pub(crate) mod out;
+pub(crate) mod rings;
+pub(crate) mod shard;
+#[cfg(feature = "render")]
+pub(crate) mod size;
+pub(crate) mod soma;
+pub(crate) mod types;

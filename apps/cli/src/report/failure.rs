@@ -1,0 +1,48 @@
+//! What goes wrong: usage, inputs, bugs.
+
+use serde::Serialize;
+
+/// Wrong usage: exit code 2.
+#[derive(Debug)]
+pub(crate) struct Usage(pub(crate) String);
+
+impl std::fmt::Display for Usage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// Stops a function with a [`Usage`] error.
+pub(crate) fn usage<T>(message: impl Into<String>) -> anyhow::Result<T> {
+    Err(Usage(message.into()).into())
+}
+
+/// An input that failed: `FILE:LINE: what: what to do`.
+#[derive(Clone, Debug)]
+pub(crate) struct Failure(pub(crate) String);
+
+/// An input that failed, in the JSON list.
+#[derive(Serialize)]
+pub(crate) struct Failed {
+    pub(crate) file: String,
+    pub(crate) error: String,
+}
+
+/// The JSON list's entry for an input.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub(crate) enum Entry<T> {
+    /// It is done.
+    Done(T),
+    /// It failed.
+    Failed(Failed),
+}
+
+/// The failure that stands for a panic.
+pub(crate) fn bug(file: &str, panic: &str) -> Failure {
+    Failure(format!(
+        "{file}: a bug of neurotess ({panic}): please report it with the file"
+    ))
+}

@@ -1,0 +1,27 @@
+//! What the parser of the command line says instead of a command.
+
+use std::io::{self, Write};
+
+use serde_json::json;
+
+use super::reporter::{unwritable, write_line};
+
+/// What the command line's parser says instead of a command: help, or what is wrong. Gives the exit code;
+/// with --json, an error is a document too.
+pub(crate) fn report_parser_error(error: &clap::Error) -> u8 {
+    let printed = error.print();
+    let json = std::env::args_os()
+        .take_while(|argument| argument != "--")
+        .any(|argument| argument == "--json");
+    let document = match error.use_stderr() && json {
+        true => write_line(&format!("{:#}", json!({ "errors": [error.to_string()] }))),
+        false => Ok(()),
+    };
+    match printed.and(document) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
+            drop(writeln!(io::stderr(), "error: {}", unwritable(&e)));
+            1
+        }
+        _ => u8::try_from(error.exit_code()).unwrap_or(2),
+    }
+}

@@ -1,0 +1,62 @@
+//! A bar on a terminal for what takes longer than a second.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::reporter::Reporter;
+
+/// Before this nothing is shown.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// How often the bar is drawn anew.
+const TICK: Duration = Duration::from_millis(200);
+
+/// Counts what is done; visible or not.
+pub(crate) struct Progress<'r> {
+    reporter: &'r Reporter,
+    bar: ProgressBar,
+}
+
+impl<'r> Progress<'r> {
+    /// Counts `total` things named `unit`.
+    pub(crate) fn new(reporter: &'r Reporter, total: usize, unit: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::hidden());
+        let template =
+            format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit} · {{per_sec}} · {{eta}} left");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        if reporter.wants_progress() {
+            reporter.set_bar(Some(bar.clone()));
+            appear_later(bar.clone());
+        }
+        Self { reporter, bar }
+    }
+
+    /// More to do than known before.
+    pub(crate) fn expect(&self, more: usize) {
+        self.bar.inc_length(more as u64);
+    }
+
+    /// One is done.
+    pub(crate) fn done(&self) {
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Progress<'_> {
+    fn drop(&mut self) {
+        self.reporter.set_bar(None);
+        self.bar.finish_and_clear();
+    }
+}
+
+fn appear_later(bar: ProgressBar) {
+    std::thread::spawn(move || {
+        std::thread::sleep(PATIENCE);
+        if !bar.is_finished() {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+            bar.enable_steady_tick(TICK);
+        }
+    });
+}

@@ -1,0 +1,345 @@
+//! Colors that neurons have as a whole: each its own, those of an attribute, or those that a scene gives
+//! them. Neurons of one template share it; a value for each says its color.
+
+use std::collections::BTreeMap;
+
+use neurotess_circuit::{Attribute, Circuit, NodeRef, color, natural};
+use neurotess_render::{ColorTable, InstanceValues, Legend, Rgb};
+use thiserror::Error;
+
+use crate::scheme::{Cell, ColorScheme, Coloring, NOTHING};
+
+/// A node and the circuit that it is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<'c> {
+    /// The circuit.
+    pub circuit: &'c Circuit,
+    /// Which of its nodes.
+    pub node: NodeRef,
+}
+
+impl<'c> Node<'c> {
+    fn attribute(&self, name: &str) -> Option<&'c Attribute> {
+        let populations = &self.circuit.populations;
+        populations
+            .get(self.node.population as usize)?
+            .attributes
+            .get(name)
+    }
+
+    fn number(&self, attribute: &str) -> Option<f64> {
+        self.attribute(attribute)?.number(self.node.row as usize)
+    }
+
+    /// What it has of an attribute; numbers as text.
+    pub fn text(&self, attribute: &str) -> Option<String> {
+        let row = self.node.row as usize;
+        match self.attribute(attribute) {
+            Some(column @ Attribute::Text { .. }) => column.text(row).map(str::to_owned),
+            Some(column) => column.number(row).map(|number| number.to_string()),
+            None if attribute == POPULATION => {
+                let populations = &self.circuit.populations;
+                let own = populations.get(self.node.population as usize)?;
+                Some(own.name.clone())
+            }
+            None => None,
+        }
+    }
+}
+
+/// The attribute that all nodes have.
+const POPULATION: &str = "population";
+
+/// No neuron has such an attribute.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("no cell has an attribute '{attribute}': there are {}", there.join(", "))]
+pub struct NoAttribute {
+    /// What was asked for.
+    pub attribute: String,
+    /// What there is.
+    pub there: Vec<String>,
+}
+
+/// Attributes that nodes of these circuits can be told apart by, sorted.
+pub fn attributes<'c>(circuits: impl IntoIterator<Item = &'c Circuit>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for circuit in circuits {
+        let of_all = circuit.populations.iter().flat_map(|p| &p.attributes);
+        names.extend(of_all.map(|(name, _)| name.clone()));
+        names.push(POPULATION.into());
+    }
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// Every neuron its own color; `names`: one for each neuron.
+pub fn each(cells: &[Cell<'_>], names: &[String], scheme: &ColorScheme) -> Coloring {
+    let own: Vec<Option<usize>> = (0..names.len()).map(Some).collect();
+    categorical(cells, &own, names, "neuron", scheme)
+}
+
+/// Neurons of equal attribute have one color; numbers of more kinds than there are colors are on the
+/// scale. `neurons`: in the order of the instances; none: of no circuit.
+///
+/// # Errors
+/// No neuron's circuit has such an attribute.
+pub fn by_attribute(
+    cells: &[Cell<'_>],
+    neurons: &[Option<Node<'_>>],
+    attribute: &str,
+    scheme: &ColorScheme,
+) -> Result<Coloring, NoAttribute> {
+    // Of many neurons most are of the same few circuits.
+    let mut circuits: Vec<&Circuit> = neurons.iter().flatten().map(|n| n.circuit).collect();
+    circuits.dedup_by_key(|circuit| std::ptr::from_ref(*circuit));
+    let there = attributes(circuits);
+    if !there.iter().any(|name| name == attribute) {
+        return Err(NoAttribute {
+            attribute: attribute.to_owned(),
+            there,
+        });
+    }
+    let texts: Vec<Option<String>> = neurons
+        .iter()
+        .map(|neuron| neuron.and_then(|node| node.text(attribute)))
+        .collect();
+    let mut names: Vec<String> = texts.iter().flatten().cloned().collect();
+    names.sort_by(|a, b| natural(a, b));
+    names.dedup();
+    if names.len() > scheme.palette.distinct_count() {
+        let number = |n: &Option<Node<'_>>| n.and_then(|node| node.number(attribute));
+        let numbers: Vec<Option<f64>> = neurons.iter().map(number).collect();
+        let all = numbers.iter().zip(&texts);
+        if all
+            .into_iter()
+            .all(|(number, text)| number.is_some() == text.is_some())
+        {
+            return Ok(on_scale(cells, &numbers, attribute, scheme));
+        }
+    }
+    let number: BTreeMap<&str, usize> = names.iter().map(String::as_str).zip(0..).collect();
+    let own: Vec<Option<usize>> = texts
+        .iter()
+        .map(|text| text.as_deref().map(|text| number[text]))
+        .collect();
+    Ok(categorical(cells, &own, &names, attribute, scheme))
+}
+
+/// The colors that a scene gives its cells; none if it gives no cell any.
+pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Coloring> {
+    let mut colors: Vec<Rgb> = Vec::new();
+    let mut names: BTreeMap<String, Rgb> = BTreeMap::new();
+    let mut own = Vec::new();
+    for neuron in neurons {
+        let text = |attribute| neuron.and_then(|node| node.text(attribute));
+        let rgb = text("color").as_deref().and_then(color);
+        own.push(rgb.map(|rgb| {
+            let known = colors.iter().position(|&other| other == rgb);
+            known.unwrap_or_else(|| {
+                colors.push(rgb);
+                colors.len() - 1
+            })
+        }));
+        if let (Some(rgb), Some(group)) = (rgb, text("group")) {
+            names.entry(group).or_insert(rgb);
+        }
+    }
+    let swatches = names.into_iter().map(|(name, rgb)| (rgb, name));
+    let legend = Legend::swatches("", swatches);
+    (!colors.is_empty()).then(|| painted(cells, &own, colors, legend))
+}
+
+fn categorical(
+    cells: &[Cell<'_>],
+    own: &[Option<usize>],
+    names: &[String],
+    thing: &str,
+    scheme: &ColorScheme,
+) -> Coloring {
+    let count = names.len().min(scheme.palette.distinct_count()).max(1);
+    let colors: Vec<Rgb> = (0..count).map(|i| scheme.palette.distinct(i)).collect();
+    let legend = if names.len() > count {
+        let title = format!("{} {thing}s, colors repeat", names.len());
+        Legend::swatches(&title, Vec::new())
+    } else {
+        let title = if thing == "neuron" { "" } else { thing };
+        let named = colors.iter().copied().zip(names.iter().cloned());
+        let none = own.contains(&None).then(|| (NOTHING, "none".to_owned()));
+        Legend::swatches(title, named.chain(none))
+    };
+    let own: Vec<Option<usize>> = own.iter().map(|number| number.map(|n| n % count)).collect();
+    painted(cells, &own, colors, legend)
+}
+
+fn painted(
+    cells: &[Cell<'_>],
+    own: &[Option<usize>],
+    colors: Vec<Rgb>,
+    legend: Legend,
+) -> Coloring {
+    let last = (colors.len().max(2) - 1) as f32;
+    let mut values = InstanceValues::default();
+    for number in own {
+        values.push(&[number.map_or(f32::NAN, |n| n as f32 / last)]);
+    }
+    Coloring {
+        color_keys: first_values(cells),
+        legend,
+        table: ColorTable {
+            scale: colors,
+            categories: vec![NOTHING],
+            values,
+        },
+    }
+}
+
+fn on_scale(
+    cells: &[Cell<'_>],
+    numbers: &[Option<f64>],
+    attribute: &str,
+    scheme: &ColorScheme,
+) -> Coloring {
+    let (low, high) = numbers
+        .iter()
+        .flatten()
+        .fold((f64::MAX, f64::MIN), |(low, high), &n| {
+            (low.min(n), high.max(n))
+        });
+    let [low, high] = scheme.range.unwrap_or([low as f32, high as f32]);
+    let high = if high > low { high } else { low + 1.0 };
+    let mut values = InstanceValues::default();
+    for number in numbers {
+        let share = |n: f64| ((n - f64::from(low)) / f64::from(high - low)) as f32;
+        values.push(&[number.map_or(f32::NAN, share)]);
+    }
+    let mut coloring = scheme.scaled(first_values(cells), attribute, "", [low, high]);
+    coloring.table.values = values;
+    coloring
+}
+
+/// Every point has the first value of whichever neuron shows the cell.
+pub(super) fn first_values(cells: &[Cell<'_>]) -> Vec<Vec<u32>> {
+    let points = cells.iter().map(|cell| cell.mesh.tracing.len());
+    points.map(|points| vec![0; points]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use neurotess_circuit::Population;
+    use neurotess_render::Palette;
+
+    /// Thirty nodes with these attributes.
+    fn circuit(attributes: Vec<(&str, Attribute)>) -> Circuit {
+        let own = attributes.into_iter().map(|(n, a)| (n.to_owned(), a));
+        Circuit {
+            file: "c".into(),
+            format: "scene",
+            populations: vec![Population {
+                name: "p".into(),
+                ids: (0..30).collect(),
+                attributes: own.collect(),
+                ..Population::default()
+            }],
+            templates: Vec::new(),
+            node_sets: Default::default(),
+            edges: Vec::new(),
+            reports: BTreeMap::new(),
+            warnings: Vec::new(),
+            failures: Vec::new(),
+        }
+    }
+
+    fn neurons(circuit: &Circuit) -> Vec<Option<Node<'_>>> {
+        let node = |row| NodeRef { population: 0, row };
+        let known = (0..30).map(|row| {
+            Some(Node {
+                circuit,
+                node: node(row),
+            })
+        });
+        // A tracing that was opened beside.
+        known.chain([None]).collect()
+    }
+
+    fn values(shares: impl IntoIterator<Item = f32>) -> InstanceValues {
+        let mut values = InstanceValues::default();
+        shares.into_iter().for_each(|share| values.push(&[share]));
+        values
+    }
+
+    fn scheme() -> ColorScheme {
+        ColorScheme {
+            palette: Palette::NeuroM,
+            background: None,
+            scale: vec![[0; 3], [255; 3]],
+            range: None,
+        }
+    }
+
+    #[test]
+    fn neurons_of_equal_attributes_have_one_color_and_those_without_none() {
+        let library = vec!["b".to_owned(), "a".to_owned()];
+        let indices = (0..30)
+            .map(|i| if i == 3 { Attribute::NONE } else { i % 2 })
+            .collect();
+        let circuit = circuit(vec![("kind", Attribute::Text { library, indices })]);
+        let coloring = by_attribute(&[], &neurons(&circuit), "kind", &scheme()).expect("there");
+        let share = |i: usize| match i {
+            3 | 30 => f32::NAN,
+            i => 1.0 - (i % 2) as f32,
+        };
+        assert_eq!(coloring.table.values, values((0..31).map(share)));
+        let name = |n: &str, rgb| (rgb, n.to_owned());
+        let distinct = |i| Palette::NeuroM.distinct(i);
+        let expected = [
+            name("a", distinct(0)),
+            name("b", distinct(1)),
+            name("none", NOTHING),
+        ];
+        assert_eq!(coloring.legend, Legend::swatches("kind", expected));
+        let error = by_attribute(&[], &neurons(&circuit), "layer", &scheme());
+        assert_eq!(error.expect_err("none").there, ["kind", "population"]);
+    }
+
+    #[test]
+    fn many_numbers_are_on_a_scale_and_few_are_kinds() {
+        let numbers =
+            |most: u32| Attribute::Numbers((0..30).map(|i| f64::from(i % most)).collect());
+        let circuit = circuit(vec![("depth", numbers(30)), ("layer", numbers(3))]);
+        let neurons = neurons(&circuit);
+        let coloring = |name, range| {
+            let scheme = ColorScheme { range, ..scheme() };
+            by_attribute(&[], &neurons, name, &scheme).expect("there")
+        };
+        let shares = |high: f32| (0..30).map(move |i| i as f32 / high).chain([f32::NAN]);
+        assert_eq!(coloring("depth", None).table.values, values(shares(29.0)));
+        let wider = coloring("depth", Some([0.0, 58.0]));
+        assert_eq!(wider.table.values, values(shares(58.0)));
+        assert_eq!(coloring("layer", None).table.scale.len(), 3);
+    }
+
+    #[test]
+    fn each_neuron_has_its_own_color() {
+        let names: Vec<String> = (0..4).map(|i| format!("n{i}")).collect();
+        let four = each(&[], &names, &scheme());
+        let shares = (0..4).map(|i| i as f32 / 3.0);
+        assert_eq!(four.table.values, values(shares));
+        assert_eq!(four.table.scale.len(), 4);
+        let one = each(&[], &names[..1], &scheme());
+        assert_eq!(one.table.values, values([0.0]));
+    }
+
+    #[test]
+    fn colors_of_a_scene_are_taken_as_they_are() {
+        let library = vec!["#102030".to_owned()];
+        let indices = (0..30).map(|i| if i == 2 { 0 } else { Attribute::NONE });
+        let indices = indices.collect();
+        let circuit = circuit(vec![("color", Attribute::Text { library, indices })]);
+        let given = given(&[], &neurons(&circuit)).expect("colors");
+        assert_eq!(given.table.scale, [[16, 32, 48]]);
+        let share = |i| if i == 2 { 0.0 } else { f32::NAN };
+        assert_eq!(given.table.values, values((0..31).map(share)));
+    }
+}

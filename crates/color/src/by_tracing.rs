@@ -1,0 +1,283 @@
+//! Colors by what a tracing says: types, neurites, sections, numbers along the path.
+
+use std::collections::BTreeMap;
+
+use neurotess_mesh::{Role, TracingPoint};
+use neurotess_morphology::{Morphology, NeuriteKind, shape};
+use neurotess_render::{ColorTable, Legend, Rgb, category, fraction};
+
+use crate::path_distance::path_distances;
+use crate::scheme::{Cell, ColorScheme, Coloring};
+
+/// What colors tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorBy {
+    /// SWC type.
+    #[default]
+    Type,
+    /// Every neurite its own.
+    Neurite,
+    /// Neighboring sections differ.
+    Section,
+    /// Number of forks from the neurite's start.
+    BranchOrder,
+    /// Radius (µm).
+    Radius,
+    /// Distance along the neurite from its start (µm).
+    PathDistance,
+    /// Every cell its own.
+    Neuron,
+}
+
+/// A number that tracing points have.
+struct Quantity {
+    title: &'static str,
+    unit: &'static str,
+    span: Span,
+}
+
+/// Which numbers stand at the ends of the scale, unless the scheme says so.
+enum Span {
+    /// 0 and the greatest.
+    FromZero,
+    /// The least, and what all but the greatest fiftieth are below: outliers would leave one color for the
+    /// rest.
+    WithoutOutliers,
+}
+
+const BRANCH_ORDER: Quantity = Quantity {
+    title: "branch order",
+    unit: "",
+    span: Span::FromZero,
+};
+/// A few stems are far thicker than all else.
+const RADIUS: Quantity = Quantity {
+    title: "radius",
+    unit: "µm",
+    span: Span::WithoutOutliers,
+};
+const PATH_DISTANCE: Quantity = Quantity {
+    title: "path distance",
+    unit: "µm",
+    span: Span::FromZero,
+};
+
+/// Colors of cells by what their tracings say.
+pub fn coloring(cells: &[Cell<'_>], by: ColorBy, scheme: &ColorScheme) -> Coloring {
+    match by {
+        ColorBy::Type => by_type(cells, scheme),
+        ColorBy::Neuron => by_neuron(cells, scheme),
+        ColorBy::Neurite => categorical(cells, scheme, "neurite", shape::neurites),
+        ColorBy::Section => categorical(cells, scheme, "section", sections),
+        ColorBy::BranchOrder => continuous(cells, scheme, &BRANCH_ORDER, branch_orders),
+        ColorBy::Radius => continuous(cells, scheme, &RADIUS, radii),
+        ColorBy::PathDistance => continuous(cells, scheme, &PATH_DISTANCE, path_distances),
+    }
+}
+
+fn by_type(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
+    // The soma's points keep a type of their own whatever the file says.
+    let kind = |point: &TracingPoint| match point.role {
+        Role::Soma => NeuriteKind::SOMA.0,
+        _ => point.kind,
+    };
+    let mut kinds: BTreeMap<i32, u32> = BTreeMap::new();
+    for point in cells.iter().flat_map(|cell| &cell.mesh.tracing) {
+        kinds.insert(kind(point), 0);
+    }
+    for (index, number) in kinds.values_mut().zip(0..) {
+        *index = number;
+    }
+    let color_keys = |cell: &Cell<'_>| {
+        let points = cell.mesh.tracing.iter();
+        points.map(|point| category(kinds[&kind(point)])).collect()
+    };
+    let categories: Vec<Rgb> = kinds.keys().map(|&kind| scheme.of_type(kind)).collect();
+    let names = kinds
+        .keys()
+        .map(|&kind| NeuriteKind(kind).name().replace('_', " "));
+    Coloring {
+        color_keys: cells.iter().map(color_keys).collect(),
+        legend: Legend::swatches("", categories.iter().copied().zip(names)),
+        table: ColorTable {
+            scale: Vec::new(),
+            categories,
+            ..ColorTable::default()
+        },
+    }
+}
+
+fn by_neuron(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
+    let color_keys = |(cell, index)| {
+        let cell: &Cell<'_> = cell;
+        vec![category(index); cell.mesh.tracing.len()]
+    };
+    let names: Vec<String> = cells.iter().map(|cell| cell.name.to_owned()).collect();
+    listed(
+        cells.iter().zip(0..).map(color_keys).collect(),
+        &names,
+        "neuron",
+        scheme,
+    )
+}
+
+/// Things numbered from 0 on over all cells; somata have a color of their own.
+fn categorical(
+    cells: &[Cell<'_>],
+    scheme: &ColorScheme,
+    thing: &str,
+    number: impl Fn(&Morphology) -> Vec<u32>,
+) -> Coloring {
+    let mut next = 0;
+    let mut color_keys = Vec::new();
+    for cell in cells {
+        let numbers = number(cell.morphology);
+        let of_point = |point: &TracingPoint| {
+            let section = usize::try_from(point.section - 1).ok();
+            let number = section.and_then(|section| numbers.get(section));
+            // 0 is the soma.
+            number.map_or(category(0), |number| category(1 + next + number))
+        };
+        color_keys.push(cell.mesh.tracing.iter().map(of_point).collect());
+        next += numbers.iter().max().map_or(0, |most| most + 1);
+    }
+    let soma = scheme.of_type(1);
+    let names: Vec<String> = (1..=next).map(|n| format!("{thing} {n}")).collect();
+    let mut coloring = listed(color_keys, &names, thing, scheme);
+    coloring.table.categories.insert(0, soma);
+    coloring
+}
+
+/// Category i has the i-th distinct color and name.
+fn listed(
+    color_keys: Vec<Vec<u32>>,
+    names: &[String],
+    thing: &str,
+    scheme: &ColorScheme,
+) -> Coloring {
+    let categories: Vec<Rgb> = (0..names.len())
+        .map(|i| scheme.palette.distinct(i))
+        .collect();
+    let mut entries: Vec<(Rgb, String)> = categories
+        .iter()
+        .copied()
+        .zip(names.iter().cloned())
+        .collect();
+    let title = if entries.len() > scheme.palette.distinct_count() {
+        entries.clear();
+        format!("{} {thing}s, colors repeat", names.len())
+    } else {
+        String::new()
+    };
+    Coloring {
+        color_keys,
+        legend: Legend::swatches(&title, entries),
+        table: ColorTable {
+            scale: Vec::new(),
+            categories,
+            ..ColorTable::default()
+        },
+    }
+}
+
+fn sections(morphology: &Morphology) -> Vec<u32> {
+    (0..morphology.sections.len() as u32).collect()
+}
+
+/// Numbers on a scale; points without one have the soma's color.
+fn continuous(
+    cells: &[Cell<'_>],
+    scheme: &ColorScheme,
+    quantity: &Quantity,
+    values: impl Fn(&Cell<'_>) -> Vec<Option<f32>>,
+) -> Coloring {
+    let values: Vec<Vec<Option<f32>>> = cells.iter().map(&values).collect();
+    let mut sorted: Vec<f32> = values.iter().flatten().flatten().copied().collect();
+    sorted.sort_unstable_by(f32::total_cmp);
+    let at = |share: f64| {
+        let index = share * sorted.len().saturating_sub(1) as f64;
+        sorted.get(index as usize).copied().unwrap_or(0.0)
+    };
+    let [low, high] = scheme.range.unwrap_or(match quantity.span {
+        Span::FromZero => [0.0, at(1.0)],
+        Span::WithoutOutliers => [at(0.0), at(0.98)],
+    });
+    let high = if high > low { high } else { low + 1.0 };
+    let color_key = |value: &Option<f32>| match value {
+        Some(value) => fraction((value - low) / (high - low)),
+        None => category(0),
+    };
+    let color_keys = values
+        .iter()
+        .map(|values| values.iter().map(color_key).collect());
+    Coloring {
+        color_keys: color_keys.collect(),
+        legend: Legend::bar(
+            quantity.title,
+            quantity.unit,
+            scheme.scale.clone(),
+            [low, high],
+            at(1.0) > high,
+        ),
+        table: ColorTable {
+            scale: scheme.scale.clone(),
+            categories: vec![scheme.of_type(1)],
+            ..ColorTable::default()
+        },
+    }
+}
+
+fn branch_orders(cell: &Cell<'_>) -> Vec<Option<f32>> {
+    let orders = shape::branch_orders(cell.morphology);
+    let of_point = |point: &TracingPoint| {
+        let section = usize::try_from(point.section - 1).ok();
+        section.and_then(|section| orders.get(section).map(|&order| order as f32))
+    };
+    cell.mesh.tracing.iter().map(of_point).collect()
+}
+
+fn radii(cell: &Cell<'_>) -> Vec<Option<f32>> {
+    let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
+    cell.mesh.tracing.iter().map(radius).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess_render::Palette;
+
+    use super::*;
+
+    /// A stem far thicker than the rest of a neurite, and where the scale ends.
+    fn legend(by: ColorBy) -> Legend {
+        let row = |i: i32| format!("{i} 3 0 {} 0 {} {}\n", 10 * i, 0.5, i - 1);
+        let text: String = ["1 1 0 0 0 5 -1\n".into(), "2 3 0 20 0 4 1\n".into()]
+            .into_iter()
+            .chain((3..200).map(row))
+            .collect();
+        let read = neurotess_formats::swc::read_bytes(text.as_bytes(), "cell", &Default::default());
+        let morphology = read.expect("a cell").morphology;
+        let generated = neurotess_generate::generate(&morphology, &Default::default());
+        let cell = Cell {
+            name: "",
+            morphology: &morphology,
+            mesh: &generated.expect("meshed").mesh,
+        };
+        let scheme = ColorScheme {
+            palette: Palette::NeuroM,
+            background: None,
+            scale: vec![[0; 3], [255; 3]],
+            range: None,
+        };
+        coloring(&[cell], by, &scheme).legend
+    }
+
+    #[test]
+    fn a_thick_stem_does_not_take_the_scale_of_radii() {
+        let scale = vec![[0; 3], [255; 3]];
+        let bar = |title, unit, range, above| Legend::bar(title, unit, scale.clone(), range, above);
+        let radii = bar("radius", "µm", [0.5, 0.5 + 1.0], true);
+        assert_eq!(legend(ColorBy::Radius), radii);
+        let orders = bar("branch order", "", [0.0, 1.0], false);
+        assert_eq!(legend(ColorBy::BranchOrder), orders);
+    }
+}

@@ -1,0 +1,32 @@
+//! What colors tell: a color key for every tracing point, the table of colors and the legend.
+//!
+//! Color keys belong to a cell, whichever neurons show it. What differs from neuron to neuron of one cell is in the
+//! table's values: a color for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
+//! ([`Recording`]).
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "circuit")]
+mod by_node;
+mod by_tracing;
+#[cfg(feature = "circuit")]
+mod compartments;
+#[cfg(feature = "circuit")]
+mod cut;
+mod path_distance;
+#[cfg(feature = "circuit")]
+mod recording;
+#[cfg(feature = "circuit")]
+mod report_frame;
+mod scheme;
+
+#[cfg(feature = "circuit")]
+pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
+pub use by_tracing::{ColorBy, coloring};
+#[cfg(feature = "circuit")]
+pub use cut::{cuts, with_middles};
+pub use path_distance::path_distances;
+#[cfg(feature = "circuit")]
+pub use recording::{DECAY, Recording, RecordingError};
+#[cfg(feature = "circuit")]
+pub use report_frame::ReportFrame;
+pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};

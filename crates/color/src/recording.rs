@@ -1,0 +1,356 @@
+//! Values of a simulation on the membrane: those of a report at a time, or spikes that fade.
+//!
+//! **Theory.** Opening matches compartments with neurons once; after that a time costs the values of the
+//! neurons that are asked for, and nothing of the scene changes. A color key is an index among a neuron's
+//! own values, so that neurons of one cell share it on the device.
+//!
+//! **Practice.** The first neuron of a cell that has values says where compartments are; another one of the
+//! same cell that was cut otherwise takes the nearest compartment of the same section.
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use neurotess_circuit::{
+    Circuit, CircuitError, Compartment, NodeRef, RecordingFile, Report, ReportPopulation,
+    SpikePopulation, Spikes, TimeAxis,
+};
+use neurotess_render::category;
+use thiserror::Error;
+
+use crate::by_node::first_values;
+use crate::compartments::{matched, on_cell};
+use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
+use crate::scheme::{Cell, ColorScheme, Coloring};
+
+/// After this time (ms) a flash has a third of its light, unless told otherwise.
+pub const DECAY: f64 = 5.0;
+/// Between two steps (ms) through spikes, which have no frames.
+const SPIKE_STEP: f64 = 0.5;
+/// Flashes fade from 1 to 0.
+const OF_FLASHES: [f32; 2] = [0.0, 1.0];
+/// Most values that are read to find a range, and fewest frames.
+const RANGE_VALUES: u64 = 4_000_000;
+const RANGE_FRAMES: u64 = 32;
+
+/// Why there are no values. Displays as `FILE: what: what to do`.
+#[derive(Debug, Error)]
+pub enum RecordingError {
+    /// The file, or that it is of another circuit.
+    #[error(transparent)]
+    Circuit(#[from] CircuitError),
+    /// A time beyond the recording.
+    #[error("{file}: has no values at {time} ms: choose a time from {start} to below {end}")]
+    NoValues {
+        /// The file.
+        file: String,
+        /// What was asked for (ms).
+        time: f64,
+        /// Where it begins (ms).
+        start: f64,
+        /// Where it ends (ms).
+        end: f64,
+    },
+}
+
+/// A recording, matched with the instances of a scene.
+#[derive(Debug)]
+pub struct Recording {
+    /// The file as it was named.
+    pub file: String,
+    /// What is recorded, for legends.
+    pub title: String,
+    /// Unit of the values; empty: none is known.
+    pub unit: String,
+    /// Times (ms); of spikes, steps through them.
+    pub time: TimeAxis,
+    color_keys: Vec<Vec<u32>>,
+    has_values: Vec<bool>,
+    source: Source,
+}
+
+/// The instances that show each node of a population of spikes, by id.
+type InstancesOfNode = HashMap<u64, Vec<usize>>;
+
+#[derive(Debug)]
+enum Source {
+    Report(Report, Vec<PopulationMatch>),
+    /// By population of the file.
+    Spikes(Spikes, Vec<InstancesOfNode>),
+}
+
+impl Recording {
+    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none: it is of no
+    /// circuit, or of another one.
+    ///
+    /// # Errors
+    /// What is wrong with the file, or that it is of another circuit.
+    pub fn open(
+        path: &Path,
+        circuit: &Circuit,
+        cells: &[Cell<'_>],
+        instances: &[(usize, Option<NodeRef>)],
+    ) -> Result<Self, RecordingError> {
+        let mut recording = match RecordingFile::open(path)? {
+            RecordingFile::Report(report) => Self::of_report(report, circuit, cells, instances)?,
+            RecordingFile::Spikes(spikes) => Self::of_spikes(spikes, circuit, cells, instances)?,
+        };
+        let title = path.file_stem().unwrap_or_default().to_string_lossy();
+        recording.file = path.display().to_string();
+        recording.title = title.replace('_', " ");
+        Ok(recording)
+    }
+
+    fn of_report(
+        report: Report,
+        circuit: &Circuit,
+        cells: &[Cell<'_>],
+        instances: &[(usize, Option<NodeRef>)],
+    ) -> Result<Self, CircuitError> {
+        let mut cuts: Vec<Option<Vec<Compartment>>> = vec![None; cells.len()];
+        let points = cells.iter().map(|cell| cell.mesh.tracing.len());
+        let mut color_keys: Vec<Vec<u32>> = points.map(|n| vec![category(0); n]).collect();
+        let mut has_values = vec![false; instances.len()];
+        let mut unit = String::new();
+        let mut parts = Vec::new();
+        for population in &report.populations {
+            let nodes = population.nodes_in(circuit)?;
+            let rows: HashMap<NodeRef, usize> = nodes.into_iter().zip(0..).collect();
+            let mut part = PopulationMatch::default();
+            for (instance, (cell, node)) in instances.iter().enumerate() {
+                let Some(&row) = node.as_ref().and_then(|node| rows.get(node)) else {
+                    continue;
+                };
+                let own = population.compartments(row)?;
+                if cuts[*cell].is_none() {
+                    color_keys[*cell] = on_cell(&cells[*cell], &own);
+                }
+                let cut = cuts[*cell].get_or_insert_with(|| own.clone());
+                let first = population.compartment_range(row).start;
+                let start = part.compartments.len();
+                let compartments = matched(cut, &own);
+                part.compartments
+                    .extend(compartments.iter().map(|&k| first + k as u64));
+                part.spans.push((instance, start..part.compartments.len()));
+                has_values[instance] = true;
+            }
+            parts.push(part);
+            unit.clone_from(&population.units);
+        }
+        Ok(Self {
+            file: String::new(),
+            title: String::new(),
+            unit,
+            time: together(&report.populations),
+            color_keys,
+            has_values,
+            source: Source::Report(report, parts),
+        })
+    }
+
+    fn of_spikes(
+        spikes: Spikes,
+        circuit: &Circuit,
+        cells: &[Cell<'_>],
+        instances: &[(usize, Option<NodeRef>)],
+    ) -> Result<Self, CircuitError> {
+        let mut of_node: HashMap<NodeRef, Vec<usize>> = HashMap::new();
+        for (instance, (_, node)) in instances.iter().enumerate() {
+            if let Some(node) = node {
+                of_node.entry(*node).or_default().push(instance);
+            }
+        }
+        let mut firing = Vec::new();
+        let mut known = HashSet::new();
+        for population in &spikes.populations {
+            let nodes = population.nodes_in(circuit, &spikes.file)?;
+            known.extend(nodes.iter().map(|node| node.population));
+            let shown = nodes
+                .iter()
+                .zip(&population.nodes)
+                .filter_map(|(node, &id)| {
+                    let instances = of_node.get(node)?;
+                    Some((id, instances.clone()))
+                });
+            firing.push(shown.collect());
+        }
+        // A neuron that never fires is silent, not without a value.
+        let of_known = |node: &Option<NodeRef>| node.is_some_and(|n| known.contains(&n.population));
+        let has_values = instances.iter().map(|(_, node)| of_known(node)).collect();
+        Ok(Self {
+            file: String::new(),
+            title: String::new(),
+            unit: String::new(),
+            time: steps_through(&spikes),
+            color_keys: first_values(cells),
+            has_values,
+            source: Source::Spikes(spikes, firing),
+        })
+    }
+
+    /// Whether it is of spikes, which have no frames.
+    pub fn is_of_spikes(&self) -> bool {
+        matches!(self.source, Source::Spikes(..))
+    }
+
+    /// Number of neurons that it was matched with.
+    pub fn places(&self) -> usize {
+        self.has_values.len()
+    }
+
+    /// Number of neurons that have no values.
+    pub fn without(&self) -> usize {
+        self.has_values.iter().filter(|has| !**has).count()
+    }
+
+    /// Color keys of cells, whatever the time.
+    pub fn color_keys(&self) -> &[Vec<u32>] {
+        &self.color_keys
+    }
+
+    /// Values at a time (ms), of those neurons that show; the others have none. `decay`: after this time
+    /// (ms) the flash of a spike has a third of its light.
+    ///
+    /// # Errors
+    /// The recording has none at that time; what is wrong with the file.
+    pub fn at(
+        &self,
+        time: f64,
+        decay: f64,
+        shows: &dyn Fn(usize) -> bool,
+    ) -> Result<ReportFrame, RecordingError> {
+        match &self.source {
+            Source::Report(report, parts) => self.values_at(report, parts, time, shows),
+            Source::Spikes(spikes, firing) => {
+                let flashes = |(population, instances): (&SpikePopulation, &InstancesOfNode)| {
+                    let lit = population.flashes(time, decay).into_iter();
+                    let of = |(id, flash)| {
+                        instances
+                            .get(&id)
+                            .map(|instances| (instances.clone(), flash))
+                    };
+                    lit.filter_map(of).collect::<Vec<_>>()
+                };
+                let all = spikes.populations.iter().zip(firing).flat_map(flashes);
+                Ok(self.flashes(all, shows))
+            }
+        }
+    }
+
+    fn values_at(
+        &self,
+        report: &Report,
+        parts: &[PopulationMatch],
+        time: f64,
+        shows: &dyn Fn(usize) -> bool,
+    ) -> Result<ReportFrame, RecordingError> {
+        let mut frame_values = ReportFrame::none(self.has_values.len());
+        let mut any = false;
+        for (population, part) in report.populations.iter().zip(parts) {
+            let Some(frame) = population.time.frame_at(time) else {
+                continue;
+            };
+            any = true;
+            frame_values.read(population, part, frame, shows)?;
+        }
+        if !any {
+            let axis = &self.time;
+            return Err(RecordingError::NoValues {
+                file: self.file.clone(),
+                time,
+                start: axis.start,
+                end: axis.time_of(axis.frames),
+            });
+        }
+        Ok(frame_values)
+    }
+
+    fn flashes(
+        &self,
+        lit: impl Iterator<Item = (Vec<usize>, f32)>,
+        shows: &dyn Fn(usize) -> bool,
+    ) -> ReportFrame {
+        let mut flashes = vec![0.0; self.has_values.len()];
+        for (instances, flash) in lit {
+            for instance in instances {
+                flashes[instance] = flash;
+            }
+        }
+        let mut frame_values = ReportFrame::none(self.has_values.len());
+        for (instance, flash) in flashes.into_iter().enumerate() {
+            if shows(instance) && self.has_values[instance] {
+                frame_values.put(instance, [flash]);
+            }
+        }
+        frame_values
+    }
+
+    /// Least and greatest value of those neurons over the whole recording: of all its frames, or, where
+    /// that would be too many, of some that are spread evenly.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn range(&self, shows: &dyn Fn(usize) -> bool) -> Result<[f32; 2], RecordingError> {
+        if self.is_of_spikes() {
+            return Ok(OF_FLASHES);
+        }
+        let axis = &self.time;
+        let values = self.at(axis.start, DECAY, shows)?.len() as u64;
+        let affordable = RANGE_VALUES / values.max(1);
+        let frames = affordable.max(RANGE_FRAMES).min(axis.frames.max(1));
+        let frame = |i: u64| i * axis.frames.saturating_sub(1) / (frames - 1).max(1);
+        self.range_at((0..frames).map(|i| axis.time_of(frame(i))), shows)
+    }
+
+    /// Least and greatest value of those neurons at some times (ms).
+    ///
+    /// # Errors
+    /// The recording has none at one of the times; what is wrong with the file.
+    pub fn range_at(
+        &self,
+        times: impl IntoIterator<Item = f64>,
+        shows: &dyn Fn(usize) -> bool,
+    ) -> Result<[f32; 2], RecordingError> {
+        if self.is_of_spikes() {
+            return Ok(OF_FLASHES);
+        }
+        let mut bounds = NO_BOUNDS;
+        for time in times {
+            bounds = merged(bounds, self.at(time, DECAY, shows)?.bounds());
+        }
+        Ok(opened(bounds))
+    }
+
+    /// Colors, as yet without values: those of a [`ReportFrame`] belong into the table.
+    pub fn coloring(&self, range: [f32; 2], scheme: &ColorScheme) -> Coloring {
+        scheme.scaled(self.color_keys.clone(), &self.title, &self.unit, range)
+    }
+}
+
+/// From the first beginning to the last end, in the smallest steps.
+fn together(populations: &[ReportPopulation]) -> TimeAxis {
+    let all = || populations.iter().map(|population| &population.time);
+    let start = all().map(|axis| axis.start).fold(f64::MAX, f64::min);
+    let step = all().map(|axis| axis.step).fold(f64::MAX, f64::min);
+    let last = all().map(|axis| axis.time_of(axis.frames));
+    let end = last.fold(start, f64::max);
+    TimeAxis {
+        start,
+        end,
+        step,
+        frames: ((end - start) / step).round() as u64,
+    }
+}
+
+/// Steps from 0, or from the first spike if it is earlier, to the last one.
+fn steps_through(spikes: &Spikes) -> TimeAxis {
+    let times = || spikes.populations.iter().flat_map(|p| &p.times);
+    let start = times().copied().fold(0.0, f64::min);
+    let last = times().copied().fold(start, f64::max);
+    let frames = ((last - start) / SPIKE_STEP).floor() as u64 + 1;
+    TimeAxis {
+        start,
+        end: start + frames as f64 * SPIKE_STEP,
+        step: SPIKE_STEP,
+        frames,
+    }
+}
