@@ -11,33 +11,16 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub mod app;
-pub mod circuits;
-mod colors;
-pub mod command;
-pub mod document;
-mod explorer;
-pub mod files;
-mod headless;
-pub mod history;
-mod input;
-mod panels;
-mod paths;
-pub mod picks;
-pub mod playback;
-mod reader;
-pub mod save;
+mod io;
+mod model;
 mod scene;
-pub mod session;
-pub mod settings;
-pub mod sources;
-pub mod stage;
-pub mod state;
-pub mod view;
-mod window;
-pub mod worker;
+mod ui;
 
-pub use app::{Hears, Viewer};
-pub use command::Command;
-pub use headless::{Drawn, draw_session};
-pub use window::{Options, ViewError, run, wgpu_setup};
+pub use io::{save, sources, tasks};
+pub use model::command::Command;
+pub use model::{circuits, command, document, history, playback, session, settings, state, view};
+pub use scene::headless::{Drawn, draw_session};
+pub use scene::{picks, stage};
+pub use ui::app::{Hears, Viewer};
+pub use ui::window::{Options, ViewError, run, wgpu_setup};
+pub use ui::{app, file_panel};

@@ -1,0 +1,290 @@
+//! Meshes of neurons.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use glam::DAffine3;
+use neurotess::generate::Generated;
+use neurotess::mesh::{self, Format, Placed, Surface};
+use neurotess::output::write_whole;
+use neurotess::refine::{
+    Caps, CoarseSurface, Lod, LodCriterion, Path as Course, RefineOptions, Refinement,
+};
+use neurotess::render::Placement;
+
+use super::existing;
+use crate::io::tasks::Job;
+use crate::model::document::Detail;
+use crate::model::view::View;
+
+/// How finely a mesh is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Fineness {
+    /// By the panel's level: at the present view's distance where it depends on that.
+    #[default]
+    AsShown,
+    /// The same level everywhere; 0: the coarse quads.
+    Level(u32),
+    /// Within a distance (µm).
+    MaxError(f32),
+}
+
+/// How meshes are written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshOptions {
+    /// A file for one, a folder for several.
+    pub out: PathBuf,
+    /// What kind of file.
+    pub format: Format,
+    /// How finely.
+    pub fineness: Fineness,
+    /// Quads instead of triangles.
+    pub quads: bool,
+    /// Straight between points.
+    pub linear: bool,
+    /// Disks at the ends.
+    pub flat: bool,
+    /// Where neurons stand in the window instead of where they were traced.
+    pub placed: bool,
+    /// All that is shown instead of what is selected.
+    pub all: bool,
+    /// Whether files may be replaced.
+    pub replace: bool,
+}
+
+/// A cell to be written.
+#[derive(Clone)]
+pub(crate) struct MeshPlan {
+    pub(crate) name: String,
+    pub(crate) generated: Arc<Generated>,
+    pub(crate) placement: Placement,
+}
+
+/// Writes meshes.
+pub(crate) fn meshes(
+    plans: &[MeshPlan],
+    options: &MeshOptions,
+    view: &View,
+    detail: &Detail,
+    height: f64,
+    job: &Job,
+) -> Result<String, String> {
+    let files = mesh_files(plans, options)?;
+    for file in &files {
+        if !options.replace && file.exists() {
+            return Err(format!(
+                "{} exists: allow it to be replaced",
+                file.display()
+            ));
+        }
+    }
+    let (mut faces, mut written) = (0, 0);
+    for (plan, file) in plans.iter().zip(&files) {
+        if job.is_canceled() {
+            return Err(format!("stopped after {written} of {} meshes", files.len()));
+        }
+        faces += write_mesh(plan, options, view, detail, height, file)?;
+        written += 1;
+        job.done.fetch_add(1, Ordering::Relaxed);
+    }
+    let what = match &files[..] {
+        [one] => one.display().to_string(),
+        many => format!("{} meshes in {}", many.len(), options.out.display()),
+    };
+    Ok(format!("Saved {what}: {faces} faces"))
+}
+
+/// The file of each plan. Equal names get a number.
+fn mesh_files(plans: &[MeshPlan], options: &MeshOptions) -> Result<Vec<PathBuf>, String> {
+    let extension = options.format.extension();
+    if let [_] = plans {
+        return Ok(vec![options.out.with_extension(extension)]);
+    }
+    if plans.is_empty() {
+        return Err("nothing is selected: select neurons, or save all that show".into());
+    }
+    // A file's name for many: its stem names the folder.
+    let folder = match Format::from_extension(&options.out) {
+        Ok(_) => options.out.with_extension(""),
+        Err(_) => options.out.clone(),
+    };
+    let mut files: Vec<PathBuf> = Vec::new();
+    for plan in plans {
+        let stem: String = plan
+            .name
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || "-_.".contains(c) {
+                    c
+                } else {
+                    '_'
+                }
+            })
+            .collect();
+        let name = |n: usize| match n {
+            0 => folder.join(format!("{stem}.{extension}")),
+            n => folder.join(format!("{stem}_{n}.{extension}")),
+        };
+        let file = (0..).map(name).find(|file| !files.contains(file));
+        files.extend(file);
+    }
+    Ok(files)
+}
+
+fn write_mesh(
+    plan: &MeshPlan,
+    options: &MeshOptions,
+    view: &View,
+    detail: &Detail,
+    height: f64,
+    file: &Path,
+) -> Result<usize, String> {
+    let coarse = &plan.generated.mesh;
+    let refine = RefineOptions {
+        path: if options.linear {
+            Course::Linear
+        } else {
+            Course::Hermite
+        },
+        caps: if options.flat {
+            Caps::Flat
+        } else {
+            Caps::Round
+        },
+        quads: options.quads && options.format.has_quads(),
+    };
+    let (refinement, quads);
+    let surface: &dyn Surface = match levels(options.fineness, plan, view, detail, height) {
+        Some(levels) => {
+            refinement = Refinement::new(coarse, levels, &refine);
+            &refinement
+        }
+        None => {
+            quads = CoarseSurface::new(coarse, options.format.has_quads());
+            &quads
+        }
+    };
+    let moved = options.placed.then(|| {
+        let p = plan.placement;
+        let linear =
+            DAffine3::from_quat(p.rotation) * DAffine3::from_scale(glam::DVec3::splat(p.scale));
+        Placed::new(surface, DAffine3::from_translation(p.translation) * linear)
+    });
+    let surface: &dyn Surface = moved.as_ref().map_or(surface, |moved| moved);
+    write_whole(file, existing(options.replace), |to| {
+        mesh::write(surface, options.format, to).map_err(std::io::Error::other)
+    })
+    .map_err(|e| e.to_string())?;
+    Ok(surface.triangle_count() + surface.quad_count())
+}
+
+fn levels(
+    fineness: Fineness,
+    plan: &MeshPlan,
+    view: &View,
+    detail: &Detail,
+    height: f64,
+) -> Option<Lod<'static>> {
+    match fineness {
+        Fineness::Level(0) => None,
+        Fineness::Level(level) => Some(LodCriterion::Homogeneous(level.min(64)).into()),
+        Fineness::MaxError(error) => Some(LodCriterion::MaxError(error.max(1e-4)).into()),
+        Fineness::AsShown => {
+            let camera = view.camera();
+            let place = &plan.placement;
+            let sight = neurotess::render::CullView::new(&camera, 1, height.max(1.0) as u32, 1e-3);
+            let view = sight.local_view(place, plan.generated.mesh.origin);
+            Some(Lod::seen_from(detail.lod().scaled(place.scale), view))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::sources;
+    use crate::model::document::SomaEdit;
+
+    fn plan(name: &str) -> MeshPlan {
+        let star = sources::sample(neurotess::synth::Kind::Star);
+        let source = sources::load(&star, SomaEdit::default()).expect("grown");
+        MeshPlan {
+            name: name.into(),
+            generated: source.generated,
+            placement: Placement {
+                translation: glam::DVec3::X * 1000.0,
+                ..Placement::default()
+            },
+        }
+    }
+
+    fn options(out: PathBuf) -> MeshOptions {
+        MeshOptions {
+            out,
+            format: Format::Ply,
+            fineness: Fineness::Level(1),
+            quads: false,
+            linear: false,
+            flat: false,
+            placed: true,
+            all: true,
+            replace: false,
+        }
+    }
+
+    #[test]
+    fn meshes_are_closed_stand_where_told_and_replace_nothing_unasked() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let out = folder.path().join("a.ply");
+        let view = View::default();
+        let write = |fineness, replace| {
+            let options = MeshOptions {
+                fineness,
+                replace,
+                ..options(out.clone())
+            };
+            meshes(
+                &[plan("a")],
+                &options,
+                &view,
+                &Detail::default(),
+                600.0,
+                &Job::new("", "", 1),
+            )
+        };
+        for fineness in [
+            Fineness::Level(1),
+            Fineness::Level(0),
+            Fineness::AsShown,
+            Fineness::MaxError(0.1),
+        ] {
+            write(fineness, true).expect("written");
+            let bytes = std::fs::read(&out).expect("there");
+            let mesh = mesh::read_bytes(&bytes, Format::Ply).expect("a mesh");
+            assert!(mesh::check(&mesh).closed, "{fineness:?}");
+            let x = mesh.origin.x + f64::from(mesh.vertices[0].position.x);
+            assert!(x > 300.0, "{x}");
+        }
+        assert!(
+            write(Fineness::Level(1), false)
+                .expect_err("is there")
+                .contains("exists")
+        );
+    }
+
+    #[test]
+    fn many_meshes_go_to_a_folder_with_names_of_their_own() {
+        let plans = [plan("a"), plan("a"), plan("b/c")];
+        let files = mesh_files(&plans, &options(PathBuf::from("out/all.ply"))).expect("named");
+        let names: Vec<String> = files
+            .iter()
+            .map(|f| f.display().to_string().replace('\\', "/"))
+            .collect();
+        assert_eq!(
+            names,
+            ["out/all/a.ply", "out/all/a_1.ply", "out/all/b_c.ply"]
+        );
+        assert!(mesh_files(&[], &options(PathBuf::new())).is_err());
+    }
+}

@@ -1,0 +1,445 @@
+//! All that the window shows, in one place; panels are functions of it.
+
+use std::path::PathBuf;
+
+use neurotess::render::{BoundingSphere, Placement, Side};
+
+use crate::io::save::SaveForm;
+use crate::io::sources::{Source, Sources, extent};
+use crate::model::circuits::Circuits;
+use crate::model::command::{Ask, Command, Tab, Toggles};
+use crate::model::document::{self, Document, SourceId};
+use crate::model::history::History;
+use crate::model::playback::Playback;
+use crate::model::settings::Settings;
+use crate::model::view::View;
+use crate::ui::file_panel::FilePanel;
+
+/// From so many neurons on, a few balls around each will do.
+const MANY: usize = 64;
+
+/// A piece of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// Its soma.
+    Soma,
+    /// A neurite, from 0.
+    Neurite(u32),
+    /// A section, as in the morphology.
+    Section(u32),
+}
+
+/// What the cursor is at or was clicked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Picked {
+    /// Place among the neurons.
+    pub neuron: usize,
+    /// Which piece of it.
+    pub part: Part,
+}
+
+/// Something that went wrong or was lowered, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The file or thing.
+    pub what: String,
+    /// The reason, and what to do.
+    pub why: String,
+}
+
+/// What a frame drew, for the panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Counters {
+    /// Triangles drawn, if counted.
+    pub triangles: u64,
+    /// Patches drawn, and those there are.
+    pub patches: [u64; 2],
+    /// Bytes on the device: of cells, and of pictures.
+    pub bytes: [u64; 2],
+    /// Milliseconds of the last frames.
+    pub frames_ms: Vec<f32>,
+    /// How drafts are lowered.
+    pub draft: Draft,
+    /// How the picture at rest is lowered, if it is.
+    pub lowered: Option<Lowered>,
+}
+
+/// How the picture at rest is less than what is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lowered {
+    /// By exploration: triangles drawn, and those that half a pixel would take, once they are known.
+    Triangles(Option<[u64; 2]>),
+    /// So many times the error.
+    Error(f32),
+}
+
+/// How what is drawn while something moves is less than the full picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Draft {
+    /// At most so many triangles, for those that show most.
+    Budget(u32),
+    /// So many times the error.
+    Error(f32),
+}
+
+impl Default for Draft {
+    fn default() -> Self {
+        Self::Error(1.0)
+    }
+}
+
+/// All that there is.
+pub struct State {
+    /// What can be undone and is saved.
+    pub document: Document,
+    /// Documents before and after.
+    pub history: History,
+    /// Open tracings.
+    pub sources: Sources,
+    /// Open circuits.
+    pub circuits: Circuits,
+    /// The recording's time, and how that goes on.
+    pub playback: Playback,
+    /// From where one looks.
+    pub view: View,
+    /// The side from which the view shows everything, until it is moved by hand.
+    pub fitted: Option<Side>,
+    /// Views of a film.
+    pub key_views: Vec<View>,
+    /// The view that levels are frozen for.
+    pub frozen: Option<View>,
+    /// What is under the cursor, in the picture or in the tree.
+    pub hovered: Option<Picked>,
+    /// The neurite whose ring's slider is touched.
+    pub touched: Option<(SourceId, u32)>,
+    /// What was clicked last.
+    pub picked: Option<Picked>,
+    /// What went wrong, in the order in which it did.
+    pub problems: Vec<Problem>,
+    /// The last word, for the status bar.
+    pub said: String,
+    /// The panel on the right.
+    pub tab: Tab,
+    /// Words to search the list by.
+    pub search: String,
+    /// Which window is open over the others.
+    pub over: Over,
+    /// Whether the side panels show.
+    pub panels: bool,
+    /// What is remembered between starts.
+    pub settings: Settings,
+    /// What is to be saved, and how.
+    pub save: SaveForm,
+    /// Counters of the level of detail.
+    pub counters: Counters,
+    /// The adapter, and whether it is software.
+    pub adapter: (String, bool),
+    /// The session's file, once there is one.
+    pub session: Option<PathBuf>,
+    /// Width by height of the picture.
+    pub aspect: f64,
+    /// What is to be done beside the state.
+    pub effects: Vec<Effect>,
+    /// Commands that panels asked for.
+    pub asked: Vec<Command>,
+    /// A part to be scrolled to in the tree.
+    pub reveal: Option<Picked>,
+}
+
+/// A window over the others.
+#[derive(Clone, Debug, Default)]
+pub enum Over {
+    /// None.
+    #[default]
+    Nothing,
+    /// Keys and mouse.
+    Keys,
+    /// Commands, with what is searched and which is chosen.
+    Palette(String, usize),
+    /// What went wrong.
+    Problems,
+    /// Files.
+    Files(FilePanel),
+    /// Files exist: what to do if they may be replaced.
+    Replace(PathBuf, Box<Command>),
+}
+
+/// What a command asks of the program around.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Read files.
+    Load(Vec<PathBuf>),
+    /// Read changed files again.
+    Reload,
+    /// Do what the command says: saving.
+    Save(Command),
+    /// End what is under way.
+    Cancel,
+    /// Go to a view, smoothly.
+    Go(View),
+    /// Leave.
+    Quit,
+}
+
+impl State {
+    /// Nothing open.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            document: Document {
+                look: settings.look.clone(),
+                detail: settings.detail,
+                ..Document::default()
+            },
+            history: History::default(),
+            sources: Sources::default(),
+            circuits: Circuits::default(),
+            playback: Playback::default(),
+            view: View::default(),
+            fitted: None,
+            key_views: Vec::new(),
+            frozen: None,
+            hovered: None,
+            touched: None,
+            picked: None,
+            problems: Vec::new(),
+            said: String::new(),
+            tab: Tab::default(),
+            search: String::new(),
+            over: Over::Nothing,
+            panels: true,
+            save: SaveForm::new(&settings),
+            settings,
+            counters: Counters::default(),
+            adapter: (String::new(), false),
+            session: None,
+            aspect: 1.0,
+            effects: Vec::new(),
+            asked: Vec::new(),
+            reveal: None,
+        }
+    }
+
+    /// What titles of commands depend on.
+    pub fn toggles(&self) -> Toggles {
+        Toggles {
+            y_down: self.settings.y_down,
+            grid: self.document.grid,
+            frozen: self.frozen.is_some(),
+            dark: self.settings.dark,
+            playing: self.playback.playing,
+        }
+    }
+
+    /// Does a command.
+    pub fn run(&mut self, command: Command) {
+        if let Some(name) = command.edit() {
+            let before = self.document.clone();
+            let joins = command.joins();
+            command.apply(&mut self.document);
+            if self.document != before {
+                self.history.keep(name, before, joins);
+                self.remember();
+            }
+            self.forget_what_is_gone();
+            return;
+        }
+        self.history.end_joining();
+        match command {
+            Command::Undo => {
+                self.said = match self.history.undo(&mut self.document) {
+                    Some(name) => format!("Undone: {}", name.to_lowercase()),
+                    None => "Nothing to undo".into(),
+                };
+                self.forget_what_is_gone();
+            }
+            Command::Redo => {
+                self.said = match self.history.redo(&mut self.document) {
+                    Some(name) => format!("Redone: {}", name.to_lowercase()),
+                    None => "Nothing to redo".into(),
+                };
+                self.forget_what_is_gone();
+            }
+            Command::AskFiles(ask) => self.ask_files(ask),
+            Command::Open(paths) => {
+                self.settings.remember_files(&paths);
+                self.effects.push(Effect::Load(paths));
+            }
+            Command::OpenSample(kind) => {
+                let sample = crate::io::sources::sample(kind);
+                self.effects.push(Effect::Load(vec![sample]));
+            }
+            Command::Reload => self.effects.push(Effect::Reload),
+            Command::Cancel => self.effects.push(Effect::Cancel),
+            Command::Quit => self.effects.push(Effect::Quit),
+            Command::Look(side) => {
+                self.effects.push(Effect::Go(self.fit(side)));
+                self.fitted = Some(side);
+            }
+            Command::Home => self.run(Command::Look(Side::Front)),
+            Command::Focus => {
+                let any = self.document.selected().next().is_some();
+                let balls = self.outline(|n| n.selected || !any);
+                let (low, high) = extent(&balls);
+                if !balls.is_empty() {
+                    let ball = ((low + high) / 2.0, (high - low).length() / 2.0);
+                    self.run(Command::Go(self.view.focused(ball)));
+                }
+            }
+            Command::Go(view) => {
+                self.effects.push(Effect::Go(view));
+                self.fitted = None;
+            }
+            Command::SetYDown(y_down) => {
+                self.settings.y_down = y_down;
+                self.run(Command::Home);
+            }
+            Command::TogglePlay => self.playback.play(!self.playback.playing),
+            Command::Seek(time) => self.playback.seek(time),
+            Command::StepTime(frames) => self.playback.step(frames),
+            Command::SetPace(pace) => self.playback.pace = pace,
+            Command::SetFrozen(frozen) => self.frozen = frozen.then_some(self.view),
+            Command::Show(tab) => (self.tab, self.panels) = (tab, true),
+            Command::ToggleKeys => self.toggle(Over::Keys),
+            Command::TogglePalette => self.toggle(Over::Palette(String::new(), 0)),
+            Command::ToggleProblems => self.toggle(Over::Problems),
+            Command::SetDark(dark) => {
+                self.settings.dark = dark;
+            }
+            Command::TogglePanels => self.panels = !self.panels,
+            Command::AddKeyView => {
+                self.key_views.push(self.view);
+                self.said = format!("Key view {} kept (Save, Film)", self.key_views.len());
+            }
+            Command::DropKeyView(which) => {
+                if which < self.key_views.len() {
+                    self.key_views.remove(which);
+                }
+            }
+            save => self.effects.push(Effect::Save(save)),
+        }
+    }
+
+    /// Everything, from a side.
+    fn fit(&self, side: Side) -> View {
+        let balls = self.outline(|_| true);
+        self.view
+            .fitted(side, self.settings.y_down, self.aspect, &balls)
+    }
+
+    /// The picture has another form: what was seen is still seen. Gives the view, if it is another one.
+    pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
+        let before = std::mem::replace(&mut self.aspect, aspect);
+        if before == aspect || self.document.neurons.is_empty() {
+            return None;
+        }
+        Some(match self.fitted {
+            Some(side) => self.fit(side),
+            None => self.view.reshaped(before, aspect),
+        })
+    }
+
+    fn toggle(&mut self, over: Over) {
+        let same = std::mem::discriminant(&self.over) == std::mem::discriminant(&over);
+        self.over = if same { Over::Nothing } else { over };
+    }
+
+    fn ask_files(&mut self, ask: Ask) {
+        let folder = self.settings.folder.clone();
+        self.over = Over::Files(FilePanel::new(ask, &folder, self.session.as_deref()));
+    }
+
+    fn remember(&mut self) {
+        self.settings.look = self.document.look.clone();
+        self.settings.detail = self.document.detail;
+    }
+
+    fn forget_what_is_gone(&mut self) {
+        let neurons = self.document.neurons.len();
+        let there = |p: &Picked| p.neuron < neurons;
+        self.hovered = self.hovered.filter(there);
+        self.picked = self.picked.filter(there);
+    }
+
+    /// Where all neurons stand.
+    pub fn placements(&self) -> Vec<Placement> {
+        if !self.document.grid {
+            return self.document.neurons.iter().map(|n| n.placement).collect();
+        }
+        let extents: Vec<_> = self
+            .document
+            .neurons
+            .iter()
+            .map(|neuron| {
+                let (low, high) = extent(&self.balls_of(neuron.source, neuron.placement));
+                ((low + high) / 2.0, high - low)
+            })
+            .collect();
+        document::grid(&self.document.neurons, &extents)
+    }
+
+    fn balls_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
+        let many = self.document.neurons.len() >= MANY;
+        let balls = self.sources.get(source).map_or(&[][..], |s| match many {
+            true => &s.few_balls,
+            false => &s.balls,
+        });
+        balls
+            .iter()
+            .map(|&(c, r)| (placement.world_from_cell(c), r * placement.scale))
+            .collect()
+    }
+
+    /// Balls (µm) around what shows and is wanted.
+    pub fn balls(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
+        let neurons = self.document.neurons.iter().zip(self.placements());
+        neurons
+            .filter(|(n, _)| !n.hidden && wanted(n))
+            .flat_map(|(n, placement)| self.balls_of(n.source, placement))
+            .collect()
+    }
+
+    /// Balls (µm) at the tracing points of what shows and is wanted: tighter than [`State::balls`], to
+    /// frame it. Of many neurons a few balls each.
+    pub fn outline(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
+        let neurons = self.document.neurons.iter().zip(self.placements());
+        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && wanted(n)).collect();
+        if shown.len() >= MANY {
+            return self.balls(wanted);
+        }
+        let balls = |(neuron, placement): (&document::Neuron, Placement)| {
+            let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
+            let points = mesh.into_iter().flat_map(|mesh| {
+                let points = mesh.tracing.iter();
+                points.map(|p| (mesh.origin + p.center.as_dvec3(), f64::from(p.radius)))
+            });
+            let placed = points.map(|(c, r)| (placement.world_from_cell(c), r * placement.scale));
+            placed.collect::<Vec<_>>()
+        };
+        shown.into_iter().flat_map(balls).collect()
+    }
+
+    /// The source of a neuron.
+    pub fn source_of(&self, neuron: usize) -> Option<&Source> {
+        let neuron = self.document.neurons.get(neuron)?;
+        self.sources.get(neuron.source)
+    }
+
+    /// Number of sources whose files changed or are gone.
+    pub fn stale(&self) -> usize {
+        self.sources
+            .iter()
+            .filter(|(_, s)| s.stale.is_some())
+            .count()
+    }
+
+    /// Notes something that went wrong.
+    pub fn problem(&mut self, what: impl Into<String>, why: impl Into<String>) {
+        let problem = Problem {
+            what: what.into(),
+            why: why.into(),
+        };
+        if !self.problems.contains(&problem) {
+            self.problems.push(problem);
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! What colors tell in the window: of tracings, of a circuit's nodes, of a recording.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use neurotess::circuit::{Circuit, NodeRef};
+use neurotess::coloring::{self, Cell, ColorScheme, Coloring, Node, Recording, RecordingError};
+use neurotess::generate::generate;
+use neurotess::render::{ColorMap, Palette, Rgb};
+use rayon::prelude::*;
+
+use crate::model::circuits::{CircuitId, Circuits};
+use crate::model::document::{ColorBy, Document, Look, NodeOf, SourceId};
+use crate::model::state::State;
+use crate::scene::content::ShownSource;
+
+/// What colors depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ColorKey {
+    /// What they tell, and of whom.
+    pub(crate) matter: Matter,
+    /// Which they are.
+    pub(crate) tints: Tints,
+}
+
+/// What colors tell, and of whom.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Matter {
+    by: ColorBy,
+    attribute: String,
+    report: Option<PathBuf>,
+    /// The neurons in their order, where colors differ among those of one tracing.
+    pub(crate) own: Vec<(SourceId, Option<NodeOf>)>,
+}
+
+/// The colors themselves.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tints {
+    palette: Palette,
+    map: ColorMap,
+    trim: bool,
+    background: Rgb,
+    range: Option<[f32; 2]>,
+}
+
+impl ColorKey {
+    pub(crate) fn new(document: &Document) -> Self {
+        let look = &document.look;
+        let by = look.color_by;
+        let neurons = document.neurons.iter().filter(|_| by.is_of_neurons());
+        let attribute = match by {
+            ColorBy::Attribute => look.attribute.clone(),
+            _ => String::new(),
+        };
+        let report = document.report.clone();
+        Self {
+            matter: Matter {
+                by,
+                attribute,
+                report: report.filter(|_| by == ColorBy::Value),
+                own: neurons.map(|n| (n.source, n.node)).collect(),
+            },
+            tints: Tints {
+                palette: look.palette,
+                map: look.color_map,
+                trim: look.trim_map,
+                background: look.background,
+                range: look.range.filter(|_| by.has_range()),
+            },
+        }
+    }
+}
+
+/// The colors to choose from.
+pub(crate) fn paint(look: &Look) -> ColorScheme {
+    let background = Some(look.background);
+    ColorScheme {
+        palette: look.palette,
+        background,
+        scale: match look.trim_map {
+            true => look.color_map.scale_before(look.background),
+            false => look.color_map.scale(),
+        },
+        range: look.range.filter(|[low, high]| low < high),
+    }
+}
+
+/// All that colors are made of, free of the window.
+#[derive(Clone, Debug)]
+pub(crate) struct Wish {
+    look: Look,
+    report: Option<PathBuf>,
+    /// Time (ms) of the recording that shows.
+    time: f64,
+    circuits: Circuits,
+    /// Place of the source, name and node of each neuron.
+    neurons: Vec<(usize, String, Option<NodeOf>)>,
+}
+
+/// Colors, and what they were made from.
+#[derive(Clone, Debug)]
+pub(crate) struct Colored {
+    pub(crate) coloring: Coloring,
+    /// A recording with the range of its values.
+    pub(crate) replay: Option<(Arc<Recording>, [f32; 2])>,
+    /// What could not be told by colors: what, and why.
+    pub(crate) problem: Option<(String, String)>,
+}
+
+impl From<Coloring> for Colored {
+    fn from(coloring: Coloring) -> Self {
+        Self {
+            coloring,
+            replay: None,
+            problem: None,
+        }
+    }
+}
+
+impl Wish {
+    /// `sources`: as they stand on the device, sorted.
+    pub(crate) fn new(state: &State, sources: &[ShownSource]) -> Self {
+        let document = &state.document;
+        let neurons = document.neurons.iter().map(|neuron| {
+            let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
+            (source.unwrap_or(0), neuron.name.clone(), neuron.node)
+        });
+        Self {
+            look: document.look.clone(),
+            report: document.report.clone(),
+            time: state.playback.pace.time,
+            circuits: state.circuits.clone(),
+            neurons: neurons.collect(),
+        }
+    }
+
+    /// The sources with a point at the middle of each element of the report, if its values show: a dendrite of
+    /// two traced points has room for all its compartments then. What cannot be meshed so stays as it is.
+    pub(crate) fn cut(&self, mut sources: Vec<ShownSource>) -> Vec<ShownSource> {
+        let report = self.report.as_ref();
+        let Some(report) = report.filter(|_| self.look.color_by == ColorBy::Value) else {
+            return sources;
+        };
+        let mut cuts = std::collections::HashMap::new();
+        for (id, circuit) in self.circuits_newest_first() {
+            let stand = self.neurons.iter().filter_map(|(source, _, of)| {
+                let node = of.filter(|of| of.circuit == id)?.node;
+                Some((*source, node))
+            });
+            let stand: Vec<_> = stand.collect();
+            // What is wrong with the report is told by its colors.
+            cuts = coloring::cuts(report, circuit, &stand).unwrap_or_default();
+            if !cuts.is_empty() {
+                break;
+            }
+        }
+        sources
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(place, source)| {
+                let Some(elements) = cuts.get(&place) else {
+                    return;
+                };
+                let morphology = coloring::with_middles(&source.morphology, elements);
+                if let Ok(generated) = generate(&morphology, &source.options) {
+                    source.morphology = Arc::new(morphology);
+                    source.generated = Arc::new(generated);
+                }
+            });
+        sources
+    }
+
+    /// Circuits of the neurons, the one opened last first.
+    fn circuits_newest_first(&self) -> impl Iterator<Item = (CircuitId, &Circuit)> {
+        let ids = self.neurons.iter().filter_map(|n| Some(n.2?.circuit));
+        let mut ids: Vec<CircuitId> = ids.collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let known = |id| Some((id, self.circuits.get(id)?));
+        ids.into_iter().rev().filter_map(known)
+    }
+
+    /// The colors; where they cannot be had, those of types.
+    pub(crate) fn colors(&self, sources: &[ShownSource]) -> Colored {
+        let cells: Vec<Cell<'_>> = sources
+            .iter()
+            .map(|s| Cell {
+                name: &s.name,
+                morphology: &s.morphology,
+                mesh: &s.generated.mesh,
+            })
+            .collect();
+        let paint = paint(&self.look);
+        let of_type = || coloring::coloring(&cells, coloring::ColorBy::Type, &paint);
+        let instead = |(what, why): (String, String)| Colored {
+            problem: Some((what, why)),
+            ..of_type().into()
+        };
+        match self.look.color_by {
+            _ if sources.is_empty() => of_type().into(),
+            ColorBy::Neuron => {
+                let names: Vec<String> = self.neurons.iter().map(|n| n.1.clone()).collect();
+                coloring::each(&cells, &names, &paint).into()
+            }
+            ColorBy::Attribute => self.by_attribute(&cells, &paint).unwrap_or_else(instead),
+            ColorBy::Value => self.by_value(&cells, &paint).unwrap_or_else(instead),
+            by => {
+                let by = by.in_library().unwrap_or_default();
+                coloring::coloring(&cells, by, &paint).into()
+            }
+        }
+    }
+
+    fn by_attribute(
+        &self,
+        cells: &[Cell<'_>],
+        paint: &ColorScheme,
+    ) -> Result<Colored, (String, String)> {
+        let node = |of: &Option<NodeOf>| of.and_then(|of| self.circuits.node(of));
+        let neurons: Vec<Option<Node<'_>>> = self.neurons.iter().map(|n| node(&n.2)).collect();
+        let what = || "colors by attribute".to_owned();
+        if neurons.iter().all(Option::is_none) {
+            let why = "attributes are those of a circuit's cells: open a circuit";
+            return Err((what(), why.into()));
+        }
+        let attribute = &self.look.attribute;
+        coloring::by_attribute(cells, &neurons, attribute, paint)
+            .map(Colored::from)
+            .map_err(|e| (what(), e.to_string()))
+    }
+
+    /// Of the first circuit that the recording fits.
+    fn by_value(
+        &self,
+        cells: &[Cell<'_>],
+        paint: &ColorScheme,
+    ) -> Result<Colored, (String, String)> {
+        let Some(report) = &self.report else {
+            let why = "there is no report: open one (File, Open report)";
+            return Err(("colors by value".into(), why.into()));
+        };
+        let file = report.display().to_string();
+        let mut why = "a report has values of a circuit's cells: open its circuit".to_owned();
+        for (id, circuit) in self.circuits_newest_first() {
+            let node = |of: NodeOf| (of.circuit == id).then_some(of.node);
+            let stand: Vec<(usize, Option<NodeRef>)> = self
+                .neurons
+                .iter()
+                .map(|(source, _, of)| (*source, of.and_then(node)))
+                .collect();
+            match Recording::open(report, circuit, cells, &stand) {
+                Ok(replay) => return self.replayed(replay, paint).map_err(|e| (file, e)),
+                Err(e) => why = without(&file, &e.to_string()),
+            }
+        }
+        Err((file, why))
+    }
+
+    fn replayed(&self, replay: Recording, paint: &ColorScheme) -> Result<Colored, String> {
+        let told = |e: RecordingError| without(&replay.file, &e.to_string());
+        let all = replay.range(&|_| true).map_err(told)?;
+        let range = paint.range.unwrap_or(all);
+        let time = replay.time.nearest(self.time);
+        let moment = replay.at(time, self.look.decay, &|_| true).map_err(told)?;
+        let mut coloring = replay.coloring(range, paint);
+        coloring.table.values = moment.values(range);
+        Ok(Colored {
+            coloring,
+            replay: Some((Arc::new(replay), all)),
+            problem: None,
+        })
+    }
+}
+
+/// A reason without the file's name, which stands beside it.
+fn without(file: &str, text: &str) -> String {
+    let rest = text.strip_prefix(file).unwrap_or(text);
+    rest.trim_start_matches([':', ' ']).to_owned()
+}

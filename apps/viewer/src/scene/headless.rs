@@ -1,0 +1,106 @@
+//! A session's picture without a window.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use neurotess::render::Gpu;
+
+use crate::io::save::{self, PictureFile, Scenery, Still};
+use crate::io::sources::{self, Wanted};
+use crate::io::tasks::Job;
+use crate::model::document::Neuron;
+use crate::model::session::Session;
+use crate::model::settings::Settings;
+use crate::model::state::State;
+use crate::scene::colors::Wish;
+use crate::scene::content::{self, Shown};
+
+/// A picture that was drawn, and what failed of the session.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Drawn {
+    /// Number of neurons that the picture shows.
+    pub neurons: usize,
+    /// Files of the session that could not be read: file and reason.
+    pub failures: Vec<(String, String)>,
+}
+
+/// Draws a session as the window would save it.
+///
+/// # Errors
+/// What is wrong with the session, the adapter or the file to write, and what to do.
+pub fn draw_session(
+    file: &Path,
+    picture: &PictureFile,
+    adapter: Option<&str>,
+) -> Result<Drawn, String> {
+    let session = Session::read(file).map_err(|e| e.of(file))?;
+    let mut state = State::new(Settings::default());
+    let mut drawn = Drawn::default();
+    let mut ids = Vec::new();
+    let found = sources::find(&Wanted {
+        circuits: session.circuit.iter().map(|c| c.path.clone()).collect(),
+        ..Wanted::default()
+    });
+    for (file, why) in found.failures {
+        drawn.failures.push((file.display().to_string(), why));
+    }
+    for opened in found.circuits {
+        state.circuits.add(opened);
+    }
+    for entry in &session.file {
+        let soma = entry.soma.clone().unwrap_or_default();
+        ids.push(match sources::load(&entry.path, soma) {
+            Ok(source) => Some(state.sources.add(source)),
+            Err(why) => {
+                let file = entry.path.display().to_string();
+                drawn.failures.push((file, why));
+                None
+            }
+        });
+    }
+    state.document.look = session.look.clone();
+    state.document.grid = session.grid;
+    state.document.report = session.report.clone();
+    state.playback.pace = session.playback;
+    for entry in &session.neuron {
+        if let Some(id) = ids.get(entry.file).copied().flatten() {
+            let node = session.node_of(entry, &state.circuits);
+            state.document.neurons.push(Neuron {
+                node,
+                ..Neuron::of_session(id, entry)
+            });
+        }
+    }
+    drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
+    let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
+    let scenery = scenery(Arc::new(gpu), &state, &mut drawn);
+    let still = Still {
+        view: session.view,
+        time: Some(session.playback.time),
+    };
+    save::pictures(
+        &scenery,
+        &[still],
+        picture,
+        &Job::new("drawing", "tiles", 0),
+    )?;
+    Ok(drawn)
+}
+
+fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
+    let sources = content::sources(state);
+    let wish = Wish::new(state, &sources);
+    let sources = wish.cut(sources);
+    let mut colored = wish.colors(&sources);
+    drawn.failures.extend(colored.problem.take());
+    let standing = content::standing(state, &sources);
+    let shown = Shown::new(sources, standing, colored);
+    Scenery {
+        gpu,
+        shared: false,
+        shown,
+        look: state.document.look.clone(),
+        states: content::states(&state.document),
+        balls: state.balls(|_| true),
+    }
+}

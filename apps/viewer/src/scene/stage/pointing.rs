@@ -1,0 +1,106 @@
+//! What is under the cursor, and the outlines around what is pointed at and selected.
+
+use std::time::Duration;
+
+use eframe::egui;
+use neurotess::render::{
+    DeviceError, Outlines, PickHit, PickId, PickResolver, ProxyPickResolver, ViewParams,
+};
+
+use super::Stage;
+use crate::model::state::{Picked, State};
+use crate::scene::content;
+use crate::scene::picks::{Picks, Seen, seen};
+
+/// Wider lines would drown thin neurites.
+pub(crate) const OUTLINES: Outlines = Outlines {
+    width: 1,
+    selected: content::SELECTION,
+    // No palette has it: types of neurites are blue, red, purple, green and gray.
+    hovered: [0, 190, 170],
+};
+
+/// What ids mean.
+pub(super) enum Names {
+    Refined(PickResolver),
+    Explored(ProxyPickResolver),
+}
+
+impl Names {
+    fn name(&self, id: PickId) -> Option<PickHit> {
+        match self {
+            Self::Refined(namer) => namer.name(id),
+            Self::Explored(namer) => namer.name(id),
+        }
+    }
+}
+
+/// What outlines depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MaskKey {
+    hovered: Option<Picked>,
+    picked: Option<Picked>,
+    selected: Vec<usize>,
+    shot: ViewParams,
+}
+
+impl Stage {
+    /// What is seen at a pixel. Nothing while things move.
+    pub fn seen_at(&self, x: f32, y: f32) -> Option<Seen> {
+        self.picks.as_ref()?.at(x, y)
+    }
+
+    /// Whether it is known what is where.
+    pub fn can_pick(&self) -> bool {
+        self.picks.is_some()
+    }
+
+    pub(super) fn take_ids(&mut self, ctx: &egui::Context) -> Result<(), DeviceError> {
+        if self.namer.is_none() {
+            return Ok(());
+        }
+        // Polls the device.
+        let _ = self.live.is_busy(&self.gpu);
+        let Some((size, ids)) = self.live.ids()? else {
+            ctx.request_repaint_after(Duration::from_millis(5));
+            return Ok(());
+        };
+        let Some(namer) = self.namer.take() else {
+            return Ok(());
+        };
+        let shown = &self.shown;
+        self.picks = Some(Picks::new(size, &ids, |id| {
+            let named = namer.name(id)?;
+            let standing = shown.instances.get(named.instance as usize)?;
+            let source = shown.sources.get(standing.source)?;
+            seen(named, &source.generated.mesh, &standing.placement)
+        }));
+        ctx.request_repaint();
+        Ok(())
+    }
+
+    /// Outlines around what is selected and hovered, when that has changed.
+    pub(super) fn outline(&mut self, state: &State) {
+        let (Some(picks), Some(drawn)) = (&self.picks, &self.drawn) else {
+            return;
+        };
+        let key = MaskKey {
+            hovered: state.hovered,
+            picked: state.picked,
+            selected: state.document.selected().collect(),
+            shot: drawn.shot,
+        };
+        if self.mask.as_ref() == Some(&key) {
+            return;
+        }
+        let facts = |neuron: usize, section: u32| {
+            let source = state.source_of(neuron)?;
+            source.sections.get(section as usize).copied()
+        };
+        let mask = picks.mask(&state.document, state.hovered, state.picked, facts);
+        self.live
+            .set_outlines(&self.gpu, OUTLINES, Some((picks.size(), &mask)));
+        self.live.show(&self.gpu);
+        self.mask = Some(key);
+    }
+}

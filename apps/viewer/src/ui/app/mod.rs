@@ -1,0 +1,315 @@
+//! The window: state, workers and stage together.
+
+mod loading;
+mod messages;
+mod saving;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use egui_wgpu::RenderState;
+use neurotess::render::DeviceError;
+
+use crate::io::tasks::Worker;
+use crate::model::command::{Command, listed};
+use crate::model::document::SomaEdit;
+use crate::model::settings::Settings;
+use crate::model::state::{Effect, State};
+use crate::model::view::View;
+use crate::scene::stage::Stage;
+use crate::ui::input::Input;
+use crate::ui::panels;
+use loading::Loading;
+
+/// How long going to another view takes.
+const GO: Duration = Duration::from_millis(260);
+
+/// The whole program, without its frame.
+pub struct Viewer {
+    /// All that shows.
+    pub state: State,
+    /// What draws.
+    pub stage: Stage,
+    worker: Worker,
+    /// A loading: what was found, and its cells by file.
+    loading: Option<Loading>,
+    /// What is to be read after it.
+    waiting: Vec<PathBuf>,
+    going: Option<(View, View, Instant)>,
+    /// What is fatal: the device is lost.
+    pub fatal: Option<String>,
+    quits: bool,
+    theme: Option<(bool, u32)>,
+    remembered: Settings,
+    smooth: bool,
+    /// Size of the window, once it is known.
+    window: Option<egui::Vec2>,
+    /// Somata of what is opened first.
+    soma: SomaEdit,
+    /// When the recording's time was looked at last.
+    ticked: Instant,
+    /// Where the session is saved when the program must end.
+    rescue: PathBuf,
+    hears: Option<Hears>,
+}
+
+/// Told of every command before it runs.
+pub type Hears = Box<dyn Fn(&Command)>;
+
+impl Viewer {
+    /// In a window that has a device.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(
+        ctx: &egui::Context,
+        render: RenderState,
+        settings: Settings,
+    ) -> Result<Self, DeviceError> {
+        let waker = ctx.clone();
+        ctx.add_plugin(Input::new());
+        let stage = Stage::new(render)?;
+        let mut state = State::new(settings.clone());
+        let adapter = &stage.gpu().adapter;
+        state.adapter = (adapter.to_string(), adapter.software);
+        Ok(Self {
+            state,
+            stage,
+            worker: Worker::new(move || waker.request_repaint()),
+            loading: None,
+            waiting: Vec::new(),
+            going: None,
+            fatal: None,
+            quits: false,
+            theme: None,
+            remembered: settings,
+            smooth: true,
+            window: None,
+            soma: SomaEdit::default(),
+            ticked: Instant::now(),
+            rescue: crate::model::settings::folder().unwrap_or_default(),
+            hears: None,
+        })
+    }
+
+    /// A session that must be rescued goes to this folder instead of that of the settings.
+    pub fn with_rescue(mut self, folder: PathBuf) -> Self {
+        self.rescue = folder;
+        self
+    }
+
+    /// Somata of what is opened first are made so.
+    pub fn with_soma(mut self, soma: SomaEdit) -> Self {
+        self.soma = soma;
+        self
+    }
+
+    /// Tells somebody of every command before it runs.
+    pub fn with_hearing(mut self, hears: Hears) -> Self {
+        self.hears = Some(hears);
+        self
+    }
+
+    /// Views change at once: for tests.
+    pub fn without_motion(mut self) -> Self {
+        self.smooth = false;
+        self
+    }
+
+    /// Whether nothing is under way: all that is to be read is, and all is drawn.
+    pub fn is_settled(&self) -> bool {
+        let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
+        !self.worker.is_busy() && self.going.is_none() && self.loading.is_none() && drawn
+    }
+
+    /// Job of reading and of saving, for the status bar.
+    pub(crate) fn jobs(&self) -> [Option<crate::io::tasks::Job>; 2] {
+        [self.worker.loading.clone(), self.worker.saving.clone()]
+    }
+
+    /// One frame.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        self.look(&ctx);
+        for message in self.worker.messages() {
+            self.take(message);
+        }
+        self.take_drops(&ctx);
+        self.shortcuts(&ctx);
+        self.go_on(&ctx);
+        self.tick();
+        panels::show(self, ui);
+        for command in std::mem::take(&mut self.state.asked) {
+            self.run(command);
+            ctx.request_repaint();
+        }
+        self.do_effects(&ctx);
+        self.want_somata();
+        self.note_settings();
+        self.end_input(&ctx);
+        if self.quits {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    /// Draws the picture of this size; what cannot go on is kept in `fatal`.
+    pub(crate) fn picture(
+        &mut self,
+        size: [u32; 2],
+        ctx: &egui::Context,
+    ) -> Option<egui::TextureId> {
+        match self.stage.update(&mut self.state, size, ctx) {
+            Ok(texture) => texture,
+            Err(DeviceError::Lost(why)) => {
+                self.fatal = Some(self.rescue(&lost(&why)));
+                self.quits = true;
+                None
+            }
+            Err(e) => {
+                self.state.problem("drawing", e.to_string());
+                None
+            }
+        }
+    }
+
+    fn look(&mut self, ctx: &egui::Context) {
+        let zoom = self.state.settings.zoom.clamp(0.5, 3.0);
+        let theme = (self.state.settings.dark, (zoom * 100.0) as u32);
+        if self.theme != Some(theme) {
+            panels::style(ctx, theme.0);
+            ctx.set_zoom_factor(zoom);
+            self.theme = Some(theme);
+        }
+    }
+
+    fn take_drops(&mut self, ctx: &egui::Context) {
+        let paths: Vec<PathBuf> = ctx.input(|input| {
+            let files = input.raw.dropped_files.iter();
+            files.map(|file| file.path().to_path_buf()).collect()
+        });
+        let paths: Vec<PathBuf> = paths
+            .into_iter()
+            .filter(|p| !p.as_os_str().is_empty())
+            .collect();
+        if !paths.is_empty() {
+            self.run(Command::Open(paths));
+        }
+    }
+
+    /// The camera on its way.
+    fn go_on(&mut self, ctx: &egui::Context) {
+        let Some((from, to, begun)) = self.going else {
+            return;
+        };
+        let t = begun.elapsed().as_secs_f64() / GO.as_secs_f64();
+        if t >= 1.0 {
+            (self.state.view, self.going) = (to, None);
+        } else {
+            self.state.view = from.between(&to, t * t * (3.0 - 2.0 * t));
+        }
+        ctx.request_repaint();
+    }
+
+    /// Lets the recording's time go on by the clock.
+    fn tick(&mut self) {
+        let seconds = self.ticked.elapsed().as_secs_f64();
+        self.ticked = Instant::now();
+        self.state.playback.advance(seconds);
+    }
+
+    /// Moves the camera by hand.
+    pub(crate) fn steer(&mut self, view: View) {
+        self.going = None;
+        self.state.fitted = None;
+        self.state.view = view;
+    }
+
+    /// The picture has this form (width by height) in a window of this size. A view that fits everything
+    /// does so in any form; another one changes with the window's size only, not with panels.
+    pub(crate) fn reshape(&mut self, aspect: f64, window: egui::Vec2) {
+        let before = self.window.replace(window);
+        let resized = before.is_some_and(|before| before != window);
+        let fitted = self.state.fitted.is_some();
+        let Some(view) = self.state.reshape(aspect) else {
+            return;
+        };
+        match &mut self.going {
+            Some((_, to, _)) if fitted => *to = view,
+            // What is on its way goes where it was asked to.
+            Some(_) => {}
+            None if fitted || resized => self.state.view = view,
+            None => {}
+        }
+    }
+
+    fn effect(&mut self, effect: Effect) {
+        match effect {
+            Effect::Load(paths) => self.load(paths),
+            Effect::Reload => self.reload(),
+            Effect::Cancel => {
+                self.waiting.clear();
+                for job in self.jobs().into_iter().flatten() {
+                    job.canceled
+                        .store(true, std::sync::atomic::Ordering::Relaxed);
+                    self.state.said = format!("Stopped {}", job.what);
+                }
+            }
+            Effect::Go(view) => {
+                if self.smooth && !self.state.document.neurons.is_empty() {
+                    self.going = Some((self.state.view, view, Instant::now()));
+                } else {
+                    self.state.view = view;
+                }
+            }
+            Effect::Quit => self.quits = true,
+            Effect::Save(command) => self.save(command),
+        }
+    }
+
+    /// Does what is asked of the program around.
+    fn do_effects(&mut self, ctx: &egui::Context) {
+        for effect in std::mem::take(&mut self.state.effects) {
+            self.effect(effect);
+            ctx.request_repaint();
+        }
+    }
+
+    /// Runs the shortcuts of this frame, in their order: what one changes counts for the next.
+    fn shortcuts(&mut self, ctx: &egui::Context) {
+        let pressed = ctx.with_plugin(Input::take_pressed).unwrap_or_default();
+        for keys in pressed {
+            let menus = listed(&self.state.toggles());
+            let mut items = menus.into_iter().flat_map(|(_, items)| items);
+            if let Some(item) = items.find(|item| item.keys == Some(keys)) {
+                self.run(item.command);
+                ctx.request_repaint();
+            }
+        }
+    }
+
+    /// Tells the input what is open, for the next frame.
+    fn end_input(&self, ctx: &egui::Context) {
+        let open = (&self.state.over).into();
+        let waits = ctx.with_plugin(|input: &mut Input| {
+            input.set_open(open);
+            input.waits()
+        });
+        if waits == Some(true) {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Does a command, and tells whoever listens.
+    fn run(&mut self, command: Command) {
+        if let Some(hears) = &self.hears {
+            hears(&command);
+        }
+        self.state.run(command);
+    }
+}
+
+/// What is said of a lost device.
+pub(crate) fn lost(why: &str) -> String {
+    format!("the graphics device was lost ({why})")
+}

@@ -1,0 +1,154 @@
+//! What goes to files.
+
+use std::path::Path;
+
+use super::Viewer;
+use crate::io::save::{self, FilmOptions, MeshPlan, Scenery, Still};
+use crate::io::tasks::Job;
+use crate::model::command::Command;
+use crate::model::document::Neuron;
+use crate::model::session::{self, Session};
+use crate::model::settings;
+use crate::scene::content;
+
+impl Viewer {
+    /// Saves the session before the program ends by itself; what to say.
+    pub(crate) fn rescue(&self, lost: &str) -> String {
+        if self.state.document.neurons.is_empty() {
+            return format!("{lost}: start again, or choose another one by NEUROTESS_ADAPTER");
+        }
+        let folder = &self.rescue;
+        let file = folder.join(format!("rescued.{}", session::EXTENSION));
+        match Session::of(&self.state, folder).write(&file) {
+            Ok(()) => format!("{lost}: your session is in {}", file.display()),
+            Err(e) => format!("{lost}, and the session could not be saved: {e}"),
+        }
+    }
+
+    pub(super) fn save(&mut self, command: Command) {
+        if let Command::SaveSession(path) = &command {
+            // It is small, and written at once, whatever else is being written.
+            return self.save_session(path);
+        }
+        if self.worker.saving.is_some() {
+            self.state
+                .problem("save", "wait until the last one is written, or stop it");
+            return;
+        }
+        match command {
+            Command::SaveMeshes(options) => {
+                let plans = self.mesh_plans(options.all);
+                let (view, detail) = (self.state.view, self.state.document.detail);
+                let height = self.stage.height();
+                let steps = (plans.len(), "meshes");
+                self.worker.save("writing meshes", steps, move |job| {
+                    save::meshes(&plans, &options, &view, &detail, height, job)
+                });
+            }
+            Command::SavePicture(options) => {
+                self.state.settings.picture_size = options.size;
+                let scenery = self.scenery();
+                let still = Still {
+                    view: self.state.view,
+                    time: Some(self.state.playback.pace.time),
+                };
+                self.worker
+                    .save("drawing the picture", (0, "tiles"), move |job| {
+                        let files = save::pictures(&scenery, &[still], &options, job)?;
+                        let file = files.first().map(|f| f.display().to_string());
+                        Ok(format!("Saved {}", file.unwrap_or_default()))
+                    });
+            }
+            Command::SaveFilm(film) => {
+                self.save_film(film);
+            }
+            _ => {}
+        }
+    }
+
+    fn save_film(&mut self, film: FilmOptions) {
+        let state = &self.state;
+        let (keys, now) = (&state.key_views, state.view);
+        let at = Some(state.playback.pace.time);
+        let time = film.time.filter(|_| state.playback.facts.is_some());
+        let stills = save::stills(keys, now, film.frames, time, at);
+        if stills.is_empty() {
+            let why = "keep two views for it (K), or open a report whose time goes on";
+            self.state.problem("film", why);
+            return;
+        }
+        let scenery = self.scenery();
+        let work = move |job: &Job| {
+            let files = save::pictures(&scenery, &stills, &film.picture, job)?;
+            let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
+            let also = match film.video && count > 1 {
+                true => {
+                    let video = save::video(&first, film.picture.replace, job)?;
+                    format!(" and {}", video.display())
+                }
+                false => String::new(),
+            };
+            Ok(format!(
+                "Saved {count} pictures from {}{also}",
+                first.display()
+            ))
+        };
+        self.worker.save("drawing the film", (0, "tiles"), work);
+    }
+
+    fn save_session(&mut self, path: &Path) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match Session::of(&self.state, folder).write(path) {
+            Ok(()) => {
+                self.state.said = format!("Saved {}", path.display());
+                self.state.session = Some(path.to_path_buf());
+                self.state.settings.remember_files(&[path.to_path_buf()]);
+            }
+            Err(why) => {
+                self.state.said = "The session was not saved".into();
+                self.state.problem(path.display().to_string(), why);
+            }
+        }
+    }
+
+    fn mesh_plans(&self, all: bool) -> Vec<MeshPlan> {
+        let state = &self.state;
+        let neurons = state.document.neurons.iter().zip(state.placements());
+        let wanted = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
+        let plan = |(neuron, placement): (&Neuron, _)| {
+            Some(MeshPlan {
+                name: neuron.name.clone(),
+                generated: state.sources.get(neuron.source)?.generated.clone(),
+                placement,
+            })
+        };
+        wanted.filter_map(plan).collect()
+    }
+
+    fn scenery(&self) -> Scenery {
+        Scenery {
+            gpu: self.stage.gpu().clone(),
+            shared: true,
+            shown: self.stage.shown().clone(),
+            look: self.state.document.look.clone(),
+            states: content::states(&self.state.document),
+            balls: self.state.balls(|_| true),
+        }
+    }
+
+    /// Writes what is remembered, if it has changed.
+    pub fn remember(&mut self) {
+        self.note_settings();
+        if let Err(why) = settings::write_noted() {
+            self.state.problem("settings", why);
+        }
+    }
+
+    /// Notes what is remembered, if it has changed: who ends the program writes it.
+    pub(super) fn note_settings(&mut self) {
+        if self.state.settings != self.remembered {
+            self.remembered = self.state.settings.clone();
+            self.remembered.note();
+        }
+    }
+}
