@@ -16,11 +16,9 @@ mod model;
 mod scene;
 mod ui;
 
-pub use io::{save, sources, tasks};
 pub use model::command::Command;
-pub use model::{circuits, command, document, history, playback, session, settings, state, view};
+pub use model::{command, document, playback, save, session, settings, sources, state, view};
 pub use scene::headless::{Drawn, draw_session};
-pub use scene::{picks, stage};
+pub use scene::stage::Stage;
 pub use ui::app::{Hears, Viewer};
 pub use ui::window::{Options, ViewError, run, wgpu_setup};
-pub use ui::{app, file_panel};

@@ -1,7 +1,8 @@
 //! Files, and the threads that read and write them.
 
+pub(crate) mod find;
 pub(crate) mod frames;
+pub(crate) mod load;
 pub(crate) mod paths;
-pub mod save;
-pub mod sources;
-pub mod tasks;
+pub(crate) mod save;
+pub(crate) mod tasks;

@@ -12,12 +12,14 @@ use std::time::{Duration, SystemTime};
 use neurotess::generate::{Generated, generate};
 use neurotess::morphology::Morphology;
 
-use crate::io::sources::{self, Found, Source, Stale, Wanted};
+use crate::io::find::{self, Found, OpenRequest};
+use crate::io::load;
 use crate::model::document::{SomaEdit, SourceId};
+use crate::model::sources::{Source, Stale};
 
 /// What work gives.
 #[derive(Debug)]
-pub enum Message {
+pub(crate) enum Message {
     /// What was found of what was asked for.
     Found(Box<Found>),
     /// A file that was read; the number is its place among those found of that loading.
@@ -36,17 +38,17 @@ pub enum Message {
 
 /// How far a job is.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub(crate) struct Job {
     /// What it does.
-    pub what: String,
+    pub(crate) what: String,
     /// What its steps are, as in `tiles`.
-    pub steps: &'static str,
+    pub(crate) steps: &'static str,
     /// Steps done.
-    pub done: Arc<AtomicUsize>,
+    pub(crate) done: Arc<AtomicUsize>,
     /// All steps, 0 where that is not known yet.
-    pub all: Arc<AtomicUsize>,
+    pub(crate) all: Arc<AtomicUsize>,
     /// Set to end it.
-    pub canceled: Arc<AtomicBool>,
+    pub(crate) canceled: Arc<AtomicBool>,
 }
 
 impl Job {
@@ -61,7 +63,7 @@ impl Job {
     }
 
     /// Whether it should end.
-    pub fn is_canceled(&self) -> bool {
+    pub(crate) fn is_canceled(&self) -> bool {
         self.canceled.load(Ordering::Relaxed)
     }
 
@@ -75,31 +77,31 @@ impl Job {
     }
 
     /// Share done, 0 to 1.
-    pub fn share(&self) -> f32 {
+    pub(crate) fn share(&self) -> f32 {
         let all = self.all.load(Ordering::Relaxed).max(1);
         self.done.load(Ordering::Relaxed) as f32 / all as f32
     }
 }
 
 /// A file that is looked after, and when it was written last.
-pub type Watched = (SourceId, PathBuf, Option<SystemTime>);
+pub(crate) type Watched = (SourceId, PathBuf, Option<SystemTime>);
 
 /// Starts work and takes its results.
-pub struct Worker {
+pub(crate) struct Worker {
     sender: Sender<Message>,
     receiver: Receiver<Message>,
     wake: Arc<dyn Fn() + Send + Sync>,
     /// Loading under way.
-    pub loading: Option<Job>,
+    pub(crate) loading: Option<Job>,
     /// Saving under way.
-    pub saving: Option<Job>,
+    pub(crate) saving: Option<Job>,
     watching: Arc<Mutex<Vec<Watched>>>,
     somata: usize,
 }
 
 impl Worker {
     /// `wake` is called when there is a message.
-    pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
+    pub(crate) fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let (sender, receiver) = channel();
         Self {
             sender,
@@ -113,7 +115,7 @@ impl Worker {
     }
 
     /// Messages that have come.
-    pub fn messages(&mut self) -> Vec<Message> {
+    pub(crate) fn messages(&mut self) -> Vec<Message> {
         let messages: Vec<Message> = self.receiver.try_iter().collect();
         for message in &messages {
             match message {
@@ -127,7 +129,7 @@ impl Worker {
     }
 
     /// Whether anything is under way whose result will come.
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.loading.is_some() || self.saving.is_some() || self.somata > 0
     }
 
@@ -144,11 +146,11 @@ impl Worker {
     }
 
     /// Reads files, folders and circuits on all cores.
-    pub fn load(&mut self, wanted: Wanted) {
+    pub(crate) fn load(&mut self, wanted: OpenRequest) {
         let job = Job::new("reading", "files", 0);
         self.loading = Some(job.clone());
         self.start(move |send| {
-            let found = sources::find(&wanted);
+            let found = find::find(&wanted);
             let files = found.files.clone();
             job.all.store(files.len(), Ordering::Relaxed);
             send(Message::Found(Box::new(found)));
@@ -167,7 +169,7 @@ impl Worker {
                             };
                             let soma = somata.iter().find(|(path, _)| path == file);
                             let soma = soma.map_or(usual, |(_, soma)| soma).clone();
-                            let loaded = guarded(|| sources::load(file, soma));
+                            let loaded = guarded(|| load::load(file, soma));
                             let loaded = loaded.map_err(|why| (file.clone(), why));
                             job.done.fetch_add(1, Ordering::Relaxed);
                             let _ = sender.send((index, loaded));
@@ -190,20 +192,20 @@ impl Worker {
     }
 
     /// Reads a file again.
-    pub fn reload(&self, id: SourceId, file: PathBuf, soma: SomaEdit) {
+    pub(crate) fn reload(&self, id: SourceId, file: PathBuf, soma: SomaEdit) {
         self.start(move |send| {
-            let loaded = guarded(|| sources::load(&file, soma));
+            let loaded = guarded(|| load::load(&file, soma));
             send(Message::Reloaded(id, Box::new(loaded)));
         });
     }
 
     /// Whether a soma is being made.
-    pub fn makes_soma(&self) -> bool {
+    pub(crate) fn makes_soma(&self) -> bool {
         self.somata > 0
     }
 
     /// Meshes a cell again, with another soma.
-    pub fn soma(&mut self, id: SourceId, morphology: Arc<Morphology>, edit: SomaEdit) {
+    pub(crate) fn soma(&mut self, id: SourceId, morphology: Arc<Morphology>, edit: SomaEdit) {
         self.somata += 1;
         self.start(move |send| {
             let made =
@@ -213,7 +215,7 @@ impl Worker {
     }
 
     /// Saves something: the job says how far it is and when to stop.
-    pub fn save(
+    pub(crate) fn save(
         &mut self,
         what: &str,
         (all, steps): (usize, &'static str),
@@ -225,7 +227,7 @@ impl Worker {
     }
 
     /// Looks after these files from now on, every two seconds, on a thread of its own.
-    pub fn watch(&mut self, files: Vec<Watched>) {
+    pub(crate) fn watch(&mut self, files: Vec<Watched>) {
         let mut watching = self.watching.lock().unwrap_or_else(PoisonError::into_inner);
         let begins = watching.is_empty() && !files.is_empty();
         *watching = files;
@@ -251,7 +253,7 @@ impl Worker {
                 }
                 let now: Vec<_> = files
                     .iter()
-                    .map(|(id, file, written)| (*id, sources::stale(file, *written)))
+                    .map(|(id, file, written)| (*id, load::stale(file, *written)))
                     .collect();
                 if now != known && (now.iter().any(|(_, s)| s.is_some()) || !known.is_empty()) {
                     send(Message::Files(now.clone()));

@@ -6,14 +6,10 @@ use std::sync::Arc;
 use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::coloring::{self, Node};
 
-use crate::model::document::NodeOf;
-
-/// Place of a circuit in [`Circuits`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct CircuitId(pub u32);
+use crate::model::ids::{CircuitId, CircuitNode};
 
 /// A circuit and the file or folder that was opened.
-pub type Opened = (PathBuf, Arc<Circuit>);
+pub(crate) type Opened = (PathBuf, Arc<Circuit>);
 
 /// All circuits that are open or were.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +39,7 @@ impl Circuits {
     }
 
     /// A node with its circuit, as colors want it.
-    pub fn node(&self, of: NodeOf) -> Option<Node<'_>> {
+    pub fn node(&self, of: CircuitNode) -> Option<Node<'_>> {
         let (circuit, node) = (self.get(of.circuit)?, of.node);
         Some(Node { circuit, node })
     }

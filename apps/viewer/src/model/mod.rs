@@ -1,12 +1,16 @@
 //! What is open and how it shows: values and the commands that change them. No threads, no device, no
 //! widgets.
 
-pub mod circuits;
+pub(crate) mod circuits;
 pub mod command;
 pub mod document;
-pub mod history;
+pub(crate) mod film;
+pub(crate) mod history;
+pub(crate) mod ids;
 pub mod playback;
+pub mod save;
 pub mod session;
 pub mod settings;
+pub mod sources;
 pub mod state;
 pub mod view;

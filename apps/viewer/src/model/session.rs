@@ -8,9 +8,9 @@ use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::io::sources::Wanted;
-use crate::model::circuits::{self, CircuitId, Circuits};
-use crate::model::document::{Detail, Look, NodeOf, PlaceFile, SomaEdit};
+use crate::model::circuits::{self, Circuits};
+use crate::model::document::{Detail, Look, Neuron, PlaceFile, SomaEdit};
+use crate::model::ids::{CircuitId, CircuitNode, SourceId};
 use crate::model::playback::Pace;
 use crate::model::state::State;
 use crate::model::view::View;
@@ -130,6 +130,18 @@ pub struct NeuronEntry {
     pub(crate) place: Option<PlaceFile>,
 }
 
+impl NeuronEntry {
+    /// The neuron of this entry, whose tracing is `source`.
+    pub(crate) fn neuron(&self, source: SourceId) -> Neuron {
+        Neuron {
+            placement: self.place.map(Into::into).unwrap_or_default(),
+            hidden: self.hidden,
+            selected: self.selected && !self.hidden,
+            ..Neuron::new(source, self.name.clone())
+        }
+    }
+}
+
 fn is_false(value: &bool) -> bool {
     !value
 }
@@ -162,7 +174,7 @@ impl Session {
             .collect();
         circuits.sort_unstable();
         circuits.dedup();
-        let node = |of: NodeOf| {
+        let node = |of: CircuitNode| {
             let population = &state.circuits.get(of.circuit)?.populations;
             let population = population.get(of.node.population as usize)?;
             Some(NodeEntry {
@@ -238,28 +250,14 @@ impl Session {
         Ok(session)
     }
 
-    /// What is to be read for it.
-    pub(crate) fn wanted(&self) -> Wanted {
-        let files = &self.file;
-        Wanted {
-            paths: files.iter().map(|f| f.path.clone()).collect(),
-            circuits: self.circuit.iter().map(|c| c.path.clone()).collect(),
-            somata: files
-                .iter()
-                .filter_map(|f| Some((f.path.clone(), f.soma.clone()?)))
-                .collect(),
-            usual: SomaEdit::default(),
-        }
-    }
-
     /// The node that a neuron is, if its circuit is open.
-    pub(crate) fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<NodeOf> {
+    pub(crate) fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<CircuitNode> {
         let said = entry.node.as_ref()?;
         let file = self.circuit.get(said.circuit)?.path.as_path();
         let mut ids = open.iter().map(|(id, _)| id);
         let circuit = ids.find(|&id| open.file(id) == Some(file))?;
         let node = circuits::node(open.get(circuit)?, &said.population, said.id)?;
-        Some(NodeOf { circuit, node })
+        Some(CircuitNode { circuit, node })
     }
 
     /// Writes it.
@@ -301,15 +299,16 @@ fn relative(path: &Path, folder: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::sources;
+    use crate::io::load;
     use crate::model::command::Command;
-    use crate::model::document::{ColorBy, Cut, Lighting, Neuron};
+    use crate::model::document::{ColorBy, Cut, Lighting};
     use crate::model::settings::Settings;
+    use crate::model::sources;
 
     fn state() -> State {
         let mut state = State::new(Settings::default());
         let star = sources::sample(neurotess::synth::Kind::Star);
-        let source = sources::load(&star, SomaEdit::default()).expect("grown");
+        let source = load::load(&star, SomaEdit::default()).expect("grown");
         let id = state.sources.add(source);
         for name in ["one", "two \"quoted\" µ"] {
             let mut neuron = Neuron::new(id, name.into());

@@ -4,16 +4,15 @@ use std::path::PathBuf;
 
 use neurotess::render::{BoundingSphere, Placement, Side};
 
-use crate::io::save::SaveForm;
-use crate::io::sources::{Source, Sources, extent};
 use crate::model::circuits::Circuits;
 use crate::model::command::{Ask, Command, Tab, Toggles};
 use crate::model::document::{self, Document, SourceId};
 use crate::model::history::History;
 use crate::model::playback::Playback;
+use crate::model::save::SaveForm;
 use crate::model::settings::Settings;
+use crate::model::sources::{self, Source, Sources, extent};
 use crate::model::view::View;
-use crate::ui::file_panel::FilePanel;
 
 /// From so many neurons on, a few balls around each will do.
 const MANY: usize = 64;
@@ -158,8 +157,8 @@ pub enum Over {
     Palette(String, usize),
     /// What went wrong.
     Problems,
-    /// Files.
-    Files(FilePanel),
+    /// Files to choose.
+    Files(Ask),
     /// Files exist: what to do if they may be replaced.
     Replace(PathBuf, Box<Command>),
 }
@@ -259,13 +258,13 @@ impl State {
                 };
                 self.forget_what_is_gone();
             }
-            Command::AskFiles(ask) => self.ask_files(ask),
+            Command::AskFiles(ask) => self.over = Over::Files(ask),
             Command::Open(paths) => {
                 self.settings.remember_files(&paths);
                 self.effects.push(Effect::Load(paths));
             }
             Command::OpenSample(kind) => {
-                let sample = crate::io::sources::sample(kind);
+                let sample = sources::sample(kind);
                 self.effects.push(Effect::Load(vec![sample]));
             }
             Command::Reload => self.effects.push(Effect::Reload),
@@ -341,11 +340,6 @@ impl State {
     fn toggle(&mut self, over: Over) {
         let same = std::mem::discriminant(&self.over) == std::mem::discriminant(&over);
         self.over = if same { Over::Nothing } else { over };
-    }
-
-    fn ask_files(&mut self, ask: Ask) {
-        let folder = self.settings.folder.clone();
-        self.over = Over::Files(FilePanel::new(ask, &folder, self.session.as_deref()));
     }
 
     fn remember(&mut self) {

@@ -9,10 +9,11 @@ use neurotess::generate::generate;
 use neurotess::render::{ColorMap, Palette, Rgb};
 use rayon::prelude::*;
 
-use crate::model::circuits::{CircuitId, Circuits};
-use crate::model::document::{ColorBy, Document, Look, NodeOf, SourceId};
+use crate::model::circuits::Circuits;
+use crate::model::document::{ColorBy, Document, Look};
+use crate::model::ids::{CircuitId, CircuitNode, SourceId};
 use crate::model::state::State;
-use crate::scene::content::ShownSource;
+use crate::scene::templates::SceneTemplate;
 
 /// What colors depend on.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +31,7 @@ pub(crate) struct Matter {
     attribute: String,
     report: Option<PathBuf>,
     /// The neurons in their order, where colors differ among those of one tracing.
-    pub(crate) own: Vec<(SourceId, Option<NodeOf>)>,
+    pub(crate) own: Vec<(SourceId, Option<CircuitNode>)>,
 }
 
 /// The colors themselves.
@@ -94,7 +95,7 @@ pub(crate) struct Wish {
     time: f64,
     circuits: Circuits,
     /// Place of the source, name and node of each neuron.
-    neurons: Vec<(usize, String, Option<NodeOf>)>,
+    neurons: Vec<(usize, String, Option<CircuitNode>)>,
 }
 
 /// Colors, and what they were made from.
@@ -119,7 +120,7 @@ impl From<Coloring> for Colored {
 
 impl Wish {
     /// `sources`: as they stand on the device, sorted.
-    pub(crate) fn new(state: &State, sources: &[ShownSource]) -> Self {
+    pub(crate) fn new(state: &State, sources: &[SceneTemplate]) -> Self {
         let document = &state.document;
         let neurons = document.neurons.iter().map(|neuron| {
             let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
@@ -136,7 +137,7 @@ impl Wish {
 
     /// The sources with a point at the middle of each element of the report, if its values show: a dendrite of
     /// two traced points has room for all its compartments then. What cannot be meshed so stays as it is.
-    pub(crate) fn cut(&self, mut sources: Vec<ShownSource>) -> Vec<ShownSource> {
+    pub(crate) fn cut(&self, mut sources: Vec<SceneTemplate>) -> Vec<SceneTemplate> {
         let report = self.report.as_ref();
         let Some(report) = report.filter(|_| self.look.color_by == ColorBy::Value) else {
             return sources;
@@ -181,7 +182,7 @@ impl Wish {
     }
 
     /// The colors; where they cannot be had, those of types.
-    pub(crate) fn colors(&self, sources: &[ShownSource]) -> Colored {
+    pub(crate) fn colors(&self, sources: &[SceneTemplate]) -> Colored {
         let cells: Vec<Cell<'_>> = sources
             .iter()
             .map(|s| Cell {
@@ -216,7 +217,7 @@ impl Wish {
         cells: &[Cell<'_>],
         paint: &ColorScheme,
     ) -> Result<Colored, (String, String)> {
-        let node = |of: &Option<NodeOf>| of.and_then(|of| self.circuits.node(of));
+        let node = |of: &Option<CircuitNode>| of.and_then(|of| self.circuits.node(of));
         let neurons: Vec<Option<Node<'_>>> = self.neurons.iter().map(|n| node(&n.2)).collect();
         let what = || "colors by attribute".to_owned();
         if neurons.iter().all(Option::is_none) {
@@ -242,7 +243,7 @@ impl Wish {
         let file = report.display().to_string();
         let mut why = "a report has values of a circuit's cells: open its circuit".to_owned();
         for (id, circuit) in self.circuits_newest_first() {
-            let node = |of: NodeOf| (of.circuit == id).then_some(of.node);
+            let node = |of: CircuitNode| (of.circuit == id).then_some(of.node);
             let stand: Vec<(usize, Option<NodeRef>)> = self
                 .neurons
                 .iter()

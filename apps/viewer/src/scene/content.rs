@@ -4,8 +4,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::coloring::{Coloring, Recording};
-use neurotess::generate::{GenerateOptions, Generated};
-use neurotess::morphology::Morphology;
 use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Clip, ColorTable, DeviceError, GHOSTED, Gpu,
     HIGHLIGHTED, Instance, Legend, Placement, Scene, SceneError, Template, TemplateId, Templates,
@@ -13,10 +11,11 @@ use neurotess::render::{
 };
 use thiserror::Error;
 
-use crate::io::sources::extent;
-use crate::model::document::{Document, Look, Parts, SourceId};
+use crate::model::document::{Document, Look, Parts};
+use crate::model::sources::extent;
 use crate::model::state::State;
 use crate::scene::colors::Colored;
+use crate::scene::templates::SceneTemplate;
 
 /// Width (pixels) of wires.
 const WIRE: f32 = 1.0;
@@ -32,23 +31,10 @@ pub(crate) enum BuildError {
     Scene(#[from] SceneError),
 }
 
-/// A tracing as a template.
-#[derive(Clone, Debug)]
-pub(crate) struct ShownSource {
-    pub(crate) id: SourceId,
-    pub(crate) name: String,
-    pub(crate) morphology: Arc<Morphology>,
-    pub(crate) generated: Arc<Generated>,
-    /// As the tracing was meshed; another one than `generated` where a report has made room for its values.
-    pub(crate) traced: Arc<Generated>,
-    /// Of its mesh.
-    pub(crate) options: GenerateOptions,
-}
-
 /// What a scene is made of.
 #[derive(Clone, Debug)]
 pub(crate) struct Shown {
-    pub(crate) sources: Vec<ShownSource>,
+    pub(crate) sources: Vec<SceneTemplate>,
     pub(crate) instances: Vec<Standing>,
     /// What points say on the device.
     pub(crate) coloring: Arc<Coloring>,
@@ -61,7 +47,7 @@ pub(crate) struct Shown {
 
 impl Shown {
     pub(crate) fn new(
-        sources: Vec<ShownSource>,
+        sources: Vec<SceneTemplate>,
         instances: Vec<Standing>,
         colored: Colored,
     ) -> Self {
@@ -87,27 +73,8 @@ pub(crate) struct Standing {
     pub(crate) hidden: bool,
 }
 
-/// Sources that neurons stand for, in their order.
-pub(crate) fn sources(state: &State) -> Vec<ShownSource> {
-    let mut used: Vec<SourceId> = state.document.neurons.iter().map(|n| n.source).collect();
-    used.sort_unstable();
-    used.dedup();
-    let shown = used.into_iter().filter_map(|id| {
-        let source = state.sources.get(id)?;
-        Some(ShownSource {
-            id,
-            name: source.name.clone(),
-            morphology: Arc::clone(&source.morphology),
-            generated: Arc::clone(&source.generated),
-            traced: Arc::clone(&source.generated),
-            options: source.soma.options(),
-        })
-    });
-    shown.collect()
-}
-
 /// Where all neurons stand. `sources`: as on the device, sorted.
-pub(crate) fn standing(state: &State, sources: &[ShownSource]) -> Vec<Standing> {
+pub(crate) fn standing(state: &State, sources: &[SceneTemplate]) -> Vec<Standing> {
     let neurons = state.document.neurons.iter().zip(state.placements());
     let standing = neurons.map(|(neuron, placement)| {
         let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
@@ -124,7 +91,7 @@ pub(crate) fn standing(state: &State, sources: &[ShownSource]) -> Vec<Standing> 
 /// Uploads all sources; their numbers are their places.
 pub(crate) fn templates(
     gpu: &Gpu,
-    sources: &[ShownSource],
+    sources: &[SceneTemplate],
     coloring: &Coloring,
 ) -> Result<Templates, DeviceError> {
     let list: Vec<Template<'_>> = sources

@@ -5,15 +5,19 @@ use std::sync::Arc;
 
 use neurotess::render::Gpu;
 
-use crate::io::save::{self, PictureFile, Scenery, Still};
-use crate::io::sources::{self, Wanted};
+use crate::io::find::{self, OpenRequest};
+use crate::io::load;
 use crate::io::tasks::Job;
 use crate::model::document::Neuron;
+use crate::model::film::Still;
+use crate::model::save::PictureFile;
 use crate::model::session::Session;
 use crate::model::settings::Settings;
 use crate::model::state::State;
 use crate::scene::colors::Wish;
 use crate::scene::content::{self, Shown};
+use crate::scene::pictures::{Scenery, pictures};
+use crate::scene::templates;
 
 /// A picture that was drawn, and what failed of the session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -37,9 +41,9 @@ pub fn draw_session(
     let mut state = State::new(Settings::default());
     let mut drawn = Drawn::default();
     let mut ids = Vec::new();
-    let found = sources::find(&Wanted {
+    let found = find::find(&OpenRequest {
         circuits: session.circuit.iter().map(|c| c.path.clone()).collect(),
-        ..Wanted::default()
+        ..OpenRequest::default()
     });
     for (file, why) in found.failures {
         drawn.failures.push((file.display().to_string(), why));
@@ -49,7 +53,7 @@ pub fn draw_session(
     }
     for entry in &session.file {
         let soma = entry.soma.clone().unwrap_or_default();
-        ids.push(match sources::load(&entry.path, soma) {
+        ids.push(match load::load(&entry.path, soma) {
             Ok(source) => Some(state.sources.add(source)),
             Err(why) => {
                 let file = entry.path.display().to_string();
@@ -67,7 +71,7 @@ pub fn draw_session(
             let node = session.node_of(entry, &state.circuits);
             state.document.neurons.push(Neuron {
                 node,
-                ..Neuron::of_session(id, entry)
+                ..entry.neuron(id)
             });
         }
     }
@@ -78,7 +82,7 @@ pub fn draw_session(
         view: session.view,
         time: Some(session.playback.time),
     };
-    save::pictures(
+    pictures(
         &scenery,
         &[still],
         picture,
@@ -88,7 +92,7 @@ pub fn draw_session(
 }
 
 fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
-    let sources = content::sources(state);
+    let sources = templates::templates(state);
     let wish = Wish::new(state, &sources);
     let sources = wish.cut(sources);
     let mut colored = wish.colors(&sources);

@@ -6,8 +6,8 @@ use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, PatchKind};
 use neurotess::render::{HOVERED, PICKED, PickHit, PickId, PickTarget, Placement, SELECTED};
 
-use crate::io::sources::SectionFacts;
 use crate::model::document::Document;
+use crate::model::sources::SectionFacts;
 use crate::model::state::{Part, Picked};
 
 /// Pixels around the cursor in which something thin is still meant.
@@ -24,7 +24,7 @@ pub struct Seen {
 
 /// By pixel.
 #[derive(Clone, Debug, Default)]
-pub struct Picks {
+pub(crate) struct Picks {
     size: [u32; 2],
     /// By pixel: 0 where nothing is, else one more than the place in `seen`.
     index: Vec<u32>,
@@ -60,12 +60,12 @@ impl Picks {
     }
 
     /// Width and height (pixels).
-    pub fn size(&self) -> [u32; 2] {
+    pub(crate) fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// What is at a pixel, or nearest within a few.
-    pub fn at(&self, x: f32, y: f32) -> Option<Seen> {
+    pub(crate) fn at(&self, x: f32, y: f32) -> Option<Seen> {
         let (x, y) = (x.floor() as i64, y.floor() as i64);
         let mut near: Vec<(i64, i64)> = (-REACH..=REACH)
             .flat_map(|dy| (-REACH..=REACH).map(move |dx| (dx, dy)))
@@ -87,7 +87,7 @@ impl Picks {
 
     /// Bits of the outlines by pixel: around selected neurons, around what is hovered, and around the
     /// piece that was clicked.
-    pub fn mask(
+    pub(crate) fn mask(
         &self,
         document: &Document,
         hovered: Option<Picked>,

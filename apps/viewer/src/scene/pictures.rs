@@ -12,27 +12,14 @@ use neurotess::render::{
     OverlayOptions, PictureError, PictureOptions, PngWriter, StillRenderer, Watch,
 };
 
-use crate::io::save::{Still, existing};
+use crate::io::save::existing;
 use crate::io::tasks::Job;
 use crate::model::document::Look;
+use crate::model::film::Still;
 use crate::model::playback::said;
+use crate::model::save::PictureFile;
 use crate::scene::colors::paint;
 use crate::scene::content::{self, Shown};
-
-/// A picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PictureFile {
-    /// Its file.
-    pub out: PathBuf,
-    /// Width and height (pixels).
-    pub size: [u32; 2],
-    /// Samples of a pixel.
-    pub samples: u32,
-    /// Without a background.
-    pub transparent: bool,
-    /// Whether the file may be replaced.
-    pub replace: bool,
-}
 
 /// All that pictures need to know, free of the window.
 pub(crate) struct Scenery {

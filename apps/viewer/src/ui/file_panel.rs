@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, RichText, ScrollArea};
 
+use crate::io::find;
 use crate::io::paths::{self, Name, completed, goes_on, parted};
-use crate::io::sources;
 use crate::model::command::{Ask, Command};
 use crate::model::session;
+use crate::ui::path_line;
 
 /// Where one is, and what is typed.
 #[derive(Clone, Debug)]
-pub struct FilePanel {
+pub(crate) struct FilePanel {
     ask: Ask,
     folder: PathBuf,
     entries: Vec<Entry>,
@@ -35,7 +36,7 @@ struct Entry {
 
 impl FilePanel {
     /// In a folder; `session`: where the session was saved last.
-    pub fn new(ask: Ask, folder: &Path, session: Option<&Path>) -> Self {
+    pub(crate) fn new(ask: Ask, folder: &Path, session: Option<&Path>) -> Self {
         let typed = match (ask, session) {
             (Ask::SaveSession, Some(session)) => session.display().to_string(),
             (Ask::SaveSession, None) => {
@@ -56,6 +57,11 @@ impl FilePanel {
         };
         panel.enter(folder);
         panel
+    }
+
+    /// Whether it asks for this.
+    pub(crate) fn is_for(&self, ask: Ask) -> bool {
+        self.ask == ask
     }
 
     fn enter(&mut self, folder: &Path) {
@@ -89,10 +95,8 @@ impl FilePanel {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("json"));
         let wanted = match self.ask {
-            Ask::Open => {
-                is_folder || sources::is_readable(path) || session::is_session(path) || json
-            }
-            Ask::Report => is_folder || sources::is_hdf5(path),
+            Ask::Open => is_folder || find::is_readable(path) || session::is_session(path) || json,
+            Ask::Report => is_folder || find::is_hdf5(path),
             Ask::SaveSession => is_folder || session::is_session(path),
         };
         wanted.then(|| Entry {
@@ -104,7 +108,7 @@ impl FilePanel {
     }
 
     /// Shows the panel; gives what to do, or nothing; `open` is cleared when it is to be closed.
-    pub fn show(&mut self, ctx: &egui::Context, open: &mut bool) -> Option<Command> {
+    pub(crate) fn show(&mut self, ctx: &egui::Context, open: &mut bool) -> Option<Command> {
         let title = match self.ask {
             Ask::Open => "Open tracings, folders, circuits or a session",
             Ask::Report => "Open a report or spikes of a simulation",
@@ -251,9 +255,9 @@ impl FilePanel {
                 is_folder: entry.is_folder,
             })
             .collect();
-        let line = paths::line(&mut self.typed, hint, |typed| completed(typed, &names), ui);
+        let line = path_line::line(&mut self.typed, hint, |typed| completed(typed, &names), ui);
         if line.changed() && self.follow() {
-            paths::to_end(line.id, &self.typed, ui);
+            path_line::to_end(line.id, &self.typed, ui);
         }
         if std::mem::take(&mut self.fresh) {
             line.request_focus();

@@ -16,42 +16,8 @@ use neurotess::render::Placement;
 use super::existing;
 use crate::io::tasks::Job;
 use crate::model::document::Detail;
+use crate::model::save::{Fineness, MeshOptions};
 use crate::model::view::View;
-
-/// How finely a mesh is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Fineness {
-    /// By the panel's level: at the present view's distance where it depends on that.
-    #[default]
-    AsShown,
-    /// The same level everywhere; 0: the coarse quads.
-    Level(u32),
-    /// Within a distance (µm).
-    MaxError(f32),
-}
-
-/// How meshes are written.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeshOptions {
-    /// A file for one, a folder for several.
-    pub out: PathBuf,
-    /// What kind of file.
-    pub format: Format,
-    /// How finely.
-    pub fineness: Fineness,
-    /// Quads instead of triangles.
-    pub quads: bool,
-    /// Straight between points.
-    pub linear: bool,
-    /// Disks at the ends.
-    pub flat: bool,
-    /// Where neurons stand in the window instead of where they were traced.
-    pub placed: bool,
-    /// All that is shown instead of what is selected.
-    pub all: bool,
-    /// Whether files may be replaced.
-    pub replace: bool,
-}
 
 /// A cell to be written.
 #[derive(Clone)]
@@ -203,12 +169,13 @@ fn levels(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::sources;
+    use crate::io::load;
     use crate::model::document::SomaEdit;
+    use crate::model::sources;
 
     fn plan(name: &str) -> MeshPlan {
         let star = sources::sample(neurotess::synth::Kind::Star);
-        let source = sources::load(&star, SomaEdit::default()).expect("grown");
+        let source = load::load(&star, SomaEdit::default()).expect("grown");
         MeshPlan {
             name: name.into(),
             generated: source.generated,

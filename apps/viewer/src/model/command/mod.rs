@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
-use crate::io::save::{FilmOptions, MeshOptions, PictureFile};
 use crate::model::document::{Detail, Document, Look, SomaEdit, SourceId};
 use crate::model::playback::Pace;
+use crate::model::save::{FilmOptions, MeshOptions, PictureFile};
 use crate::model::view::View;
 
 pub use list::{Listed, Toggles, listed};

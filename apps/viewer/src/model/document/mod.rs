@@ -8,30 +8,13 @@ mod soma;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use neurotess::circuit::NodeRef;
 use neurotess::render::Placement;
-use serde::{Deserialize, Serialize};
 
-use crate::model::circuits::CircuitId;
-use crate::model::session::NeuronEntry;
-
+pub use crate::model::ids::{CircuitNode, SourceId};
 pub use detail::{Criterion, Detail};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, Parts};
 pub(crate) use placement::PlaceFile;
 pub use soma::{Method, SomaEdit};
-
-/// Place of a tracing in [`Sources`](crate::io::sources::Sources).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct SourceId(pub u32);
-
-/// A node of an open circuit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NodeOf {
-    /// Which circuit.
-    pub circuit: CircuitId,
-    /// Which of its nodes.
-    pub node: NodeRef,
-}
 
 /// All that an edit changes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,7 +39,7 @@ pub struct Neuron {
     /// Its shape.
     pub source: SourceId,
     /// What it is in its circuit, if it is of one.
-    pub node: Option<NodeOf>,
+    pub node: Option<CircuitNode>,
     /// Name in the list.
     pub name: String,
     /// Where it was traced, or where its circuit puts it.
@@ -77,16 +60,6 @@ impl Neuron {
             placement: Placement::default(),
             hidden: false,
             selected: false,
-        }
-    }
-
-    /// As a session has it.
-    pub(crate) fn of_session(source: SourceId, entry: &NeuronEntry) -> Self {
-        Self {
-            placement: entry.place.map(Into::into).unwrap_or_default(),
-            hidden: entry.hidden,
-            selected: entry.selected && !entry.hidden,
-            ..Self::new(source, entry.name.clone())
         }
     }
 }

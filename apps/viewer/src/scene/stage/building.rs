@@ -10,7 +10,8 @@ use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 use super::Stage;
 use crate::model::state::State;
 use crate::scene::colors::{ColorKey, Wish};
-use crate::scene::content::{self, BuildError, Shown, ShownSource};
+use crate::scene::content::{self, BuildError, Shown};
+use crate::scene::templates::{self, SceneTemplate};
 
 /// Cells up to which a soma is changed at once; with more, all colors are made anew beside.
 const QUICK: usize = 24;
@@ -62,7 +63,7 @@ impl Stage {
         if self.building.is_some() {
             return Ok(());
         }
-        let sources = content::sources(state);
+        let sources = templates::templates(state);
         let colors = ColorKey::new(&state.document);
         let same_sources = sources.len() == self.shown.sources.len()
             && sources
@@ -98,7 +99,7 @@ impl Stage {
 
     pub(super) fn replace(
         &mut self,
-        sources: Vec<ShownSource>,
+        sources: Vec<SceneTemplate>,
         changed: &[usize],
         wish: &Wish,
     ) -> Result<(), DeviceError> {
@@ -126,7 +127,7 @@ impl Stage {
     pub(super) fn build(
         &mut self,
         state: &State,
-        sources: Vec<ShownSource>,
+        sources: Vec<SceneTemplate>,
         key: ColorKey,
         ctx: &egui::Context,
     ) {

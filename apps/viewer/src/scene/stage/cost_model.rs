@@ -3,8 +3,7 @@
 
 use neurotess::render::{ViewParams, any_shows};
 
-use super::Stage;
-use super::rest::whole;
+use super::{Stage, whole};
 use crate::model::state::{Lowered, State};
 use crate::scene::content::Standing;
 

@@ -17,8 +17,8 @@ use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, Camera, DeviceError, Gpu, InstanceValues, Legend,
-    ProgressiveRenderer, Scene, ViewParams,
+    Adaptive, AdaptiveSettings, Camera, DeviceError, Frame, Gpu, InstanceValues, Legend,
+    ProgressiveRenderer, Scene, Tile, ViewParams,
 };
 
 use crate::io::frames::Reader;
@@ -276,5 +276,20 @@ impl Stage {
         };
         self.texture = Some((id, key.0, key.1));
         Some(id)
+    }
+}
+
+/// A frame without tiles.
+fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
+    Frame {
+        camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
     }
 }

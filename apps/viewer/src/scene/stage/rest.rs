@@ -3,13 +3,11 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{
-    AdaptiveSettings, Camera, DeviceError, Frame, Steps, Tile, VertexSource, ViewParams,
-};
+use neurotess::render::{AdaptiveSettings, DeviceError, Steps, VertexSource, ViewParams};
 
 use super::cost_model::Full;
 use super::pointing::Names;
-use super::{Rest, Stage};
+use super::{Rest, Stage, whole};
 use crate::model::command::Tab;
 use crate::model::document::Detail;
 use crate::model::state::State;
@@ -165,20 +163,5 @@ impl Stage {
         let stats = self.maker.stats(&self.gpu)?;
         self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);
         Ok(())
-    }
-}
-
-/// A frame without tiles.
-pub(super) fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
-    Frame {
-        camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
     }
 }

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::Viewer;
-use crate::io::sources::{Found, Source, Stale, Wanted};
-use crate::model::circuits::CircuitId;
+use crate::io::find::{Found, OpenRequest};
 use crate::model::command::Command;
-use crate::model::document::{Neuron, NodeOf, SourceId};
+use crate::model::document::{Neuron, SourceId};
+use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::session::{self, Session};
+use crate::model::sources::{Source, Stale};
 use crate::model::state::{Effect, State};
 
 /// A loading: what was found, and its cells by file.
@@ -53,16 +54,16 @@ impl Viewer {
         let wanted = match session {
             Some((file, session)) => {
                 self.take_session(&file, &session);
-                let wanted = session.wanted();
+                let wanted = OpenRequest::of_session(&session);
                 loading.session = Some(Box::new(session));
                 wanted
             }
-            None => Wanted {
+            None => OpenRequest {
                 paths,
-                ..Wanted::default()
+                ..OpenRequest::default()
             },
         };
-        let wanted = Wanted {
+        let wanted = OpenRequest {
             usual: std::mem::take(&mut self.soma),
             ..wanted
         };
@@ -86,7 +87,7 @@ impl Viewer {
         (state.view, state.fitted) = (session.view, None);
         state.key_views = session.key_view.clone();
         state.session = Some(file.to_path_buf());
-        self.going = None;
+        self.motion.stop();
     }
 
     pub(super) fn reload(&mut self) {
@@ -170,12 +171,14 @@ impl Viewer {
     }
 
     fn home(&mut self) {
-        let smooth = std::mem::replace(&mut self.smooth, false);
         self.state.run(Command::Home);
         for effect in std::mem::take(&mut self.state.effects) {
-            self.effect(effect);
+            match effect {
+                // Nothing was there before: there is no way to go.
+                Effect::Go(view) => self.motion.jump(&mut self.state, view),
+                other => self.effect(other),
+            }
         }
-        self.smooth = smooth;
     }
 
     pub(super) fn end_loading(&mut self) {
@@ -190,7 +193,7 @@ impl Viewer {
                         let node = session.node_of(entry, &self.state.circuits);
                         self.open(Neuron {
                             node,
-                            ..Neuron::of_session(id, entry)
+                            ..entry.neuron(id)
                         });
                     }
                 }
@@ -203,7 +206,7 @@ impl Viewer {
                     {
                         let (name, placement) = standing.place(source);
                         let circuit = loading.circuits.get(standing.circuit);
-                        let node = circuit.map(|&circuit| NodeOf {
+                        let node = circuit.map(|&circuit| CircuitNode {
                             circuit,
                             node: standing.instance.node,
                         });

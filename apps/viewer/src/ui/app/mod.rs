@@ -5,7 +5,7 @@ mod messages;
 mod saving;
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use eframe::egui;
 use egui_wgpu::RenderState;
@@ -16,14 +16,12 @@ use crate::model::command::{Command, listed};
 use crate::model::document::SomaEdit;
 use crate::model::settings::Settings;
 use crate::model::state::{Effect, State};
-use crate::model::view::View;
 use crate::scene::stage::Stage;
+use crate::ui::file_panel::FilePanel;
 use crate::ui::input::Input;
-use crate::ui::panels;
+use crate::ui::motion::Motion;
+use crate::ui::panels::{self, Screen};
 use loading::Loading;
-
-/// How long going to another view takes.
-const GO: Duration = Duration::from_millis(260);
 
 /// The whole program, without its frame.
 pub struct Viewer {
@@ -36,15 +34,13 @@ pub struct Viewer {
     loading: Option<Loading>,
     /// What is to be read after it.
     waiting: Vec<PathBuf>,
-    going: Option<(View, View, Instant)>,
+    motion: Motion,
+    files: Option<FilePanel>,
     /// What is fatal: the device is lost.
     pub fatal: Option<String>,
     quits: bool,
     theme: Option<(bool, u32)>,
     remembered: Settings,
-    smooth: bool,
-    /// Size of the window, once it is known.
-    window: Option<egui::Vec2>,
     /// Somata of what is opened first.
     soma: SomaEdit,
     /// When the recording's time was looked at last.
@@ -79,13 +75,12 @@ impl Viewer {
             worker: Worker::new(move || waker.request_repaint()),
             loading: None,
             waiting: Vec::new(),
-            going: None,
+            motion: Motion::new(),
+            files: None,
             fatal: None,
             quits: false,
             theme: None,
             remembered: settings,
-            smooth: true,
-            window: None,
             soma: SomaEdit::default(),
             ticked: Instant::now(),
             rescue: crate::model::settings::folder().unwrap_or_default(),
@@ -113,18 +108,18 @@ impl Viewer {
 
     /// Views change at once: for tests.
     pub fn without_motion(mut self) -> Self {
-        self.smooth = false;
+        self.motion.set_smooth(false);
         self
     }
 
     /// Whether nothing is under way: all that is to be read is, and all is drawn.
     pub fn is_settled(&self) -> bool {
         let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
-        !self.worker.is_busy() && self.going.is_none() && self.loading.is_none() && drawn
+        !self.worker.is_busy() && !self.motion.is_flying() && self.loading.is_none() && drawn
     }
 
     /// Job of reading and of saving, for the status bar.
-    pub(crate) fn jobs(&self) -> [Option<crate::io::tasks::Job>; 2] {
+    fn jobs(&self) -> [Option<crate::io::tasks::Job>; 2] {
         [self.worker.loading.clone(), self.worker.saving.clone()]
     }
 
@@ -137,9 +132,11 @@ impl Viewer {
         }
         self.take_drops(&ctx);
         self.shortcuts(&ctx);
-        self.go_on(&ctx);
+        if self.motion.advance(&mut self.state) {
+            ctx.request_repaint();
+        }
         self.tick();
-        panels::show(self, ui);
+        self.show_panels(ui);
         for command in std::mem::take(&mut self.state.asked) {
             self.run(command);
             ctx.request_repaint();
@@ -153,23 +150,25 @@ impl Viewer {
         }
     }
 
-    /// Draws the picture of this size; what cannot go on is kept in `fatal`.
-    pub(crate) fn picture(
-        &mut self,
-        size: [u32; 2],
-        ctx: &egui::Context,
-    ) -> Option<egui::TextureId> {
-        match self.stage.update(&mut self.state, size, ctx) {
-            Ok(texture) => texture,
-            Err(DeviceError::Lost(why)) => {
+    /// Shows everything; what cannot go on is kept in `fatal`.
+    fn show_panels(&mut self, ui: &mut egui::Ui) {
+        let jobs = self.jobs();
+        let mut screen = Screen {
+            state: &mut self.state,
+            stage: &mut self.stage,
+            motion: &mut self.motion,
+            files: &mut self.files,
+            jobs,
+            failed: None,
+        };
+        panels::show(&mut screen, ui);
+        match screen.failed {
+            None => {}
+            Some(DeviceError::Lost(why)) => {
                 self.fatal = Some(self.rescue(&lost(&why)));
                 self.quits = true;
-                None
             }
-            Err(e) => {
-                self.state.problem("drawing", e.to_string());
-                None
-            }
+            Some(e) => self.state.problem("drawing", e.to_string()),
         }
     }
 
@@ -197,50 +196,11 @@ impl Viewer {
         }
     }
 
-    /// The camera on its way.
-    fn go_on(&mut self, ctx: &egui::Context) {
-        let Some((from, to, begun)) = self.going else {
-            return;
-        };
-        let t = begun.elapsed().as_secs_f64() / GO.as_secs_f64();
-        if t >= 1.0 {
-            (self.state.view, self.going) = (to, None);
-        } else {
-            self.state.view = from.between(&to, t * t * (3.0 - 2.0 * t));
-        }
-        ctx.request_repaint();
-    }
-
     /// Lets the recording's time go on by the clock.
     fn tick(&mut self) {
         let seconds = self.ticked.elapsed().as_secs_f64();
         self.ticked = Instant::now();
         self.state.playback.advance(seconds);
-    }
-
-    /// Moves the camera by hand.
-    pub(crate) fn steer(&mut self, view: View) {
-        self.going = None;
-        self.state.fitted = None;
-        self.state.view = view;
-    }
-
-    /// The picture has this form (width by height) in a window of this size. A view that fits everything
-    /// does so in any form; another one changes with the window's size only, not with panels.
-    pub(crate) fn reshape(&mut self, aspect: f64, window: egui::Vec2) {
-        let before = self.window.replace(window);
-        let resized = before.is_some_and(|before| before != window);
-        let fitted = self.state.fitted.is_some();
-        let Some(view) = self.state.reshape(aspect) else {
-            return;
-        };
-        match &mut self.going {
-            Some((_, to, _)) if fitted => *to = view,
-            // What is on its way goes where it was asked to.
-            Some(_) => {}
-            None if fitted || resized => self.state.view = view,
-            None => {}
-        }
     }
 
     fn effect(&mut self, effect: Effect) {
@@ -255,13 +215,7 @@ impl Viewer {
                     self.state.said = format!("Stopped {}", job.what);
                 }
             }
-            Effect::Go(view) => {
-                if self.smooth && !self.state.document.neurons.is_empty() {
-                    self.going = Some((self.state.view, view, Instant::now()));
-                } else {
-                    self.state.view = view;
-                }
-            }
+            Effect::Go(view) => self.motion.fly(&mut self.state, view),
             Effect::Quit => self.quits = true,
             Effect::Save(command) => self.save(command),
         }

@@ -3,13 +3,16 @@
 use std::path::Path;
 
 use super::Viewer;
-use crate::io::save::{self, FilmOptions, MeshPlan, Scenery, Still};
+use crate::io::save::{self, MeshPlan, video};
 use crate::io::tasks::Job;
 use crate::model::command::Command;
 use crate::model::document::Neuron;
+use crate::model::film::{Still, stills};
+use crate::model::save::FilmOptions;
 use crate::model::session::{self, Session};
 use crate::model::settings;
 use crate::scene::content;
+use crate::scene::pictures::{Scenery, pictures};
 
 impl Viewer {
     /// Saves the session before the program ends by itself; what to say.
@@ -54,7 +57,7 @@ impl Viewer {
                 };
                 self.worker
                     .save("drawing the picture", (0, "tiles"), move |job| {
-                        let files = save::pictures(&scenery, &[still], &options, job)?;
+                        let files = pictures(&scenery, &[still], &options, job)?;
                         let file = files.first().map(|f| f.display().to_string());
                         Ok(format!("Saved {}", file.unwrap_or_default()))
                     });
@@ -71,7 +74,7 @@ impl Viewer {
         let (keys, now) = (&state.key_views, state.view);
         let at = Some(state.playback.pace.time);
         let time = film.time.filter(|_| state.playback.facts.is_some());
-        let stills = save::stills(keys, now, film.frames, time, at);
+        let stills = stills(keys, now, film.frames, time, at);
         if stills.is_empty() {
             let why = "keep two views for it (K), or open a report whose time goes on";
             self.state.problem("film", why);
@@ -79,11 +82,11 @@ impl Viewer {
         }
         let scenery = self.scenery();
         let work = move |job: &Job| {
-            let files = save::pictures(&scenery, &stills, &film.picture, job)?;
+            let files = pictures(&scenery, &stills, &film.picture, job)?;
             let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
             let also = match film.video && count > 1 {
                 true => {
-                    let video = save::video(&first, film.picture.replace, job)?;
+                    let video = video::video(&first, film.picture.replace, job)?;
                     format!(" and {}", video.display())
                 }
                 false => String::new(),

@@ -8,8 +8,8 @@ use neurotess::morphology::{Attachment, Morphology, SectionId};
 
 use super::measured;
 use super::tip::Tip;
-use crate::io::sources::{SectionFacts, Stale};
 use crate::model::command::Command;
+use crate::model::sources::{SectionFacts, Stale};
 use crate::model::state::{Part, Picked, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {

@@ -6,8 +6,8 @@ use neurotess::morphology::{Measures, NeuriteKind};
 use super::cells::{count, kind_name};
 use super::tip::Tip;
 use super::{figures, grouped, heading, measured};
-use crate::io::sources::Source;
 use crate::model::command::Command;
+use crate::model::sources::Source;
 use crate::model::state::{Part, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {

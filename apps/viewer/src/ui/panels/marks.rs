@@ -7,7 +7,7 @@ use neurotess::generate::FirstRing;
 use neurotess::morphology::{Point, SectionId, shape};
 use neurotess::render::{Camera, Placement};
 
-use crate::io::sources::Source;
+use crate::model::sources::Source;
 use crate::model::state::{Part, Picked, State};
 use crate::scene::stage::OUTLINES;
 

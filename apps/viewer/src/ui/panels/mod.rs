@@ -21,26 +21,43 @@ use eframe::egui::{
     self, CentralPanel, Color32, CornerRadius, Frame, Margin, Panel, RichText, ScrollArea, Sense,
     UiBuilder, Visuals,
 };
+use neurotess::render::DeviceError;
 
+use crate::io::tasks::Job;
 use crate::model::command::{Command, Tab};
-use crate::ui::app::Viewer;
+use crate::model::state::State;
+use crate::scene::stage::Stage;
+use crate::ui::file_panel::FilePanel;
+use crate::ui::motion::Motion;
+
+/// What panels show and change.
+pub(crate) struct Screen<'a> {
+    pub(crate) state: &'a mut State,
+    pub(crate) stage: &'a mut Stage,
+    pub(crate) motion: &'a mut Motion,
+    /// The panel of files, while it is open.
+    pub(crate) files: &'a mut Option<FilePanel>,
+    /// Reading and saving, if they are under way.
+    pub(crate) jobs: [Option<Job>; 2],
+    /// Why the picture could not be drawn.
+    pub(crate) failed: Option<DeviceError>,
+}
 
 /// Everything.
-pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
+pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let ctx = ui.ctx().clone();
-    let before = viewer.state.hovered.take();
-    viewer.state.touched = None;
-    Panel::top("menu").show(ui, |ui| menu::show(&mut viewer.state, ui));
-    let jobs = viewer.jobs();
-    let progress = viewer.stage.progress();
+    let before = screen.state.hovered.take();
+    screen.state.touched = None;
+    Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
+    let progress = screen.stage.progress();
     Panel::bottom("status").show(ui, |ui| {
-        status::show(&mut viewer.state, &jobs, progress, ui);
+        status::show(screen.state, &screen.jobs, progress, ui);
     });
-    let any = !viewer.state.document.neurons.is_empty();
-    if let Some(facts) = viewer.state.playback.facts.clone().filter(|_| any) {
-        Panel::bottom("time").show(ui, |ui| timeline::show(&mut viewer.state, &facts, ui));
+    let any = !screen.state.document.neurons.is_empty();
+    if let Some(facts) = screen.state.playback.facts.clone().filter(|_| any) {
+        Panel::bottom("time").show(ui, |ui| timeline::show(screen.state, &facts, ui));
     }
-    if viewer.state.panels && any {
+    if screen.state.panels && any {
         // In a narrow window the picture keeps a third.
         let all = ui.available_width();
         let sized = |panel: Panel, [least, usual]: [f32; 2], share: f32| {
@@ -50,21 +67,21 @@ pub(crate) fn show(viewer: &mut Viewer, ui: &mut egui::Ui) {
                 .size_range(least.min(most)..=most)
         };
         sized(Panel::left("cells"), [160.0, 236.0], 0.28).show(ui, |ui| {
-            kept_in(ui, |ui| cells::show(&mut viewer.state, ui));
+            kept_in(ui, |ui| cells::show(screen.state, ui));
         });
         sized(Panel::right("side"), [240.0, 292.0], 0.42).show(ui, |ui| {
-            kept_in(ui, |ui| side(viewer, ui));
+            kept_in(ui, |ui| side(screen, ui));
         });
     }
     CentralPanel::no_frame().show(ui, |ui| {
         if any {
-            viewport::show(viewer, before, ui);
+            viewport::show(screen, before, ui);
         } else {
-            let reads = viewer.jobs()[0].is_some();
-            empty::show(&mut viewer.state, reads, ui);
+            let reads = screen.jobs[0].is_some();
+            empty::show(screen.state, reads, ui);
         }
     });
-    over::show(&mut viewer.state, &ctx);
+    over::show(screen.state, screen.files, &ctx);
     over::hover(&ctx);
 }
 
@@ -77,27 +94,27 @@ fn kept_in(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
     ui.allocate_rect(rect, Sense::hover());
 }
 
-fn side(viewer: &mut Viewer, ui: &mut egui::Ui) {
+fn side(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     ui.add_space(4.0);
     // Sliders fill the panel, up to their usual length.
     let room = (ui.available_width() - 150.0).clamp(40.0, 118.0);
     ui.spacing_mut().slider_width = room;
     ui.horizontal_wrapped(|ui| {
         for (tab, name) in Tab::ALL {
-            let selected = viewer.state.tab == tab;
+            let selected = screen.state.tab == tab;
             if ui.selectable_label(selected, name).clicked() {
-                viewer.state.asked.push(Command::Show(tab));
+                screen.state.asked.push(Command::Show(tab));
             }
         }
     });
     ui.separator();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
-        let state = &mut viewer.state;
+        let state = &mut *screen.state;
         match state.tab {
             Tab::Inspect => inspect::show(state, ui),
             Tab::Soma => soma::show(state, ui),
-            Tab::Look => look::show(state, viewer.stage.legend(), ui),
+            Tab::Look => look::show(state, screen.stage.legend(), ui),
             Tab::Detail => detail::show(state, ui),
             Tab::Save => save::show(state, ui),
         }

@@ -3,34 +3,50 @@
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use super::keys_text;
-use crate::model::command::{Command, Listed, listed};
+use crate::model::command::{Ask, Command, Listed, listed};
 use crate::model::state::{Over, State};
+use crate::ui::file_panel::FilePanel;
 
-pub(super) fn show(state: &mut State, ctx: &Context) {
+pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Context) {
     let over = std::mem::take(&mut state.over);
+    if !matches!(over, Over::Files(_)) {
+        *panel = None;
+    }
     let escape = ctx.input(|i| i.key_pressed(Key::Escape));
     let stays = match over {
         Over::Nothing => Over::Nothing,
         Over::Keys => keys(state, ctx),
         Over::Problems => problems(state, ctx),
         Over::Palette(words, chosen) => palette(state, words, chosen, ctx),
-        Over::Files(mut panel) => {
-            let mut open = true;
-            state.asked.extend(panel.show(ctx, &mut open));
-            if open {
-                Over::Files(panel)
-            } else {
-                Over::Nothing
-            }
-        }
+        Over::Files(ask) => files(state, ask, panel, ctx),
         Over::Replace(path, command) => replace(state, path, command, ctx),
     };
     let had = !matches!(stays, Over::Nothing);
     state.over = if escape { Over::Nothing } else { stays };
+    if !matches!(state.over, Over::Files(_)) {
+        *panel = None;
+    }
     if escape && had {
         // This escape closed a window: it does not also drop the selection.
         ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Escape));
     }
+}
+
+fn files(state: &mut State, ask: Ask, panel: &mut Option<FilePanel>, ctx: &Context) -> Over {
+    let mut shown = panel
+        .take()
+        .filter(|panel| panel.is_for(ask))
+        .unwrap_or_else(|| {
+            let session = state.session.as_deref();
+            FilePanel::new(ask, &state.settings.folder, session)
+        });
+    let mut open = true;
+    state.asked.extend(shown.show(ctx, &mut open));
+    if !open {
+        return Over::Nothing;
+    }
+    *panel = Some(shown);
+    Over::Files(ask)
 }
 
 /// What a drop would do, while files are held over the window.

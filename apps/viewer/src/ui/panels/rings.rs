@@ -5,9 +5,9 @@ use eframe::egui::{Button, Color32, Label, RichText, Sense, Ui};
 use super::cells;
 use super::number::slider;
 use super::tip::Tip;
-use crate::io::sources::Source;
 use crate::model::command::Command;
 use crate::model::document::SourceId;
+use crate::model::sources::Source;
 use crate::model::state::{Part, Picked, State};
 
 /// A neurite that has a ring.

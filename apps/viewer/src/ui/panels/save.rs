@@ -10,10 +10,12 @@ use super::cells::count;
 use super::heading;
 use super::number::field;
 use super::tip::Tip;
-use crate::io::paths;
-use crate::io::save::{FilmOptions, Fineness, PictureFile, has_ffmpeg, length};
+use crate::io::save::video::has_ffmpeg;
 use crate::model::command::{Ask, Command};
+use crate::model::film::length;
+use crate::model::save::{FilmOptions, Fineness, PictureFile};
 use crate::model::state::{Over, State};
+use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     meshes(state, ui);
@@ -87,7 +89,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
         ui.checkbox(&mut form.mesh.flat, "flat ends").tip("Neurites end in flat disks; otherwise in half spheres");
     });
     let extension = form.mesh.format.extension();
-    paths::listing_line(&mut form.mesh_out, extension, folder, ui);
+    path_line::listing_line(&mut form.mesh_out, extension, folder, ui);
     let number = if form.mesh.all { shown } else { selected };
     if number > 1 {
         ui.weak("Writes a folder of this name with a file for each neuron.");
@@ -162,7 +164,7 @@ fn picture(state: &mut State, ui: &mut Ui) {
     heading(ui, "Picture");
     let (form, folder) = (&mut state.save, &state.settings.folder);
     size(&mut form.picture, ui);
-    paths::listing_line(&mut form.picture_out, "png", folder, ui);
+    path_line::listing_line(&mut form.picture_out, "png", folder, ui);
     let ready = !form.picture_out.trim().is_empty();
     if ui.add_enabled(ready, Button::new("Save picture")).clicked() {
         let out = PathBuf::from(form.picture_out.trim()).with_extension("png");
@@ -279,7 +281,7 @@ fn film(state: &mut State, ui: &mut Ui) {
         ui.checkbox(&mut form.video, "also a video (MP4)")
             .on_disabled_hover_text("ffmpeg is not installed");
     });
-    paths::listing_line(&mut form.film_out, "png", folder, ui);
+    path_line::listing_line(&mut form.film_out, "png", folder, ui);
     ui.label(
         RichText::new("Size and samples as set for the picture above.")
             .weak()

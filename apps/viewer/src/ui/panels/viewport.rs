@@ -7,10 +7,9 @@ use eframe::egui::{
 use glam::DVec3;
 use neurotess::render::{Legend, is_dark, nice_length};
 
-use super::{marks, plate, tip};
+use super::{Screen, marks, plate, tip};
 use crate::model::command::Command;
 use crate::model::state::{Picked, State};
-use crate::ui::app::Viewer;
 
 /// Radians per point that the mouse is dragged.
 const TURN: f64 = 0.008;
@@ -20,7 +19,7 @@ const WHEEL: f64 = 0.0022;
 const SPEED: f64 = 0.7;
 
 /// `before`: what was under the cursor in the frame before.
-pub(super) fn show(viewer: &mut Viewer, before: Option<Picked>, ui: &mut Ui) {
+pub(super) fn show(screen: &mut Screen<'_>, before: Option<Picked>, ui: &mut Ui) {
     let rect = ui.available_rect_before_wrap();
     let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
     tip::set_picture(ui.ctx(), rect);
@@ -31,27 +30,31 @@ pub(super) fn show(viewer: &mut Viewer, before: Option<Picked>, ui: &mut Ui) {
         return;
     }
     let window = ui.ctx().content_rect().size();
-    viewer.reshape(f64::from(size[0]) / f64::from(size[1]), window);
-    steer(viewer, &response, ui);
-    point(viewer, before, &response, points);
+    screen.motion.reshape(
+        screen.state,
+        f64::from(size[0]) / f64::from(size[1]),
+        window,
+    );
+    steer(screen, &response, ui);
+    point(screen, before, &response, points);
     let ctx = ui.ctx().clone();
-    let texture = viewer.picture(size, &ctx);
-    let [r, g, b] = viewer.state.document.look.background;
+    let texture = screen.picture(size, &ctx);
+    let [r, g, b] = screen.state.document.look.background;
     ui.painter()
         .rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
     if let Some(texture) = texture {
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
-    over(viewer, rect, ui);
-    response.context_menu(|ui| menu(&mut viewer.state, ui));
+    over(screen, rect, ui);
+    response.context_menu(|ui| menu(screen.state, ui));
 }
 
 /// Camera by mouse and keys.
-fn steer(viewer: &mut Viewer, response: &Response, ui: &Ui) {
-    let view = viewer.state.view;
+fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
+    let view = screen.state.view;
     let height = f64::from(response.rect.height());
-    let upwards = if viewer.state.settings.y_down {
+    let upwards = if screen.state.settings.y_down {
         DVec3::NEG_Y
     } else {
         DVec3::Y
@@ -65,20 +68,24 @@ fn steer(viewer: &mut Viewer, response: &Response, ui: &Ui) {
         || (left && shift);
     if drag != egui::Vec2::ZERO {
         if moves {
-            viewer.steer(view.panned(dx, dy, height));
+            screen
+                .motion
+                .steer(screen.state, view.panned(dx, dy, height));
         } else if left {
-            viewer.steer(view.orbited(dx * TURN, dy * TURN, upwards));
+            screen
+                .motion
+                .steer(screen.state, view.orbited(dx * TURN, dy * TURN, upwards));
         }
     }
     if response.hovered() {
-        zoom(viewer, response, ui);
+        zoom(screen, response, ui);
     }
     if !ui.ctx().egui_wants_keyboard_input() {
-        fly(viewer, upwards, ui);
+        fly(screen, upwards, ui);
     }
 }
 
-fn zoom(viewer: &mut Viewer, response: &Response, ui: &Ui) {
+fn zoom(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     let (scroll, pinch) = ui.input(|i| {
         (
             f64::from(i.smooth_scroll_delta().y),
@@ -89,7 +96,7 @@ fn zoom(viewer: &mut Viewer, response: &Response, ui: &Ui) {
     if factor == 1.0 {
         return;
     }
-    let view = viewer.state.view;
+    let view = screen.state.view;
     let points = f64::from(ui.ctx().pixels_per_point());
     let place = response.hover_pos().map(|at| {
         let offset = at - response.rect.min;
@@ -99,7 +106,7 @@ fn zoom(viewer: &mut Viewer, response: &Response, ui: &Ui) {
             f64::from(response.rect.height()),
         ];
         // Towards what is there; in the air, towards the target's depth.
-        let seen = viewer
+        let seen = screen
             .stage
             .seen_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
         match seen {
@@ -108,11 +115,13 @@ fn zoom(viewer: &mut Viewer, response: &Response, ui: &Ui) {
         }
     });
     if let Some(place) = place {
-        viewer.steer(view.zoomed(factor, place));
+        screen
+            .motion
+            .steer(screen.state, view.zoomed(factor, place));
     }
 }
 
-fn fly(viewer: &mut Viewer, upwards: DVec3, ui: &Ui) {
+fn fly(screen: &mut Screen<'_>, upwards: DVec3, ui: &Ui) {
     let (keys, fast, dt) = ui.input(|i| {
         let down = |key| {
             if i.key_down(key) && !i.modifiers.command {
@@ -134,46 +143,46 @@ fn fly(viewer: &mut Viewer, upwards: DVec3, ui: &Ui) {
     if keys == [0.0; 6] {
         return;
     }
-    let camera = viewer.state.view.camera();
+    let camera = screen.state.view.camera();
     let distance = camera.eye().distance(camera.target());
     let step = distance * SPEED * dt * if fast { 4.0 } else { 1.0 };
     let turn = 1.2 * dt;
-    let view = viewer
+    let view = screen
         .state
         .view
         .flown(keys[0] * step, keys[1] * step, keys[2] * step)
         .orbited(-keys[3] * turn, -keys[4] * turn, upwards)
         .zoomed((-keys[5] * 1.5 * dt).exp(), camera.target());
-    viewer.steer(view);
+    screen.motion.steer(screen.state, view);
     ui.ctx().request_repaint();
 }
 
 /// What is under the cursor, and what clicks do.
-fn point(viewer: &mut Viewer, before: Option<Picked>, response: &Response, points: f32) {
+fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, points: f32) {
     let at = response
         .hover_pos()
         .map(|at| (at - response.rect.min) * points);
-    let seen = at.and_then(|at| viewer.stage.seen_at(at.x, at.y));
+    let seen = at.and_then(|at| screen.stage.seen_at(at.x, at.y));
     // Lists and sliders have said what they point at; elsewhere it is the picture.
     if at.is_some() {
-        viewer.state.hovered = match viewer.stage.can_pick() {
+        screen.state.hovered = match screen.stage.can_pick() {
             true => seen.map(|s| s.picked),
             false => before,
         };
     }
     if response.double_clicked() {
         if let Some(seen) = seen {
-            let view = viewer.state.view;
+            let view = screen.state.view;
             let camera = view.camera();
             let near = camera.depth(seen.place) * 0.35;
             let size = near * (camera.fov() / 2.0).tan();
-            viewer
+            screen
                 .state
                 .asked
                 .push(Command::Go(view.focused((seen.place, size))));
         }
     } else if response.clicked() {
-        click(&mut viewer.state, seen.map(|s| s.picked), response);
+        click(screen.state, seen.map(|s| s.picked), response);
     }
 }
 
@@ -229,23 +238,23 @@ fn ink(state: &State) -> Color32 {
 }
 
 /// Legend, scale bar, axes.
-fn over(viewer: &Viewer, rect: Rect, ui: &mut Ui) {
-    let look = &viewer.state.document.look;
+fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
+    let look = &screen.state.document.look;
     if look.legend {
-        legend(viewer.stage.legend().clone(), viewer, rect, ui);
+        legend(screen.stage.legend().clone(), screen, rect, ui);
     }
     if look.scale_bar {
-        scale_bar(&viewer.state, rect, ui);
+        scale_bar(screen.state, rect, ui);
     }
     if look.axes {
-        axes(&viewer.state, rect, ui);
+        axes(screen.state, rect, ui);
     }
     let painter = ui.painter().with_clip_rect(rect);
-    marks::rings(&viewer.state, rect, &painter);
-    if !viewer.stage.can_pick() {
-        marks::hovered(&viewer.state, rect, &painter);
+    marks::rings(screen.state, rect, &painter);
+    if !screen.stage.can_pick() {
+        marks::hovered(screen.state, rect, &painter);
     }
-    if !viewer.stage.is_settled() && viewer.stage.shown().sources.is_empty() {
+    if !screen.stage.is_settled() && screen.stage.shown().sources.is_empty() {
         Area::new(Id::unique("meshing"))
             .fixed_pos(rect.center())
             .pivot(Align2::CENTER_CENTER)
@@ -261,10 +270,10 @@ fn over(viewer: &Viewer, rect: Rect, ui: &mut Ui) {
 }
 
 /// A legend as a texture, made again when it says something else.
-fn legend(legend: Legend, viewer: &Viewer, rect: Rect, ui: &Ui) {
+fn legend(legend: Legend, screen: &Screen<'_>, rect: Rect, ui: &Ui) {
     type Kept = (Legend, [u8; 3], u32, egui::TextureHandle);
     let points = ui.ctx().pixels_per_point();
-    let background = viewer.state.document.look.background;
+    let background = screen.state.document.look.background;
     let ink = if is_dark(background) {
         [230; 3]
     } else {
@@ -295,7 +304,7 @@ fn legend(legend: Legend, viewer: &Viewer, rect: Rect, ui: &Ui) {
         return;
     }
     let place = Rect::from_min_size(rect.left_top() + vec2(14.0, 14.0), size);
-    set_off(&viewer.state, place.expand(7.0), ui);
+    set_off(screen.state, place.expand(7.0), ui);
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
     ui.painter()
         .image(texture.id(), place, whole, Color32::WHITE);
@@ -359,5 +368,18 @@ fn axes(state: &State, rect: Rect, ui: &Ui) {
             FontId::proportional(12.0),
             color,
         );
+    }
+}
+
+impl Screen<'_> {
+    /// Draws the picture of this size; why it cannot is kept in `failed`.
+    fn picture(&mut self, size: [u32; 2], ctx: &egui::Context) -> Option<egui::TextureId> {
+        match self.stage.update(self.state, size, ctx) {
+            Ok(texture) => texture,
+            Err(e) => {
+                self.failed = Some(e);
+                None
+            }
+        }
     }
 }

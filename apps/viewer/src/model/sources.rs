@@ -1,0 +1,166 @@
+//! Tracings that are open: read, meshed, measured. They stay while an undo could want them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use glam::DVec3;
+use neurotess::generate::Generated;
+use neurotess::mesh::CoarseMesh;
+use neurotess::morphology::{Measures, Morphology};
+use neurotess::render::{BoundingSphere, bounds, merged};
+use neurotess::synth::Kind;
+
+use crate::model::document::SomaEdit;
+use crate::model::ids::SourceId;
+
+/// Balls of a neuron in scenes of many: 1,000 neurons of 1,000 balls would take every frame 10 ms.
+const FEW_BALLS: usize = 48;
+
+/// Before the name of a built-in sample.
+pub(crate) const SAMPLE: &str = "sample:";
+
+/// An open tracing.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Its file, or `sample:KIND`.
+    pub file: PathBuf,
+    /// Name for people.
+    pub name: String,
+    /// The tracing.
+    pub morphology: Arc<Morphology>,
+    /// Its coarse mesh with the soma's figures.
+    pub generated: Arc<Generated>,
+    /// What the mesh was made with.
+    pub soma: SomaEdit,
+    /// Morphometrics.
+    pub measures: Arc<Measures>,
+    /// What was odd in the file, and what was mended in the mesh.
+    pub warnings: Vec<Remark>,
+    /// When the file was written last; none: a sample.
+    pub written: Option<SystemTime>,
+    /// Bounding spheres around the mesh (µm).
+    pub balls: Vec<BoundingSphere>,
+    /// A few that hold them, for scenes of many neurons.
+    pub few_balls: Vec<BoundingSphere>,
+    /// Its file has changed since, or is gone.
+    pub stale: Option<Stale>,
+    /// By section: length (µm) and branch order.
+    pub sections: Arc<Vec<SectionFacts>>,
+}
+
+/// Something that was odd or was mended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// For people, with its line if it has one.
+    pub text: String,
+    /// Whether somebody should look into it: something is missing or was guessed.
+    pub concerns: bool,
+}
+
+impl Remark {
+    pub(crate) fn new(code: &str, text: String) -> Self {
+        let concerns = CONCERNS.contains(&code);
+        Self { text, concerns }
+    }
+}
+
+/// Names of what somebody should look into. What else readers and the generator tell of is the daily work of
+/// making a mesh: points closer together than they are thick, say, of which nearly every tracing has some.
+const CONCERNS: [&str; 18] = [
+    "disconnected",
+    "far_from_soma",
+    "negative_radius",
+    "no_seat",
+    "one_point_tree",
+    "other_cells_left_out",
+    "radius_mended",
+    "ring_unused",
+    "rings_cross",
+    "several_somata",
+    "soma_folded",
+    "soma_inside_neurite",
+    "soma_of_one_point",
+    "soma_radius_mended",
+    "soma_zero_radius",
+    "unknown_expression",
+    "untyped_tree",
+    "zero_radius",
+];
+
+/// What a file has become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stale {
+    /// Something else is in it.
+    Changed,
+    /// It is gone.
+    Gone,
+}
+
+/// Figures of a section.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SectionFacts {
+    /// Length (µm).
+    pub length: f64,
+    /// Forks between the neurite's start and it.
+    pub order: u32,
+    /// Distance along the path (µm) from the neurite's start to its end.
+    pub path: f64,
+    /// Number of the neurite, from 0.
+    pub neurite: u32,
+}
+
+/// All tracings that are open or were.
+#[derive(Clone, Debug, Default)]
+pub struct Sources(Vec<Source>);
+
+impl Source {
+    /// Another mesh.
+    pub fn set_generated(&mut self, generated: Generated) {
+        (self.balls, self.few_balls) = balls(&generated.mesh);
+        self.generated = Arc::new(generated);
+    }
+}
+
+/// All balls around a mesh, and a few that hold them.
+pub(crate) fn balls(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSphere>) {
+    let all = bounds(mesh);
+    let few = merged(&all, FEW_BALLS);
+    (all, few)
+}
+
+impl Sources {
+    /// Adds a tracing.
+    pub fn add(&mut self, source: Source) -> SourceId {
+        self.0.push(source);
+        SourceId(self.0.len() as u32 - 1)
+    }
+
+    /// A tracing.
+    pub fn get(&self, id: SourceId) -> Option<&Source> {
+        self.0.get(id.0 as usize)
+    }
+
+    /// A tracing, to be changed.
+    pub fn get_mut(&mut self, id: SourceId) -> Option<&mut Source> {
+        self.0.get_mut(id.0 as usize)
+    }
+
+    /// All with their numbers.
+    pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Source)> {
+        (0..).map(SourceId).zip(&self.0)
+    }
+}
+
+/// Path of a built-in sample.
+pub fn sample(kind: Kind) -> PathBuf {
+    PathBuf::from(format!("{SAMPLE}{kind}"))
+}
+
+/// Corners of the box (µm) around balls.
+pub fn extent(balls: &[BoundingSphere]) -> (DVec3, DVec3) {
+    let corners = balls.iter().map(|&(c, r)| (c - r, c + r));
+    corners
+        .reduce(|(low, high), (a, b)| (low.min(a), high.max(b)))
+        .unwrap_or_default()
+}
