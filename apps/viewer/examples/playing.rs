@@ -120,7 +120,7 @@ fn play(circuit: &Path, report: &Path) {
             let clock = Instant::now();
             state(&mut window).run(Command::Seek(axis.time_of(frame)));
             window.step();
-            while !window.state().as_ref().unwrap().stage.shows_moment() {
+            while !window.state().as_ref().unwrap().stage.shows_frame() {
                 window.step();
             }
             window.state().as_ref().unwrap().stage.gpu().wait().unwrap();

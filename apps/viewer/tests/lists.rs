@@ -11,10 +11,10 @@ use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Ask, Tab};
 use neurotess_viewer::document::{ColorBy, Look};
-use neurotess_viewer::state::{Part, Picked};
+use neurotess_viewer::state::{CellPart, Picked};
 
 use common::{
-    SIZE, Window, click, picture, run, seen_at, settle, state, viewer, window, with_samples,
+    SIZE, Window, click, hit_at, picture, run, settle, state, viewer, window, with_samples,
 };
 
 /// A window with so many cells of three neurites, `cell_00` and so on.
@@ -57,7 +57,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
         lines.any(|line| line.is_positive() && panel.contains_rect(line))
     };
     assert!(!inside(&window, "cell_37"));
-    let soma = seen_at(&mut window, glam::DVec3::new(37.0 * 90.0, 0.0, 0.0));
+    let soma = hit_at(&mut window, glam::DVec3::new(37.0 * 90.0, 0.0, 0.0));
     click(&mut window, soma, Modifiers::NONE);
     let picked = state(&mut window).picked.expect("picked");
     assert_eq!(picked.neuron, 37);
@@ -79,7 +79,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     assert!(!inside(&window, &label));
     let picked = Picked {
         neuron: 0,
-        part: Part::Section(last as u32),
+        part: CellPart::Section(last as u32),
     };
     let state_of = state(&mut window);
     (state_of.picked, state_of.reveal) = (Some(picked), Some(picked));
@@ -111,7 +111,7 @@ fn a_resized_window_keeps_the_cells_in_view() {
             glam::DVec3::new(185.0, 0.0, 0.0),
         ];
         let rect = picture(window);
-        places.map(|place| (seen_at(window, place).x - rect.left()) / rect.width())
+        places.map(|place| (hit_at(window, place).x - rect.left()) / rect.width())
     };
     let within = |[left, right]: [f32; 2]| left > 0.0 && right < 1.0 && right - left > 0.6;
     assert!(within(ends(&mut window)), "{:?}", ends(&mut window));

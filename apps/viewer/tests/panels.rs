@@ -10,7 +10,7 @@ use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Tab;
 use neurotess_viewer::document::{
-    ColorBy, Criterion, Cut, Detail, Document, Lighting, Look, SomaEdit, SourceId,
+    ColorBy, Cut, Detail, Document, Lighting, LodKind, Look, SomaEdit, SourceId,
 };
 
 use common::{Window, run, settle, state, window, with_samples};
@@ -41,8 +41,8 @@ fn uneven(document: &Document) -> (Look, Detail, SomaEdit) {
             right: -33.333_33,
             up: 200.7,
         },
-        faint_others: true,
-        faint: 0.987_654_3,
+        ghost_others: true,
+        ghost_opacity: 0.987_654_3,
         decay: 4_321.098_765,
         range: Some([0.123_456_79, 7654.321]),
         cut: Some(Cut {
@@ -109,10 +109,10 @@ fn looking_at_numbers_that_are_not_round_changes_nothing() {
         );
     }
     for criterion in [
-        Criterion::Error,
-        Criterion::Size,
-        Criterion::Homogeneous,
-        Criterion::Distance,
+        LodKind::Error,
+        LodKind::Size,
+        LodKind::Homogeneous,
+        LodKind::Distance,
     ] {
         run(
             &mut window,

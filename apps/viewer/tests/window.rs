@@ -12,23 +12,24 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
+use neurotess::refine::LodCriterion;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Ask, Tab};
-use neurotess_viewer::document::{Criterion, Cut, Detail, Look, Method, SomaEdit, SourceId};
-use neurotess_viewer::save::{Fineness, MeshOptions, PictureFile};
+use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
+use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
-use neurotess_viewer::state::{Lowered, Part, State};
+use neurotess_viewer::state::{CellPart, Lowered, State};
 use neurotess_viewer::view::View;
 
 use common::{
-    SIZE, Window, click, run, seen_at, settle, snapshot, state, viewer, window, with_samples,
+    SIZE, Window, click, hit_at, run, settle, snapshot, state, viewer, window, with_samples,
 };
 
 /// Middle of the picture, where the soma of a single sample is: it is the target's.
 fn middle(window: &mut Window) -> Pos2 {
-    seen_at(window, glam::DVec3::ZERO)
+    hit_at(window, glam::DVec3::ZERO)
 }
 
 #[test]
@@ -55,7 +56,7 @@ fn a_cell_is_drawn_picked_and_inspected() {
     let hovered = state(&mut window)
         .hovered
         .expect("something under the cursor");
-    assert_eq!((hovered.neuron, hovered.part), (0, Part::Soma));
+    assert_eq!((hovered.neuron, hovered.part), (0, CellPart::Soma));
     click(&mut window, at, Modifiers::NONE);
     assert_eq!(
         state(&mut window).document.selected().collect::<Vec<_>>(),
@@ -123,7 +124,7 @@ fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
     window.step();
     settle(&mut window);
     let part = state(&mut window).hovered.expect("touched").part;
-    assert_eq!(part, Part::Neurite(0));
+    assert_eq!(part, CellPart::Neurite(0));
     assert!(state(&mut window).touched.is_some());
     assert!(
         state(&mut window).document.somata.is_empty(),
@@ -175,7 +176,7 @@ fn several_neurons_are_laid_out_selected_and_hidden() {
     run(&mut window, Command::Home);
     run(&mut window, Command::Select(vec![1], false));
     let mut look = state(&mut window).document.look.clone();
-    look.faint_others = true;
+    look.ghost_others = true;
     run(&mut window, Command::SetLook(Box::new(look)));
     snapshot(&mut window, "grid");
     window.key_press(Key::H);
@@ -204,7 +205,7 @@ fn every_edit_can_be_undone_and_done_again() {
         ..Look::default()
     };
     let detail = Detail {
-        criterion: Criterion::Homogeneous,
+        criterion: LodKind::Homogeneous,
         level: 2,
         ..Detail::default()
     };
@@ -477,7 +478,7 @@ fn meshes_and_pictures_are_saved() {
     let meshes = MeshOptions {
         out: at("all"),
         format: neurotess::mesh::Format::Glb,
-        fineness: Fineness::Level(1),
+        lod: MeshLod::Fixed(Some(LodCriterion::Homogeneous(1))),
         quads: false,
         linear: false,
         flat: false,
@@ -608,8 +609,10 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     window.get_by_label_contains("reduced: ");
     // What is seen is known there too: somata, and a section by its number.
     let parts = seen_parts(&mut window);
-    assert!(parts.contains(&(0, Part::Soma)) && parts.contains(&(2, Part::Soma)));
-    let neurites = parts.iter().filter(|(_, p)| matches!(p, Part::Section(_)));
+    assert!(parts.contains(&(0, CellPart::Soma)) && parts.contains(&(2, CellPart::Soma)));
+    let neurites = parts
+        .iter()
+        .filter(|(_, p)| matches!(p, CellPart::Section(_)));
     assert!(neurites.count() > 10, "{parts:?}");
     // With wires the explorer cannot: coarser, and said.
     let mut look = state(&mut window).document.look.clone();
@@ -634,10 +637,10 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
 }
 
 /// What is seen at pixels all over the picture.
-fn seen_parts(window: &mut Window) -> std::collections::HashSet<(usize, Part)> {
+fn seen_parts(window: &mut Window) -> std::collections::HashSet<(usize, CellPart)> {
     let stage = &viewer(window).stage;
     let pixels = (0..700).flat_map(|y| (0..900).map(move |x| (x as f32, y as f32)));
-    let seen = pixels.filter_map(|(x, y)| stage.seen_at(x, y));
+    let seen = pixels.filter_map(|(x, y)| stage.hit_at(x, y));
     seen.map(|seen| (seen.picked.neuron, seen.picked.part))
         .collect()
 }

@@ -13,14 +13,14 @@ const AHEAD: u64 = 8;
 const MOST: usize = 64;
 
 /// Reads until it is dropped.
-pub(crate) struct Reader {
+pub(crate) struct FrameReader {
     shared: Arc<Shared>,
-    replay: Arc<Recording>,
+    recording: Arc<Recording>,
 }
 
 /// What values depend on, beside the frame.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct CullView {
+pub(crate) struct ValueInputs {
     /// By neuron: whether it shows.
     pub(crate) shows: Vec<bool>,
     /// Numbers at both ends of the color map.
@@ -37,7 +37,7 @@ struct Shared {
 
 #[derive(Default)]
 struct Inner {
-    sight: Option<Arc<CullView>>,
+    inputs: Option<Arc<ValueInputs>>,
     frame: u64,
     /// Frames from one picture to the next; 0: no more than one is wanted.
     stride: u64,
@@ -52,18 +52,18 @@ impl Shared {
     }
 }
 
-impl Reader {
+impl FrameReader {
     /// `ctx` is told when something is there.
-    pub(crate) fn new(replay: Arc<Recording>, ctx: &egui::Context) -> Self {
+    pub(crate) fn new(recording: Arc<Recording>, ctx: &egui::Context) -> Self {
         let shared = Arc::new(Shared::default());
-        let (own, of, ctx) = (Arc::clone(&shared), Arc::clone(&replay), ctx.clone());
+        let (own, of, ctx) = (Arc::clone(&shared), Arc::clone(&recording), ctx.clone());
         std::thread::spawn(move || read(&own, &of, &ctx));
-        Self { shared, replay }
+        Self { shared, recording }
     }
 
     /// What it reads.
-    pub(crate) fn replay(&self) -> &Arc<Recording> {
-        &self.replay
+    pub(crate) fn recording(&self) -> &Arc<Recording> {
+        &self.recording
     }
 
     /// The values of a frame if they are there; if not they are read next. `stride`: the frames that will
@@ -72,11 +72,11 @@ impl Reader {
         &self,
         frame: u64,
         stride: u64,
-        sight: &CullView,
+        inputs: &ValueInputs,
     ) -> Option<Arc<InstanceValues>> {
         let mut inner = self.shared.lock();
-        if inner.sight.as_deref() != Some(sight) {
-            inner.sight = Some(Arc::new(sight.clone()));
+        if inner.inputs.as_deref() != Some(inputs) {
+            inner.inputs = Some(Arc::new(inputs.clone()));
             inner.ready.clear();
         }
         if (inner.frame, inner.stride) != (frame, stride) || !inner.ready.contains_key(&frame) {
@@ -92,7 +92,7 @@ impl Reader {
     }
 }
 
-impl Drop for Reader {
+impl Drop for FrameReader {
     fn drop(&mut self) {
         self.shared.lock().ends = true;
         self.shared.changed.notify_one();
@@ -101,10 +101,10 @@ impl Drop for Reader {
 
 impl Inner {
     /// The frame to read next: the one that shows, then those that will.
-    fn next(&self, frames: u64) -> Option<(u64, Arc<CullView>)> {
-        let sight = self.sight.as_ref()?;
+    fn next(&self, frames: u64) -> Option<(u64, Arc<ValueInputs>)> {
+        let inputs = self.inputs.as_ref()?;
         let ahead = if self.stride > 0 { AHEAD } else { 0 };
-        let wanted = (0..=ahead).map(|i| {
+        let due = (0..=ahead).map(|i| {
             let frame = self.frame + i * self.stride;
             // It may begin again.
             if frame < frames {
@@ -113,8 +113,8 @@ impl Inner {
                 (frame - frames) % frames.max(1)
             }
         });
-        let mut missing = wanted.filter(|frame| !self.ready.contains_key(frame));
-        Some((missing.next()?, Arc::clone(sight)))
+        let mut missing = due.filter(|frame| !self.ready.contains_key(frame));
+        Some((missing.next()?, Arc::clone(inputs)))
     }
 
     fn keep(&mut self, frame: u64, values: InstanceValues, frames: u64) {
@@ -129,11 +129,11 @@ impl Inner {
     }
 }
 
-fn read(shared: &Shared, replay: &Recording, ctx: &egui::Context) {
-    let frames = replay.time.frames;
+fn read(shared: &Shared, recording: &Recording, ctx: &egui::Context) {
+    let frames = recording.time.frames;
     loop {
         let mut inner = shared.lock();
-        let (frame, sight) = loop {
+        let (frame, inputs) = loop {
             if inner.ends {
                 return;
             }
@@ -146,19 +146,19 @@ fn read(shared: &Shared, replay: &Recording, ctx: &egui::Context) {
             };
         };
         drop(inner);
-        let shows = |place: usize| sight.shows.get(place).copied().unwrap_or(true);
-        let moment = replay.at(replay.time.time_of(frame), sight.decay, &shows);
-        let (values, problem) = match moment {
-            Ok(moment) => (moment.values(sight.range), None),
+        let shows = |place: usize| inputs.shows.get(place).copied().unwrap_or(true);
+        let values = recording.at(recording.time.time_of(frame), inputs.decay, &shows);
+        let (values, problem) = match values {
+            Ok(values) => (values.values(inputs.range), None),
             // Gray instead of the values of another time; it is not read again and again.
-            Err(e) => (none(sight.shows.len()), Some(e.to_string())),
+            Err(e) => (none(inputs.shows.len()), Some(e.to_string())),
         };
         let mut inner = shared.lock();
         inner.problem = problem.or(inner.problem.take());
         if inner
-            .sight
+            .inputs
             .as_ref()
-            .is_some_and(|now| Arc::ptr_eq(now, &sight))
+            .is_some_and(|now| Arc::ptr_eq(now, &inputs))
         {
             inner.keep(frame, values, frames);
         }
@@ -181,13 +181,13 @@ mod tests {
     use super::*;
 
     fn inner(frame: u64, stride: u64, ready: &[u64]) -> Inner {
-        let sight = CullView {
+        let inputs = ValueInputs {
             shows: vec![true],
             range: [0.0, 1.0],
             decay: 5.0,
         };
         Inner {
-            sight: Some(Arc::new(sight)),
+            inputs: Some(Arc::new(inputs)),
             frame,
             stride,
             ready: ready.iter().map(|&f| (f, Arc::default())).collect(),

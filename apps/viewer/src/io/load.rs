@@ -11,7 +11,7 @@ use neurotess::morphology::{Measures, Morphology, shape};
 use neurotess::synth::{self, Kind};
 
 use crate::model::document::SomaEdit;
-use crate::model::sources::{Remark, SAMPLE, SectionFacts, Source, Stale, balls};
+use crate::model::sources::{Remark, SAMPLE, SectionFacts, Source, Stale, spheres};
 
 /// Reads a file, or grows a sample, and meshes it.
 ///
@@ -66,14 +66,14 @@ fn source(
     let generated = generate(&morphology, &soma.options()).map_err(|e| e.to_string())?;
     let made = generated.warnings.iter();
     warnings.extend(made.map(|w| Remark::new(w.code, w.to_string())));
-    let (all, few_balls) = balls(&generated.mesh);
+    let (all, few_spheres) = spheres(&generated.mesh);
     Ok(Source {
         file: file.to_path_buf(),
         name,
         measures: Arc::new(Measures::of(&morphology)),
         sections: Arc::new(section_facts(&morphology)),
-        balls: all,
-        few_balls,
+        spheres: all,
+        few_spheres,
         morphology: Arc::new(morphology),
         generated: Arc::new(generated),
         soma,
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn samples_are_grown_and_missing_files_have_a_reason() {
         let star = load(&sample(Kind::Star), SomaEdit::default()).expect("grown");
-        assert!(star.measures.n_sections > 10 && !star.balls.is_empty());
+        assert!(star.measures.n_sections > 10 && !star.spheres.is_empty());
         assert_eq!(star.sections.len(), star.measures.n_sections);
         let error = load(Path::new("not/there.swc"), SomaEdit::default()).expect_err("missing");
         assert!(!error.contains("there.swc") && error.len() > 5, "{error}");

@@ -200,7 +200,7 @@ impl Worker {
     }
 
     /// Whether a soma is being made.
-    pub(crate) fn makes_soma(&self) -> bool {
+    pub(crate) fn rebuilds_soma(&self) -> bool {
         self.somata > 0
     }
 

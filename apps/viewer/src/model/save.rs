@@ -3,19 +3,18 @@
 use std::path::PathBuf;
 
 use neurotess::mesh::Format;
+use neurotess::refine::LodCriterion;
 
 use crate::model::settings::Settings;
 
 /// How finely a mesh is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Fineness {
-    /// By the panel's level: at the present view's distance where it depends on that.
+pub enum MeshLod {
+    /// By the panel's level of detail, from the present view where it depends on that.
     #[default]
     AsShown,
-    /// The same level everywhere; 0: the coarse quads.
-    Level(u32),
-    /// Within a distance (µm).
-    MaxError(f32),
+    /// By a criterion that needs no view; none: the coarse quads.
+    Fixed(Option<LodCriterion>),
 }
 
 /// How meshes are written.
@@ -26,7 +25,7 @@ pub struct MeshOptions {
     /// What kind of file.
     pub format: Format,
     /// How finely.
-    pub fineness: Fineness,
+    pub lod: MeshLod,
     /// Quads instead of triangles.
     pub quads: bool,
     /// Straight between points.
@@ -102,7 +101,7 @@ impl SaveForm {
             mesh: MeshOptions {
                 out: PathBuf::new(),
                 format: Format::Ply,
-                fineness: Fineness::Level(4),
+                lod: MeshLod::Fixed(Some(LodCriterion::Homogeneous(4))),
                 quads: false,
                 linear: false,
                 flat: false,

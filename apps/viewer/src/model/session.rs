@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{Detail, Look, Neuron, PlaceFile, SomaEdit};
+use crate::model::document::{Detail, Look, Neuron, PlacementEntry, SomaEdit};
 use crate::model::ids::{CircuitId, CircuitNode, SourceId};
 use crate::model::playback::Pace;
 use crate::model::state::State;
@@ -127,7 +127,7 @@ pub struct NeuronEntry {
     pub node: Option<NodeEntry>,
     /// Where it stands; nothing: where it was traced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) place: Option<PlaceFile>,
+    pub(crate) place: Option<PlacementEntry>,
 }
 
 impl NeuronEntry {

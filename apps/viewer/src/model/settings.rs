@@ -70,7 +70,7 @@ impl Settings {
             Ok(mut settings) => {
                 // A cut of another scene would hide half of this one.
                 settings.look.cut = None;
-                settings.look.faint_others = false;
+                settings.look.ghost_others = false;
                 // So would colors of another circuit be.
                 settings.look.range = None;
                 if !settings.look.color_by.is_of_tracings() {

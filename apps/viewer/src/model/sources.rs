@@ -15,7 +15,7 @@ use crate::model::document::SomaEdit;
 use crate::model::ids::SourceId;
 
 /// Balls of a neuron in scenes of many: 1,000 neurons of 1,000 balls would take every frame 10 ms.
-const FEW_BALLS: usize = 48;
+const FEW_SPHERES: usize = 48;
 
 /// Before the name of a built-in sample.
 pub(crate) const SAMPLE: &str = "sample:";
@@ -40,9 +40,9 @@ pub struct Source {
     /// When the file was written last; none: a sample.
     pub written: Option<SystemTime>,
     /// Bounding spheres around the mesh (µm).
-    pub balls: Vec<BoundingSphere>,
+    pub spheres: Vec<BoundingSphere>,
     /// A few that hold them, for scenes of many neurons.
-    pub few_balls: Vec<BoundingSphere>,
+    pub few_spheres: Vec<BoundingSphere>,
     /// Its file has changed since, or is gone.
     pub stale: Option<Stale>,
     /// By section: length (µm) and branch order.
@@ -117,15 +117,15 @@ pub struct Sources(Vec<Source>);
 impl Source {
     /// Another mesh.
     pub fn set_generated(&mut self, generated: Generated) {
-        (self.balls, self.few_balls) = balls(&generated.mesh);
+        (self.spheres, self.few_spheres) = spheres(&generated.mesh);
         self.generated = Arc::new(generated);
     }
 }
 
 /// All balls around a mesh, and a few that hold them.
-pub(crate) fn balls(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSphere>) {
+pub(crate) fn spheres(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSphere>) {
     let all = bounds(mesh);
-    let few = merged(&all, FEW_BALLS);
+    let few = merged(&all, FEW_SPHERES);
     (all, few)
 }
 
@@ -158,8 +158,8 @@ pub fn sample(kind: Kind) -> PathBuf {
 }
 
 /// Corners of the box (µm) around balls.
-pub fn extent(balls: &[BoundingSphere]) -> (DVec3, DVec3) {
-    let corners = balls.iter().map(|&(c, r)| (c - r, c + r));
+pub fn extent(spheres: &[BoundingSphere]) -> (DVec3, DVec3) {
+    let corners = spheres.iter().map(|&(c, r)| (c - r, c + r));
     corners
         .reduce(|(low, high), (a, b)| (low.min(a), high.max(b)))
         .unwrap_or_default()

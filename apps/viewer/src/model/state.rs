@@ -19,7 +19,7 @@ const MANY: usize = 64;
 
 /// A piece of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum CellPart {
     /// Its soma.
     Soma,
     /// A neurite, from 0.
@@ -34,7 +34,7 @@ pub struct Picked {
     /// Place among the neurons.
     pub neuron: usize,
     /// Which piece of it.
-    pub part: Part,
+    pub part: CellPart,
 }
 
 /// Something that went wrong or was lowered, and why.
@@ -116,7 +116,7 @@ pub struct State {
     /// What went wrong, in the order in which it did.
     pub problems: Vec<Problem>,
     /// The last word, for the status bar.
-    pub said: String,
+    pub status: String,
     /// The panel on the right.
     pub tab: Tab,
     /// Words to search the list by.
@@ -140,7 +140,7 @@ pub struct State {
     /// What is to be done beside the state.
     pub effects: Vec<Effect>,
     /// Commands that panels asked for.
-    pub asked: Vec<Command>,
+    pub requests: Vec<Command>,
     /// A part to be scrolled to in the tree.
     pub reveal: Option<Picked>,
 }
@@ -201,7 +201,7 @@ impl State {
             touched: None,
             picked: None,
             problems: Vec::new(),
-            said: String::new(),
+            status: String::new(),
             tab: Tab::default(),
             search: String::new(),
             over: Over::Nothing,
@@ -213,7 +213,7 @@ impl State {
             session: None,
             aspect: 1.0,
             effects: Vec::new(),
-            asked: Vec::new(),
+            requests: Vec::new(),
             reveal: None,
         }
     }
@@ -245,14 +245,14 @@ impl State {
         self.history.end_joining();
         match command {
             Command::Undo => {
-                self.said = match self.history.undo(&mut self.document) {
+                self.status = match self.history.undo(&mut self.document) {
                     Some(name) => format!("Undone: {}", name.to_lowercase()),
                     None => "Nothing to undo".into(),
                 };
                 self.forget_what_is_gone();
             }
             Command::Redo => {
-                self.said = match self.history.redo(&mut self.document) {
+                self.status = match self.history.redo(&mut self.document) {
                     Some(name) => format!("Redone: {}", name.to_lowercase()),
                     None => "Nothing to redo".into(),
                 };
@@ -277,11 +277,11 @@ impl State {
             Command::Home => self.run(Command::Look(Side::Front)),
             Command::Focus => {
                 let any = self.document.selected().next().is_some();
-                let balls = self.outline(|n| n.selected || !any);
-                let (low, high) = extent(&balls);
-                if !balls.is_empty() {
-                    let ball = ((low + high) / 2.0, (high - low).length() / 2.0);
-                    self.run(Command::Go(self.view.focused(ball)));
+                let spheres = self.outline(|n| n.selected || !any);
+                let (low, high) = extent(&spheres);
+                if !spheres.is_empty() {
+                    let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);
+                    self.run(Command::Go(self.view.focused(sphere)));
                 }
             }
             Command::Go(view) => {
@@ -307,7 +307,7 @@ impl State {
             Command::TogglePanels => self.panels = !self.panels,
             Command::AddKeyView => {
                 self.key_views.push(self.view);
-                self.said = format!("Key view {} kept (Save, Film)", self.key_views.len());
+                self.status = format!("Key view {} kept (Save, Film)", self.key_views.len());
             }
             Command::DropKeyView(which) => {
                 if which < self.key_views.len() {
@@ -320,9 +320,9 @@ impl State {
 
     /// Everything, from a side.
     fn fit(&self, side: Side) -> View {
-        let balls = self.outline(|_| true);
+        let spheres = self.outline(|_| true);
         self.view
-            .fitted(side, self.settings.y_down, self.aspect, &balls)
+            .fitted(side, self.settings.y_down, self.aspect, &spheres)
     }
 
     /// The picture has another form: what was seen is still seen. Gives the view, if it is another one.
@@ -364,31 +364,31 @@ impl State {
             .neurons
             .iter()
             .map(|neuron| {
-                let (low, high) = extent(&self.balls_of(neuron.source, neuron.placement));
+                let (low, high) = extent(&self.spheres_of(neuron.source, neuron.placement));
                 ((low + high) / 2.0, high - low)
             })
             .collect();
         document::grid(&self.document.neurons, &extents)
     }
 
-    fn balls_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
+    fn spheres_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
         let many = self.document.neurons.len() >= MANY;
-        let balls = self.sources.get(source).map_or(&[][..], |s| match many {
-            true => &s.few_balls,
-            false => &s.balls,
+        let spheres = self.sources.get(source).map_or(&[][..], |s| match many {
+            true => &s.few_spheres,
+            false => &s.spheres,
         });
-        balls
+        spheres
             .iter()
             .map(|&(c, r)| (placement.world_from_cell(c), r * placement.scale))
             .collect()
     }
 
     /// Balls (µm) around what shows and is wanted.
-    pub fn balls(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
+    pub fn spheres(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
         let neurons = self.document.neurons.iter().zip(self.placements());
         neurons
             .filter(|(n, _)| !n.hidden && wanted(n))
-            .flat_map(|(n, placement)| self.balls_of(n.source, placement))
+            .flat_map(|(n, placement)| self.spheres_of(n.source, placement))
             .collect()
     }
 
@@ -398,9 +398,9 @@ impl State {
         let neurons = self.document.neurons.iter().zip(self.placements());
         let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && wanted(n)).collect();
         if shown.len() >= MANY {
-            return self.balls(wanted);
+            return self.spheres(wanted);
         }
-        let balls = |(neuron, placement): (&document::Neuron, Placement)| {
+        let spheres = |(neuron, placement): (&document::Neuron, Placement)| {
             let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
             let points = mesh.into_iter().flat_map(|mesh| {
                 let points = mesh.tracing.iter();
@@ -409,7 +409,7 @@ impl State {
             let placed = points.map(|(c, r)| (placement.world_from_cell(c), r * placement.scale));
             placed.collect::<Vec<_>>()
         };
-        shown.into_iter().flat_map(balls).collect()
+        shown.into_iter().flat_map(spheres).collect()
     }
 
     /// The source of a neuron.

@@ -124,14 +124,20 @@ impl View {
 
     /// From a side, all in the picture.
     #[must_use]
-    pub fn fitted(&self, side: Side, y_down: bool, aspect: f64, balls: &[BoundingSphere]) -> Self {
+    pub fn fitted(
+        &self,
+        side: Side,
+        y_down: bool,
+        aspect: f64,
+        spheres: &[BoundingSphere],
+    ) -> Self {
         let fov = self.camera().fov();
         let side = if y_down { below(side) } else { side };
-        let Ok(camera) = Camera::fit(side, fov, aspect.max(1e-3), MARGIN, balls) else {
+        let Ok(camera) = Camera::fit(side, fov, aspect.max(1e-3), MARGIN, spheres) else {
             return *self;
         };
         let up = camera.axes()[1] * if y_down { -1.0 } else { 1.0 };
-        self.with(camera.eye(), middle(&camera, balls), up)
+        self.with(camera.eye(), middle(&camera, spheres), up)
     }
 
     /// In a picture of another form (width by height), as much along its shorter side.
@@ -192,8 +198,8 @@ fn below(side: Side) -> Side {
 }
 
 /// A fitted camera turns around the middle of what it sees, not around what happens to lie nearest.
-fn middle(camera: &Camera, balls: &[BoundingSphere]) -> DVec3 {
-    let depths = balls
+fn middle(camera: &Camera, spheres: &[BoundingSphere]) -> DVec3 {
+    let depths = spheres
         .iter()
         .map(|&(c, r)| (camera.depth(c) - r, camera.depth(c) + r));
     let (near, far) = depths.fold((f64::MAX, f64::MIN), |(n, f), (a, b)| (n.min(a), f.max(b)));
@@ -265,30 +271,30 @@ mod tests {
 
     #[test]
     fn sides_fit_and_y_may_run_down() {
-        let balls = [
+        let spheres = [
             (DVec3::new(0.0, 50.0, 0.0), 1.0),
             (DVec3::new(0.0, -50.0, 9.0), 1.0),
         ];
         for side in [Side::Front, Side::Top, Side::Iso] {
-            let up = View::default().fitted(side, false, 1.3, &balls).camera();
-            let down = View::default().fitted(side, true, 1.3, &balls).camera();
+            let up = View::default().fitted(side, false, 1.3, &spheres).camera();
+            let down = View::default().fitted(side, true, 1.3, &spheres).camera();
             for camera in [up, down] {
                 assert!(
-                    balls
+                    spheres
                         .iter()
                         .all(|&(c, _)| camera.pixel_of(c, [400, 300]).is_some())
                 );
             }
         }
-        let y = |camera: Camera| camera.pixel_of(balls[0].0, [400, 300]).expect("seen")[1];
+        let y = |camera: Camera| camera.pixel_of(spheres[0].0, [400, 300]).expect("seen")[1];
         assert!(
             y(View::default()
-                .fitted(Side::Front, false, 1.3, &balls)
+                .fitted(Side::Front, false, 1.3, &spheres)
                 .camera())
                 < 150.0
         );
         let down = View::default()
-            .fitted(Side::Front, true, 1.3, &balls)
+            .fitted(Side::Front, true, 1.3, &spheres)
             .camera();
         assert!(
             y(down) > 150.0 && down.axes()[0].x > 0.99,

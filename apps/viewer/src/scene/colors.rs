@@ -17,16 +17,16 @@ use crate::scene::templates::SceneTemplate;
 
 /// What colors depend on.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ColorKey {
+pub(crate) struct ColorInputs {
     /// What they tell, and of whom.
-    pub(crate) matter: Matter,
+    pub(crate) subject: ColorSubject,
     /// Which they are.
-    pub(crate) tints: Tints,
+    pub(crate) style: ColorStyle,
 }
 
 /// What colors tell, and of whom.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Matter {
+pub(crate) struct ColorSubject {
     by: ColorBy,
     attribute: String,
     report: Option<PathBuf>,
@@ -36,7 +36,7 @@ pub(crate) struct Matter {
 
 /// The colors themselves.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tints {
+pub(crate) struct ColorStyle {
     palette: Palette,
     map: ColorMap,
     trim: bool,
@@ -44,7 +44,7 @@ pub(crate) struct Tints {
     range: Option<[f32; 2]>,
 }
 
-impl ColorKey {
+impl ColorInputs {
     pub(crate) fn new(document: &Document) -> Self {
         let look = &document.look;
         let by = look.color_by;
@@ -55,13 +55,13 @@ impl ColorKey {
         };
         let report = document.report.clone();
         Self {
-            matter: Matter {
+            subject: ColorSubject {
                 by,
                 attribute,
                 report: report.filter(|_| by == ColorBy::Value),
                 own: neurons.map(|n| (n.source, n.node)).collect(),
             },
-            tints: Tints {
+            style: ColorStyle {
                 palette: look.palette,
                 map: look.color_map,
                 trim: look.trim_map,
@@ -73,7 +73,7 @@ impl ColorKey {
 }
 
 /// The colors to choose from.
-pub(crate) fn paint(look: &Look) -> ColorScheme {
+pub(crate) fn color_scheme(look: &Look) -> ColorScheme {
     let background = Some(look.background);
     ColorScheme {
         palette: look.palette,
@@ -88,7 +88,7 @@ pub(crate) fn paint(look: &Look) -> ColorScheme {
 
 /// All that colors are made of, free of the window.
 #[derive(Clone, Debug)]
-pub(crate) struct Wish {
+pub(crate) struct ColorRequest {
     look: Look,
     report: Option<PathBuf>,
     /// Time (ms) of the recording that shows.
@@ -100,25 +100,25 @@ pub(crate) struct Wish {
 
 /// Colors, and what they were made from.
 #[derive(Clone, Debug)]
-pub(crate) struct Colored {
+pub(crate) struct ColorResult {
     pub(crate) coloring: Coloring,
     /// A recording with the range of its values.
-    pub(crate) replay: Option<(Arc<Recording>, [f32; 2])>,
+    pub(crate) recording: Option<(Arc<Recording>, [f32; 2])>,
     /// What could not be told by colors: what, and why.
     pub(crate) problem: Option<(String, String)>,
 }
 
-impl From<Coloring> for Colored {
+impl From<Coloring> for ColorResult {
     fn from(coloring: Coloring) -> Self {
         Self {
             coloring,
-            replay: None,
+            recording: None,
             problem: None,
         }
     }
 }
 
-impl Wish {
+impl ColorRequest {
     /// `sources`: as they stand on the device, sorted.
     pub(crate) fn new(state: &State, sources: &[SceneTemplate]) -> Self {
         let document = &state.document;
@@ -144,13 +144,13 @@ impl Wish {
         };
         let mut cuts = std::collections::HashMap::new();
         for (id, circuit) in self.circuits_newest_first() {
-            let stand = self.neurons.iter().filter_map(|(source, _, of)| {
+            let nodes_of_cells = self.neurons.iter().filter_map(|(source, _, of)| {
                 let node = of.filter(|of| of.circuit == id)?.node;
                 Some((*source, node))
             });
-            let stand: Vec<_> = stand.collect();
+            let nodes_of_cells: Vec<_> = nodes_of_cells.collect();
             // What is wrong with the report is told by its colors.
-            cuts = coloring::cuts(report, circuit, &stand).unwrap_or_default();
+            cuts = coloring::cuts(report, circuit, &nodes_of_cells).unwrap_or_default();
             if !cuts.is_empty() {
                 break;
             }
@@ -182,7 +182,7 @@ impl Wish {
     }
 
     /// The colors; where they cannot be had, those of types.
-    pub(crate) fn colors(&self, sources: &[SceneTemplate]) -> Colored {
+    pub(crate) fn colors(&self, sources: &[SceneTemplate]) -> ColorResult {
         let cells: Vec<Cell<'_>> = sources
             .iter()
             .map(|s| Cell {
@@ -191,9 +191,9 @@ impl Wish {
                 mesh: &s.generated.mesh,
             })
             .collect();
-        let paint = paint(&self.look);
-        let of_type = || coloring::coloring(&cells, coloring::ColorBy::Type, &paint);
-        let instead = |(what, why): (String, String)| Colored {
+        let color_scheme = color_scheme(&self.look);
+        let of_type = || coloring::coloring(&cells, coloring::ColorBy::Type, &color_scheme);
+        let instead = |(what, why): (String, String)| ColorResult {
             problem: Some((what, why)),
             ..of_type().into()
         };
@@ -201,13 +201,15 @@ impl Wish {
             _ if sources.is_empty() => of_type().into(),
             ColorBy::Neuron => {
                 let names: Vec<String> = self.neurons.iter().map(|n| n.1.clone()).collect();
-                coloring::each(&cells, &names, &paint).into()
+                coloring::each(&cells, &names, &color_scheme).into()
             }
-            ColorBy::Attribute => self.by_attribute(&cells, &paint).unwrap_or_else(instead),
-            ColorBy::Value => self.by_value(&cells, &paint).unwrap_or_else(instead),
+            ColorBy::Attribute => self
+                .by_attribute(&cells, &color_scheme)
+                .unwrap_or_else(instead),
+            ColorBy::Value => self.by_value(&cells, &color_scheme).unwrap_or_else(instead),
             by => {
                 let by = by.in_library().unwrap_or_default();
-                coloring::coloring(&cells, by, &paint).into()
+                coloring::coloring(&cells, by, &color_scheme).into()
             }
         }
     }
@@ -215,8 +217,8 @@ impl Wish {
     fn by_attribute(
         &self,
         cells: &[Cell<'_>],
-        paint: &ColorScheme,
-    ) -> Result<Colored, (String, String)> {
+        color_scheme: &ColorScheme,
+    ) -> Result<ColorResult, (String, String)> {
         let node = |of: &Option<CircuitNode>| of.and_then(|of| self.circuits.node(of));
         let neurons: Vec<Option<Node<'_>>> = self.neurons.iter().map(|n| node(&n.2)).collect();
         let what = || "colors by attribute".to_owned();
@@ -225,8 +227,8 @@ impl Wish {
             return Err((what(), why.into()));
         }
         let attribute = &self.look.attribute;
-        coloring::by_attribute(cells, &neurons, attribute, paint)
-            .map(Colored::from)
+        coloring::by_attribute(cells, &neurons, attribute, color_scheme)
+            .map(ColorResult::from)
             .map_err(|e| (what(), e.to_string()))
     }
 
@@ -234,8 +236,8 @@ impl Wish {
     fn by_value(
         &self,
         cells: &[Cell<'_>],
-        paint: &ColorScheme,
-    ) -> Result<Colored, (String, String)> {
+        color_scheme: &ColorScheme,
+    ) -> Result<ColorResult, (String, String)> {
         let Some(report) = &self.report else {
             let why = "there is no report: open one (File, Open report)";
             return Err(("colors by value".into(), why.into()));
@@ -244,30 +246,40 @@ impl Wish {
         let mut why = "a report has values of a circuit's cells: open its circuit".to_owned();
         for (id, circuit) in self.circuits_newest_first() {
             let node = |of: CircuitNode| (of.circuit == id).then_some(of.node);
-            let stand: Vec<(usize, Option<NodeRef>)> = self
+            let nodes_of_cells: Vec<(usize, Option<NodeRef>)> = self
                 .neurons
                 .iter()
                 .map(|(source, _, of)| (*source, of.and_then(node)))
                 .collect();
-            match Recording::open(report, circuit, cells, &stand) {
-                Ok(replay) => return self.replayed(replay, paint).map_err(|e| (file, e)),
+            match Recording::open(report, circuit, cells, &nodes_of_cells) {
+                Ok(recording) => {
+                    return self
+                        .of_recording(recording, color_scheme)
+                        .map_err(|e| (file, e));
+                }
                 Err(e) => why = without(&file, &e.to_string()),
             }
         }
         Err((file, why))
     }
 
-    fn replayed(&self, replay: Recording, paint: &ColorScheme) -> Result<Colored, String> {
-        let told = |e: RecordingError| without(&replay.file, &e.to_string());
-        let all = replay.range(&|_| true).map_err(told)?;
-        let range = paint.range.unwrap_or(all);
-        let time = replay.time.nearest(self.time);
-        let moment = replay.at(time, self.look.decay, &|_| true).map_err(told)?;
-        let mut coloring = replay.coloring(range, paint);
-        coloring.table.values = moment.values(range);
-        Ok(Colored {
+    fn of_recording(
+        &self,
+        recording: Recording,
+        color_scheme: &ColorScheme,
+    ) -> Result<ColorResult, String> {
+        let reason = |e: RecordingError| without(&recording.file, &e.to_string());
+        let all = recording.range(&|_| true).map_err(reason)?;
+        let range = color_scheme.range.unwrap_or(all);
+        let time = recording.time.nearest(self.time);
+        let frame = recording
+            .at(time, self.look.decay, &|_| true)
+            .map_err(reason)?;
+        let mut coloring = recording.coloring(range, color_scheme);
+        coloring.table.values = frame.values(range);
+        Ok(ColorResult {
             coloring,
-            replay: Some((Arc::new(replay), all)),
+            recording: Some((Arc::new(recording), all)),
             problem: None,
         })
     }

@@ -11,10 +11,10 @@ use neurotess::render::{
 };
 use thiserror::Error;
 
-use crate::model::document::{Document, Look, Parts};
+use crate::model::document::{Document, Look, VisibleParts};
 use crate::model::sources::extent;
 use crate::model::state::State;
-use crate::scene::colors::Colored;
+use crate::scene::colors::ColorResult;
 use crate::scene::templates::SceneTemplate;
 
 /// Width (pixels) of wires.
@@ -33,26 +33,28 @@ pub(crate) enum BuildError {
 
 /// What a scene is made of.
 #[derive(Clone, Debug)]
-pub(crate) struct Shown {
+pub(crate) struct SceneContent {
     pub(crate) sources: Vec<SceneTemplate>,
-    pub(crate) instances: Vec<Standing>,
+    pub(crate) instances: Vec<SceneInstance>,
     /// What points say on the device.
     pub(crate) coloring: Arc<Coloring>,
     /// What that means now.
     pub(crate) table: ColorTable,
     pub(crate) legend: Legend,
     /// A recording, with the range of all its values.
-    pub(crate) replay: Option<(Arc<Recording>, [f32; 2])>,
+    pub(crate) recording: Option<(Arc<Recording>, [f32; 2])>,
 }
 
-impl Shown {
+impl SceneContent {
     pub(crate) fn new(
         sources: Vec<SceneTemplate>,
-        instances: Vec<Standing>,
-        colored: Colored,
+        instances: Vec<SceneInstance>,
+        colored: ColorResult,
     ) -> Self {
-        let Colored {
-            coloring, replay, ..
+        let ColorResult {
+            coloring,
+            recording,
+            ..
         } = colored;
         Self {
             sources,
@@ -60,32 +62,32 @@ impl Shown {
             table: coloring.table.clone(),
             legend: coloring.legend.clone(),
             coloring: Arc::new(coloring),
-            replay,
+            recording,
         }
     }
 }
 
 /// A neuron: which source, where, and whether it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Standing {
+pub(crate) struct SceneInstance {
     pub(crate) source: usize,
     pub(crate) placement: Placement,
     pub(crate) hidden: bool,
 }
 
 /// Where all neurons stand. `sources`: as on the device, sorted.
-pub(crate) fn standing(state: &State, sources: &[SceneTemplate]) -> Vec<Standing> {
+pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneInstance> {
     let neurons = state.document.neurons.iter().zip(state.placements());
-    let standing = neurons.map(|(neuron, placement)| {
+    let instances = neurons.map(|(neuron, placement)| {
         let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
-        Standing {
+        SceneInstance {
             source: source.unwrap_or(0),
             placement,
             // What is not there yet is not drawn, but keeps its place.
             hidden: neuron.hidden || source.is_err(),
         }
     });
-    standing.collect()
+    instances.collect()
 }
 
 /// Uploads all sources; their numbers are their places.
@@ -97,9 +99,9 @@ pub(crate) fn templates(
     let list: Vec<Template<'_>> = sources
         .iter()
         .zip(&coloring.color_keys)
-        .map(|(source, words)| Template {
+        .map(|(source, color_keys)| Template {
             mesh: &source.generated.mesh,
-            color_keys: words,
+            color_keys: color_keys,
             values: &[],
         })
         .collect();
@@ -111,19 +113,23 @@ pub(crate) fn templates(
 }
 
 /// Instances of templates that were uploaded.
-pub(crate) fn instances(standing: &[Standing]) -> Vec<Instance> {
-    let instance = |s: &Standing| Instance {
+pub(crate) fn device_instances(instances: &[SceneInstance]) -> Vec<Instance> {
+    let instance = |s: &SceneInstance| Instance {
         placement: s.placement,
         hidden: s.hidden,
         ..Instance::new(TemplateId(s.source as u32))
     };
-    standing.iter().map(instance).collect()
+    instances.iter().map(instance).collect()
 }
 
 /// A maker for a whole scene, for pictures that are saved.
-pub(crate) fn maker(gpu: &Gpu, shown: &Shown, sub_pixels: u32) -> Result<Adaptive, BuildError> {
-    let templates = templates(gpu, &shown.sources, &shown.coloring)?;
-    let scene = Scene::new(templates, instances(&shown.instances))?;
+pub(crate) fn adaptive(
+    gpu: &Gpu,
+    content: &SceneContent,
+    sub_pixels: u32,
+) -> Result<Adaptive, BuildError> {
+    let templates = templates(gpu, &content.sources, &content.coloring)?;
+    let scene = Scene::new(templates, device_instances(&content.instances))?;
     Ok(Adaptive::new(
         gpu,
         scene,
@@ -137,17 +143,17 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
     let look = &document.look;
     let any = document.selected().next().is_some();
     let parts = match look.parts {
-        Parts::All => 0,
-        Parts::Soma => WITHOUT_NEURITES,
-        Parts::Neurites => WITHOUT_SOMA,
+        VisibleParts::All => 0,
+        VisibleParts::Soma => WITHOUT_NEURITES,
+        VisibleParts::Neurites => WITHOUT_SOMA,
     };
     let state = |selected: bool| {
-        let marked = if selected && look.mark_selected {
+        let marked = if selected && look.highlight_selected {
             HIGHLIGHTED
         } else {
             0
         };
-        let faint = if any && !selected && look.faint_others {
+        let faint = if any && !selected && look.ghost_others {
             GHOSTED
         } else {
             0
@@ -164,15 +170,15 @@ pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
         wire: if look.wireframe { WIRE } else { 0.0 },
         clip: None,
         highlighted: (SELECTION, 0.75),
-        ghosted: look.faint.clamp(0.0, 1.0),
+        ghosted: look.ghost_opacity.clamp(0.0, 1.0),
         contrast: Some(look.background),
     }
 }
 
 /// The plane of the cut through what shows.
-pub(crate) fn clip(look: &Look, balls: &[BoundingSphere]) -> Option<Clip> {
+pub(crate) fn clip(look: &Look, spheres: &[BoundingSphere]) -> Option<Clip> {
     let cut = look.cut?;
-    let (low, high) = extent(balls);
+    let (low, high) = extent(spheres);
     let mut normal = DVec3::ZERO;
     normal[cut.axis.min(2)] = if cut.flipped { 1.0 } else { -1.0 };
     let point = low + (high - low) * f64::from(cut.place.clamp(0.0, 1.0));

@@ -11,7 +11,7 @@ use neurotess::render::{
     DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy, ProxyPickResolver, ProxyPickTargets,
 };
 
-use crate::scene::content::{self, Shown, Standing};
+use crate::scene::content::{self, SceneContent, SceneInstance};
 
 /// Fewest triangles of a frame, however slow the device.
 const LEAST_BUDGET: u32 = 12_500;
@@ -19,20 +19,20 @@ const LEAST_BUDGET: u32 = 12_500;
 /// A sketch of what is shown, if it is there.
 #[derive(Default)]
 pub(crate) struct Explorer {
-    made: Option<Made>,
-    making: Option<(Key, Receiver<Sketched>)>,
+    built: Option<BuiltScene>,
+    making: Option<(Key, Receiver<ProxyResult>)>,
     /// What could not be sketched is not tried again.
     refused: Option<Key>,
     budget: Option<u32>,
 }
 
-type Sketched = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
+type ProxyResult = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
 
-struct Made {
-    maker: Exploration,
+struct BuiltScene {
+    exploration: Exploration,
     names: Arc<[ProxyPickTargets]>,
     key: Key,
-    standing: Vec<Standing>,
+    instances: Vec<SceneInstance>,
 }
 
 /// What a sketch is of.
@@ -43,60 +43,60 @@ struct Key {
 }
 
 impl Key {
-    fn of(shown: &Shown) -> Self {
+    fn of(content: &SceneContent) -> Self {
         Self {
-            meshes: shown
+            meshes: content
                 .sources
                 .iter()
                 .map(|s| Arc::clone(&s.generated))
                 .collect(),
-            coloring: Arc::clone(&shown.coloring),
+            coloring: Arc::clone(&content.coloring),
         }
     }
 
-    fn fits(&self, shown: &Shown) -> bool {
-        self.meshes.len() == shown.sources.len()
-            && Arc::ptr_eq(&self.coloring, &shown.coloring)
+    fn fits(&self, content: &SceneContent) -> bool {
+        self.meshes.len() == content.sources.len()
+            && Arc::ptr_eq(&self.coloring, &content.coloring)
             && self
                 .meshes
                 .iter()
-                .zip(&shown.sources)
+                .zip(&content.sources)
                 .all(|(mesh, source)| Arc::ptr_eq(mesh, &source.generated))
     }
 }
 
 impl Explorer {
     /// Takes what was made and begins what is not there yet.
-    pub(crate) fn update(&mut self, gpu: &Arc<Gpu>, shown: &Shown, ctx: &egui::Context) {
+    pub(crate) fn update(&mut self, gpu: &Arc<Gpu>, content: &SceneContent, ctx: &egui::Context) {
         if let Some((key, receiver)) = &self.making {
-            let Ok(made) = receiver.try_recv() else {
+            let Ok(built) = receiver.try_recv() else {
                 return;
             };
             let key = key.clone();
             self.making = None;
-            match made {
-                Ok((maker, names)) => {
-                    self.made = Some(Made {
-                        maker,
+            match built {
+                Ok((exploration, names)) => {
+                    self.built = Some(BuiltScene {
+                        exploration,
                         names,
                         key,
-                        standing: Vec::new(),
+                        instances: Vec::new(),
                     });
                 }
                 // Too large for the device: the other maker draws it.
                 Err(_) => self.refused = Some(key),
             }
         }
-        let fits = |key: &Key| key.fits(shown);
-        let known = self.made.as_ref().map(|made| &made.key);
-        if shown.sources.is_empty()
+        let fits = |key: &Key| key.fits(content);
+        let known = self.built.as_ref().map(|built| &built.key);
+        if content.sources.is_empty()
             || known.is_some_and(fits)
             || self.refused.as_ref().is_some_and(fits)
         {
             return;
         }
-        self.made = None;
-        self.begin(gpu, Key::of(shown), ctx);
+        self.built = None;
+        self.begin(gpu, Key::of(content), ctx);
     }
 
     fn begin(&mut self, gpu: &Arc<Gpu>, key: Key, ctx: &egui::Context) {
@@ -105,40 +105,48 @@ impl Explorer {
         let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
         std::thread::spawn(move || {
             let cells = key.meshes.iter().zip(&key.coloring.color_keys);
-            let sketches: Vec<Proxy> = cells
-                .map(|(cell, words)| Proxy::new(&cell.mesh, words))
+            let proxies: Vec<Proxy> = cells
+                .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
                 .collect();
-            let made = Exploration::new(&gpu, 1).and_then(|mut maker| {
-                maker.add(&gpu, &sketches)?;
-                Ok((maker, sketches.iter().map(ProxyPickTargets::new).collect()))
+            let built = Exploration::new(&gpu, 1).and_then(|mut adaptive| {
+                adaptive.add(&gpu, &proxies)?;
+                Ok((
+                    adaptive,
+                    proxies.iter().map(ProxyPickTargets::new).collect(),
+                ))
             });
             // Nobody waits for it if the window is closed.
-            let _ = sender.send(made);
+            let _ = sender.send(built);
             ctx.request_repaint();
         });
     }
 
     /// The maker of a sketch of just this, with all neurons where they stand.
     /// `budget`: its triangles.
-    pub(crate) fn maker(
+    pub(crate) fn exploration(
         &mut self,
         gpu: &Gpu,
-        shown: &Shown,
+        content: &SceneContent,
         budget: u32,
     ) -> Option<&mut Exploration> {
-        let made = self.made.as_mut().filter(|made| made.key.fits(shown))?;
-        if made.standing != shown.instances {
-            let instances = content::instances(&shown.instances);
-            made.maker.set_instances(gpu, instances).ok()?;
-            made.standing.clone_from(&shown.instances);
+        let built = self
+            .built
+            .as_mut()
+            .filter(|built| built.key.fits(content))?;
+        if built.instances != content.instances {
+            let instances = content::device_instances(&content.instances);
+            built.exploration.set_instances(gpu, instances).ok()?;
+            built.instances.clone_from(&content.instances);
         }
-        made.maker.set_budget(budget);
-        Some(&mut made.maker)
+        built.exploration.set_budget(budget);
+        Some(&mut built.exploration)
     }
 
     /// Whether there is a sketch of just this.
-    pub(crate) fn fits(&self, shown: &Shown) -> bool {
-        self.made.as_ref().is_some_and(|made| made.key.fits(shown))
+    pub(crate) fn fits(&self, content: &SceneContent) -> bool {
+        self.built
+            .as_ref()
+            .is_some_and(|built| built.key.fits(content))
     }
 
     /// Whether a sketch will be there soon.
@@ -147,9 +155,9 @@ impl Explorer {
     }
 
     /// Who tells what ids of pictures of the sketch mean.
-    pub(crate) fn namer(&self) -> Option<ProxyPickResolver> {
-        let made = self.made.as_ref()?;
-        Some(made.maker.namer(Arc::clone(&made.names)))
+    pub(crate) fn resolver(&self) -> Option<ProxyPickResolver> {
+        let built = self.built.as_ref()?;
+        Some(built.exploration.namer(Arc::clone(&built.names)))
     }
 
     /// Frames have fewer triangles where they take too long, and more where there is time.

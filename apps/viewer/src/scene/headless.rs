@@ -9,19 +9,19 @@ use crate::io::find::{self, OpenRequest};
 use crate::io::load;
 use crate::io::tasks::Job;
 use crate::model::document::Neuron;
-use crate::model::film::Still;
+use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
 use crate::model::session::Session;
 use crate::model::settings::Settings;
 use crate::model::state::State;
-use crate::scene::colors::Wish;
-use crate::scene::content::{self, Shown};
-use crate::scene::pictures::{Scenery, pictures};
+use crate::scene::colors::ColorRequest;
+use crate::scene::content::{self, SceneContent};
+use crate::scene::pictures::{StillScene, pictures};
 use crate::scene::templates;
 
 /// A picture that was drawn, and what failed of the session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Drawn {
+pub struct SessionPicture {
     /// Number of neurons that the picture shows.
     pub neurons: usize,
     /// Files of the session that could not be read: file and reason.
@@ -36,10 +36,10 @@ pub fn draw_session(
     file: &Path,
     picture: &PictureFile,
     adapter: Option<&str>,
-) -> Result<Drawn, String> {
+) -> Result<SessionPicture, String> {
     let session = Session::read(file).map_err(|e| e.of(file))?;
     let mut state = State::new(Settings::default());
-    let mut drawn = Drawn::default();
+    let mut drawn = SessionPicture::default();
     let mut ids = Vec::new();
     let found = find::find(&OpenRequest {
         circuits: session.circuit.iter().map(|c| c.path.clone()).collect(),
@@ -77,34 +77,34 @@ pub fn draw_session(
     }
     drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
-    let scenery = scenery(Arc::new(gpu), &state, &mut drawn);
-    let still = Still {
+    let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
+    let film_frame = FilmFrame {
         view: session.view,
         time: Some(session.playback.time),
     };
     pictures(
-        &scenery,
-        &[still],
+        &still_scene,
+        &[film_frame],
         picture,
         &Job::new("drawing", "tiles", 0),
     )?;
     Ok(drawn)
 }
 
-fn scenery(gpu: Arc<Gpu>, state: &State, drawn: &mut Drawn) -> Scenery {
+fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> StillScene {
     let sources = templates::templates(state);
-    let wish = Wish::new(state, &sources);
-    let sources = wish.cut(sources);
-    let mut colored = wish.colors(&sources);
+    let request = ColorRequest::new(state, &sources);
+    let sources = request.cut(sources);
+    let mut colored = request.colors(&sources);
     drawn.failures.extend(colored.problem.take());
-    let standing = content::standing(state, &sources);
-    let shown = Shown::new(sources, standing, colored);
-    Scenery {
+    let instances = content::instances(state, &sources);
+    let content = SceneContent::new(sources, instances, colored);
+    StillScene {
         gpu,
         shared: false,
-        shown,
+        content,
         look: state.document.look.clone(),
         states: content::states(&state.document),
-        balls: state.balls(|_| true),
+        spheres: state.spheres(|_| true),
     }
 }

@@ -8,14 +8,14 @@ use neurotess::render::{HOVERED, PICKED, PickHit, PickId, PickTarget, Placement,
 
 use crate::model::document::Document;
 use crate::model::sources::SectionFacts;
-use crate::model::state::{Part, Picked};
+use crate::model::state::{CellPart, Picked};
 
 /// Pixels around the cursor in which something thin is still meant.
 const REACH: i64 = 4;
 
 /// What is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct CursorHit {
     /// Which piece of which neuron.
     pub picked: Picked,
     /// The middle of the patch (µm, in the world).
@@ -28,7 +28,7 @@ pub(crate) struct Picks {
     size: [u32; 2],
     /// By pixel: 0 where nothing is, else one more than the place in `seen`.
     index: Vec<u32>,
-    seen: Vec<Seen>,
+    seen: Vec<CursorHit>,
 }
 
 impl Picks {
@@ -36,7 +36,7 @@ impl Picks {
     pub(crate) fn new(
         size: [u32; 2],
         ids: &[PickId],
-        mut name: impl FnMut(PickId) -> Option<Seen>,
+        mut name: impl FnMut(PickId) -> Option<CursorHit>,
     ) -> Self {
         let mut seen = Vec::new();
         let mut known: HashMap<PickId, u32> = HashMap::from([([0; 2], 0)]);
@@ -65,7 +65,7 @@ impl Picks {
     }
 
     /// What is at a pixel, or nearest within a few.
-    pub(crate) fn at(&self, x: f32, y: f32) -> Option<Seen> {
+    pub(crate) fn at(&self, x: f32, y: f32) -> Option<CursorHit> {
         let (x, y) = (x.floor() as i64, y.floor() as i64);
         let mut near: Vec<(i64, i64)> = (-REACH..=REACH)
             .flat_map(|dy| (-REACH..=REACH).map(move |dx| (dx, dy)))
@@ -76,7 +76,7 @@ impl Picks {
             .find_map(|(dx, dy)| self.exactly(x + dx, y + dy))
     }
 
-    fn exactly(&self, x: i64, y: i64) -> Option<Seen> {
+    fn exactly(&self, x: i64, y: i64) -> Option<CursorHit> {
         let [width, height] = self.size.map(i64::from);
         if !(0..width).contains(&x) || !(0..height).contains(&y) {
             return None;
@@ -94,7 +94,7 @@ impl Picks {
         picked: Option<Picked>,
         sections: impl Fn(usize, u32) -> Option<SectionFacts>,
     ) -> Vec<u8> {
-        let within = |part: Option<Picked>, seen: &Seen| {
+        let within = |part: Option<Picked>, seen: &CursorHit| {
             part.is_some_and(|part| covers(part, seen.picked, &sections))
         };
         let mut bits = vec![0];
@@ -127,7 +127,7 @@ fn covers(
         return false;
     }
     match (part.part, seen.part) {
-        (Part::Neurite(neurite), Part::Section(section)) => {
+        (CellPart::Neurite(neurite), CellPart::Section(section)) => {
             sections(seen.neuron, section).is_some_and(|facts| facts.neurite == neurite)
         }
         (a, b) => a == b,
@@ -135,7 +135,7 @@ fn covers(
 }
 
 /// What a named patch is.
-pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<Seen> {
+pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<CursorHit> {
     let (middle, tracing, soma) = match named.spot {
         PickTarget::Patch(patch) => {
             let patch = mesh.patches.get(patch as usize)?;
@@ -156,11 +156,11 @@ pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> 
     };
     let section = mesh.tracing[tracing as usize].section;
     let part = match soma {
-        true => Part::Soma,
+        true => CellPart::Soma,
         // Section 0 is the soma.
-        false => u32::try_from(section - 1).map_or(Part::Soma, Part::Section),
+        false => u32::try_from(section - 1).map_or(CellPart::Soma, CellPart::Section),
     };
-    Some(Seen {
+    Some(CursorHit {
         picked: Picked {
             neuron: named.instance as usize,
             part,
@@ -179,11 +179,11 @@ mod tests {
         let ids = [0, 0, 0, 7, 9, 9, 0, 0, 0, 0].map(|id| [id, id]);
         Picks::new([10, 1], &ids, |id| {
             let part = if id[0] == 7 {
-                Part::Section(2)
+                CellPart::Section(2)
             } else {
-                Part::Soma
+                CellPart::Soma
             };
-            Some(Seen {
+            Some(CursorHit {
                 picked: Picked { neuron: 0, part },
                 place: DVec3::ZERO,
             })
@@ -194,10 +194,10 @@ mod tests {
     fn the_exact_pixel_wins_then_the_nearest() {
         let picks = picks();
         let part = |x| picks.at(x, 0.5).map(|s| s.picked.part);
-        assert_eq!(part(3.9), Some(Part::Section(2)));
-        assert_eq!(part(4.1), Some(Part::Soma));
-        assert_eq!(part(1.0), Some(Part::Section(2)));
-        assert_eq!(part(9.9), Some(Part::Soma));
+        assert_eq!(part(3.9), Some(CellPart::Section(2)));
+        assert_eq!(part(4.1), Some(CellPart::Soma));
+        assert_eq!(part(1.0), Some(CellPart::Section(2)));
+        assert_eq!(part(9.9), Some(CellPart::Soma));
         assert_eq!(picks.at(3.0, 9.0), None);
         assert_eq!(picks.at(-50.0, 0.0), None);
     }
@@ -214,15 +214,15 @@ mod tests {
             })
         };
         let hovered = |part| Some(Picked { neuron: 0, part });
-        let mask = picks().mask(&document, hovered(Part::Neurite(1)), None, facts);
+        let mask = picks().mask(&document, hovered(CellPart::Neurite(1)), None, facts);
         assert_eq!(mask, [0, 0, 0, 3, 1, 1, 0, 0, 0, 0]);
-        let mask = picks().mask(&document, hovered(Part::Soma), None, facts);
+        let mask = picks().mask(&document, hovered(CellPart::Soma), None, facts);
         assert_eq!(mask, [0, 0, 0, 1, 3, 3, 0, 0, 0, 0]);
         // What was clicked stays marked while the neuron is selected.
-        let mask = picks().mask(&document, None, hovered(Part::Soma), facts);
+        let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
         assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
         document.neurons[0].selected = false;
-        let mask = picks().mask(&document, None, hovered(Part::Soma), facts);
+        let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
         assert_eq!(mask, [0; 10]);
     }
 }

@@ -26,7 +26,7 @@ pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
     let mut used: Vec<SourceId> = state.document.neurons.iter().map(|n| n.source).collect();
     used.sort_unstable();
     used.dedup();
-    let shown = used.into_iter().filter_map(|id| {
+    let templates = used.into_iter().filter_map(|id| {
         let source = state.sources.get(id)?;
         Some(SceneTemplate {
             id,
@@ -37,5 +37,5 @@ pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
             options: source.soma.options(),
         })
     });
-    shown.collect()
+    templates.collect()
 }

@@ -107,7 +107,7 @@ pub(crate) fn picture(window: &Window) -> Rect {
 }
 
 /// Where a place of the world is seen.
-pub(crate) fn seen_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
+pub(crate) fn hit_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
     let rect = picture(window);
     let size = [rect.width(), rect.height()].map(|n| n as u32);
     let pixel = state(window).view.camera().pixel_of(place, size);

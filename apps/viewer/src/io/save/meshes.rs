@@ -11,12 +11,12 @@ use neurotess::output::write_whole;
 use neurotess::refine::{
     Caps, CoarseSurface, Lod, LodCriterion, Path as Course, RefineOptions, Refinement,
 };
-use neurotess::render::Placement;
+use neurotess::render::{CullView, Placement};
 
 use super::existing;
 use crate::io::tasks::Job;
 use crate::model::document::Detail;
-use crate::model::save::{Fineness, MeshOptions};
+use crate::model::save::{MeshLod, MeshOptions};
 use crate::model::view::View;
 
 /// A cell to be written.
@@ -121,9 +121,9 @@ fn write_mesh(
         quads: options.quads && options.format.has_quads(),
     };
     let (refinement, quads);
-    let surface: &dyn Surface = match levels(options.fineness, plan, view, detail, height) {
-        Some(levels) => {
-            refinement = Refinement::new(coarse, levels, &refine);
+    let surface: &dyn Surface = match mesh_lod(options.lod, plan, view, detail, height) {
+        Some(lod) => {
+            refinement = Refinement::new(coarse, lod, &refine);
             &refinement
         }
         None => {
@@ -145,23 +145,28 @@ fn write_mesh(
     Ok(surface.triangle_count() + surface.quad_count())
 }
 
-fn levels(
-    fineness: Fineness,
+fn mesh_lod(
+    lod: MeshLod,
     plan: &MeshPlan,
     view: &View,
     detail: &Detail,
     height: f64,
 ) -> Option<Lod<'static>> {
-    match fineness {
-        Fineness::Level(0) => None,
-        Fineness::Level(level) => Some(LodCriterion::Homogeneous(level.min(64)).into()),
-        Fineness::MaxError(error) => Some(LodCriterion::MaxError(error.max(1e-4)).into()),
-        Fineness::AsShown => {
+    match lod {
+        MeshLod::Fixed(criterion) => {
+            let limited = match criterion? {
+                LodCriterion::Homogeneous(level) => LodCriterion::Homogeneous(level.clamp(1, 64)),
+                LodCriterion::MaxError(error) => LodCriterion::MaxError(error.max(1e-4)),
+                other => other,
+            };
+            Some(limited.into())
+        }
+        MeshLod::AsShown => {
             let camera = view.camera();
-            let place = &plan.placement;
-            let sight = neurotess::render::CullView::new(&camera, 1, height.max(1.0) as u32, 1e-3);
-            let view = sight.local_view(place, plan.generated.mesh.origin);
-            Some(Lod::seen_from(detail.lod().scaled(place.scale), view))
+            let placement = &plan.placement;
+            let cull_view = CullView::new(&camera, 1, height.max(1.0) as u32, 1e-3);
+            let local = cull_view.local_view(placement, plan.generated.mesh.origin);
+            Some(Lod::seen_from(detail.lod().scaled(placement.scale), local))
         }
     }
 }
@@ -172,6 +177,8 @@ mod tests {
     use crate::io::load;
     use crate::model::document::SomaEdit;
     use crate::model::sources;
+
+    const LEVEL_1: MeshLod = MeshLod::Fixed(Some(LodCriterion::Homogeneous(1)));
 
     fn plan(name: &str) -> MeshPlan {
         let star = sources::sample(neurotess::synth::Kind::Star);
@@ -190,7 +197,7 @@ mod tests {
         MeshOptions {
             out,
             format: Format::Ply,
-            fineness: Fineness::Level(1),
+            lod: LEVEL_1,
             quads: false,
             linear: false,
             flat: false,
@@ -205,9 +212,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let out = folder.path().join("a.ply");
         let view = View::default();
-        let write = |fineness, replace| {
+        let write = |lod, replace| {
             let options = MeshOptions {
-                fineness,
+                lod,
                 replace,
                 ..options(out.clone())
             };
@@ -220,21 +227,21 @@ mod tests {
                 &Job::new("", "", 1),
             )
         };
-        for fineness in [
-            Fineness::Level(1),
-            Fineness::Level(0),
-            Fineness::AsShown,
-            Fineness::MaxError(0.1),
+        for lod in [
+            LEVEL_1,
+            MeshLod::Fixed(None),
+            MeshLod::AsShown,
+            MeshLod::Fixed(Some(LodCriterion::MaxError(0.1))),
         ] {
-            write(fineness, true).expect("written");
+            write(lod, true).expect("written");
             let bytes = std::fs::read(&out).expect("there");
             let mesh = mesh::read_bytes(&bytes, Format::Ply).expect("a mesh");
-            assert!(mesh::check(&mesh).closed, "{fineness:?}");
+            assert!(mesh::check(&mesh).closed, "{lod:?}");
             let x = mesh.origin.x + f64::from(mesh.vertices[0].position.x);
             assert!(x > 300.0, "{x}");
         }
         assert!(
-            write(Fineness::Level(1), false)
+            write(LEVEL_1, false)
                 .expect_err("is there")
                 .contains("exists")
         );

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Detail {
     /// By what.
-    pub criterion: Criterion,
+    pub criterion: LodKind,
     /// Error (pixels).
     pub error: f32,
     /// Length of an edge's piece (pixels).
@@ -24,7 +24,7 @@ pub struct Detail {
 /// By what the level is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Criterion {
+pub enum LodKind {
     /// Error in pixels.
     #[default]
     Error,
@@ -39,7 +39,7 @@ pub enum Criterion {
 impl Default for Detail {
     fn default() -> Self {
         Self {
-            criterion: Criterion::Error,
+            criterion: LodKind::Error,
             error: 0.5,
             size: 8.0,
             level: 4,
@@ -52,10 +52,10 @@ impl Default for Detail {
 impl Detail {
     pub(crate) fn lod(&self) -> LodCriterion {
         match self.criterion {
-            Criterion::Error => LodCriterion::PixelError(self.error.max(0.01)),
-            Criterion::Size => LodCriterion::PixelSize(self.size.max(0.5)),
-            Criterion::Homogeneous => LodCriterion::Homogeneous(self.level.clamp(1, 64)),
-            Criterion::Distance => LodCriterion::Distance {
+            LodKind::Error => LodCriterion::PixelError(self.error.max(0.01)),
+            LodKind::Size => LodCriterion::PixelSize(self.size.max(0.5)),
+            LodKind::Homogeneous => LodCriterion::Homogeneous(self.level.clamp(1, 64)),
+            LodKind::Distance => LodCriterion::Distance {
                 level: self.level.clamp(1, 64),
                 far: self.far.max(1e-3),
             },

@@ -45,13 +45,16 @@ pub struct Look {
     /// Directions of x, y and z.
     pub axes: bool,
     /// A color of its own for what is selected.
-    pub mark_selected: bool,
+    #[serde(alias = "mark_selected")]
+    pub highlight_selected: bool,
     /// Whether one looks through what is not selected.
-    pub faint_others: bool,
+    #[serde(alias = "faint_others")]
+    pub ghost_others: bool,
     /// Share of what is not selected that is still seen.
-    pub faint: f32,
+    #[serde(alias = "faint")]
+    pub ghost_opacity: f32,
     /// What is drawn of cells.
-    pub parts: Parts,
+    pub parts: VisibleParts,
     /// What is cut away.
     pub cut: Option<Cut>,
 }
@@ -165,7 +168,7 @@ impl Lighting {
 /// What is drawn of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Parts {
+pub enum VisibleParts {
     /// All.
     #[default]
     All,
@@ -203,10 +206,10 @@ impl Default for Look {
             legend: true,
             scale_bar: true,
             axes: true,
-            mark_selected: false,
-            faint_others: false,
-            faint: 0.25,
-            parts: Parts::All,
+            highlight_selected: false,
+            ghost_others: false,
+            ghost_opacity: 0.25,
+            parts: VisibleParts::All,
             cut: None,
         }
     }
@@ -237,3 +240,17 @@ macro_rules! by_name {
 
 by_name!(palette, neurotess::render::Palette);
 by_name!(color_map, neurotess::render::ColorMap);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_of_earlier_versions_are_read() {
+        let text = "colour_by = 'depth'\nwires = true\nmark_selected = true\nfaint_others = true\nfaint = 0.5";
+        let look: Look = toml::from_str(text).expect("read");
+        assert_eq!(look.color_by, ColorBy::PathDistance);
+        assert!(look.wireframe && look.highlight_selected && look.ghost_others);
+        assert_eq!(look.ghost_opacity, 0.5);
+    }
+}

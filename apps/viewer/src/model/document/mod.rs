@@ -11,9 +11,9 @@ use glam::DVec3;
 use neurotess::render::Placement;
 
 pub use crate::model::ids::{CircuitNode, SourceId};
-pub use detail::{Criterion, Detail};
-pub use look::{ColorBy, Cut, Lighting, Look, PAPER, Parts};
-pub(crate) use placement::PlaceFile;
+pub use detail::{Detail, LodKind};
+pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
+pub(crate) use placement::PlacementEntry;
 pub use soma::{Method, SomaEdit};
 
 /// All that an edit changes.

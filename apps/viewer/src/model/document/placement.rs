@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 /// Rotation and place as a session has them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PlaceFile {
+pub(crate) struct PlacementEntry {
     pub(crate) rotation: [f64; 4],
     pub(crate) scale: f64,
     pub(crate) translation: [f64; 3],
 }
 
-impl From<Placement> for PlaceFile {
+impl From<Placement> for PlacementEntry {
     fn from(p: Placement) -> Self {
         Self {
             rotation: p.rotation.to_array(),
@@ -22,8 +22,8 @@ impl From<Placement> for PlaceFile {
     }
 }
 
-impl From<PlaceFile> for Placement {
-    fn from(p: PlaceFile) -> Self {
+impl From<PlacementEntry> for Placement {
+    fn from(p: PlacementEntry) -> Self {
         let rotation = DQuat::from_array(p.rotation);
         Self {
             rotation: if rotation.is_finite() && rotation.length() > 1e-6 {

@@ -9,20 +9,20 @@ use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 
 use super::Stage;
 use crate::model::state::State;
-use crate::scene::colors::{ColorKey, Wish};
-use crate::scene::content::{self, BuildError, Shown};
+use crate::scene::colors::{ColorInputs, ColorRequest};
+use crate::scene::content::{self, BuildError, SceneContent};
 use crate::scene::templates::{self, SceneTemplate};
 
 /// Cells up to which a soma is changed at once; with more, all colors are made anew beside.
 const QUICK: usize = 24;
 
-pub(super) type Built = Result<Made, DeviceError>;
+pub(super) type Built = Result<BuiltScene, DeviceError>;
 
 /// What was made beside: the scene, what shows, what could not be colored.
-pub(super) struct Made {
+pub(super) struct BuiltScene {
     templates: Templates,
-    shown: Shown,
-    key: ColorKey,
+    content: SceneContent,
+    key: ColorInputs,
     problem: Option<(String, String)>,
 }
 
@@ -40,15 +40,18 @@ impl Stage {
             return Ok(());
         };
         self.building = None;
-        let made = built?;
-        let scene = Scene::new(made.templates, content::instances(&made.shown.instances));
-        self.maker.set_scene(scene.unwrap_or_default());
-        self.live.set_colors(made.shown.table.clone());
-        self.shown = made.shown;
-        self.colors = Some(made.key);
+        let built = built?;
+        let scene = Scene::new(
+            built.templates,
+            content::device_instances(&built.content.instances),
+        );
+        self.adaptive.set_scene(scene.unwrap_or_default());
+        self.progressive.set_colors(built.content.table.clone());
+        self.content = built.content;
+        self.colors = Some(built.key);
         self.drawn = None;
-        self.replay(state, ctx);
-        if let Some((what, why)) = made.problem {
+        self.recording(state, ctx);
+        if let Some((what, why)) = built.problem {
             state.problem(what, why);
         }
         Ok(())
@@ -64,14 +67,14 @@ impl Stage {
             return Ok(());
         }
         let sources = templates::templates(state);
-        let colors = ColorKey::new(&state.document);
-        let same_sources = sources.len() == self.shown.sources.len()
+        let colors = ColorInputs::new(&state.document);
+        let same_sources = sources.len() == self.content.sources.len()
             && sources
                 .iter()
-                .zip(&self.shown.sources)
+                .zip(&self.content.sources)
                 .all(|(a, b)| a.id == b.id);
         let changed: Vec<usize> = if same_sources {
-            let pairs = sources.iter().zip(&self.shown.sources).enumerate();
+            let pairs = sources.iter().zip(&self.content.sources).enumerate();
             pairs
                 .filter(|(_, (a, b))| !Arc::ptr_eq(&a.traced, &b.traced))
                 .map(|(i, _)| i)
@@ -83,15 +86,15 @@ impl Stage {
         if same_sources && !recolored && changed.is_empty() {
             return Ok(());
         }
-        let replays = self.shown.replay.is_some();
-        let same_matter = self.colors.as_ref().map(|c| &c.matter) == Some(&colors.matter);
+        let replays = self.content.recording.is_some();
+        let same_matter = self.colors.as_ref().map(|c| &c.subject) == Some(&colors.subject);
         if same_sources && replays && same_matter && changed.is_empty() {
-            self.tint(state, colors);
+            self.restyle_values(state, colors);
             return Ok(());
         }
         if same_sources && !recolored && !replays && sources.len() <= QUICK {
-            let wish = Wish::new(state, &sources);
-            return self.replace(sources, &changed, &wish);
+            let request = ColorRequest::new(state, &sources);
+            return self.replace(sources, &changed, &request);
         }
         self.build(state, sources, colors, ctx);
         Ok(())
@@ -101,25 +104,25 @@ impl Stage {
         &mut self,
         sources: Vec<SceneTemplate>,
         changed: &[usize],
-        wish: &Wish,
+        request: &ColorRequest,
     ) -> Result<(), DeviceError> {
-        let colored = wish.colors(&sources);
-        let words = &colored.coloring.color_keys;
-        let mut scene = self.maker.take_scene();
+        let colored = request.colors(&sources);
+        let color_keys = &colored.coloring.color_keys;
+        let mut scene = self.adaptive.take_scene();
         let mut replaced = Ok(());
         for &place in changed {
             let template = Template {
                 mesh: &sources[place].generated.mesh,
-                color_keys: &words[place],
+                color_keys: &color_keys[place],
                 values: &[],
             };
             let id = TemplateId(place as u32);
             replaced = replaced.and_then(|()| scene.replace(&self.gpu, id, &template));
         }
-        self.maker.set_scene(scene);
-        let standing = std::mem::take(&mut self.shown.instances);
-        self.shown = Shown::new(sources, standing, colored);
-        self.live.set_colors(self.shown.table.clone());
+        self.adaptive.set_scene(scene);
+        let instances = std::mem::take(&mut self.content.instances);
+        self.content = SceneContent::new(sources, instances, colored);
+        self.progressive.set_colors(self.content.table.clone());
         self.drawn = None;
         replaced
     }
@@ -128,28 +131,28 @@ impl Stage {
         &mut self,
         state: &State,
         sources: Vec<SceneTemplate>,
-        key: ColorKey,
+        key: ColorInputs,
         ctx: &egui::Context,
     ) {
         let (sender, receiver) = channel();
         let (gpu, ctx) = (Arc::clone(&self.gpu), ctx.clone());
-        let wish = Wish::new(state, &sources);
-        let instances = content::standing(state, &sources);
+        let request = ColorRequest::new(state, &sources);
+        let instances = content::instances(state, &sources);
         self.building = Some(receiver);
         std::thread::spawn(move || {
-            let sources = wish.cut(sources);
-            let mut colored = wish.colors(&sources);
+            let sources = request.cut(sources);
+            let mut colored = request.colors(&sources);
             let problem = colored.problem.take();
-            let shown = Shown::new(sources, instances, colored);
-            let templates = content::templates(&gpu, &shown.sources, &shown.coloring);
-            let made = templates.map(|templates| Made {
+            let content = SceneContent::new(sources, instances, colored);
+            let templates = content::templates(&gpu, &content.sources, &content.coloring);
+            let built = templates.map(|templates| BuiltScene {
                 templates,
-                shown,
+                content,
                 key,
                 problem,
             });
             // Nobody waits for it if the window is closed.
-            let _ = sender.send(made);
+            let _ = sender.send(built);
             ctx.request_repaint();
         });
     }

@@ -5,7 +5,7 @@ use neurotess::render::{ViewParams, any_shows};
 
 use super::{Stage, whole};
 use crate::model::state::{Lowered, State};
-use crate::scene::content::Standing;
+use crate::scene::content::SceneInstance;
 
 /// No slice of a full picture may be expected to take longer: no input is answered meanwhile.
 const LIMIT_MS: f64 = 600.0;
@@ -23,7 +23,7 @@ const FEW: u64 = 100_000;
 
 /// How the picture at rest is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Full {
+pub(super) enum RestMode {
     /// As it is saved.
     Refined,
     /// By the explorer, within a budget.
@@ -34,7 +34,7 @@ pub(super) enum Full {
 
 /// What was measured, and what follows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Means {
+pub(super) struct CostModel {
     /// Milliseconds of a slice for each patch: now, and before anything was measured.
     patch_ms: f64,
     first_ms: f64,
@@ -47,7 +47,7 @@ pub(super) struct Means {
     best_ms: f64,
 }
 
-impl Means {
+impl CostModel {
     pub(super) fn new(software: bool) -> Self {
         let first_ms = match software {
             true => SOFTWARE_PATCH_MS,
@@ -90,7 +90,7 @@ impl Means {
 
     /// Another budget for the next explored picture; whether that is worth a picture now. `wanted`:
     /// triangles that half a pixel everywhere would take.
-    pub(super) fn adapt(&mut self, wanted: u64) -> bool {
+    pub(super) fn adapt(&mut self, inputs: u64) -> bool {
         let (before, took) = (self.budget, self.best_ms.max(1.0));
         self.best_ms = f64::MAX;
         // What was slow once is tried again some time.
@@ -99,7 +99,7 @@ impl Means {
         if room < 0.67 {
             let fits = f64::from(before) * room.max(0.25);
             self.budget = (fits as u32).max(LEAST_BUDGET);
-        } else if room > 1.5 && wanted > u64::from(before) {
+        } else if room > 1.5 && inputs > u64::from(before) {
             let fits = f64::from(before) * room.min(4.0);
             self.budget = (fits as u32).min(MOST_BUDGET);
         }
@@ -110,70 +110,70 @@ impl Means {
 impl Stage {
     /// Holds more than so many patches in the picture for too dear, whatever was measured: for tests.
     pub fn limit_patches(&mut self, most: Option<u64>) {
-        self.means.most_patches = most;
+        self.cost_model.most_patches = most;
     }
 
     /// Patches of all neurons of which something may show.
     pub(super) fn patches_in(
         &self,
         state: &State,
-        shot: &ViewParams,
-        standing: &[Standing],
+        params: &ViewParams,
+        instances: &[SceneInstance],
     ) -> u64 {
-        let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
-        let frame = whole(camera, near, shot.size);
-        let shows = |standing: &&Standing| {
-            let Some(source) = self.shown.sources.get(standing.source) else {
+        let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
+        let frame = whole(camera, near, params.size);
+        let shows = |instances: &&SceneInstance| {
+            let Some(source) = self.content.sources.get(instances.source) else {
                 return false;
             };
-            let place = &standing.placement;
-            let balls = state
+            let place = &instances.placement;
+            let spheres = state
                 .sources
                 .get(source.id)
-                .map_or(&[][..], |s| &s.few_balls);
-            let ball = |&(c, r)| (place.world_from_cell(c), r * place.scale);
-            any_shows(&balls.iter().map(ball).collect::<Vec<_>>(), &frame)
+                .map_or(&[][..], |s| &s.few_spheres);
+            let sphere = |&(c, r)| (place.world_from_cell(c), r * place.scale);
+            any_shows(&spheres.iter().map(sphere).collect::<Vec<_>>(), &frame)
         };
-        let seen = standing.iter().filter(|s| !s.hidden).filter(shows);
+        let seen = instances.iter().filter(|s| !s.hidden).filter(shows);
         let patches =
-            seen.map(|s| self.shown.sources[s.source].generated.mesh.patches.len() as u64);
+            seen.map(|s| self.content.sources[s.source].generated.mesh.patches.len() as u64);
         patches.sum()
     }
 
     /// Who draws the picture at rest.
-    pub(super) fn choose_full(&mut self, shot: &ViewParams) -> Full {
-        if !self.means.too_many(self.patches) {
-            return Full::Refined;
+    pub(super) fn select_rest_mode(&mut self, params: &ViewParams) -> RestMode {
+        if !self.cost_model.too_many(self.patches) {
+            return RestMode::Refined;
         }
-        let sketched = explorable(shot) && self.explorer.fits(&self.shown);
+        let sketched = explorable(params) && self.explorer.fits(&self.content);
         match sketched {
-            true => Full::Explored,
-            false => Full::Coarser,
+            true => RestMode::Explored,
+            false => RestMode::Coarser,
         }
     }
 
     /// Learns from the slice that is done.
     pub(super) fn note_slice(&mut self, took_ms: f64) {
-        match self.full {
-            Full::Refined => self.means.note_refined(took_ms, self.patches),
-            Full::Explored => self.means.note_explored(took_ms),
-            Full::Coarser => {}
+        match self.rest_mode {
+            RestMode::Refined => self.cost_model.note_refined(took_ms, self.patches),
+            RestMode::Explored => self.cost_model.note_explored(took_ms),
+            RestMode::Coarser => {}
         }
     }
 
     /// How the picture at rest is less than it should be.
     pub(super) fn lowered(&self) -> Option<Lowered> {
-        match self.full {
-            Full::Refined => None,
-            Full::Explored => Some(Lowered::Triangles(self.surveyed)),
-            Full::Coarser => Some(Lowered::Error(self.coarser)),
+        match self.rest_mode {
+            RestMode::Refined => None,
+            RestMode::Explored => Some(Lowered::Triangles(self.surveyed)),
+            RestMode::Coarser => Some(Lowered::Error(self.coarser)),
         }
     }
 }
 
 /// Exploration knows neither grids nor another camera.
-pub(super) fn explorable(shot: &ViewParams) -> bool {
-    shot.look.wire <= 0.0 && shot.frozen.is_none()
+pub(super) fn explorable(params: &ViewParams) -> bool {
+    params.look.wire <= 0.0 && params.frozen.is_none()
 }
 
 #[cfg(test)]
@@ -182,37 +182,37 @@ mod tests {
 
     #[test]
     fn what_was_slow_is_too_much_and_less_of_it_is_not() {
-        let mut means = Means::new(true);
-        assert!(means.too_many(20_000_000) && !means.too_many(1_000_000));
-        means.note_refined(300.0, 1_000_000);
-        assert!(!means.too_many(2_000_000) && means.too_many(2_400_000));
+        let mut cost_model = CostModel::new(true);
+        assert!(cost_model.too_many(20_000_000) && !cost_model.too_many(1_000_000));
+        cost_model.note_refined(300.0, 1_000_000);
+        assert!(!cost_model.too_many(2_000_000) && cost_model.too_many(2_400_000));
         // Once held up is not slow.
-        means.note_refined(800.0, 1_000_000);
-        assert!(!means.too_many(1_000_000));
-        means.note_refined(1600.0, 1_000_000);
-        assert!(means.too_many(1_000_000) && !means.too_many(99_000));
-        means.note_refined(3000.0, 20_000);
-        assert!(!means.too_many(500_000), "few patches tell nothing");
+        cost_model.note_refined(800.0, 1_000_000);
+        assert!(!cost_model.too_many(1_000_000));
+        cost_model.note_refined(1600.0, 1_000_000);
+        assert!(cost_model.too_many(1_000_000) && !cost_model.too_many(99_000));
+        cost_model.note_refined(3000.0, 20_000);
+        assert!(!cost_model.too_many(500_000), "few patches tell nothing");
         // Some time later it may be tried again.
         for _ in 0..30 {
-            means.note_explored(150.0);
-            means.adapt(u64::MAX);
+            cost_model.note_explored(150.0);
+            cost_model.adapt(u64::MAX);
         }
-        assert!(!means.too_many(1_000_000) && means.too_many(20_000_000));
+        assert!(!cost_model.too_many(1_000_000) && cost_model.too_many(20_000_000));
     }
 
     #[test]
     fn budgets_grow_where_there_is_time_and_more_to_draw() {
-        let mut means = Means::new(true);
-        means.note_explored(30.0);
-        assert!(means.adapt(u64::MAX) && means.budget == 4 * FIRST_BUDGET);
-        means.note_explored(30.0);
-        assert!(means.adapt(u64::MAX) && means.budget == MOST_BUDGET);
-        means.note_explored(600.0);
-        assert!(!means.adapt(u64::MAX) && means.budget == MOST_BUDGET / 4);
-        means.note_explored(140.0);
-        assert!(!means.adapt(u64::MAX) && means.budget == MOST_BUDGET / 4);
-        means.note_explored(10.0);
-        assert!(!means.adapt(1_000), "all that is wanted is there");
+        let mut cost_model = CostModel::new(true);
+        cost_model.note_explored(30.0);
+        assert!(cost_model.adapt(u64::MAX) && cost_model.budget == 4 * FIRST_BUDGET);
+        cost_model.note_explored(30.0);
+        assert!(cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET);
+        cost_model.note_explored(600.0);
+        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET / 4);
+        cost_model.note_explored(140.0);
+        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET / 4);
+        cost_model.note_explored(10.0);
+        assert!(!cost_model.adapt(1_000), "all that is wanted is there");
     }
 }

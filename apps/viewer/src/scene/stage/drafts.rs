@@ -10,9 +10,9 @@ use neurotess::render::{
 use super::cost_model::explorable;
 use super::pointing::OUTLINES;
 use super::rest::REST;
-use super::{Drawn, Rest, Stage};
+use super::{PictureInputs, RestPhase, Stage};
 use crate::model::state::State;
-use crate::scene::content::{self, Standing};
+use crate::scene::content::{self, SceneInstance};
 
 /// A draft should take no longer.
 const DRAFT_MS: f64 = 40.0;
@@ -22,20 +22,20 @@ const HALF_FROM: f32 = 6.0;
 const FRAMES: usize = 90;
 
 impl Stage {
-    pub(super) fn wanted(&mut self, state: &State, size: [u32; 2]) -> Drawn {
+    pub(super) fn inputs(&mut self, state: &State, size: [u32; 2]) -> PictureInputs {
         let look = &state.document.look;
         let camera = state.view.camera();
-        let balls = state.balls(|_| true);
+        let spheres = state.spheres(|_| true);
         let mut surface = content::surface_look(look);
-        surface.clip = content::clip(look, &balls);
+        surface.clip = content::clip(look, &spheres);
         let frozen = state.frozen.map(|view| {
             let camera = view.camera();
-            (camera, camera.near(&balls))
+            (camera, camera.near(&spheres))
         });
-        Drawn {
-            shot: ViewParams {
+        PictureInputs {
+            params: ViewParams {
                 camera,
-                near: camera.near(&balls),
+                near: camera.near(&spheres),
                 size,
                 look: surface,
                 occlusion: if look.occlusion {
@@ -48,7 +48,7 @@ impl Stage {
             },
             detail: state.document.detail,
             states: content::states(&state.document),
-            standing: content::standing(state, &self.shown.sources),
+            instances: content::instances(state, &self.content.sources),
         }
     }
 
@@ -56,39 +56,40 @@ impl Stage {
     pub(super) fn draft(
         &mut self,
         state: &State,
-        wanted: Drawn,
+        inputs: PictureInputs,
         ctx: &egui::Context,
     ) -> Result<(), DeviceError> {
         self.moved = Instant::now();
-        self.rest = Rest::Waits;
-        self.live.stop();
-        if self.live.is_busy(&self.gpu) {
+        self.phase = RestPhase::Waits;
+        self.progressive.stop();
+        if self.progressive.is_busy(&self.gpu) {
             // What was submitted must end first: drafts that pile up come too late.
             ctx.request_repaint_after(Duration::from_millis(3));
             return Ok(());
         }
-        self.patches = self.patches_in(state, &wanted.shot, &wanted.standing);
+        self.patches = self.patches_in(state, &inputs.params, &inputs.instances);
         if self.explorer.is_making()
-            && explorable(&wanted.shot)
-            && self.means.too_many(self.patches)
+            && explorable(&inputs.params)
+            && self.cost_model.too_many(self.patches)
         {
             // Refined, even a draft would take seconds.
             ctx.request_repaint_after(Duration::from_millis(15));
             return Ok(());
         }
-        if self.drawn.is_some() && self.live.shows_draft() {
+        if self.drawn.is_some() && self.progressive.shows_draft() {
             self.keep_up();
         }
         let before = self.drawn.as_ref();
-        if before.is_none_or(|d| d.standing != wanted.standing) {
-            self.stand(&wanted.standing);
+        if before.is_none_or(|d| d.instances != inputs.instances) {
+            self.nodes_of_cells(&inputs.instances);
         }
         let selected = state.document.neurons.iter().map(|n| n.selected);
         let outlined = selected.map(|selected| if selected { OUTLINED } else { 0 });
-        let states = wanted.states.iter().zip(outlined);
-        self.live.set_states(states.map(|(a, b)| a | b).collect());
+        let states = inputs.states.iter().zip(outlined);
+        self.progressive
+            .set_states(states.map(|(a, b)| a | b).collect());
         self.picks = None;
-        self.namer = None;
+        self.resolver = None;
         self.counts = None;
         let any = state.document.selected().next().is_some();
         let outlines = Outlines {
@@ -96,46 +97,47 @@ impl Stage {
             width: u32::from(any),
             ..OUTLINES
         };
-        self.live.set_outlines(&self.gpu, outlines, None);
+        self.progressive.set_outlines(&self.gpu, outlines, None);
         self.mask = None;
-        self.draw_draft(&wanted)?;
-        self.drawn = Some(wanted);
-        self.legend.clone_from(&self.shown.legend);
+        self.draw_draft(&inputs)?;
+        self.drawn = Some(inputs);
+        self.legend.clone_from(&self.content.legend);
         self.revalued = false;
         ctx.request_repaint_after(REST);
         Ok(())
     }
 
     /// By the explorer where it can: it knows neither grids nor another camera.
-    pub(super) fn draw_draft(&mut self, wanted: &Drawn) -> Result<(), DeviceError> {
-        let mut shot = wanted.shot;
+    pub(super) fn draw_draft(&mut self, inputs: &PictureInputs) -> Result<(), DeviceError> {
+        let mut params = inputs.params;
         let budget = self.explorer.budget();
-        let explorer = match explorable(&shot) {
-            true => self.explorer.maker(&self.gpu, &self.shown, budget),
+        let explorer = match explorable(&params) {
+            true => self.explorer.exploration(&self.gpu, &self.content, budget),
             false => None,
         };
         self.explored = explorer.is_some();
-        if let Some(maker) = explorer {
-            return self.live.draft(&self.gpu, maker, &shot);
+        if let Some(adaptive) = explorer {
+            return self.progressive.draft(&self.gpu, adaptive, &params);
         }
-        self.maker.set_settings(AdaptiveSettings {
+        self.adaptive.set_settings(AdaptiveSettings {
             // Nothing is left out that would show at rest: holes that come and go look broken.
-            lod: wanted.detail.lod().coarser(self.coarser),
-            smallest: wanted.detail.smallest,
-            wireframe: shot.look.wire > 0.0,
+            lod: inputs.detail.lod().coarser(self.coarser),
+            smallest: inputs.detail.smallest,
+            wireframe: params.look.wire > 0.0,
             ..AdaptiveSettings::default()
         });
         if self.coarser > HALF_FROM {
-            shot.size = shot.size.map(|n| n.div_ceil(2));
+            params.size = params.size.map(|n| n.div_ceil(2));
         }
-        self.live.draft(&self.gpu, &mut self.maker, &shot)
+        self.progressive
+            .draft(&self.gpu, &mut self.adaptive, &params)
     }
 
-    pub(super) fn stand(&mut self, standing: &[Standing]) {
-        self.shown.instances = standing.to_vec();
-        let (templates, _) = self.maker.take_scene().into_parts();
-        match Scene::new(templates, content::instances(standing)) {
-            Ok(scene) => self.maker.set_scene(scene),
+    pub(super) fn nodes_of_cells(&mut self, instances: &[SceneInstance]) {
+        self.content.instances = instances.to_vec();
+        let (templates, _) = self.adaptive.take_scene().into_parts();
+        match Scene::new(templates, content::device_instances(instances)) {
+            Ok(scene) => self.adaptive.set_scene(scene),
             // Placements are finite by construction; if not, all is built anew.
             Err(_) => self.colors = None,
         }
@@ -143,7 +145,7 @@ impl Stage {
 
     /// Drafts become coarser where they take too long, and finer where there is time.
     pub(super) fn keep_up(&mut self) {
-        let took = self.live.last_ms();
+        let took = self.progressive.last_ms();
         self.note_frame(took);
         if self.explored {
             self.explorer.keep_up(took, DRAFT_MS);

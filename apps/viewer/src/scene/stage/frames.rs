@@ -7,18 +7,23 @@ use eframe::egui;
 use neurotess::render::ColorTable;
 
 use super::Stage;
-use crate::io::frames::{CullView, Reader};
+use crate::io::frames::{FrameReader, ValueInputs};
 use crate::model::playback::Facts;
 use crate::model::state::State;
-use crate::scene::colors::{ColorKey, paint};
+use crate::scene::colors::{ColorInputs, color_scheme};
 
 impl Stage {
     /// Another recording shows, or none: it is read from now on.
-    pub(super) fn replay(&mut self, state: &mut State, ctx: &egui::Context) {
-        let replay = self.shown.replay.as_ref().map(|(replay, _)| replay);
-        let same = |reader: &Reader| replay.is_some_and(|r| Arc::ptr_eq(reader.replay(), r));
+    pub(super) fn recording(&mut self, state: &mut State, ctx: &egui::Context) {
+        let recording = self
+            .content
+            .recording
+            .as_ref()
+            .map(|(recording, _)| recording);
+        let same =
+            |reader: &FrameReader| recording.is_some_and(|r| Arc::ptr_eq(reader.recording(), r));
         if !self.reader.as_ref().is_some_and(same) {
-            self.reader = replay.map(|replay| Reader::new(Arc::clone(replay), ctx));
+            self.reader = recording.map(|recording| FrameReader::new(Arc::clone(recording), ctx));
             self.values = None;
         }
         self.tell(state);
@@ -26,34 +31,38 @@ impl Stage {
 
     /// What the window knows of the recording.
     fn tell(&self, state: &mut State) {
-        let range = paint(&state.document.look).range;
-        let facts = self.shown.replay.as_ref().map(|(replay, all)| Facts {
-            title: replay.title.clone(),
-            unit: replay.unit.clone(),
-            time: replay.time,
-            spikes: replay.is_of_spikes(),
-            range: range.unwrap_or(*all),
-            without: [replay.without(), replay.places()],
-        });
+        let range = color_scheme(&state.document.look).range;
+        let facts = self
+            .content
+            .recording
+            .as_ref()
+            .map(|(recording, all)| Facts {
+                title: recording.title.clone(),
+                unit: recording.unit.clone(),
+                time: recording.time,
+                spikes: recording.is_of_spikes(),
+                range: range.unwrap_or(*all),
+                without: [recording.without(), recording.places()],
+            });
         if facts != state.playback.facts {
             state.playback.set_facts(facts);
         }
     }
 
     /// Other colors of the same values: nothing of the scene changes.
-    pub(super) fn tint(&mut self, state: &mut State, key: ColorKey) {
-        let Some((replay, all)) = &self.shown.replay else {
+    pub(super) fn restyle_values(&mut self, state: &mut State, key: ColorInputs) {
+        let Some((recording, all)) = &self.content.recording else {
             return;
         };
-        let paint = paint(&state.document.look);
-        let tinted = replay.coloring(paint.range.unwrap_or(*all), &paint);
-        let values = std::mem::take(&mut self.shown.table.values);
-        self.shown.table = ColorTable {
+        let color_scheme = color_scheme(&state.document.look);
+        let restyled = recording.coloring(color_scheme.range.unwrap_or(*all), &color_scheme);
+        let values = std::mem::take(&mut self.content.table.values);
+        self.content.table = ColorTable {
             values,
-            ..tinted.table
+            ..restyled.table
         };
-        self.shown.legend = tinted.legend;
-        self.live.set_colors(self.shown.table.clone());
+        self.content.legend = restyled.legend;
+        self.progressive.set_colors(self.content.table.clone());
         self.colors = Some(key);
         self.drawn = None;
         self.tell(state);
@@ -61,7 +70,7 @@ impl Stage {
 
     /// Whether values are those of the neurons there are.
     pub(super) fn is_in_order(&self, state: &State) -> bool {
-        let valued = self.shown.table.values.instances();
+        let valued = self.content.table.values.instances();
         valued == 0 || valued == state.document.neurons.len()
     }
 
@@ -74,8 +83,8 @@ impl Stage {
         let Some(frame) = state.playback.frame() else {
             return false;
         };
-        let sight = CullView {
-            shows: self.shown.instances.iter().map(|s| !s.hidden).collect(),
+        let value_inputs = ValueInputs {
+            shows: self.content.instances.iter().map(|s| !s.hidden).collect(),
             range: facts.range,
             decay: state.document.look.decay,
         };
@@ -83,9 +92,9 @@ impl Stage {
             true => state.playback.stride(),
             false => 0,
         };
-        let values = reader.get(frame, stride, &sight);
+        let values = reader.get(frame, stride, &value_inputs);
         if let Some(why) = reader.problem() {
-            state.problem(reader.replay().file.clone(), why);
+            state.problem(reader.recording().file.clone(), why);
         }
         if let Some(seconds) = state.playback.next() {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds.min(1.0)));
@@ -101,8 +110,8 @@ impl Stage {
         {
             return false;
         }
-        self.live.set_values((*values).clone());
-        self.shown.table.values = (*values).clone();
+        self.progressive.set_values((*values).clone());
+        self.content.table.values = (*values).clone();
         self.values = Some(values);
         true
     }

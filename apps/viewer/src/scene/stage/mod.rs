@@ -21,54 +21,54 @@ use neurotess::render::{
     ProgressiveRenderer, Scene, Tile, ViewParams,
 };
 
-use crate::io::frames::Reader;
+use crate::io::frames::FrameReader;
 use crate::model::document::{Detail, Look};
 use crate::model::state::{Draft, State};
-use crate::scene::colors::{ColorKey, paint};
-use crate::scene::content::{Shown, Standing};
+use crate::scene::colors::{ColorInputs, color_scheme};
+use crate::scene::content::{SceneContent, SceneInstance};
 use crate::scene::explorer::Explorer;
 use crate::scene::picks::Picks;
 use building::Built;
-use cost_model::{Full, Means};
+use cost_model::{CostModel, RestMode};
 pub(crate) use pointing::OUTLINES;
-use pointing::{MaskKey, Names};
+use pointing::{MaskKey, Resolver};
 
 /// All that draws.
 pub struct Stage {
     gpu: Arc<Gpu>,
     render: RenderState,
-    live: ProgressiveRenderer,
-    maker: Adaptive,
+    progressive: ProgressiveRenderer,
+    adaptive: Adaptive,
     explorer: Explorer,
     /// Whether the last draft was the explorer's.
     explored: bool,
     texture: Option<(egui::TextureId, [u32; 2], bool)>,
     /// What is on the device.
-    shown: Shown,
-    colors: Option<ColorKey>,
+    content: SceneContent,
+    colors: Option<ColorInputs>,
     /// Of what was drawn last.
     legend: Legend,
     building: Option<Receiver<Built>>,
     /// Reads the recording that shows.
-    reader: Option<Reader>,
+    reader: Option<FrameReader>,
     values: Option<Arc<InstanceValues>>,
     /// Whether values of the moment have not come yet.
     values_due: bool,
     /// Whether values are other ones than those that were drawn.
     revalued: bool,
-    drawn: Option<Drawn>,
+    drawn: Option<PictureInputs>,
     moved: Instant,
-    rest: Rest,
+    phase: RestPhase,
     coarser: f32,
     slices: u32,
     frames: VecDeque<f32>,
     picks: Option<Picks>,
-    namer: Option<Names>,
+    resolver: Option<Resolver>,
     mask: Option<MaskKey>,
     /// Triangles and patches of the picture at rest, and all patches, once they are counted.
     counts: Option<[u64; 3]>,
-    means: Means,
-    full: Full,
+    cost_model: CostModel,
+    rest_mode: RestMode,
     /// Patches of the neurons in the picture.
     patches: u64,
     /// Triangles of the explored picture that are drawn, and that are wanted, once they are known.
@@ -79,16 +79,16 @@ pub struct Stage {
 
 /// What a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
-struct Drawn {
-    shot: ViewParams,
+struct PictureInputs {
+    params: ViewParams,
     detail: Detail,
     states: Vec<u32>,
-    standing: Vec<Standing>,
+    instances: Vec<SceneInstance>,
 }
 
 /// How far the full picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Rest {
+enum RestPhase {
     /// Something moved a moment ago.
     Waits,
     /// Slices are being made.
@@ -106,22 +106,22 @@ impl Stage {
     /// The device refuses.
     pub fn new(render: RenderState) -> Result<Self, DeviceError> {
         let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
-        let live = ProgressiveRenderer::new(&gpu);
-        let mut maker = Adaptive::new(&gpu, Scene::default(), AdaptiveSettings::default(), 1)?;
-        let no_colors = coloring(&[], ColorBy::Type, &paint(&Look::default()));
-        let shown = Shown::new(Vec::new(), Vec::new(), no_colors.into());
-        let legend = shown.legend.clone();
-        maker.set_keeping(true);
+        let progressive = ProgressiveRenderer::new(&gpu);
+        let mut adaptive = Adaptive::new(&gpu, Scene::default(), AdaptiveSettings::default(), 1)?;
+        let no_colors = coloring(&[], ColorBy::Type, &color_scheme(&Look::default()));
+        let content = SceneContent::new(Vec::new(), Vec::new(), no_colors.into());
+        let legend = content.legend.clone();
+        adaptive.set_keeping(true);
         let software = gpu.adapter.software;
         Ok(Self {
             gpu: Arc::new(gpu),
             render,
-            live,
-            maker,
+            progressive,
+            adaptive,
             explorer: Explorer::default(),
             explored: false,
             texture: None,
-            shown,
+            content,
             colors: None,
             legend,
             building: None,
@@ -131,16 +131,16 @@ impl Stage {
             revalued: false,
             drawn: None,
             moved: Instant::now(),
-            rest: Rest::Done,
+            phase: RestPhase::Done,
             coarser: if software { 4.0 } else { 1.0 },
             slices: if software { 2 } else { 1 },
             frames: VecDeque::new(),
             picks: None,
-            namer: None,
+            resolver: None,
             mask: None,
             counts: None,
-            means: Means::new(software),
-            full: Full::Refined,
+            cost_model: CostModel::new(software),
+            rest_mode: RestMode::Refined,
             patches: 0,
             surveyed: None,
             timed: false,
@@ -153,8 +153,8 @@ impl Stage {
     }
 
     /// What is on the device.
-    pub(crate) fn shown(&self) -> &Shown {
-        &self.shown
+    pub(crate) fn content(&self) -> &SceneContent {
+        &self.content
     }
 
     /// What the colors of the picture mean, also while others are being made.
@@ -164,12 +164,12 @@ impl Stage {
 
     /// Whether all that there is to draw is drawn.
     pub fn is_settled(&self) -> bool {
-        let drawn = self.rest == Rest::Done && self.drawn.is_some();
+        let drawn = self.phase == RestPhase::Done && self.drawn.is_some();
         drawn && self.building.is_none() && !self.values_due
     }
 
     /// Whether values are those of the recording's moment, in a draft or a better picture.
-    pub fn shows_moment(&self) -> bool {
+    pub fn shows_frame(&self) -> bool {
         !self.values_due && !self.revalued && self.drawn.is_some()
     }
 
@@ -180,26 +180,26 @@ impl Stage {
 
     /// Whether it is the full picture that shows, its first step at least, and no draft.
     pub fn is_sharp(&self) -> bool {
-        !self.live.shows_draft()
+        !self.progressive.shows_draft()
     }
 
     /// Whether what was drawn last, perhaps a draft, is seen from here.
     pub fn is_from(&self, camera: &Camera) -> bool {
         self.drawn
             .as_ref()
-            .is_some_and(|d| d.shot.camera == *camera)
+            .is_some_and(|d| d.params.camera == *camera)
     }
 
     /// Height (pixels) of the picture.
     pub fn height(&self) -> f64 {
         self.drawn
             .as_ref()
-            .map_or(800.0, |d| f64::from(d.shot.size[1]))
+            .map_or(800.0, |d| f64::from(d.params.size[1]))
     }
 
     /// Share of the full picture that is made, while it is.
     pub fn progress(&self) -> Option<f32> {
-        self.live.progress()
+        self.progressive.progress()
     }
 
     /// Draws what has changed; asks for another frame while there is more to draw.
@@ -214,7 +214,7 @@ impl Stage {
     ) -> Result<Option<egui::TextureId>, DeviceError> {
         self.take_built(state, ctx)?;
         self.want_scene(state, ctx)?;
-        self.explorer.update(&self.gpu, &self.shown, ctx);
+        self.explorer.update(&self.gpu, &self.content, ctx);
         if size.contains(&0) {
             return Ok(None);
         }
@@ -223,9 +223,9 @@ impl Stage {
             return Ok(self.texture_id());
         }
         self.revalued |= self.take_values(state, ctx);
-        let wanted = self.wanted(state, size);
-        if self.revalued || self.drawn.as_ref() != Some(&wanted) {
-            self.draft(state, wanted, ctx)?;
+        let inputs = self.inputs(state, size);
+        if self.revalued || self.drawn.as_ref() != Some(&inputs) {
+            self.draft(state, inputs, ctx)?;
         } else {
             self.refine(state, ctx)?;
         }
@@ -246,14 +246,17 @@ impl Stage {
 
     /// Bytes on the device: of cells, and of pictures.
     fn bytes(&self) -> [u64; 2] {
-        let cells = self.maker.bytes().iter().map(|(_, bytes)| bytes).sum();
-        [cells, self.live.bytes()]
+        let cells = self.adaptive.bytes().iter().map(|(_, bytes)| bytes).sum();
+        [cells, self.progressive.bytes()]
     }
 
     /// The picture for egui; the same number for as long as the texture is the same.
     fn texture_id(&mut self) -> Option<egui::TextureId> {
-        let texture = self.live.texture()?;
-        let key = ([texture.width(), texture.height()], self.live.shows_draft());
+        let texture = self.progressive.texture()?;
+        let key = (
+            [texture.width(), texture.height()],
+            self.progressive.shows_draft(),
+        );
         if let Some((id, size, draft)) = self.texture
             && (size, draft) == key
         {

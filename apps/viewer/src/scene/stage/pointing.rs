@@ -10,7 +10,7 @@ use neurotess::render::{
 use super::Stage;
 use crate::model::state::{Picked, State};
 use crate::scene::content;
-use crate::scene::picks::{Picks, Seen, seen};
+use crate::scene::picks::{CursorHit, Picks, seen};
 
 /// Wider lines would drown thin neurites.
 pub(crate) const OUTLINES: Outlines = Outlines {
@@ -21,16 +21,16 @@ pub(crate) const OUTLINES: Outlines = Outlines {
 };
 
 /// What ids mean.
-pub(super) enum Names {
+pub(super) enum Resolver {
     Refined(PickResolver),
     Explored(ProxyPickResolver),
 }
 
-impl Names {
+impl Resolver {
     fn name(&self, id: PickId) -> Option<PickHit> {
         match self {
-            Self::Refined(namer) => namer.name(id),
-            Self::Explored(namer) => namer.name(id),
+            Self::Refined(resolver) => resolver.name(id),
+            Self::Explored(resolver) => resolver.name(id),
         }
     }
 }
@@ -41,12 +41,12 @@ pub(super) struct MaskKey {
     hovered: Option<Picked>,
     picked: Option<Picked>,
     selected: Vec<usize>,
-    shot: ViewParams,
+    params: ViewParams,
 }
 
 impl Stage {
     /// What is seen at a pixel. Nothing while things move.
-    pub fn seen_at(&self, x: f32, y: f32) -> Option<Seen> {
+    pub fn hit_at(&self, x: f32, y: f32) -> Option<CursorHit> {
         self.picks.as_ref()?.at(x, y)
     }
 
@@ -56,24 +56,24 @@ impl Stage {
     }
 
     pub(super) fn take_ids(&mut self, ctx: &egui::Context) -> Result<(), DeviceError> {
-        if self.namer.is_none() {
+        if self.resolver.is_none() {
             return Ok(());
         }
         // Polls the device.
-        let _ = self.live.is_busy(&self.gpu);
-        let Some((size, ids)) = self.live.ids()? else {
+        let _ = self.progressive.is_busy(&self.gpu);
+        let Some((size, ids)) = self.progressive.ids()? else {
             ctx.request_repaint_after(Duration::from_millis(5));
             return Ok(());
         };
-        let Some(namer) = self.namer.take() else {
+        let Some(resolver) = self.resolver.take() else {
             return Ok(());
         };
-        let shown = &self.shown;
+        let content = &self.content;
         self.picks = Some(Picks::new(size, &ids, |id| {
-            let named = namer.name(id)?;
-            let standing = shown.instances.get(named.instance as usize)?;
-            let source = shown.sources.get(standing.source)?;
-            seen(named, &source.generated.mesh, &standing.placement)
+            let named = resolver.name(id)?;
+            let instances = content.instances.get(named.instance as usize)?;
+            let source = content.sources.get(instances.source)?;
+            seen(named, &source.generated.mesh, &instances.placement)
         }));
         ctx.request_repaint();
         Ok(())
@@ -88,7 +88,7 @@ impl Stage {
             hovered: state.hovered,
             picked: state.picked,
             selected: state.document.selected().collect(),
-            shot: drawn.shot,
+            params: drawn.params,
         };
         if self.mask.as_ref() == Some(&key) {
             return;
@@ -98,9 +98,9 @@ impl Stage {
             source.sections.get(section as usize).copied()
         };
         let mask = picks.mask(&state.document, state.hovered, state.picked, facts);
-        self.live
+        self.progressive
             .set_outlines(&self.gpu, OUTLINES, Some((picks.size(), &mask)));
-        self.live.show(&self.gpu);
+        self.progressive.show(&self.gpu);
         self.mask = Some(key);
     }
 }

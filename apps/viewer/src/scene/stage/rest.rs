@@ -5,9 +5,9 @@ use std::time::Duration;
 use eframe::egui;
 use neurotess::render::{AdaptiveSettings, DeviceError, Steps, VertexSource, ViewParams};
 
-use super::cost_model::Full;
-use super::pointing::Names;
-use super::{Rest, Stage, whole};
+use super::cost_model::RestMode;
+use super::pointing::Resolver;
+use super::{RestPhase, Stage, whole};
 use crate::model::command::Tab;
 use crate::model::document::Detail;
 use crate::model::state::State;
@@ -29,24 +29,24 @@ impl Stage {
         let Some(drawn) = &self.drawn else {
             return Ok(());
         };
-        let (shot, detail) = (drawn.shot, drawn.detail);
-        match self.rest {
-            Rest::Waits if self.moved.elapsed() < REST => {
+        let (params, detail) = (drawn.params, drawn.detail);
+        match self.phase {
+            RestPhase::Waits if self.moved.elapsed() < REST => {
                 ctx.request_repaint_after(REST.saturating_sub(self.moved.elapsed()));
             }
-            Rest::Done => self.count(state)?,
-            _ if self.live.is_busy(&self.gpu) => {
+            RestPhase::Done => self.count(state)?,
+            _ if self.progressive.is_busy(&self.gpu) => {
                 ctx.request_repaint_after(Duration::from_millis(5));
             }
-            Rest::Waits => {
-                self.begin(shot, detail);
+            RestPhase::Waits => {
+                self.begin(params, detail);
                 ctx.request_repaint();
             }
-            Rest::Slices => {
-                self.slice(shot)?;
+            RestPhase::Slices => {
+                self.slice(params)?;
                 ctx.request_repaint();
             }
-            Rest::Surveys => {
+            RestPhase::Surveys => {
                 self.survey()?;
                 ctx.request_repaint();
             }
@@ -54,65 +54,71 @@ impl Stage {
         Ok(())
     }
 
-    fn begin(&mut self, shot: ViewParams, detail: Detail) {
-        self.full = self.choose_full(&shot);
-        let lod = match self.full {
-            Full::Coarser => detail.lod().coarser(self.coarser),
-            Full::Refined | Full::Explored => detail.lod(),
+    fn begin(&mut self, params: ViewParams, detail: Detail) {
+        self.rest_mode = self.select_rest_mode(&params);
+        let lod = match self.rest_mode {
+            RestMode::Coarser => detail.lod().coarser(self.coarser),
+            RestMode::Refined | RestMode::Explored => detail.lod(),
         };
-        self.maker.set_settings(AdaptiveSettings {
+        self.adaptive.set_settings(AdaptiveSettings {
             lod,
             smallest: detail.smallest,
-            wireframe: shot.look.wire > 0.0,
+            wireframe: params.look.wire > 0.0,
             ..AdaptiveSettings::default()
         });
         let steps = Steps {
             steps: 4,
             slices: self.slices,
         };
-        self.live.begin(shot, steps);
-        self.means.begin();
+        self.progressive.begin(params, steps);
+        self.cost_model.begin();
         self.timed = false;
-        self.rest = Rest::Slices;
+        self.phase = RestPhase::Slices;
     }
 
-    fn slice(&mut self, shot: ViewParams) -> Result<(), DeviceError> {
+    fn slice(&mut self, params: ViewParams) -> Result<(), DeviceError> {
         if self.timed {
             self.learn();
-            if self.full == Full::Refined && self.choose_full(&shot) != Full::Refined {
+            if self.rest_mode == RestMode::Refined
+                && self.select_rest_mode(&params) != RestMode::Refined
+            {
                 // It would go on like this: begun anew, it is drawn otherwise.
-                self.live.stop();
-                self.rest = Rest::Waits;
+                self.progressive.stop();
+                self.phase = RestPhase::Waits;
                 return Ok(());
             }
         }
         // As soon as the first step shows, the cursor may ask.
-        let asks = !self.live.shows_draft() && self.namer.is_none() && self.picks.is_none();
+        let asks =
+            !self.progressive.shows_draft() && self.resolver.is_none() && self.picks.is_none();
         self.timed = !asks;
-        let budget = self.means.budget;
-        let maker: &mut dyn VertexSource = match self.full {
-            Full::Refined | Full::Coarser => &mut self.maker,
-            Full::Explored => match self.explorer.maker(&self.gpu, &self.shown, budget) {
-                Some(maker) => maker,
+        let budget = self.cost_model.budget;
+        let adaptive: &mut dyn VertexSource = match self.rest_mode {
+            RestMode::Refined | RestMode::Coarser => &mut self.adaptive,
+            RestMode::Explored => match self.explorer.exploration(&self.gpu, &self.content, budget)
+            {
+                Some(adaptive) => adaptive,
                 None => {
-                    self.rest = Rest::Waits;
+                    self.phase = RestPhase::Waits;
                     return Ok(());
                 }
             },
         };
         if asks {
-            self.live.identify(&self.gpu, maker, &shot)?;
-            self.namer = match self.full {
-                Full::Refined | Full::Coarser => Some(Names::Refined(self.maker.namer())),
-                Full::Explored => self.explorer.namer().map(Names::Explored),
+            self.progressive.identify(&self.gpu, adaptive, &params)?;
+            self.resolver = match self.rest_mode {
+                RestMode::Refined | RestMode::Coarser => {
+                    Some(Resolver::Refined(self.adaptive.namer()))
+                }
+                RestMode::Explored => self.explorer.resolver().map(Resolver::Explored),
             };
             return Ok(());
         }
-        self.live.slice(&self.gpu, maker)?;
-        if self.live.progress().is_none() {
-            self.rest = match self.full {
-                Full::Explored => Rest::Surveys,
-                Full::Refined | Full::Coarser => Rest::Done,
+        self.progressive.slice(&self.gpu, adaptive)?;
+        if self.progressive.progress().is_none() {
+            self.phase = match self.rest_mode {
+                RestMode::Explored => RestPhase::Surveys,
+                RestMode::Refined | RestMode::Coarser => RestPhase::Done,
             };
         }
         Ok(())
@@ -120,28 +126,28 @@ impl Stage {
 
     /// From the slice that is done.
     fn learn(&mut self) {
-        let took = self.live.last_ms();
+        let took = self.progressive.last_ms();
         self.note_frame(took);
         self.note_slice(took);
-        if self.full == Full::Refined {
+        if self.rest_mode == RestMode::Refined {
             // For the next picture: slices of this one are laid out.
-            let wanted = f64::from(self.slices) * took / SLICE_MS;
-            self.slices = ((f64::from(self.slices) + wanted) / 2.0).clamp(1.0, MOST_SLICES) as u32;
+            let inputs = f64::from(self.slices) * took / SLICE_MS;
+            self.slices = ((f64::from(self.slices) + inputs) / 2.0).clamp(1.0, MOST_SLICES) as u32;
         }
     }
 
     /// What the explored picture left out; where there is time for more, it is drawn once more.
     fn survey(&mut self) -> Result<(), DeviceError> {
         self.learn();
-        self.rest = Rest::Done;
-        let budget = self.means.budget;
-        let Some(maker) = self.explorer.maker(&self.gpu, &self.shown, budget) else {
+        self.phase = RestPhase::Done;
+        let budget = self.cost_model.budget;
+        let Some(adaptive) = self.explorer.exploration(&self.gpu, &self.content, budget) else {
             return Ok(());
         };
-        let stats = maker.stats(&self.gpu)?;
+        let stats = adaptive.stats(&self.gpu)?;
         self.surveyed = Some([stats.triangles, stats.wanted]);
-        if self.means.adapt(stats.wanted) {
-            self.rest = Rest::Waits;
+        if self.cost_model.adapt(stats.wanted) {
+            self.phase = RestPhase::Waits;
         }
         Ok(())
     }
@@ -153,14 +159,14 @@ impl Stage {
         };
         let looked_at = state.tab == Tab::Detail && state.panels;
         // Where it is explored, counting would take as long as drawing.
-        if !looked_at || self.full != Full::Refined {
+        if !looked_at || self.rest_mode != RestMode::Refined {
             return Ok(());
         }
-        let shot = drawn.shot;
-        let (camera, near) = shot.frozen.unwrap_or((shot.camera, shot.near));
-        let frame = whole(camera, near, shot.size);
-        self.maker.prepare(&self.gpu, &frame)?;
-        let stats = self.maker.stats(&self.gpu)?;
+        let params = drawn.params;
+        let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
+        let frame = whole(camera, near, params.size);
+        self.adaptive.prepare(&self.gpu, &frame)?;
+        let stats = self.adaptive.stats(&self.gpu)?;
         self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);
         Ok(())
     }

@@ -37,7 +37,7 @@ impl Viewer {
                 Err(e) => {
                     let why = e.to_string();
                     self.state.problem(one.display().to_string(), why);
-                    self.state.said = "The session was not opened".into();
+                    self.state.status = "The session was not opened".into();
                     return;
                 }
             },
@@ -99,7 +99,7 @@ impl Viewer {
             .map(|(id, s)| (id, s.file.clone(), s.soma.clone()))
             .collect();
         if stale.is_empty() {
-            self.state.said = "No file has changed".into();
+            self.state.status = "No file has changed".into();
         }
         for (id, file, soma) in stale {
             self.worker.reload(id, file, soma);
@@ -112,7 +112,7 @@ impl Viewer {
         }
         if let [.., report] = &found.reports[..] {
             self.state.run(Command::SetReport(Some(report.clone())));
-            self.state.said = format!("{} is shown", report.display());
+            self.state.status = format!("{} is shown", report.display());
             for other in &found.reports[..found.reports.len() - 1] {
                 let why = "one report shows at a time: open it alone";
                 self.state.problem(other.display().to_string(), why);
@@ -235,7 +235,7 @@ impl Viewer {
             n => format!(", {n} failed"),
         };
         let neurons = self.state.document.neurons.len();
-        self.state.said = format!("{read} read{failed}; {neurons} in the list");
+        self.state.status = format!("{read} read{failed}; {neurons} in the list");
         self.watch();
     }
 

@@ -11,7 +11,7 @@ impl Viewer {
             Message::LoadingDone => self.end_loading(),
             Message::Reloaded(id, source) => match *source {
                 Ok(source) => {
-                    self.state.said = format!("{} was read again", source.name);
+                    self.state.status = format!("{} was read again", source.name);
                     if let Some(there) = self.state.sources.get_mut(id) {
                         *there = source;
                     }
@@ -49,9 +49,9 @@ impl Viewer {
                     }
                 }
             }
-            Message::Saved(Ok(said)) => self.state.said = said,
+            Message::Saved(Ok(said)) => self.state.status = said,
             Message::Saved(Err(why)) => {
-                self.state.said = format!("Not saved: {why}");
+                self.state.status = format!("Not saved: {why}");
                 self.state.problem("save", why);
             }
         }
@@ -59,7 +59,7 @@ impl Viewer {
 
     /// Somata that are not as the document wants them are made again, one at a time, the newest wish.
     pub(super) fn want_somata(&mut self) {
-        if self.worker.makes_soma() {
+        if self.worker.rebuilds_soma() {
             return;
         }
         let document = &self.state.document;

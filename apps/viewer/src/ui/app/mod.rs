@@ -137,7 +137,7 @@ impl Viewer {
         }
         self.tick();
         self.show_panels(ui);
-        for command in std::mem::take(&mut self.state.asked) {
+        for command in std::mem::take(&mut self.state.requests) {
             self.run(command);
             ctx.request_repaint();
         }
@@ -212,7 +212,7 @@ impl Viewer {
                 for job in self.jobs().into_iter().flatten() {
                     job.canceled
                         .store(true, std::sync::atomic::Ordering::Relaxed);
-                    self.state.said = format!("Stopped {}", job.what);
+                    self.state.status = format!("Stopped {}", job.what);
                 }
             }
             Effect::Go(view) => self.motion.fly(&mut self.state, view),

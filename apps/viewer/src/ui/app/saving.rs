@@ -7,12 +7,12 @@ use crate::io::save::{self, MeshPlan, video};
 use crate::io::tasks::Job;
 use crate::model::command::Command;
 use crate::model::document::Neuron;
-use crate::model::film::{Still, stills};
+use crate::model::film::{FilmFrame, film_frames};
 use crate::model::save::FilmOptions;
 use crate::model::session::{self, Session};
 use crate::model::settings;
 use crate::scene::content;
-use crate::scene::pictures::{Scenery, pictures};
+use crate::scene::pictures::{StillScene, pictures};
 
 impl Viewer {
     /// Saves the session before the program ends by itself; what to say.
@@ -50,14 +50,14 @@ impl Viewer {
             }
             Command::SavePicture(options) => {
                 self.state.settings.picture_size = options.size;
-                let scenery = self.scenery();
-                let still = Still {
+                let still_scene = self.still_scene();
+                let film_frame = FilmFrame {
                     view: self.state.view,
                     time: Some(self.state.playback.pace.time),
                 };
                 self.worker
                     .save("drawing the picture", (0, "tiles"), move |job| {
-                        let files = pictures(&scenery, &[still], &options, job)?;
+                        let files = pictures(&still_scene, &[film_frame], &options, job)?;
                         let file = files.first().map(|f| f.display().to_string());
                         Ok(format!("Saved {}", file.unwrap_or_default()))
                     });
@@ -74,15 +74,15 @@ impl Viewer {
         let (keys, now) = (&state.key_views, state.view);
         let at = Some(state.playback.pace.time);
         let time = film.time.filter(|_| state.playback.facts.is_some());
-        let stills = stills(keys, now, film.frames, time, at);
-        if stills.is_empty() {
+        let film_frames = film_frames(keys, now, film.frames, time, at);
+        if film_frames.is_empty() {
             let why = "keep two views for it (K), or open a report whose time goes on";
             self.state.problem("film", why);
             return;
         }
-        let scenery = self.scenery();
+        let still_scene = self.still_scene();
         let work = move |job: &Job| {
-            let files = pictures(&scenery, &stills, &film.picture, job)?;
+            let files = pictures(&still_scene, &film_frames, &film.picture, job)?;
             let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
             let also = match film.video && count > 1 {
                 true => {
@@ -103,12 +103,12 @@ impl Viewer {
         let folder = path.parent().unwrap_or(Path::new(""));
         match Session::of(&self.state, folder).write(path) {
             Ok(()) => {
-                self.state.said = format!("Saved {}", path.display());
+                self.state.status = format!("Saved {}", path.display());
                 self.state.session = Some(path.to_path_buf());
                 self.state.settings.remember_files(&[path.to_path_buf()]);
             }
             Err(why) => {
-                self.state.said = "The session was not saved".into();
+                self.state.status = "The session was not saved".into();
                 self.state.problem(path.display().to_string(), why);
             }
         }
@@ -117,7 +117,7 @@ impl Viewer {
     fn mesh_plans(&self, all: bool) -> Vec<MeshPlan> {
         let state = &self.state;
         let neurons = state.document.neurons.iter().zip(state.placements());
-        let wanted = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
+        let inputs = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
         let plan = |(neuron, placement): (&Neuron, _)| {
             Some(MeshPlan {
                 name: neuron.name.clone(),
@@ -125,17 +125,17 @@ impl Viewer {
                 placement,
             })
         };
-        wanted.filter_map(plan).collect()
+        inputs.filter_map(plan).collect()
     }
 
-    fn scenery(&self) -> Scenery {
-        Scenery {
+    fn still_scene(&self) -> StillScene {
+        StillScene {
             gpu: self.stage.gpu().clone(),
             shared: true,
-            shown: self.stage.shown().clone(),
+            content: self.stage.content().clone(),
             look: self.state.document.look.clone(),
             states: content::states(&self.state.document),
-            balls: self.state.balls(|_| true),
+            spheres: self.state.spheres(|_| true),
         }
     }
 

@@ -10,7 +10,7 @@ use super::measured;
 use super::tip::Tip;
 use crate::model::command::Command;
 use crate::model::sources::{SectionFacts, Stale};
-use crate::model::state::{Part, Picked, State};
+use crate::model::state::{CellPart, Picked, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     ui.add_space(4.0);
@@ -33,7 +33,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                 .tip("Show all")
                 .clicked()
         {
-            state.asked.push(Command::ShowAll);
+            state.requests.push(Command::ShowAll);
         }
     });
     if neurons > FEW || !state.search.is_empty() {
@@ -45,7 +45,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
         let neuron = state.document.selected().next()?;
         Some(Picked {
             neuron,
-            part: Part::Soma,
+            part: CellPart::Soma,
         })
     });
     let mut hovered = None;
@@ -126,7 +126,7 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
         let mut shown = !hidden;
         let says = if hidden { "Show" } else { "Hide" };
         if ui.checkbox(&mut shown, "").tip(says).changed() {
-            state.asked.push(Command::SetHidden(index, !shown));
+            state.requests.push(Command::SetHidden(index, !shown));
         }
         // From the right: what is said of it, then its name in what is left.
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -134,7 +134,7 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
                 Some(Stale::Changed) => {
                     let says = "The file has changed: read it again";
                     let reloads = ui.small_button("reload").tip(says).clicked();
-                    state.asked.extend(reloads.then_some(Command::Reload));
+                    state.requests.extend(reloads.then_some(Command::Reload));
                 }
                 Some(Stale::Gone) => {
                     ui.colored_label(ui.visuals().warn_fg_color, "file gone")
@@ -160,18 +160,18 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
 fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &mut Option<Picked>) {
     let soma = Picked {
         neuron: index,
-        part: Part::Soma,
+        part: CellPart::Soma,
     };
     if response.hovered() {
         *hovered = Some(soma);
     }
     if response.double_clicked() {
-        state.asked.push(Command::Select(vec![index], false));
-        state.asked.push(Command::Focus);
+        state.requests.push(Command::Select(vec![index], false));
+        state.requests.push(Command::Focus);
     } else if response.clicked() {
         let modifiers = response.ctx.input(|i| i.modifiers);
         let adds = modifiers.shift || modifiers.command;
-        state.asked.push(Command::Select(vec![index], adds));
+        state.requests.push(Command::Select(vec![index], adds));
         state.picked = Some(soma);
     }
     response.context_menu(|ui| menu(state, index, ui));
@@ -180,7 +180,7 @@ fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &m
 fn menu(state: &mut State, index: usize, ui: &mut egui::Ui) {
     let mut choice = |ui: &mut egui::Ui, title: &str, commands: Vec<Command>| {
         if ui.button(title).clicked() {
-            state.asked.extend(commands);
+            state.requests.extend(commands);
             ui.close();
         }
     };
@@ -211,7 +211,7 @@ fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &
                 opening: false,
             };
             if morphology.soma().is_some() {
-                leaf.show(Part::Soma, "Soma".into(), ui);
+                leaf.show(CellPart::Soma, "Soma".into(), ui);
             }
             for (index, section) in morphology.sections.iter().enumerate() {
                 if !matches!(section.attachment, Attachment::Section(_)) {
@@ -236,7 +236,7 @@ struct Leaf<'a> {
 }
 
 impl Leaf<'_> {
-    fn show(&mut self, part: Part, text: String, ui: &mut egui::Ui) {
+    fn show(&mut self, part: CellPart, text: String, ui: &mut egui::Ui) {
         let picked = Picked {
             neuron: self.neuron,
             part,
@@ -262,7 +262,7 @@ impl Leaf<'_> {
         if response.clicked() {
             self.state.picked = Some(picked);
             self.state
-                .asked
+                .requests
                 .push(Command::Select(vec![self.neuron], false));
         }
     }
@@ -282,11 +282,11 @@ fn neurite(
     let kind = kind_name(morphology, root);
     let title = format!("{kind} {}  ·  {}", number + 1, measured(length, "µm"));
     let holds = |picked: &Picked| match picked.part {
-        Part::Section(section) => facts
+        CellPart::Section(section) => facts
             .get(section as usize)
             .is_some_and(|f| f.neurite == number),
-        Part::Neurite(neurite) => neurite == number,
-        Part::Soma => false,
+        CellPart::Neurite(neurite) => neurite == number,
+        CellPart::Soma => false,
     };
     let opens = leaf.reveal.as_ref().is_some_and(holds);
     let header = CollapsingHeader::new(title)
@@ -298,14 +298,14 @@ fn neurite(
                 ui.horizontal(|ui| {
                     ui.add_space(9.0 * facts.order.min(9) as f32);
                     let text = format!("{}  {}", section, measured(facts.length, "µm"));
-                    leaf.show(Part::Section(section as u32), text, ui);
+                    leaf.show(CellPart::Section(section as u32), text, ui);
                 });
             }
         });
     leaf.opening |= opens && !header.fully_open();
     let picked = Picked {
         neuron: leaf.neuron,
-        part: Part::Neurite(number),
+        part: CellPart::Neurite(number),
     };
     if header.header_response.interact(Sense::hover()).hovered() {
         *leaf.hovered = Some(picked);

@@ -9,7 +9,7 @@ use super::number::slider;
 use super::tip::Tip;
 use super::{figures, grouped, heading};
 use crate::model::command::Command;
-use crate::model::document::{Criterion, Detail};
+use crate::model::document::{Detail, LodKind};
 use crate::model::state::{Draft, Lowered, State};
 use crate::ui::file_panel::size;
 
@@ -18,7 +18,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let before = detail;
     heading(ui, "Triangle size by");
     ui.horizontal_wrapped(|ui| {
-        for (criterion, name, says) in CRITERIA {
+        for (criterion, name, says) in LOD_KINDS {
             ui.selectable_value(&mut detail.criterion, criterion, name)
                 .tip(says);
         }
@@ -43,16 +43,16 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         if ui.checkbox(&mut wires, "Wireframe").changed() {
             let mut look = state.document.look.clone();
             look.wireframe = wires;
-            state.asked.push(Command::SetLook(Box::new(look)));
+            state.requests.push(Command::SetLook(Box::new(look)));
         }
     });
     let mut frozen = state.frozen.is_some();
     let says = "Keeps the triangles of this view while you move on, to look at them from elsewhere";
     if ui.checkbox(&mut frozen, "Freeze").tip(says).changed() {
-        state.asked.push(Command::SetFrozen(frozen));
+        state.requests.push(Command::SetFrozen(frozen));
     }
     if detail != before {
-        state.asked.push(Command::SetDetail(detail));
+        state.requests.push(Command::SetDetail(detail));
     } else if ui.input(|i| i.pointer.any_released()) {
         state.history.end_joining();
     }
@@ -60,24 +60,24 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     counters(state, ui);
 }
 
-const CRITERIA: [(Criterion, &str, &str); 4] = [
+const LOD_KINDS: [(LodKind, &str, &str); 4] = [
     (
-        Criterion::Error,
+        LodKind::Error,
         "Error",
         "At most so many pixels between the triangles and the smooth surface",
     ),
     (
-        Criterion::Size,
+        LodKind::Size,
         "Size",
         "Edges of triangles are at most so many pixels long",
     ),
     (
-        Criterion::Homogeneous,
+        LodKind::Homogeneous,
         "Uniform",
         "The same number of subdivisions everywhere",
     ),
     (
-        Criterion::Distance,
+        LodKind::Distance,
         "Distance",
         "Fewer subdivisions with the distance from the camera (García-Cantero et al. 2017)",
     ),
@@ -85,16 +85,16 @@ const CRITERIA: [(Criterion, &str, &str); 4] = [
 
 fn sliders(detail: &mut Detail, ui: &mut Ui) {
     match detail.criterion {
-        Criterion::Error => {
+        LodKind::Error => {
             log(ui, &mut detail.error, 0.05..=20.0, "max. error (px)");
         }
-        Criterion::Size => {
+        LodKind::Size => {
             log(ui, &mut detail.size, 1.0..=100.0, "max. edge (px)");
         }
-        Criterion::Homogeneous => {
+        LodKind::Homogeneous => {
             log(ui, &mut detail.level, 1..=64, "subdivisions");
         }
-        Criterion::Distance => {
+        LodKind::Distance => {
             log(ui, &mut detail.level, 1..=64, "at the camera");
             log(ui, &mut detail.far, 1.0..=100_000.0, "none beyond (µm)");
         }

@@ -20,7 +20,7 @@ pub(super) fn show(state: &mut State, reading: bool, ui: &mut egui::Ui) {
         }
         let open = egui::Button::new(RichText::new("Open…").size(17.0)).min_size([190.0, 38.0].into());
         if ui.add(open).clicked() {
-            state.asked.push(Command::AskFiles(Ask::Open));
+            state.requests.push(Command::AskFiles(Ask::Open));
         }
         ui.add_space(4.0);
         ui.weak("or drop files and folders here: SWC, ASC, H5, NeuroML, SONATA circuits, scenes, sessions");
@@ -32,7 +32,7 @@ pub(super) fn show(state: &mut State, reading: bool, ui: &mut egui::Ui) {
         ui.allocate_ui_with_layout([width, 30.0].into(), Layout::left_to_right(Align::Center), |ui| {
             for (kind, name) in Kind::ALL.into_iter().zip(names) {
                 if ui.add(egui::Button::new(name).min_size([84.0, 26.0].into())).clicked() {
-                    state.asked.push(Command::OpenSample(kind));
+                    state.requests.push(Command::OpenSample(kind));
                 }
             }
         });
@@ -66,7 +66,7 @@ fn recent(state: &mut State, ui: &mut egui::Ui) {
             .on_hover_text(path.display().to_string())
             .clicked()
         {
-            state.asked.push(Command::Open(vec![path]));
+            state.requests.push(Command::Open(vec![path]));
         }
     }
 }

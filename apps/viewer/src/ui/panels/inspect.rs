@@ -8,7 +8,7 @@ use super::tip::Tip;
 use super::{figures, grouped, heading, measured};
 use crate::model::command::Command;
 use crate::model::sources::Source;
-use crate::model::state::{Part, State};
+use crate::model::state::{CellPart, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     let selected: Vec<usize> = state.document.selected().collect();
@@ -61,7 +61,7 @@ fn buttons(state: &mut State, ui: &mut egui::Ui) {
             ),
         ] {
             if ui.button(title).tip(says).clicked() {
-                state.asked.push(command);
+                state.requests.push(command);
             }
         }
     });
@@ -77,8 +77,8 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
     };
     let morphology = &source.morphology;
     match picked.part {
-        Part::Soma => soma(source, ui),
-        Part::Section(section) => {
+        CellPart::Soma => soma(source, ui),
+        CellPart::Section(section) => {
             let Some(facts) = source.sections.get(section as usize) else {
                 return;
             };
@@ -102,7 +102,7 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
                 ],
             );
         }
-        Part::Neurite(neurite) => {
+        CellPart::Neurite(neurite) => {
             let of = || source.sections.iter().filter(|f| f.neurite == neurite);
             let length: f64 = of().map(|f| f.length).sum();
             let longest = of().map(|f| f.path).fold(0.0, f64::max);

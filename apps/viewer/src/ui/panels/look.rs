@@ -7,7 +7,7 @@ use super::heading;
 use super::number::{field, slider};
 use super::tip::Tip;
 use crate::model::command::{Ask, Command};
-use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, Parts};
+use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
@@ -16,9 +16,9 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     colors(state, &mut look, legend, ui);
     heading(ui, "Shown");
     ui.horizontal_wrapped(|ui| {
-        ui.selectable_value(&mut look.parts, Parts::All, "All");
-        ui.selectable_value(&mut look.parts, Parts::Soma, "Somata only");
-        ui.selectable_value(&mut look.parts, Parts::Neurites, "Neurites only");
+        ui.selectable_value(&mut look.parts, VisibleParts::All, "All");
+        ui.selectable_value(&mut look.parts, VisibleParts::Soma, "Somata only");
+        ui.selectable_value(&mut look.parts, VisibleParts::Neurites, "Neurites only");
     });
     ui.checkbox(&mut look.legend, "Legend");
     ui.checkbox(&mut look.scale_bar, "Scale bar");
@@ -26,10 +26,10 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
     heading(ui, "Selection");
-    ui.checkbox(&mut look.mark_selected, "Color of its own");
-    ui.checkbox(&mut look.faint_others, "Fade the others");
-    if look.faint_others {
-        slider(ui, &mut look.faint, 0.02..=0.9, Some(2), |slider| {
+    ui.checkbox(&mut look.highlight_selected, "Color of its own");
+    ui.checkbox(&mut look.ghost_others, "Fade the others");
+    if look.ghost_others {
+        slider(ui, &mut look.ghost_opacity, 0.02..=0.9, Some(2), |slider| {
             slider.text("opacity of the others")
         });
     }
@@ -42,19 +42,19 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
         ui.selectable_value(&mut dark, false, "Light");
     });
     if dark != state.settings.dark {
-        state.asked.push(Command::SetDark(dark));
+        state.requests.push(Command::SetDark(dark));
     }
     let before = state.document.look.color_by;
     let chosen_now = look.color_by == ColorBy::Value && before != ColorBy::Value;
     if chosen_now && state.document.report.is_none() {
         look.color_by = before;
-        state.asked.push(match state.circuits.reports().pop() {
+        state.requests.push(match state.circuits.reports().pop() {
             Some((_, file)) => Command::SetReport(Some(file)),
             None => Command::AskFiles(Ask::Report),
         });
     }
     if look != state.document.look {
-        state.asked.push(Command::SetLook(Box::new(look)));
+        state.requests.push(Command::SetLook(Box::new(look)));
     } else if released {
         state.history.end_joining();
     }
@@ -170,11 +170,11 @@ fn report(state: &mut State, ui: &mut Ui) {
                 let chosen = shown.as_ref() == Some(&file);
                 let line = ui.selectable_label(chosen, name);
                 if line.tip(file.display().to_string()).clicked() {
-                    state.asked.push(Command::SetReport(Some(file)));
+                    state.requests.push(Command::SetReport(Some(file)));
                 }
             }
             if ui.selectable_label(false, "another file…").clicked() {
-                state.asked.push(Command::AskFiles(Ask::Report));
+                state.requests.push(Command::AskFiles(Ask::Report));
             }
         });
     ui.end_row();

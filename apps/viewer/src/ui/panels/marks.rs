@@ -8,21 +8,21 @@ use neurotess::morphology::{Point, SectionId, shape};
 use neurotess::render::{Camera, Placement};
 
 use crate::model::sources::Source;
-use crate::model::state::{Part, Picked, State};
+use crate::model::state::{CellPart, Picked, State};
 use crate::scene::stage::OUTLINES;
 
 /// Points of a circle as it is drawn.
 const ROUND: usize = 48;
 
 /// From cells to points of the window.
-struct CullView<'a> {
+struct Projection<'a> {
     camera: Camera,
     rect: Rect,
     placement: &'a Placement,
     origin: DVec3,
 }
 
-impl CullView<'_> {
+impl Projection<'_> {
     fn at(&self, point: DVec3) -> Option<Pos2> {
         let place = self.placement.world_from_cell(self.origin + point);
         // Sixteenths of a point.
@@ -58,7 +58,7 @@ pub(super) fn rings(state: &State, rect: Rect, painter: &Painter) {
         if neuron.source != id || neuron.hidden {
             continue;
         }
-        let sight = CullView {
+        let projection = Projection {
             camera: state.view.camera(),
             rect,
             placement: &placement,
@@ -66,18 +66,18 @@ pub(super) fn rings(state: &State, rect: Rect, painter: &Painter) {
         };
         let rings = source.generated.rings.iter();
         for ring in rings.filter(|r| r.neurite == neurite) {
-            circle(&sight, ring, painter);
+            circle(&projection, ring, painter);
         }
     }
 }
 
-fn circle(sight: &CullView<'_>, ring: &FirstRing, painter: &Painter) {
+fn circle(projection: &Projection<'_>, ring: &FirstRing, painter: &Painter) {
     let (across, along) = ring.outwards.any_orthonormal_pair();
     // Far away a ring is a dot that still can be found.
-    let point = f64::from(sight.wide(ring.center, 1.0)).max(1e-9);
+    let point = f64::from(projection.wide(ring.center, 1.0)).max(1e-9);
     let radius = (1.08 * ring.radius).max(5.0 / point);
     round(
-        sight,
+        projection,
         ring.center,
         [across * radius, along * radius],
         painter,
@@ -85,10 +85,10 @@ fn circle(sight: &CullView<'_>, ring: &FirstRing, painter: &Painter) {
 }
 
 /// An ellipse with these half axes.
-fn round(sight: &CullView<'_>, center: DVec3, [a, b]: [DVec3; 2], painter: &Painter) {
+fn round(projection: &Projection<'_>, center: DVec3, [a, b]: [DVec3; 2], painter: &Painter) {
     let at = |i: usize| {
         let angle = std::f64::consts::TAU * i as f64 / ROUND as f64;
-        sight.at(center + a * angle.cos() + b * angle.sin())
+        projection.at(center + a * angle.cos() + b * angle.sin())
     };
     let points: Option<Vec<Pos2>> = (0..=ROUND).map(at).collect();
     if let Some(points) = points {
@@ -115,42 +115,42 @@ pub(super) fn hovered(state: &State, rect: Rect, painter: &Painter) {
     ) else {
         return;
     };
-    let sight = CullView {
+    let projection = Projection {
         camera: state.view.camera(),
         rect,
         placement: &placement,
         origin: source.generated.mesh.origin,
     };
     match part {
-        Part::Soma => soma(&sight, source, painter),
-        Part::Section(section) => beside(&sight, source, section as usize, painter),
-        Part::Neurite(neurite) => {
+        CellPart::Soma => soma(&projection, source, painter),
+        CellPart::Section(section) => beside(&projection, source, section as usize, painter),
+        CellPart::Neurite(neurite) => {
             let sections = source.sections.iter().enumerate();
             for (section, _) in sections.filter(|(_, facts)| facts.neurite == neurite) {
-                beside(&sight, source, section, painter);
+                beside(&projection, source, section, painter);
             }
         }
     }
 }
 
-fn soma(sight: &CullView<'_>, source: &Source, painter: &Painter) {
+fn soma(projection: &Projection<'_>, source: &Source, painter: &Painter) {
     if let Some(soma) = source.morphology.soma() {
-        let [right, up, _] = sight.camera.axes();
-        let back = sight.placement.rotation.inverse();
+        let [right, up, _] = projection.camera.axes();
+        let back = projection.placement.rotation.inverse();
         let radius = f64::from(soma.radius) * source.soma.scale;
         let axes = [back * right * radius, back * up * radius];
-        round(sight, soma.center.as_dvec3(), axes, painter);
+        round(projection, soma.center.as_dvec3(), axes, painter);
     }
 }
 
 /// A line on both sides of each of a section's segments.
-fn beside(sight: &CullView<'_>, source: &Source, section: usize, painter: &Painter) {
+fn beside(projection: &Projection<'_>, source: &Source, section: usize, painter: &Painter) {
     let stroke = Stroke::new(1.0, hovered_color());
-    let within = sight.rect.expand(20.0);
+    let within = projection.rect.expand(20.0);
     let end = |p: &Point| {
         let center = p.position.as_dvec3();
-        let wide = sight.wide(center, f64::from(p.radius));
-        Some((sight.at(center)?, wide.clamp(0.3, 500.0) + 0.8))
+        let wide = projection.wide(center, f64::from(p.radius));
+        Some((projection.at(center)?, wide.clamp(0.3, 500.0) + 0.8))
     };
     for (a, b) in shape::links(&source.morphology, SectionId(section as u32)) {
         let (Some((a, wide_a)), Some((b, wide_b))) = (end(a), end(b)) else {

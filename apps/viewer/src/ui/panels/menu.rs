@@ -27,7 +27,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                         button = button.shortcut_text(super::keys_text(ui, &keys));
                     }
                     if ui.add_enabled(enabled, button).clicked() {
-                        state.asked.push(item.command);
+                        state.requests.push(item.command);
                         ui.close();
                     }
                 }
@@ -53,7 +53,7 @@ fn recent(state: &mut State, ui: &mut egui::Ui) {
             .into_owned();
         let response = ui.button(name).on_hover_text(path.display().to_string());
         if response.clicked() {
-            state.asked.push(Command::Open(vec![path]));
+            state.requests.push(Command::Open(vec![path]));
             ui.close();
         }
     }

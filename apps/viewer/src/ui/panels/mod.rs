@@ -103,7 +103,7 @@ fn side(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
         for (tab, name) in Tab::ALL {
             let selected = screen.state.tab == tab;
             if ui.selectable_label(selected, name).clicked() {
-                screen.state.asked.push(Command::Show(tab));
+                screen.state.requests.push(Command::Show(tab));
             }
         }
     });

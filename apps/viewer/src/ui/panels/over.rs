@@ -41,7 +41,7 @@ fn files(state: &mut State, ask: Ask, panel: &mut Option<FilePanel>, ctx: &Conte
             FilePanel::new(ask, &state.settings.folder, session)
         });
     let mut open = true;
-    state.asked.extend(shown.show(ctx, &mut open));
+    state.requests.extend(shown.show(ctx, &mut open));
     if !open {
         return Over::Nothing;
     }
@@ -226,7 +226,7 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
                             response.scroll_to_me(None);
                         }
                         if response.clicked() || (enter && index == chosen) {
-                            state.asked.push(item.command.clone());
+                            state.requests.push(item.command.clone());
                             done = true;
                         }
                     }
@@ -291,7 +291,7 @@ fn replace(
     });
     match answer {
         Some(true) => {
-            state.asked.push(*command);
+            state.requests.push(*command);
             Over::Nothing
         }
         Some(false) => Over::Nothing,

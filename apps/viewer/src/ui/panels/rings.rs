@@ -8,16 +8,16 @@ use super::tip::Tip;
 use crate::model::command::Command;
 use crate::model::document::SourceId;
 use crate::model::sources::Source;
-use crate::model::state::{Part, Picked, State};
+use crate::model::state::{CellPart, Picked, State};
 
 /// A neurite that has a ring.
 struct Row {
     neurite: u32,
     name: String,
     color: Color32,
-    /// Where the ring is; where it is asked to be.
+    /// Where the ring is; where it is requested to be.
     position: f64,
-    asked: Option<f64>,
+    requested: Option<f64>,
 }
 
 /// Sliders for one cell.
@@ -29,7 +29,7 @@ pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
     if rows.is_empty() {
         return;
     }
-    let any = rows.iter().any(|row| row.asked.is_some());
+    let any = rows.iter().any(|row| row.requested.is_some());
     ui.add_space(6.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new("First rings").strong().size(13.5));
@@ -39,7 +39,7 @@ pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
             .tip("All first rings at their automatic positions")
             .clicked()
         {
-            state.asked.push(Command::ResetRings(id));
+            state.requests.push(Command::ResetRings(id));
         }
     });
     ui.weak("0: on the soma's sphere, 1: at the first traced point");
@@ -49,7 +49,7 @@ pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
 }
 
 fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
-    let asked = state.document.soma(id).rings;
+    let requested = state.document.soma(id).rings;
     let palette = state.document.look.palette;
     let mut rows: Vec<Row> = Vec::new();
     for ring in &source.generated.rings {
@@ -69,7 +69,7 @@ fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
             name: format!("{kind} {}", ring.neurite + 1),
             color: Color32::from_rgb(r, g, b),
             position: ring.position,
-            asked: asked.get(&ring.neurite).copied(),
+            requested: requested.get(&ring.neurite).copied(),
         });
     }
     rows.sort_by_key(|row| row.neurite);
@@ -77,7 +77,7 @@ fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
 }
 
 fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
-    let mut value = row.asked.unwrap_or(row.position);
+    let mut value = row.requested.unwrap_or(row.position);
     let before = value;
     let mut touched = false;
     ui.horizontal(|ui| {
@@ -89,11 +89,11 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
             "Where the neurite's mesh begins: 0 on the soma's sphere, 1 at the first traced point outside \
              it, 2 as far beyond along the path (at least half the soma's radius)",
         );
-        match row.asked {
+        match row.requested {
             None => {
                 ui.weak("automatic");
             }
-            Some(asked) if row.position < asked - 5e-3 => {
+            Some(requested) if row.position < requested - 5e-3 => {
                 let text = format!("limited to {:.2}", row.position);
                 ui.label(RichText::new(text).color(ui.visuals().warn_fg_color))
                     .tip(
@@ -111,18 +111,18 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
         let ended = response.drag_stopped() || response.lost_focus();
         if value != before {
             state
-                .asked
+                .requests
                 .push(Command::SetRing(id, row.neurite, Some(value)));
         } else if ended {
             state.history.end_joining();
         }
         let reset = Button::new("reset").small();
         if ui
-            .add_enabled(row.asked.is_some(), reset)
+            .add_enabled(row.requested.is_some(), reset)
             .tip("Automatic position")
             .clicked()
         {
-            state.asked.push(Command::SetRing(id, row.neurite, None));
+            state.requests.push(Command::SetRing(id, row.neurite, None));
         }
     });
     if touched {
@@ -141,6 +141,6 @@ fn touch(state: &mut State, id: SourceId, neurite: u32) {
     };
     state.hovered = shows(true).or_else(|| shows(false)).map(|neuron| Picked {
         neuron,
-        part: Part::Neurite(neurite),
+        part: CellPart::Neurite(neurite),
     });
 }

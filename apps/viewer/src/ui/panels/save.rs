@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{Button, ComboBox, RichText, Ui};
 use neurotess::mesh::Format;
+use neurotess::refine::LodCriterion;
 use neurotess::render::LARGEST;
 
 use super::cells::count;
@@ -13,7 +14,7 @@ use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
 use crate::model::command::{Ask, Command};
 use crate::model::film::length;
-use crate::model::save::{FilmOptions, Fineness, PictureFile};
+use crate::model::save::{FilmOptions, MeshLod, PictureFile};
 use crate::model::state::{Over, State};
 use crate::ui::path_line;
 
@@ -30,7 +31,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     heading(ui, "Session");
     ui.weak("Keeps the files, the view, the look, soma settings, and what is hidden and selected, to continue later.");
     if ui.button("Save session…").clicked() {
-        state.asked.push(Command::AskFiles(Ask::SaveSession));
+        state.requests.push(Command::AskFiles(Ask::SaveSession));
     }
 }
 
@@ -39,7 +40,7 @@ fn ask(state: &mut State, out: PathBuf, exists: bool, command: Command, replacin
     if exists {
         state.over = Over::Replace(out, Box::new(replacing));
     } else {
-        state.asked.push(command);
+        state.requests.push(command);
     }
 }
 
@@ -80,7 +81,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
         let quads = form.mesh.format.has_quads();
         ui.add_enabled_ui(quads, |ui| ui.checkbox(&mut form.mesh.quads, "quads"));
     });
-    fineness(&mut form.mesh.fineness, ui);
+    mesh_lod(&mut form.mesh.lod, ui);
     ui.horizontal_wrapped(|ui| {
         ui.checkbox(&mut form.mesh.placed, "placed as shown").tip(
             "Positions as in the window (side by side, or in the circuit); otherwise the coordinates of each file",
@@ -117,45 +118,50 @@ fn meshes(state: &mut State, ui: &mut Ui) {
     }
 }
 
-fn fineness(fineness: &mut Fineness, ui: &mut Ui) {
+fn mesh_lod(lod: &mut MeshLod, ui: &mut Ui) {
     // Wrapped: what is too wide widens all that comes after it.
     ui.horizontal_wrapped(|ui| {
-        let level = matches!(fineness, Fineness::Level(_));
+        let error = matches!(lod, MeshLod::Fixed(Some(LodCriterion::MaxError(_))));
+        let shown = matches!(lod, MeshLod::AsShown);
+        let level = !error && !shown;
         if ui
             .selectable_label(level, "subdivisions")
             .tip("Of every edge of the coarse mesh; 0: the coarse mesh itself")
             .clicked()
             && !level
         {
-            *fineness = Fineness::Level(4);
+            *lod = MeshLod::Fixed(Some(LodCriterion::Homogeneous(4)));
         }
-        let error = matches!(fineness, Fineness::MaxError(_));
         if ui
             .selectable_label(error, "max. error")
             .tip("As many subdivisions as keep the mesh within this distance of the smooth surface")
             .clicked()
             && !error
         {
-            *fineness = Fineness::MaxError(0.05);
+            *lod = MeshLod::Fixed(Some(LodCriterion::MaxError(0.05)));
         }
-        let shown = matches!(fineness, Fineness::AsShown);
         if ui
             .selectable_label(shown, "as shown")
             .tip("The subdivisions of the picture: finer where the camera is close")
             .clicked()
         {
-            *fineness = Fineness::AsShown;
+            *lod = MeshLod::AsShown;
         }
-        match fineness {
-            Fineness::Level(level) => {
-                field(ui, level, 0..=64, 0, |field| field);
-            }
-            Fineness::MaxError(error) => {
+        match lod {
+            MeshLod::Fixed(Some(LodCriterion::MaxError(error))) => {
                 field(ui, error, 0.001..=10.0, 4, |field| {
                     field.speed(0.005).suffix(" µm")
                 });
             }
-            Fineness::AsShown => {}
+            MeshLod::Fixed(criterion) => {
+                let mut level = match criterion {
+                    Some(LodCriterion::Homogeneous(level)) => *level,
+                    _ => 0,
+                };
+                field(ui, &mut level, 0..=64, 0, |field| field);
+                *criterion = (level > 0).then_some(LodCriterion::Homogeneous(level));
+            }
+            MeshLod::AsShown => {}
         }
     });
 }
@@ -247,15 +253,15 @@ fn film(state: &mut State, ui: &mut Ui) {
                 .tip("Go there")
                 .clicked()
             {
-                state.asked.push(Command::Go(view));
+                state.requests.push(Command::Go(view));
             }
             if ui.small_button("×").tip("Remove this view").clicked() {
-                state.asked.push(Command::DropKeyView(index));
+                state.requests.push(Command::DropKeyView(index));
             }
         });
     }
     if ui.button("Keep this view").clicked() {
-        state.asked.push(Command::AddKeyView);
+        state.requests.push(Command::AddKeyView);
     }
     let keys = state.key_views.len();
     film_time(state, ui);

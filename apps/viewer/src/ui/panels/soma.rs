@@ -77,7 +77,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     }
     if edit != before {
         state
-            .asked
+            .requests
             .push(Command::SetSoma(sources.clone(), edit.clone()));
     } else if dropped {
         state.history.end_joining();

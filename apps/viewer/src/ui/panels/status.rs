@@ -19,7 +19,7 @@ pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f
                     .desired_height(12.0),
             );
             if ui.small_button("stop").clicked() {
-                state.asked.push(Command::Cancel);
+                state.requests.push(Command::Cancel);
             }
         }
         problems(state, ui);
@@ -27,11 +27,11 @@ pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f
         if hidden > 0 {
             let link = ui.link(format!("{hidden} hidden"));
             if link.on_hover_text("Show all").clicked() {
-                state.asked.push(Command::ShowAll);
+                state.requests.push(Command::ShowAll);
             }
         }
         lowered(state, ui);
-        ui.add(egui::Label::new(RichText::new(&state.said).weak()).truncate());
+        ui.add(egui::Label::new(RichText::new(&state.status).weak()).truncate());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             right(state, drawing, ui);
         });
@@ -44,7 +44,7 @@ fn problems(state: &mut State, ui: &mut Ui) {
         let text = format!("{} changed or gone", count(stale, "file"));
         let response = ui.link(RichText::new(text).color(ui.visuals().warn_fg_color));
         if response.on_hover_text("Read changed files again").clicked() {
-            state.asked.push(Command::Reload);
+            state.requests.push(Command::Reload);
         }
     }
     let wrong = state.problems.len();
@@ -56,7 +56,7 @@ fn problems(state: &mut State, ui: &mut Ui) {
             .link(text.color(ui.visuals().error_fg_color))
             .on_hover_text(says);
         if response.clicked() {
-            state.asked.push(Command::ToggleProblems);
+            state.requests.push(Command::ToggleProblems);
         }
     }
 }
@@ -120,14 +120,14 @@ fn right(state: &State, drawing: Option<f32>, ui: &mut Ui) {
 }
 
 fn describe(state: &State, hovered: crate::model::state::Picked, name: &str) -> String {
-    use crate::model::state::Part;
+    use crate::model::state::CellPart;
     let Some(source) = state.source_of(hovered.neuron) else {
         return name.to_owned();
     };
     match hovered.part {
-        Part::Soma => format!("{name}: soma"),
-        Part::Neurite(neurite) => format!("{name}: neurite {}", neurite + 1),
-        Part::Section(section) => {
+        CellPart::Soma => format!("{name}: soma"),
+        CellPart::Neurite(neurite) => format!("{name}: neurite {}", neurite + 1),
+        CellPart::Section(section) => {
             let facts = source
                 .sections
                 .get(section as usize)

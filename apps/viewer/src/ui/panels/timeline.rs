@@ -21,7 +21,7 @@ pub(super) fn show(state: &mut State, facts: &Facts, ui: &mut Ui) {
             .on_hover_text("Close the report")
             .clicked()
         {
-            state.asked.push(Command::SetReport(None));
+            state.requests.push(Command::SetReport(None));
         }
     });
     ui.add_space(2.0);
@@ -45,7 +45,7 @@ fn buttons(state: &mut State, ui: &mut Ui) {
     ] {
         let response = button(sign, name, ui);
         if response.on_hover_text(format!("{name}{keys}")).clicked() {
-            state.asked.push(command);
+            state.requests.push(command);
         }
     }
 }
@@ -111,7 +111,7 @@ fn scrub(state: &mut State, facts: &Facts, ui: &mut Ui) {
         slider.suffix(" ms")
     });
     if time != before {
-        state.asked.push(Command::Seek(time));
+        state.requests.push(Command::Seek(time));
     }
 }
 
@@ -152,6 +152,6 @@ fn pace(state: &mut State, ui: &mut Ui) {
     ui.checkbox(&mut pace.loops, "loop")
         .on_hover_text("At the end, start over");
     if pace != state.playback.pace {
-        state.asked.push(Command::SetPace(pace));
+        state.requests.push(Command::SetPace(pace));
     }
 }

@@ -108,7 +108,7 @@ fn zoom(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
         // Towards what is there; in the air, towards the target's depth.
         let seen = screen
             .stage
-            .seen_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
+            .hit_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
         match seen {
             Some(seen) => view.at_depth(pixel, size, view.camera().depth(seen.place).max(1e-6)),
             None => view.under(pixel, size),
@@ -162,7 +162,7 @@ fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, p
     let at = response
         .hover_pos()
         .map(|at| (at - response.rect.min) * points);
-    let seen = at.and_then(|at| screen.stage.seen_at(at.x, at.y));
+    let seen = at.and_then(|at| screen.stage.hit_at(at.x, at.y));
     // Lists and sliders have said what they point at; elsewhere it is the picture.
     if at.is_some() {
         screen.state.hovered = match screen.stage.can_pick() {
@@ -178,7 +178,7 @@ fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, p
             let size = near * (camera.fov() / 2.0).tan();
             screen
                 .state
-                .asked
+                .requests
                 .push(Command::Go(view.focused((seen.place, size))));
         }
     } else if response.clicked() {
@@ -202,12 +202,14 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
             let only = state.document.selected().count() == 1;
             // Another piece of the same neuron is no other selection.
             if adds || !already || !only {
-                state.asked.push(Command::Select(vec![picked.neuron], adds));
+                state
+                    .requests
+                    .push(Command::Select(vec![picked.neuron], adds));
             }
         }
         None if !adds => {
             state.picked = None;
-            state.asked.push(Command::SelectNone);
+            state.requests.push(Command::SelectNone);
         }
         None => {}
     }
@@ -223,7 +225,7 @@ fn menu(state: &mut State, ui: &mut Ui) {
         ("Keep this view for a film", Command::AddKeyView),
     ] {
         if ui.button(title).clicked() {
-            state.asked.push(command);
+            state.requests.push(command);
             ui.close();
         }
     }
@@ -254,7 +256,7 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     if !screen.stage.can_pick() {
         marks::hovered(screen.state, rect, &painter);
     }
-    if !screen.stage.is_settled() && screen.stage.shown().sources.is_empty() {
+    if !screen.stage.is_settled() && screen.stage.content().sources.is_empty() {
         Area::new(Id::unique("meshing"))
             .fixed_pos(rect.center())
             .pivot(Align2::CENTER_CENTER)
