@@ -101,7 +101,7 @@ pub(crate) fn templates(
         .zip(&coloring.color_keys)
         .map(|(source, color_keys)| Template {
             mesh: &source.generated.mesh,
-            color_keys: color_keys,
+            color_keys,
             values: &[],
         })
         .collect();
