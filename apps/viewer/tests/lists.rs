@@ -9,7 +9,7 @@ use eframe::egui::{Event, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Ask, Tab};
+use neurotess_viewer::command::{Ask, Edit, Tab};
 use neurotess_viewer::document::{ColorBy, Look};
 use neurotess_viewer::state::{CellPart, Picked};
 
@@ -96,7 +96,7 @@ fn what_is_hidden_is_not_marked() {
     window.run_steps(3);
     let hovered = |window: &mut Window| state(window).hovered.map(|h| h.neuron);
     assert_eq!(hovered(&mut window), Some(1));
-    run(&mut window, Command::SetHidden(1, true));
+    run(&mut window, Edit::SetHidden(1, true));
     window.event(Event::PointerMoved(row + Vec2::new(1.0, 0.0)));
     window.run_steps(3);
     assert_eq!(hovered(&mut window), None);
@@ -165,7 +165,7 @@ fn the_legend_is_that_of_the_picture() {
         color_by: ColorBy::PathDistance,
         ..state(&mut window).document.look.clone()
     };
-    state(&mut window).run(Command::SetLook(Box::new(look)));
+    state(&mut window).run(Edit::SetLook(Box::new(look)));
     // Drafts that are too dear wait until the explorer has made its own; the old picture stays meanwhile.
     viewer(&mut window).stage.limit_patches(Some(0));
     for _ in 0..2000 {

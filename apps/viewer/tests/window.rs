@@ -16,7 +16,7 @@ use neurotess::refine::LodCriterion;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Ask, Tab};
+use neurotess_viewer::command::{Ask, Edit, Tab};
 use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
 use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
@@ -108,7 +108,7 @@ fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
     let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
         return;
     };
-    run(&mut window, Command::Select(vec![0], false));
+    run(&mut window, Edit::Select(vec![0], false));
     run(&mut window, Command::Show(Tab::Soma));
     let close = state(&mut window).view.focused((glam::DVec3::ZERO, 16.0));
     run(&mut window, Command::Go(close));
@@ -172,12 +172,12 @@ fn several_neurons_are_laid_out_selected_and_hidden() {
     let Some(mut window) = with_samples(&kinds) else {
         return;
     };
-    run(&mut window, Command::SetGrid(true));
+    run(&mut window, Edit::SetGrid(true));
     run(&mut window, Command::Home);
-    run(&mut window, Command::Select(vec![1], false));
+    run(&mut window, Edit::Select(vec![1], false));
     let mut look = state(&mut window).document.look.clone();
     look.ghost_others = true;
-    run(&mut window, Command::SetLook(Box::new(look)));
+    run(&mut window, Edit::SetLook(Box::new(look)));
     snapshot(&mut window, "grid");
     window.key_press(Key::H);
     window.step();
@@ -194,7 +194,7 @@ fn every_edit_can_be_undone_and_done_again() {
     let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
         return;
     };
-    run(&mut window, Command::Select(vec![0], false));
+    run(&mut window, Edit::Select(vec![0], false));
     let look = Look {
         cut: Some(Cut {
             axis: 2,
@@ -214,26 +214,25 @@ fn every_edit_can_be_undone_and_done_again() {
         scale: 1.3,
         ..SomaEdit::default()
     };
-    run(&mut window, Command::SetRing(SourceId(0), 2, Some(1.5)));
+    run(&mut window, Edit::SetRing(SourceId(0), 2, Some(1.5)));
     let edits = [
-        Command::Select(vec![1], false),
-        Command::SelectAll,
-        Command::SelectNone,
-        Command::SelectOthers,
-        Command::Isolate,
-        Command::SetHidden(1, true),
-        Command::Hide,
-        Command::SetSoma(vec![SourceId(0)], soma),
-        Command::SetRing(SourceId(0), 1, Some(0.25)),
-        Command::SetRing(SourceId(0), 2, None),
-        Command::ResetRings(SourceId(0)),
-        Command::SetLook(Box::new(look)),
-        Command::SetDetail(detail),
-        Command::SetGrid(true),
-        Command::Remove,
+        Edit::Select(vec![1], false),
+        Edit::SelectAll,
+        Edit::SelectNone,
+        Edit::SelectOthers,
+        Edit::Isolate,
+        Edit::SetHidden(1, true),
+        Edit::Hide,
+        Edit::SetSoma(vec![SourceId(0)], soma),
+        Edit::SetRing(SourceId(0), 1, Some(0.25)),
+        Edit::SetRing(SourceId(0), 2, None),
+        Edit::ResetRings(SourceId(0)),
+        Edit::SetLook(Box::new(look)),
+        Edit::SetDetail(detail),
+        Edit::SetGrid(true),
+        Edit::Remove,
     ];
     for edit in edits {
-        assert!(edit.edit().is_some(), "{edit:?}");
         let before = state(&mut window).document.clone();
         run(&mut window, edit.clone());
         let after = state(&mut window).document.clone();
@@ -244,8 +243,8 @@ fn every_edit_can_be_undone_and_done_again() {
         assert_eq!(state(&mut window).document, after, "{edit:?} done again");
         run(&mut window, Command::Undo);
     }
-    run(&mut window, Command::Remove);
-    run(&mut window, Command::ShowAll);
+    run(&mut window, Edit::Remove);
+    run(&mut window, Edit::ShowAll);
     assert_eq!(state(&mut window).document.neurons.len(), 1);
     assert!(viewer(&mut window).fatal.is_none() && state(&mut window).problems.is_empty());
 }
@@ -284,16 +283,13 @@ fn the_surface_follows_the_soma_editor() {
             true,
         ),
     ] {
-        run(
-            &mut window,
-            Command::SetSoma(vec![SourceId(0)], edit.clone()),
-        );
+        run(&mut window, Edit::SetSoma(vec![SourceId(0)], edit.clone()));
         assert_eq!(volume(&mut window) > usual, grows, "{edit:?}");
     }
     run(&mut window, Command::Undo);
     run(
         &mut window,
-        Command::SetSoma(vec![SourceId(0)], SomaEdit::default()),
+        Edit::SetSoma(vec![SourceId(0)], SomaEdit::default()),
     );
     assert_eq!(volume(&mut window), usual);
 }
@@ -340,8 +336,8 @@ fn a_lost_device_costs_no_work() {
     *place = place
         .take()
         .map(|viewer| viewer.with_rescue(folder.path().to_path_buf()));
-    run(&mut window, Command::Select(vec![0], false));
-    run(&mut window, Command::SetRing(SourceId(0), 1, Some(1.5)));
+    run(&mut window, Edit::Select(vec![0], false));
+    run(&mut window, Edit::SetRing(SourceId(0), 1, Some(1.5)));
     let before = neurotess_viewer::session::Session::of(state(&mut window), folder.path());
     viewer(&mut window).stage.gpu().device.destroy();
     // Something must be drawn to notice it.
@@ -375,9 +371,9 @@ fn a_session_comes_back_as_it_was() {
         poisson: 0.05,
         ..SomaEdit::default()
     };
-    run(&mut window, Command::SetSoma(vec![SourceId(1)], soma));
-    run(&mut window, Command::Select(vec![1], false));
-    run(&mut window, Command::SetHidden(0, true));
+    run(&mut window, Edit::SetSoma(vec![SourceId(1)], soma));
+    run(&mut window, Edit::Select(vec![1], false));
+    run(&mut window, Edit::SetHidden(0, true));
     run(&mut window, Command::Look(Side::Iso));
     run(&mut window, Command::AddKeyView);
     run(&mut window, Command::SaveSession(file.clone()));
@@ -617,16 +613,16 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     // With wires the explorer cannot: coarser, and said.
     let mut look = state(&mut window).document.look.clone();
     look.wireframe = true;
-    run(&mut window, Command::SetLook(Box::new(look.clone())));
+    run(&mut window, Edit::SetLook(Box::new(look.clone())));
     assert!(matches!(
         state(&mut window).counters.lowered,
         Some(Lowered::Error(_))
     ));
     look.wireframe = false;
-    run(&mut window, Command::SetLook(Box::new(look)));
+    run(&mut window, Edit::SetLook(Box::new(look)));
     // Alone, it is whole again, and so are the words.
-    run(&mut window, Command::Select(vec![1], false));
-    run(&mut window, Command::Isolate);
+    run(&mut window, Edit::Select(vec![1], false));
+    run(&mut window, Edit::Isolate);
     assert_eq!(state(&mut window).counters.lowered, None);
     assert!(window.query_by_label_contains("reduced: ").is_none());
     assert!(

@@ -19,14 +19,21 @@ pub(crate) struct FrameReader {
 }
 
 /// What values depend on, beside the frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct ValueInputs {
     /// By neuron: whether it shows.
-    pub(crate) shows: Vec<bool>,
+    pub(crate) shows: Arc<[bool]>,
     /// Numbers at both ends of the color map.
     pub(crate) range: [f32; 2],
     /// Of flashes (ms).
     pub(crate) decay: f64,
+}
+
+impl PartialEq for ValueInputs {
+    fn eq(&self, other: &Self) -> bool {
+        let same = Arc::ptr_eq(&self.shows, &other.shows) || self.shows == other.shows;
+        same && (self.range, self.decay) == (other.range, other.decay)
+    }
 }
 
 #[derive(Default)]
@@ -182,7 +189,7 @@ mod tests {
 
     fn inner(frame: u64, stride: u64, ready: &[u64]) -> Inner {
         let inputs = ValueInputs {
-            shows: vec![true],
+            shows: [true].into(),
             range: [0.0, 1.0],
             decay: 5.0,
         };

@@ -17,6 +17,19 @@ pub enum MeshLod {
     Fixed(Option<LodCriterion>),
 }
 
+/// What is to be written.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SaveRequest {
+    /// The session.
+    Session(PathBuf),
+    /// Meshes of neurons.
+    Meshes(MeshOptions),
+    /// A picture of the present view.
+    Picture(PictureFile),
+    /// Pictures along views or through time.
+    Film(FilmOptions),
+}
+
 /// How meshes are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshOptions {

@@ -300,7 +300,7 @@ fn relative(path: &Path, folder: &Path) -> PathBuf {
 mod tests {
     use super::*;
     use crate::io::load;
-    use crate::model::command::Command;
+    use crate::model::command::{Command, Edit};
     use crate::model::document::{ColorBy, Cut, Lighting};
     use crate::model::settings::Settings;
     use crate::model::sources;
@@ -315,17 +315,17 @@ mod tests {
             neuron.placement.translation.x = name.len() as f64;
             state.document.neurons.push(neuron);
         }
-        state.run(Command::Select(vec![1], false));
-        state.run(Command::SetHidden(0, true));
+        state.run(Edit::Select(vec![1], false));
+        state.run(Edit::SetHidden(0, true));
         let soma = SomaEdit {
             poisson: 0.12,
             octahedron: true,
             level: 3,
             ..SomaEdit::default()
         };
-        state.run(Command::SetSoma(vec![id], soma));
-        state.run(Command::SetRing(id, 0, Some(1.25)));
-        state.run(Command::SetRing(id, 3, Some(0.0)));
+        state.run(Edit::SetSoma(vec![id], soma));
+        state.run(Edit::SetRing(id, 0, Some(1.25)));
+        state.run(Edit::SetRing(id, 3, Some(0.0)));
         let mut look = state.document.look.clone();
         look.color_by = ColorBy::PathDistance;
         look.light = Lighting::From {
@@ -337,7 +337,7 @@ mod tests {
             place: 0.25,
             flipped: true,
         });
-        state.run(Command::SetLook(Box::new(look)));
+        state.run(Edit::SetLook(Box::new(look)));
         state.run(Command::AddKeyView);
         state
     }

@@ -13,6 +13,7 @@ use neurotess::synth::Kind;
 
 use crate::model::document::SomaEdit;
 use crate::model::ids::SourceId;
+use crate::model::revision::Revision;
 
 /// Balls of a neuron in scenes of many: 1,000 neurons of 1,000 balls would take every frame 10 ms.
 const FEW_SPHERES: usize = 48;
@@ -112,14 +113,10 @@ pub struct SectionFacts {
 
 /// All tracings that are open or were.
 #[derive(Clone, Debug, Default)]
-pub struct Sources(Vec<Source>);
-
-impl Source {
-    /// Another mesh.
-    pub fn set_generated(&mut self, generated: Generated) {
-        (self.spheres, self.few_spheres) = spheres(&generated.mesh);
-        self.generated = Arc::new(generated);
-    }
+pub struct Sources {
+    list: Vec<Source>,
+    stale: usize,
+    geometry: Revision,
 }
 
 /// All balls around a mesh, and a few that hold them.
@@ -132,23 +129,63 @@ pub(crate) fn spheres(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSp
 impl Sources {
     /// Adds a tracing.
     pub fn add(&mut self, source: Source) -> SourceId {
-        self.0.push(source);
-        SourceId(self.0.len() as u32 - 1)
+        self.list.push(source);
+        self.geometry = Revision::next();
+        SourceId(self.list.len() as u32 - 1)
     }
 
     /// A tracing.
     pub fn get(&self, id: SourceId) -> Option<&Source> {
-        self.0.get(id.0 as usize)
-    }
-
-    /// A tracing, to be changed.
-    pub fn get_mut(&mut self, id: SourceId) -> Option<&mut Source> {
-        self.0.get_mut(id.0 as usize)
+        self.list.get(id.0 as usize)
     }
 
     /// All with their numbers.
     pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Source)> {
-        (0..).map(SourceId).zip(&self.0)
+        (0..).map(SourceId).zip(&self.list)
+    }
+
+    /// The stamp of tracings and meshes.
+    pub fn geometry(&self) -> Revision {
+        self.geometry
+    }
+
+    /// Number of tracings whose files changed or are gone.
+    pub fn stale(&self) -> usize {
+        self.stale
+    }
+
+    /// Puts a tracing that was read again in place of what was read before.
+    pub(crate) fn replace(&mut self, id: SourceId, source: Source) {
+        if let Some(there) = self.list.get_mut(id.0 as usize) {
+            *there = source;
+            self.geometry = Revision::next();
+            self.count_stale();
+        }
+    }
+
+    /// Another soma for a tracing; `generated`: the mesh with it, unless it leaves nothing to draw.
+    pub(crate) fn set_soma(&mut self, id: SourceId, edit: SomaEdit, generated: Option<Generated>) {
+        let Some(source) = self.list.get_mut(id.0 as usize) else {
+            return;
+        };
+        source.soma = edit;
+        if let Some(generated) = generated {
+            (source.spheres, source.few_spheres) = spheres(&generated.mesh);
+            source.generated = Arc::new(generated);
+        }
+        self.geometry = Revision::next();
+    }
+
+    /// What has become of a tracing's file.
+    pub(crate) fn set_stale(&mut self, id: SourceId, stale: Option<Stale>) {
+        if let Some(source) = self.list.get_mut(id.0 as usize) {
+            source.stale = stale;
+            self.count_stale();
+        }
+    }
+
+    fn count_stale(&mut self) {
+        self.stale = self.list.iter().filter(|s| s.stale.is_some()).count();
     }
 }
 

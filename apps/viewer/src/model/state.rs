@@ -1,17 +1,21 @@
 //! All that the window shows, in one place; panels are functions of it.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use neurotess::render::{BoundingSphere, Placement, Side};
 
 use crate::model::circuits::Circuits;
-use crate::model::command::{Ask, Command, Tab, Toggles};
-use crate::model::document::{self, Document, SourceId};
+use crate::model::command::{Ask, Command, Edit, Tab, Toggles};
+use crate::model::document::{self, Document, Neuron, NeuronRevisions, SourceId};
 use crate::model::history::History;
 use crate::model::playback::Playback;
-use crate::model::save::SaveForm;
+use crate::model::revision::{Memo, Revision};
+use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources, extent};
+use crate::model::totals::{self, Totals};
 use crate::model::view::View;
 
 /// From so many neurons on, a few balls around each will do.
@@ -57,6 +61,8 @@ pub struct Counters {
     pub bytes: [u64; 2],
     /// Milliseconds of the last frames.
     pub frames_ms: Vec<f32>,
+    /// How often the picture's parts were made.
+    pub rebuilds: Rebuilds,
     /// How drafts are lowered.
     pub draft: Draft,
     /// How the picture at rest is lowered, if it is.
@@ -85,6 +91,52 @@ impl Default for Draft {
     fn default() -> Self {
         Self::Error(1.0)
     }
+}
+
+/// What placements depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PlacementsKey {
+    /// Of the neurons.
+    pub(crate) members: Revision,
+    /// Of the meshes, if neurons are side by side.
+    grid: Option<Revision>,
+}
+
+/// What the bounding spheres of all that shows depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SpheresKey {
+    placements: PlacementsKey,
+    hidden: Revision,
+    geometry: Revision,
+}
+
+/// What follows from the rest and takes time that grows with the number of neurons.
+#[derive(Debug, Default)]
+struct Derived {
+    placements: Memo<PlacementsKey, Vec<Placement>>,
+    spheres: Memo<SpheresKey, Vec<BoundingSphere>>,
+    found: Memo<(Revision, String), Vec<usize>>,
+    totals: Memo<(NeuronRevisions, Revision), Totals>,
+    kinds: Memo<Revision, BTreeSet<i32>>,
+}
+
+/// How often the picture's parts were made since the window opened: an idle frame makes none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rebuilds {
+    /// Placements of all neurons.
+    pub placements: u64,
+    /// Bounding spheres of all that shows.
+    pub spheres: u64,
+    /// Instances on the device.
+    pub instances: u64,
+    /// Selected, ghosted: states of instances on the device.
+    pub states: u64,
+    /// Meshes of templates on the device.
+    pub templates: u64,
+    /// Proxies of templates on the device.
+    pub proxies: u64,
+    /// Tables of colors.
+    pub colors: u64,
 }
 
 /// All that there is.
@@ -143,6 +195,7 @@ pub struct State {
     pub requests: Vec<Command>,
     /// A part to be scrolled to in the tree.
     pub reveal: Option<Picked>,
+    derived: Derived,
 }
 
 /// A window over the others.
@@ -170,8 +223,8 @@ pub enum Effect {
     Load(Vec<PathBuf>),
     /// Read changed files again.
     Reload,
-    /// Do what the command says: saving.
-    Save(Command),
+    /// Write files.
+    Save(SaveRequest),
     /// End what is under way.
     Cancel,
     /// Go to a view, smoothly.
@@ -215,6 +268,7 @@ impl State {
             effects: Vec::new(),
             requests: Vec::new(),
             reveal: None,
+            derived: Derived::default(),
         }
     }
 
@@ -230,20 +284,13 @@ impl State {
     }
 
     /// Does a command.
-    pub fn run(&mut self, command: Command) {
-        if let Some(name) = command.edit() {
-            let before = self.document.clone();
-            let joins = command.joins();
-            command.apply(&mut self.document);
-            if self.document != before {
-                self.history.keep(name, before, joins);
-                self.remember();
-            }
-            self.forget_what_is_gone();
-            return;
+    pub fn run(&mut self, command: impl Into<Command>) {
+        let command = command.into();
+        if !matches!(command, Command::Edit(_)) {
+            self.history.end_joining();
         }
-        self.history.end_joining();
         match command {
+            Command::Edit(edit) => self.edit(edit),
             Command::Undo => {
                 self.status = match self.history.undo(&mut self.document) {
                     Some(name) => format!("Undone: {}", name.to_lowercase()),
@@ -314,8 +361,26 @@ impl State {
                     self.key_views.remove(which);
                 }
             }
-            save => self.effects.push(Effect::Save(save)),
+            Command::SaveSession(path) => self.save(SaveRequest::Session(path)),
+            Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(options)),
+            Command::SavePicture(options) => self.save(SaveRequest::Picture(options)),
+            Command::SaveFilm(options) => self.save(SaveRequest::Film(options)),
         }
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        let before = self.document.clone();
+        let (name, joins) = (edit.name(), edit.joins());
+        edit.apply(&mut self.document);
+        if self.document != before {
+            self.history.keep(name, before, joins);
+            self.remember();
+        }
+        self.forget_what_is_gone();
+    }
+
+    fn save(&mut self, request: SaveRequest) {
+        self.effects.push(Effect::Save(request));
     }
 
     /// Everything, from a side.
@@ -354,21 +419,29 @@ impl State {
         self.picked = self.picked.filter(there);
     }
 
-    /// Where all neurons stand.
-    pub fn placements(&self) -> Vec<Placement> {
-        if !self.document.grid {
-            return self.document.neurons.iter().map(|n| n.placement).collect();
-        }
-        let extents: Vec<_> = self
-            .document
-            .neurons
-            .iter()
-            .map(|neuron| {
+    /// Where all neurons are, in the order of the list.
+    pub fn placements(&self) -> Arc<Vec<Placement>> {
+        let neurons = &self.document.neurons;
+        self.derived.placements.get(self.placements_key(), || {
+            if !self.document.grid {
+                return neurons.iter().map(|n| n.placement).collect();
+            }
+            let extents = neurons.iter().map(|neuron| {
                 let (low, high) = extent(&self.spheres_of(neuron.source, neuron.placement));
                 ((low + high) / 2.0, high - low)
-            })
-            .collect();
-        document::grid(&self.document.neurons, &extents)
+            });
+            document::grid(neurons, &extents.collect::<Vec<_>>())
+        })
+    }
+
+    /// What placements depend on.
+    pub(crate) fn placements_key(&self) -> PlacementsKey {
+        let grid = self.document.grid;
+        PlacementsKey {
+            members: self.document.neurons.revisions().members,
+            // Side by side, neurons need room for their meshes.
+            grid: grid.then(|| self.sources.geometry()),
+        }
     }
 
     fn spheres_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
@@ -383,24 +456,40 @@ impl State {
             .collect()
     }
 
-    /// Balls (µm) around what shows and is wanted.
-    pub fn spheres(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
-        let neurons = self.document.neurons.iter().zip(self.placements());
+    /// Bounding spheres (µm) of all that shows.
+    pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
+        let derive = || self.spheres_where(|_| true);
+        self.derived.spheres.get(self.spheres_key(), derive)
+    }
+
+    /// What the spheres of all that shows depend on.
+    pub(crate) fn spheres_key(&self) -> SpheresKey {
+        SpheresKey {
+            placements: self.placements_key(),
+            hidden: self.document.neurons.revisions().hidden,
+            geometry: self.sources.geometry(),
+        }
+    }
+
+    fn spheres_where(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+        let placements = self.placements();
+        let neurons = self.document.neurons.iter().zip(placements.iter());
         neurons
-            .filter(|(n, _)| !n.hidden && wanted(n))
-            .flat_map(|(n, placement)| self.spheres_of(n.source, placement))
+            .filter(|(n, _)| !n.hidden && fits(n))
+            .flat_map(|(n, placement)| self.spheres_of(n.source, *placement))
             .collect()
     }
 
-    /// Balls (µm) at the tracing points of what shows and is wanted: tighter than [`State::balls`], to
-    /// frame it. Of many neurons a few balls each.
-    pub fn outline(&self, wanted: impl Fn(&document::Neuron) -> bool) -> Vec<BoundingSphere> {
-        let neurons = self.document.neurons.iter().zip(self.placements());
-        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && wanted(n)).collect();
+    /// Spheres (µm) at the tracing points of what shows and fits: tighter than [`State::spheres`], to
+    /// frame it. Of many neurons a few spheres each.
+    pub fn outline(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+        let placements = self.placements();
+        let neurons = self.document.neurons.iter().zip(placements.iter());
+        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && fits(n)).collect();
         if shown.len() >= MANY {
-            return self.spheres(wanted);
+            return self.spheres_where(fits);
         }
-        let spheres = |(neuron, placement): (&document::Neuron, Placement)| {
+        let spheres = |(neuron, placement): (&Neuron, &Placement)| {
             let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
             let points = mesh.into_iter().flat_map(|mesh| {
                 let points = mesh.tracing.iter();
@@ -412,18 +501,50 @@ impl State {
         shown.into_iter().flat_map(spheres).collect()
     }
 
+    /// Indices of the neurons whose names contain the search text.
+    pub(crate) fn found(&self) -> Arc<Vec<usize>> {
+        let members = self.document.neurons.revisions().members;
+        let derive = || {
+            let text = self.search.to_lowercase();
+            let neurons = self.document.neurons.iter().enumerate();
+            let found =
+                neurons.filter(|(_, n)| text.is_empty() || n.name.to_lowercase().contains(&text));
+            found.map(|(i, _)| i).collect()
+        };
+        self.derived
+            .found
+            .get((members, self.search.clone()), derive)
+    }
+
+    /// Sums over what is selected; over all, if nothing is.
+    pub(crate) fn totals(&self) -> Arc<Totals> {
+        let neurons = &self.document.neurons;
+        let key = (neurons.revisions(), self.sources.geometry());
+        self.derived.totals.get(key, || {
+            let any = !neurons.selected().is_empty();
+            let counted = neurons.iter().filter(|n| n.selected || !any);
+            Totals::of(counted.filter_map(|n| Some(&*self.sources.get(n.source)?.measures)))
+        })
+    }
+
+    /// Kinds of sections of all open tracings.
+    pub(crate) fn kinds(&self) -> Arc<BTreeSet<i32>> {
+        let derive = || totals::kinds(&self.sources);
+        self.derived.kinds.get(self.sources.geometry(), derive)
+    }
+
+    /// How often what grows with the neurons was derived: placements, and spheres.
+    pub(crate) fn derivations(&self) -> [u64; 2] {
+        [
+            self.derived.placements.derived(),
+            self.derived.spheres.derived(),
+        ]
+    }
+
     /// The source of a neuron.
     pub fn source_of(&self, neuron: usize) -> Option<&Source> {
         let neuron = self.document.neurons.get(neuron)?;
         self.sources.get(neuron.source)
-    }
-
-    /// Number of sources whose files changed or are gone.
-    pub fn stale(&self) -> usize {
-        self.sources
-            .iter()
-            .filter(|(_, s)| s.stale.is_some())
-            .count()
     }
 
     /// Notes something that went wrong.

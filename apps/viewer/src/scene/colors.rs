@@ -11,7 +11,8 @@ use rayon::prelude::*;
 
 use crate::model::circuits::Circuits;
 use crate::model::document::{ColorBy, Document, Look};
-use crate::model::ids::{CircuitId, CircuitNode, SourceId};
+use crate::model::ids::{CircuitId, CircuitNode};
+use crate::model::revision::Revision;
 use crate::model::state::State;
 use crate::scene::templates::SceneTemplate;
 
@@ -30,8 +31,8 @@ pub(crate) struct ColorSubject {
     by: ColorBy,
     attribute: String,
     report: Option<PathBuf>,
-    /// The neurons in their order, where colors differ among those of one tracing.
-    pub(crate) own: Vec<(SourceId, Option<CircuitNode>)>,
+    /// Stamp of the neurons, where colors differ among those of one tracing.
+    members: Option<Revision>,
 }
 
 /// The colors themselves.
@@ -48,7 +49,7 @@ impl ColorInputs {
     pub(crate) fn new(document: &Document) -> Self {
         let look = &document.look;
         let by = look.color_by;
-        let neurons = document.neurons.iter().filter(|_| by.is_of_neurons());
+        let members = document.neurons.revisions().members;
         let attribute = match by {
             ColorBy::Attribute => look.attribute.clone(),
             _ => String::new(),
@@ -59,7 +60,7 @@ impl ColorInputs {
                 by,
                 attribute,
                 report: report.filter(|_| by == ColorBy::Value),
-                own: neurons.map(|n| (n.source, n.node)).collect(),
+                members: by.is_of_neurons().then_some(members),
             },
             style: ColorStyle {
                 palette: look.palette,

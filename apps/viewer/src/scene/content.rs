@@ -12,8 +12,9 @@ use neurotess::render::{
 use thiserror::Error;
 
 use crate::model::document::{Document, Look, VisibleParts};
+use crate::model::revision::Revision;
 use crate::model::sources::extent;
-use crate::model::state::State;
+use crate::model::state::{PlacementsKey, State};
 use crate::scene::colors::ColorResult;
 use crate::scene::templates::SceneTemplate;
 
@@ -34,6 +35,8 @@ pub(crate) enum BuildError {
 /// What a scene is made of.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneContent {
+    /// Stamp of meshes and color keys, so of what is uploaded of templates.
+    pub(crate) revision: Revision,
     pub(crate) sources: Vec<SceneTemplate>,
     pub(crate) instances: Vec<SceneInstance>,
     /// What points say on the device.
@@ -57,12 +60,68 @@ impl SceneContent {
             ..
         } = colored;
         Self {
+            revision: Revision::next(),
             sources,
             instances,
             table: coloring.table.clone(),
             legend: coloring.legend.clone(),
             coloring: Arc::new(coloring),
             recording,
+        }
+    }
+}
+
+impl SceneContent {
+    /// Takes the colors of other content that has the same meshes and color keys.
+    pub(crate) fn recolor(&mut self, other: Self) {
+        (self.table, self.legend) = (other.table, other.legend);
+        self.recording = other.recording;
+    }
+}
+
+/// What the instances on the device depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct InstancesKey {
+    placements: PlacementsKey,
+    hidden: Revision,
+    content: Revision,
+}
+
+impl InstancesKey {
+    /// Of instances of now. `content`: stamp of the templates.
+    pub(crate) fn new(state: &State, content: Revision) -> Self {
+        Self {
+            placements: state.placements_key(),
+            hidden: state.document.neurons.revisions().hidden,
+            content,
+        }
+    }
+
+    /// The same instances of other content.
+    pub(crate) fn of_content(self, content: Revision) -> Self {
+        Self { content, ..self }
+    }
+}
+
+/// What the states of instances depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StatesKey {
+    members: Revision,
+    selection: Revision,
+    parts: VisibleParts,
+    highlights: bool,
+    ghosts: bool,
+}
+
+impl StatesKey {
+    pub(crate) fn new(document: &Document) -> Self {
+        let revisions = document.neurons.revisions();
+        Self {
+            members: revisions.members,
+            selection: revisions.selection,
+            parts: document.look.parts,
+            highlights: document.look.highlight_selected,
+            ghosts: document.look.ghost_others,
         }
     }
 }
@@ -77,8 +136,9 @@ pub(crate) struct SceneInstance {
 
 /// Where all neurons stand. `sources`: as on the device, sorted.
 pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneInstance> {
-    let neurons = state.document.neurons.iter().zip(state.placements());
-    let instances = neurons.map(|(neuron, placement)| {
+    let placements = state.placements();
+    let neurons = state.document.neurons.iter().zip(placements.iter());
+    let instances = neurons.map(|(neuron, &placement)| {
         let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
         SceneInstance {
             source: source.unwrap_or(0),
@@ -141,7 +201,7 @@ pub(crate) fn adaptive(
 /// States of all neurons, as the shading wants them.
 pub(crate) fn states(document: &Document) -> Vec<u32> {
     let look = &document.look;
-    let any = document.selected().next().is_some();
+    let any = !document.neurons.selected().is_empty();
     let parts = match look.parts {
         VisibleParts::All => 0,
         VisibleParts::Soma => WITHOUT_NEURITES,

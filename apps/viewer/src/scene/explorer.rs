@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
 use eframe::egui;
-use neurotess::coloring::Coloring;
 use neurotess::generate::Generated;
 use neurotess::render::{
     DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy, ProxyPickResolver, ProxyPickTargets,
 };
 
-use crate::scene::content::{self, SceneContent, SceneInstance};
+use crate::model::revision::Revision;
+use crate::scene::content::{self, InstancesKey, SceneContent};
 
 /// Fewest triangles of a frame, however slow the device.
 const LEAST_BUDGET: u32 = 12_500;
@@ -20,10 +20,11 @@ const LEAST_BUDGET: u32 = 12_500;
 #[derive(Default)]
 pub(crate) struct Explorer {
     built: Option<BuiltScene>,
-    making: Option<(Key, Receiver<ProxyResult>)>,
+    making: Option<(Revision, Receiver<ProxyResult>)>,
     /// What could not be sketched is not tried again.
-    refused: Option<Key>,
+    refused: Option<Revision>,
     budget: Option<u32>,
+    builds: u64,
 }
 
 type ProxyResult = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
@@ -31,38 +32,10 @@ type ProxyResult = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
 struct BuiltScene {
     exploration: Exploration,
     names: Arc<[ProxyPickTargets]>,
-    key: Key,
-    instances: Vec<SceneInstance>,
-}
-
-/// What a sketch is of.
-#[derive(Clone)]
-struct Key {
-    meshes: Vec<Arc<Generated>>,
-    coloring: Arc<Coloring>,
-}
-
-impl Key {
-    fn of(content: &SceneContent) -> Self {
-        Self {
-            meshes: content
-                .sources
-                .iter()
-                .map(|s| Arc::clone(&s.generated))
-                .collect(),
-            coloring: Arc::clone(&content.coloring),
-        }
-    }
-
-    fn fits(&self, content: &SceneContent) -> bool {
-        self.meshes.len() == content.sources.len()
-            && Arc::ptr_eq(&self.coloring, &content.coloring)
-            && self
-                .meshes
-                .iter()
-                .zip(&content.sources)
-                .all(|(mesh, source)| Arc::ptr_eq(mesh, &source.generated))
-    }
+    /// Stamp of the content it was made of.
+    content: Revision,
+    /// Stamp of the instances it has.
+    instances: Option<InstancesKey>,
 }
 
 impl Explorer {
@@ -72,23 +45,23 @@ impl Explorer {
             let Ok(built) = receiver.try_recv() else {
                 return;
             };
-            let key = key.clone();
+            let key = *key;
             self.making = None;
             match built {
                 Ok((exploration, names)) => {
                     self.built = Some(BuiltScene {
                         exploration,
                         names,
-                        key,
-                        instances: Vec::new(),
+                        content: key,
+                        instances: None,
                     });
                 }
                 // Too large for the device: the other maker draws it.
                 Err(_) => self.refused = Some(key),
             }
         }
-        let fits = |key: &Key| key.fits(content);
-        let known = self.built.as_ref().map(|built| &built.key);
+        let fits = |key: &Revision| *key == content.revision;
+        let known = self.built.as_ref().map(|built| &built.content);
         if content.sources.is_empty()
             || known.is_some_and(fits)
             || self.refused.as_ref().is_some_and(fits)
@@ -96,15 +69,19 @@ impl Explorer {
             return;
         }
         self.built = None;
-        self.begin(gpu, Key::of(content), ctx);
+        self.begin(gpu, content, ctx);
     }
 
-    fn begin(&mut self, gpu: &Arc<Gpu>, key: Key, ctx: &egui::Context) {
+    fn begin(&mut self, gpu: &Arc<Gpu>, content: &SceneContent, ctx: &egui::Context) {
         let (sender, receiver) = channel();
-        self.making = Some((key.clone(), receiver));
+        self.making = Some((content.revision, receiver));
+        self.builds += 1;
+        let meshes = content.sources.iter().map(|s| Arc::clone(&s.generated));
+        let meshes: Vec<Arc<Generated>> = meshes.collect();
+        let coloring = Arc::clone(&content.coloring);
         let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
         std::thread::spawn(move || {
-            let cells = key.meshes.iter().zip(&key.coloring.color_keys);
+            let cells = meshes.iter().zip(&coloring.color_keys);
             let proxies: Vec<Proxy> = cells
                 .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
                 .collect();
@@ -127,16 +104,17 @@ impl Explorer {
         &mut self,
         gpu: &Gpu,
         content: &SceneContent,
+        instances_key: Option<InstancesKey>,
         budget: u32,
     ) -> Option<&mut Exploration> {
         let built = self
             .built
             .as_mut()
-            .filter(|built| built.key.fits(content))?;
-        if built.instances != content.instances {
+            .filter(|built| built.content == content.revision)?;
+        if built.instances != instances_key {
             let instances = content::device_instances(&content.instances);
             built.exploration.set_instances(gpu, instances).ok()?;
-            built.instances.clone_from(&content.instances);
+            built.instances = instances_key;
         }
         built.exploration.set_budget(budget);
         Some(&mut built.exploration)
@@ -146,7 +124,7 @@ impl Explorer {
     pub(crate) fn fits(&self, content: &SceneContent) -> bool {
         self.built
             .as_ref()
-            .is_some_and(|built| built.key.fits(content))
+            .is_some_and(|built| built.content == content.revision)
     }
 
     /// Whether a sketch will be there soon.
@@ -168,6 +146,11 @@ impl Explorer {
         } else if took_ms < 0.4 * most_ms {
             self.budget = Some((budget / 5 * 7).min(DEFAULT_BUDGET));
         }
+    }
+
+    /// How often proxies were made.
+    pub(crate) fn builds(&self) -> u64 {
+        self.builds
     }
 
     /// Triangles of a frame.

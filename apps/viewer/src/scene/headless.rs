@@ -105,6 +105,6 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
         content,
         look: state.document.look.clone(),
         states: content::states(&state.document),
-        spheres: state.spheres(|_| true),
+        spheres: state.spheres(),
     }
 }

@@ -206,7 +206,7 @@ mod tests {
     fn masks_show_selected_neurons_and_hovered_parts() {
         let mut document = Document::default();
         document.neurons.push(Neuron::new(SourceId(0), "n".into()));
-        document.neurons[0].selected = true;
+        document.neurons.set_states(|_, _| (false, true));
         let facts = |_, section| {
             Some(SectionFacts {
                 neurite: section / 2,
@@ -221,7 +221,7 @@ mod tests {
         // What was clicked stays marked while the neuron is selected.
         let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
         assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
-        document.neurons[0].selected = false;
+        document.neurons.set_states(|_, _| (false, false));
         let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
         assert_eq!(mask, [0; 10]);
     }

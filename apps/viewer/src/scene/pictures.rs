@@ -29,7 +29,7 @@ pub(crate) struct StillScene {
     pub(crate) content: SceneContent,
     pub(crate) look: Look,
     pub(crate) states: Vec<u32>,
-    pub(crate) spheres: Vec<BoundingSphere>,
+    pub(crate) spheres: Arc<Vec<BoundingSphere>>,
 }
 
 impl StillScene {

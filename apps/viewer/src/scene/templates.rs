@@ -23,10 +23,8 @@ pub(crate) struct SceneTemplate {
 
 /// Sources that neurons stand for, in their order.
 pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
-    let mut used: Vec<SourceId> = state.document.neurons.iter().map(|n| n.source).collect();
-    used.sort_unstable();
-    used.dedup();
-    let templates = used.into_iter().filter_map(|id| {
+    let used = state.document.neurons.sources().iter();
+    let templates = used.filter_map(|&id| {
         let source = state.sources.get(id)?;
         Some(SceneTemplate {
             id,

@@ -8,7 +8,7 @@ use eframe::egui::{self, Key, RichText, ScrollArea};
 
 use crate::io::find;
 use crate::io::paths::{self, Name, completed, goes_on, parted};
-use crate::model::command::{Ask, Command};
+use crate::model::command::{Ask, Command, Edit};
 use crate::model::session;
 use crate::ui::path_line;
 
@@ -295,7 +295,7 @@ impl FilePanel {
     fn command(&self, mut paths: Vec<PathBuf>) -> Command {
         match self.ask {
             Ask::Open => Command::Open(paths),
-            Ask::Report => Command::SetReport(paths.pop()),
+            Ask::Report => Edit::SetReport(paths.pop()).into(),
             Ask::SaveSession => {
                 let path = paths.pop().unwrap_or_default();
                 let named = if session::is_session(&path) {

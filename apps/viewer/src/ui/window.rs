@@ -10,7 +10,7 @@ use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use neurotess::render::{DeviceError, device_descriptor, select_adapter};
 use thiserror::Error;
 
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::document::SomaEdit;
 use crate::model::settings::Settings;
 use crate::ui::app::{Hears, Viewer, lost};
@@ -170,7 +170,7 @@ impl Window {
             viewer.state.run(Command::Open(options.inputs));
         }
         if options.report.is_some() {
-            viewer.state.run(Command::SetReport(options.report));
+            viewer.state.run(Edit::SetReport(options.report));
         }
         Ok(Self {
             viewer,

@@ -79,7 +79,7 @@ pub(crate) fn settle(window: &mut Window) {
     }
 }
 
-pub(crate) fn run(window: &mut Window, command: Command) {
+pub(crate) fn run(window: &mut Window, command: impl Into<Command>) {
     state(window).run(command);
     settle(window);
 }

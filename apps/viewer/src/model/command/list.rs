@@ -4,7 +4,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
-use super::{Ask, Command, Tab};
+use super::{Ask, Command, Edit, Tab};
 
 /// A command that stands in menus and the palette.
 pub struct Listed {
@@ -44,7 +44,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Some((CTRL_SHIFT, Key::O)),
                     Command::AskFiles(Ask::Report),
                 ),
-                item("Close the report", None, Command::SetReport(None)),
+                item("Close the report", None, Edit::SetReport(None).into()),
                 item(
                     "Save session…",
                     Some((CTRL, Key::S)),
@@ -70,21 +70,21 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
             vec![
                 item("Undo", Some((CTRL, Key::Z)), Command::Undo),
                 item("Redo", Some((CTRL_SHIFT, Key::Z)), Command::Redo),
-                item("Select all", Some((CTRL, Key::A)), Command::SelectAll),
+                item("Select all", Some((CTRL, Key::A)), Edit::SelectAll.into()),
                 item(
                     "Select none",
                     Some((PLAIN, Key::Escape)),
-                    Command::SelectNone,
+                    Edit::SelectNone.into(),
                 ),
                 item(
                     "Invert the selection",
                     Some((CTRL, Key::I)),
-                    Command::SelectOthers,
+                    Edit::SelectOthers.into(),
                 ),
                 item(
                     "Remove selected from the list",
                     Some((PLAIN, Key::Delete)),
-                    Command::Remove,
+                    Edit::Remove.into(),
                 ),
             ],
         ),
@@ -124,9 +124,13 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Some((PLAIN, Key::Num4)),
                     Command::Look(Side::Iso),
                 ),
-                item("Hide selected", Some((PLAIN, Key::H)), Command::Hide),
-                item("Isolate selected", Some((PLAIN, Key::I)), Command::Isolate),
-                item("Show all", Some((CTRL, Key::H)), Command::ShowAll),
+                item("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
+                item(
+                    "Isolate selected",
+                    Some((PLAIN, Key::I)),
+                    Edit::Isolate.into(),
+                ),
+                item("Show all", Some((CTRL, Key::H)), Edit::ShowAll.into()),
                 item(
                     choose(now.y_down, "y axis down (electron microscopy)", "y axis up"),
                     Some((PLAIN, Key::Y)),
@@ -135,7 +139,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 item(
                     choose(now.grid, "Lay out side by side", "Place as traced"),
                     Some((PLAIN, Key::G)),
-                    Command::SetGrid(!now.grid),
+                    Edit::SetGrid(!now.grid).into(),
                 ),
                 item(
                     choose(

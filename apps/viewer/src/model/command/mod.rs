@@ -1,17 +1,19 @@
 //! What one can do, as values: menus, shortcuts, the palette and tests share one list.
 
+mod edit;
 mod list;
 
+use std::fmt;
 use std::path::PathBuf;
 
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
-use crate::model::document::{Detail, Document, Look, SomaEdit, SourceId};
 use crate::model::playback::Pace;
 use crate::model::save::{FilmOptions, MeshOptions, PictureFile};
 use crate::model::view::View;
 
+pub use edit::Edit;
 pub use list::{Listed, Toggles, listed};
 
 /// One of the panels on the right.
@@ -52,9 +54,12 @@ pub enum Ask {
     SaveSession,
 }
 
-/// Something to do.
-#[derive(Clone, Debug, PartialEq)]
+/// Something to do: an edit, or a request to the window around the document.
+#[derive(Clone, PartialEq)]
 pub enum Command {
+    /// Changes the document.
+    Edit(Edit),
+
     /// Shows the file panel.
     AskFiles(Ask),
     /// Reads files, folders, circuits, a session.
@@ -74,39 +79,6 @@ pub enum Command {
     Undo,
     /// The one after it.
     Redo,
-
-    /// Selects these, and nothing else unless `add`; what is already selected is dropped then.
-    Select(Vec<usize>, bool),
-    /// Selects all that is shown.
-    SelectAll,
-    /// Selects nothing.
-    SelectNone,
-    /// Selects what is not selected.
-    SelectOthers,
-    /// Hides what is selected.
-    Hide,
-    /// Shows only what is selected.
-    Isolate,
-    /// Shows all.
-    ShowAll,
-    /// Hides or shows one.
-    SetHidden(usize, bool),
-    /// Takes what is selected out of the list.
-    Remove,
-    /// Makes somata in another way.
-    SetSoma(Vec<SourceId>, SomaEdit),
-    /// Puts the first ring of a neurite somewhere, or leaves it to itself.
-    SetRing(SourceId, u32, Option<f64>),
-    /// Leaves all first rings to themselves.
-    ResetRings(SourceId),
-    /// Colors and light.
-    SetLook(Box<Look>),
-    /// How finely.
-    SetDetail(Detail),
-    /// Side by side, or where traced.
-    SetGrid(bool),
-    /// Shows the values of a report or spikes, or no longer.
-    SetReport(Option<PathBuf>),
 
     /// Lets the recording's time go on, or no longer.
     TogglePlay,
@@ -155,148 +127,69 @@ pub enum Command {
     SaveFilm(FilmOptions),
 }
 
-impl Command {
-    /// What an undo of it is called; none: it is no edit.
-    pub fn edit(&self) -> Option<&'static str> {
-        Some(match self {
-            Self::Select(..) | Self::SelectAll | Self::SelectNone | Self::SelectOthers => "Select",
-            Self::Hide | Self::SetHidden(_, true) => "Hide",
-            Self::Isolate => "Isolate",
-            Self::ShowAll | Self::SetHidden(_, false) => "Show",
-            Self::Remove => "Remove",
-            Self::SetSoma(..) => "Soma",
-            Self::SetRing(..) | Self::ResetRings(_) => "First ring",
-            Self::SetLook(_) => "Look",
-            Self::SetDetail(_) => "Detail",
-            Self::SetGrid(_) => "Grid",
-            Self::SetReport(_) => "Report",
-            _ => return None,
-        })
+/// As `neurotess view --verbose` prints it: an edit by its own name.
+impl fmt::Debug for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut with =
+            |name: &str, value: &dyn fmt::Debug| f.debug_tuple(name).field(value).finish();
+        match self {
+            Self::Edit(edit) => edit.fmt(f),
+            Self::AskFiles(value) => with("AskFiles", value),
+            Self::Open(value) => with("Open", value),
+            Self::OpenSample(value) => with("OpenSample", value),
+            Self::SaveSession(value) => with("SaveSession", value),
+            Self::Seek(value) => with("Seek", value),
+            Self::StepTime(value) => with("StepTime", value),
+            Self::SetPace(value) => with("SetPace", value),
+            Self::Look(value) => with("Look", value),
+            Self::Go(value) => with("Go", value),
+            Self::SetYDown(value) => with("SetYDown", value),
+            Self::SetFrozen(value) => with("SetFrozen", value),
+            Self::Show(value) => with("Show", value),
+            Self::SetDark(value) => with("SetDark", value),
+            Self::SaveMeshes(value) => with("SaveMeshes", value),
+            Self::SavePicture(value) => with("SavePicture", value),
+            Self::DropKeyView(value) => with("DropKeyView", value),
+            Self::SaveFilm(value) => with("SaveFilm", value),
+            Self::Reload => f.write_str("Reload"),
+            Self::Cancel => f.write_str("Cancel"),
+            Self::Quit => f.write_str("Quit"),
+            Self::Undo => f.write_str("Undo"),
+            Self::Redo => f.write_str("Redo"),
+            Self::TogglePlay => f.write_str("TogglePlay"),
+            Self::Home => f.write_str("Home"),
+            Self::Focus => f.write_str("Focus"),
+            Self::ToggleKeys => f.write_str("ToggleKeys"),
+            Self::TogglePalette => f.write_str("TogglePalette"),
+            Self::ToggleProblems => f.write_str("ToggleProblems"),
+            Self::TogglePanels => f.write_str("TogglePanels"),
+            Self::AddKeyView => f.write_str("AddKeyView"),
+        }
     }
+}
 
+impl From<Edit> for Command {
+    fn from(edit: Edit) -> Self {
+        Self::Edit(edit)
+    }
+}
+
+impl Command {
     /// Whether it opens a line of text that hears all keys from then on.
     pub(crate) fn moves_keyboard(&self) -> bool {
         matches!(self, Self::AskFiles(_) | Self::TogglePalette)
-    }
-
-    /// Whether several in a row are one edit: a slider that is dragged.
-    pub fn joins(&self) -> bool {
-        matches!(
-            self,
-            Self::SetSoma(..) | Self::SetRing(..) | Self::SetLook(_) | Self::SetDetail(_)
-        )
-    }
-
-    /// Does an edit.
-    pub fn apply(self, document: &mut Document) {
-        let neurons = &mut document.neurons;
-        match self {
-            Self::Select(which, add) => {
-                let is = |i: usize| which.contains(&i);
-                // Adding what is there already takes it away.
-                let all = which
-                    .iter()
-                    .all(|&i| neurons.get(i).is_some_and(|n| n.selected));
-                for (i, neuron) in neurons.iter_mut().enumerate() {
-                    neuron.selected = match add {
-                        true if is(i) => !all,
-                        true => neuron.selected,
-                        false => is(i),
-                    };
-                }
-            }
-            Self::SelectAll => neurons.iter_mut().for_each(|n| n.selected = !n.hidden),
-            Self::SelectNone => neurons.iter_mut().for_each(|n| n.selected = false),
-            Self::SelectOthers => neurons
-                .iter_mut()
-                .for_each(|n| n.selected = !n.selected && !n.hidden),
-            Self::Hide => {
-                for neuron in neurons.iter_mut().filter(|n| n.selected) {
-                    (neuron.hidden, neuron.selected) = (true, false);
-                }
-            }
-            Self::Isolate if neurons.iter().any(|n| n.selected) => {
-                neurons.iter_mut().for_each(|n| n.hidden = !n.selected);
-            }
-            Self::ShowAll => neurons.iter_mut().for_each(|n| n.hidden = false),
-            Self::SetHidden(which, hidden) => {
-                if let Some(neuron) = neurons.get_mut(which) {
-                    neuron.hidden = hidden;
-                    neuron.selected &= !hidden;
-                }
-            }
-            Self::Remove => neurons.retain(|n| !n.selected),
-            Self::SetSoma(sources, edit) => {
-                for source in sources {
-                    // Rings are each cell's own.
-                    let rings = document.soma(source).rings;
-                    let edit = edit.clone();
-                    document.set_soma(source, SomaEdit { rings, ..edit });
-                }
-            }
-            Self::SetRing(source, neurite, position) => {
-                let mut edit = document.soma(source);
-                match position {
-                    Some(position) => edit.rings.insert(neurite, position.clamp(0.0, 2.0)),
-                    None => edit.rings.remove(&neurite),
-                };
-                document.set_soma(source, edit);
-            }
-            Self::ResetRings(source) => {
-                let mut edit = document.soma(source);
-                edit.rings.clear();
-                document.set_soma(source, edit);
-            }
-            Self::SetLook(look) => document.look = *look,
-            Self::SetDetail(detail) => document.detail = detail,
-            Self::SetGrid(grid) => document.grid = grid,
-            Self::SetReport(report) => document.set_report(report),
-            _ => {}
-        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::document::Neuron;
-
-    fn document() -> Document {
-        let neuron = |i| Neuron::new(SourceId(i), format!("n{i}"));
-        Document {
-            neurons: (0..4).map(neuron).collect(),
-            ..Document::default()
-        }
-    }
-
-    fn selected(document: &Document) -> Vec<usize> {
-        document.selected().collect()
-    }
 
     #[test]
-    fn shift_adds_and_takes_away() {
-        let mut doc = document();
-        Command::Select(vec![1], false).apply(&mut doc);
-        Command::Select(vec![2, 3], true).apply(&mut doc);
-        assert_eq!(selected(&doc), [1, 2, 3]);
-        Command::Select(vec![2], true).apply(&mut doc);
-        assert_eq!(selected(&doc), [1, 3]);
-        Command::Select(vec![0], false).apply(&mut doc);
-        assert_eq!(selected(&doc), [0]);
-    }
-
-    #[test]
-    fn what_is_hidden_is_not_selected() {
-        let mut doc = document();
-        Command::Select(vec![1, 2], false).apply(&mut doc);
-        Command::Hide.apply(&mut doc);
-        assert!(doc.neurons[1].hidden && selected(&doc).is_empty());
-        Command::SelectAll.apply(&mut doc);
-        assert_eq!(selected(&doc), [0, 3]);
-        Command::Isolate.apply(&mut doc);
-        Command::ShowAll.apply(&mut doc);
-        assert!(doc.neurons.iter().all(|n| !n.hidden));
-        Command::Remove.apply(&mut doc);
-        assert_eq!(doc.neurons.len(), 2);
+    fn commands_are_printed_by_their_own_names() {
+        let hide = Command::from(Edit::SetHidden(3, true));
+        assert_eq!(format!("{hide:?}"), "SetHidden(3, true)");
+        assert_eq!(format!("{:?}", Command::Look(Side::Top)), "Look(Top)");
+        assert_eq!(format!("{:?}", Command::Quit), "Quit");
     }
 }

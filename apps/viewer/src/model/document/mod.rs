@@ -2,6 +2,7 @@
 
 mod detail;
 mod look;
+mod neurons;
 mod placement;
 mod soma;
 
@@ -10,9 +11,12 @@ use std::path::PathBuf;
 use glam::DVec3;
 use neurotess::render::Placement;
 
+use crate::model::revision::Tracked;
+
 pub use crate::model::ids::{CircuitNode, SourceId};
 pub use detail::{Detail, LodKind};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
+pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use soma::{Method, SomaEdit};
 
@@ -20,9 +24,9 @@ pub use soma::{Method, SomaEdit};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// What is shown, in the order of the list.
-    pub neurons: Vec<Neuron>,
+    pub neurons: Neurons,
     /// Somata that are not as usual, by source.
-    pub somata: Vec<(SourceId, SomaEdit)>,
+    pub somata: Tracked<Vec<(SourceId, SomaEdit)>>,
     /// Colors, light, what is shown of cells.
     pub look: Look,
     /// How finely.
@@ -73,6 +77,9 @@ impl Document {
 
     /// Another soma for a source.
     pub fn set_soma(&mut self, source: SourceId, edit: SomaEdit) {
+        if self.soma(source) == edit {
+            return;
+        }
         self.somata.retain(|(id, _)| *id != source);
         if edit != SomaEdit::default() {
             self.somata.push((source, edit));
@@ -92,16 +99,7 @@ impl Document {
 
     /// Indices of what is selected.
     pub fn selected(&self) -> impl Iterator<Item = usize> {
-        let selected = self.neurons.iter().enumerate();
-        selected.filter(|(_, n)| n.selected).map(|(i, _)| i)
-    }
-
-    /// Sources of what is selected, each once.
-    pub fn selected_sources(&self) -> Vec<SourceId> {
-        let mut sources: Vec<SourceId> = self.selected().map(|i| self.neurons[i].source).collect();
-        sources.sort_unstable();
-        sources.dedup();
-        sources
+        self.neurons.selected().iter().copied()
     }
 }
 

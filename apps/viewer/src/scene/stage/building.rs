@@ -5,12 +5,14 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use eframe::egui;
+use neurotess::coloring::Coloring;
+use neurotess::generate::Generated;
 use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 
 use super::Stage;
 use crate::model::state::State;
 use crate::scene::colors::{ColorInputs, ColorRequest};
-use crate::scene::content::{self, BuildError, SceneContent};
+use crate::scene::content::{self, BuildError, InstancesKey, SceneContent};
 use crate::scene::templates::{self, SceneTemplate};
 
 /// Cells up to which a soma is changed at once; with more, all colors are made anew beside.
@@ -18,11 +20,14 @@ const QUICK: usize = 24;
 
 pub(super) type Built = Result<BuiltScene, DeviceError>;
 
-/// What was made beside: the scene, what shows, what could not be colored.
+/// What was made beside.
 pub(super) struct BuiltScene {
-    templates: Templates,
+    /// Meshes and color keys on the device; none: they are what they were, only colors are others.
+    templates: Option<Templates>,
     content: SceneContent,
-    key: ColorInputs,
+    colors: ColorInputs,
+    /// What the instances are of, but for the content's stamp.
+    instances: InstancesKey,
     problem: Option<(String, String)>,
 }
 
@@ -41,14 +46,22 @@ impl Stage {
         };
         self.building = None;
         let built = built?;
-        let scene = Scene::new(
-            built.templates,
-            content::device_instances(&built.content.instances),
-        );
-        self.adaptive.set_scene(scene.unwrap_or_default());
         self.progressive.set_colors(built.content.table.clone());
-        self.content = built.content;
-        self.colors = Some(built.key);
+        self.rebuilds.colors += 1;
+        match built.templates {
+            Some(templates) => {
+                let instances = content::device_instances(&built.content.instances);
+                let scene = Scene::new(templates, instances);
+                self.adaptive.set_scene(scene.unwrap_or_default());
+                self.rebuilds.templates += 1;
+                let instances = built.instances.of_content(built.content.revision);
+                self.content = built.content;
+                self.instances_are(instances);
+            }
+            None => self.content.recolor(built.content),
+        }
+        self.colors = Some(built.colors);
+        self.checked = None;
         self.drawn = None;
         self.recording(state, ctx);
         if let Some((what, why)) = built.problem {
@@ -57,8 +70,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Brings sources and neurons on the device up to date: at once, or beside.
-    pub(super) fn want_scene(
+    /// Brings templates and colors on the device up to date: at once where that is quick, or beside.
+    pub(super) fn update_templates(
         &mut self,
         state: &mut State,
         ctx: &egui::Context,
@@ -66,8 +79,14 @@ impl Stage {
         if self.building.is_some() {
             return Ok(());
         }
-        let sources = templates::templates(state);
         let colors = ColorInputs::new(&state.document);
+        let members = state.document.neurons.revisions().members;
+        let checked = (members, state.sources.geometry(), colors);
+        if self.checked.as_ref() == Some(&checked) {
+            return Ok(());
+        }
+        let colors = checked.2.clone();
+        let sources = templates::templates(state);
         let same_sources = sources.len() == self.content.sources.len()
             && sources
                 .iter()
@@ -84,23 +103,26 @@ impl Stage {
         };
         let recolored = self.colors.as_ref() != Some(&colors);
         if same_sources && !recolored && changed.is_empty() {
+            self.checked = Some(checked);
             return Ok(());
         }
-        let replays = self.content.recording.is_some();
-        let same_matter = self.colors.as_ref().map(|c| &c.subject) == Some(&colors.subject);
-        if same_sources && replays && same_matter && changed.is_empty() {
+        let records = self.content.recording.is_some();
+        let same_subject = self.colors.as_ref().map(|c| &c.subject) == Some(&colors.subject);
+        if same_sources && records && same_subject && changed.is_empty() {
             self.restyle_values(state, colors);
+            self.checked = Some(checked);
             return Ok(());
         }
-        if same_sources && !recolored && !replays && sources.len() <= QUICK {
+        if same_sources && !recolored && !records && sources.len() <= QUICK {
             let request = ColorRequest::new(state, &sources);
+            self.checked = Some(checked);
             return self.replace(sources, &changed, &request);
         }
         self.build(state, sources, colors, ctx);
         Ok(())
     }
 
-    pub(super) fn replace(
+    fn replace(
         &mut self,
         sources: Vec<SceneTemplate>,
         changed: &[usize],
@@ -110,51 +132,86 @@ impl Stage {
         let color_keys = &colored.coloring.color_keys;
         let mut scene = self.adaptive.take_scene();
         let mut replaced = Ok(());
-        for &place in changed {
+        for &index in changed {
             let template = Template {
-                mesh: &sources[place].generated.mesh,
-                color_keys: &color_keys[place],
+                mesh: &sources[index].generated.mesh,
+                color_keys: &color_keys[index],
                 values: &[],
             };
-            let id = TemplateId(place as u32);
+            let id = TemplateId(index as u32);
             replaced = replaced.and_then(|()| scene.replace(&self.gpu, id, &template));
         }
         self.adaptive.set_scene(scene);
         let instances = std::mem::take(&mut self.content.instances);
         self.content = SceneContent::new(sources, instances, colored);
+        // Other meshes for the same instances.
+        let revision = self.content.revision;
+        self.instances = self.instances.map(|key| key.of_content(revision));
         self.progressive.set_colors(self.content.table.clone());
+        self.rebuilds.templates += 1;
+        self.rebuilds.colors += 1;
         self.drawn = None;
         replaced
     }
 
-    pub(super) fn build(
+    fn build(
         &mut self,
         state: &State,
         sources: Vec<SceneTemplate>,
-        key: ColorInputs,
+        colors: ColorInputs,
         ctx: &egui::Context,
     ) {
         let (sender, receiver) = channel();
         let (gpu, ctx) = (Arc::clone(&self.gpu), ctx.clone());
         let request = ColorRequest::new(state, &sources);
         let instances = content::instances(state, &sources);
+        let instances_key = InstancesKey::new(state, self.content.revision);
+        let before = Before::of(&self.content);
         self.building = Some(receiver);
         std::thread::spawn(move || {
             let sources = request.cut(sources);
             let mut colored = request.colors(&sources);
             let problem = colored.problem.take();
             let content = SceneContent::new(sources, instances, colored);
-            let templates = content::templates(&gpu, &content.sources, &content.coloring);
+            let templates = match before.fits(&content) {
+                true => Ok(None),
+                false => content::templates(&gpu, &content.sources, &content.coloring).map(Some),
+            };
             let built = templates.map(|templates| BuiltScene {
                 templates,
                 content,
-                key,
+                colors,
+                instances: instances_key,
                 problem,
             });
             // Nobody waits for it if the window is closed.
             let _ = sender.send(built);
             ctx.request_repaint();
         });
+    }
+}
+
+/// Meshes and color keys that are on the device.
+struct Before {
+    meshes: Vec<Arc<Generated>>,
+    coloring: Arc<Coloring>,
+}
+
+impl Before {
+    fn of(content: &SceneContent) -> Self {
+        let meshes = content.sources.iter().map(|s| Arc::clone(&s.generated));
+        Self {
+            meshes: meshes.collect(),
+            coloring: Arc::clone(&content.coloring),
+        }
+    }
+
+    /// Whether other content has the same ones.
+    fn fits(&self, other: &SceneContent) -> bool {
+        let mut pairs = self.meshes.iter().zip(&other.sources);
+        self.meshes.len() == other.sources.len()
+            && pairs.all(|(mesh, source)| Arc::ptr_eq(mesh, &source.generated))
+            && self.coloring.color_keys == other.coloring.color_keys
     }
 }
 

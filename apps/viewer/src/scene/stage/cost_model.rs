@@ -114,27 +114,27 @@ impl Stage {
     }
 
     /// Patches of all neurons of which something may show.
-    pub(super) fn patches_in(
-        &self,
-        state: &State,
-        params: &ViewParams,
-        instances: &[SceneInstance],
-    ) -> u64 {
+    pub(super) fn patches_in(&self, state: &State, params: &ViewParams) -> u64 {
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
         let frame = whole(camera, near, params.size);
-        let shows = |instances: &&SceneInstance| {
-            let Some(source) = self.content.sources.get(instances.source) else {
+        let shows = |instance: &&SceneInstance| {
+            let Some(source) = self.content.sources.get(instance.source) else {
                 return false;
             };
-            let place = &instances.placement;
+            let placement = &instance.placement;
             let spheres = state
                 .sources
                 .get(source.id)
                 .map_or(&[][..], |s| &s.few_spheres);
-            let sphere = |&(c, r)| (place.world_from_cell(c), r * place.scale);
+            let sphere = |&(c, r)| (placement.world_from_cell(c), r * placement.scale);
             any_shows(&spheres.iter().map(sphere).collect::<Vec<_>>(), &frame)
         };
-        let seen = instances.iter().filter(|s| !s.hidden).filter(shows);
+        let seen = self
+            .content
+            .instances
+            .iter()
+            .filter(|s| !s.hidden)
+            .filter(shows);
         let patches =
             seen.map(|s| self.content.sources[s.source].generated.mesh.patches.len() as u64);
         patches.sum()

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 use neurotess::render::{
-    AdaptiveSettings, DeviceError, OUTLINED, Occlusion, Outlines, Scene, ViewParams,
+    AdaptiveSettings, Camera, Clip, DeviceError, OUTLINED, Occlusion, Outlines, Scene, ViewParams,
 };
 
 use super::cost_model::explorable;
@@ -12,7 +12,7 @@ use super::pointing::OUTLINES;
 use super::rest::REST;
 use super::{PictureInputs, RestPhase, Stage};
 use crate::model::state::State;
-use crate::scene::content::{self, SceneInstance};
+use crate::scene::content::{self, InstancesKey, StatesKey};
 
 /// A draft should take no longer.
 const DRAFT_MS: f64 = 40.0;
@@ -22,20 +22,21 @@ const HALF_FROM: f32 = 6.0;
 const FRAMES: usize = 90;
 
 impl Stage {
+    /// What the picture of now depends on. Takes no time that grows with the neurons while they stay as
+    /// they are.
     pub(super) fn inputs(&mut self, state: &State, size: [u32; 2]) -> PictureInputs {
         let look = &state.document.look;
         let camera = state.view.camera();
-        let spheres = state.spheres(|_| true);
         let mut surface = content::surface_look(look);
-        surface.clip = content::clip(look, &spheres);
+        surface.clip = self.clip(state);
         let frozen = state.frozen.map(|view| {
             let camera = view.camera();
-            (camera, camera.near(&spheres))
+            (camera, self.near(state, 1, camera))
         });
         PictureInputs {
             params: ViewParams {
                 camera,
-                near: camera.near(&spheres),
+                near: self.near(state, 0, camera),
                 size,
                 look: surface,
                 occlusion: if look.occlusion {
@@ -47,8 +48,33 @@ impl Stage {
                 frozen,
             },
             detail: state.document.detail,
-            states: content::states(&state.document),
-            instances: content::instances(state, &self.content.sources),
+            states: StatesKey::new(&state.document),
+            instances: InstancesKey::new(state, self.content.revision),
+        }
+    }
+
+    /// The near plane of a camera; `which`: 0 for that of the picture, 1 for that of frozen levels.
+    fn near(&mut self, state: &State, which: usize, camera: Camera) -> f64 {
+        let key = (camera, state.spheres_key());
+        match self.near[which] {
+            Some((known, near)) if known == key => near,
+            _ => {
+                let near = camera.near(&state.spheres());
+                self.near[which] = Some((key, near));
+                near
+            }
+        }
+    }
+
+    fn clip(&mut self, state: &State) -> Option<Clip> {
+        let key = (state.document.look.cut?, state.spheres_key());
+        match self.clip {
+            Some((known, clip)) if known == key => clip,
+            _ => {
+                let clip = content::clip(&state.document.look, &state.spheres());
+                self.clip = Some((key, clip));
+                clip
+            }
         }
     }
 
@@ -67,7 +93,10 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(3));
             return Ok(());
         }
-        self.patches = self.patches_in(state, &inputs.params, &inputs.instances);
+        if self.instances != Some(inputs.instances) {
+            self.set_instances(state, inputs.instances);
+        }
+        self.patches = self.patches_in(state, &inputs.params);
         if self.explorer.is_making()
             && explorable(&inputs.params)
             && self.cost_model.too_many(self.patches)
@@ -79,19 +108,13 @@ impl Stage {
         if self.drawn.is_some() && self.progressive.shows_draft() {
             self.keep_up();
         }
-        let before = self.drawn.as_ref();
-        if before.is_none_or(|d| d.instances != inputs.instances) {
-            self.nodes_of_cells(&inputs.instances);
+        if self.states != Some(inputs.states) {
+            self.set_states(state, inputs.states);
         }
-        let selected = state.document.neurons.iter().map(|n| n.selected);
-        let outlined = selected.map(|selected| if selected { OUTLINED } else { 0 });
-        let states = inputs.states.iter().zip(outlined);
-        self.progressive
-            .set_states(states.map(|(a, b)| a | b).collect());
         self.picks = None;
         self.resolver = None;
         self.counts = None;
-        let any = state.document.selected().next().is_some();
+        let any = !state.document.neurons.selected().is_empty();
         let outlines = Outlines {
             // Looking for outlines takes time.
             width: u32::from(any),
@@ -112,7 +135,9 @@ impl Stage {
         let mut params = inputs.params;
         let budget = self.explorer.budget();
         let explorer = match explorable(&params) {
-            true => self.explorer.exploration(&self.gpu, &self.content, budget),
+            true => self
+                .explorer
+                .exploration(&self.gpu, &self.content, self.instances, budget),
             false => None,
         };
         self.explored = explorer.is_some();
@@ -133,14 +158,33 @@ impl Stage {
             .draft(&self.gpu, &mut self.adaptive, &params)
     }
 
-    pub(super) fn nodes_of_cells(&mut self, instances: &[SceneInstance]) {
-        self.content.instances = instances.to_vec();
+    fn set_instances(&mut self, state: &State, key: InstancesKey) {
+        self.content.instances = content::instances(state, &self.content.sources);
         let (templates, _) = self.adaptive.take_scene().into_parts();
-        match Scene::new(templates, content::device_instances(instances)) {
+        let instances = content::device_instances(&self.content.instances);
+        match Scene::new(templates, instances) {
             Ok(scene) => self.adaptive.set_scene(scene),
             // Placements are finite by construction; if not, all is built anew.
-            Err(_) => self.colors = None,
+            Err(_) => (self.colors, self.checked) = (None, None),
         }
+        self.instances_are(key);
+    }
+
+    /// Notes what the instances of the content are.
+    pub(super) fn instances_are(&mut self, key: InstancesKey) {
+        self.shows = self.content.instances.iter().map(|s| !s.hidden).collect();
+        self.instances = Some(key);
+        self.rebuilds.instances += 1;
+    }
+
+    fn set_states(&mut self, state: &State, key: StatesKey) {
+        let mut states = content::states(&state.document);
+        for &neuron in state.document.neurons.selected() {
+            states[neuron] |= OUTLINED;
+        }
+        self.progressive.set_states(states);
+        self.states = Some(key);
+        self.rebuilds.states += 1;
     }
 
     /// Drafts become coarser where they take too long, and finer where there is time.

@@ -64,6 +64,7 @@ impl Stage {
         self.content.legend = restyled.legend;
         self.progressive.set_colors(self.content.table.clone());
         self.colors = Some(key);
+        self.rebuilds.colors += 1;
         self.drawn = None;
         self.tell(state);
     }
@@ -84,7 +85,7 @@ impl Stage {
             return false;
         };
         let value_inputs = ValueInputs {
-            shows: self.content.instances.iter().map(|s| !s.hidden).collect(),
+            shows: Arc::clone(&self.shows),
             range: facts.range,
             decay: state.document.look.decay,
         };

@@ -17,15 +17,16 @@ use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, Camera, DeviceError, Frame, Gpu, InstanceValues, Legend,
+    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Frame, Gpu, InstanceValues, Legend,
     ProgressiveRenderer, Scene, Tile, ViewParams,
 };
 
 use crate::io::frames::FrameReader;
-use crate::model::document::{Detail, Look};
-use crate::model::state::{Draft, State};
+use crate::model::document::{Cut, Detail, Look};
+use crate::model::revision::Revision;
+use crate::model::state::{Draft, Rebuilds, SpheresKey, State};
 use crate::scene::colors::{ColorInputs, color_scheme};
-use crate::scene::content::{SceneContent, SceneInstance};
+use crate::scene::content::{InstancesKey, SceneContent, StatesKey};
 use crate::scene::explorer::Explorer;
 use crate::scene::picks::Picks;
 use building::Built;
@@ -46,6 +47,18 @@ pub struct Stage {
     /// What is on the device.
     content: SceneContent,
     colors: Option<ColorInputs>,
+    /// What the templates on the device were compared with last, and fitted.
+    checked: Option<Checked>,
+    /// What the instances on the device are of.
+    instances: Option<InstancesKey>,
+    /// By instance: whether it shows.
+    shows: Arc<[bool]>,
+    /// What the states on the device are of.
+    states: Option<StatesKey>,
+    /// Near planes of the picture's camera and of that of frozen levels.
+    near: [Option<((Camera, SpheresKey), f64)>; 2],
+    clip: Option<((Cut, SpheresKey), Option<Clip>)>,
+    rebuilds: Rebuilds,
     /// Of what was drawn last.
     legend: Legend,
     building: Option<Receiver<Built>>,
@@ -77,13 +90,16 @@ pub struct Stage {
     timed: bool,
 }
 
+/// What templates on the device depend on: neurons, meshes, colors.
+type Checked = (Revision, Revision, ColorInputs);
+
 /// What a picture depends on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct PictureInputs {
     params: ViewParams,
     detail: Detail,
-    states: Vec<u32>,
-    instances: Vec<SceneInstance>,
+    states: StatesKey,
+    instances: InstancesKey,
 }
 
 /// How far the full picture is.
@@ -123,6 +139,13 @@ impl Stage {
             texture: None,
             content,
             colors: None,
+            checked: None,
+            instances: None,
+            shows: Arc::default(),
+            states: None,
+            near: [None; 2],
+            clip: None,
+            rebuilds: Rebuilds::default(),
             legend,
             building: None,
             reader: None,
@@ -213,7 +236,7 @@ impl Stage {
         ctx: &egui::Context,
     ) -> Result<Option<egui::TextureId>, DeviceError> {
         self.take_built(state, ctx)?;
-        self.want_scene(state, ctx)?;
+        self.update_templates(state, ctx)?;
         self.explorer.update(&self.gpu, &self.content, ctx);
         if size.contains(&0) {
             return Ok(None);
@@ -234,6 +257,7 @@ impl Stage {
         state.counters.bytes = self.bytes();
         let [triangles, patches, all] = self.counts.unwrap_or_default();
         (state.counters.triangles, state.counters.patches) = (triangles, [patches, all]);
+        state.counters.rebuilds = self.rebuilds(state);
         state.counters.frames_ms = self.frames.iter().copied().collect();
         state.counters.draft = match self.explored {
             true => Draft::Budget(self.explorer.budget()),
@@ -242,6 +266,16 @@ impl Stage {
         state.counters.lowered = self.lowered();
         self.gpu.check()?;
         Ok(self.texture_id())
+    }
+
+    fn rebuilds(&self, state: &State) -> Rebuilds {
+        let [placements, spheres] = state.derivations();
+        Rebuilds {
+            placements,
+            spheres,
+            proxies: self.explorer.builds(),
+            ..self.rebuilds
+        }
     }
 
     /// Bytes on the device: of cells, and of pictures.

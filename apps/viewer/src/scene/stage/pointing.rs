@@ -8,6 +8,7 @@ use neurotess::render::{
 };
 
 use super::Stage;
+use crate::model::revision::Revision;
 use crate::model::state::{Picked, State};
 use crate::scene::content;
 use crate::scene::picks::{CursorHit, Picks, seen};
@@ -40,7 +41,8 @@ impl Resolver {
 pub(super) struct MaskKey {
     hovered: Option<Picked>,
     picked: Option<Picked>,
-    selected: Vec<usize>,
+    members: Revision,
+    selection: Revision,
     params: ViewParams,
 }
 
@@ -84,10 +86,12 @@ impl Stage {
         let (Some(picks), Some(drawn)) = (&self.picks, &self.drawn) else {
             return;
         };
+        let revisions = state.document.neurons.revisions();
         let key = MaskKey {
             hovered: state.hovered,
             picked: state.picked,
-            selected: state.document.selected().collect(),
+            members: revisions.members,
+            selection: revisions.selection,
             params: drawn.params,
         };
         if self.mask.as_ref() == Some(&key) {

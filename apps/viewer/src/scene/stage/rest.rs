@@ -95,14 +95,18 @@ impl Stage {
         let budget = self.cost_model.budget;
         let adaptive: &mut dyn VertexSource = match self.rest_mode {
             RestMode::Refined | RestMode::Coarser => &mut self.adaptive,
-            RestMode::Explored => match self.explorer.exploration(&self.gpu, &self.content, budget)
-            {
-                Some(adaptive) => adaptive,
-                None => {
-                    self.phase = RestPhase::Waits;
-                    return Ok(());
+            RestMode::Explored => {
+                match self
+                    .explorer
+                    .exploration(&self.gpu, &self.content, self.instances, budget)
+                {
+                    Some(adaptive) => adaptive,
+                    None => {
+                        self.phase = RestPhase::Waits;
+                        return Ok(());
+                    }
                 }
-            },
+            }
         };
         if asks {
             self.progressive.identify(&self.gpu, adaptive, &params)?;
@@ -141,7 +145,10 @@ impl Stage {
         self.learn();
         self.phase = RestPhase::Done;
         let budget = self.cost_model.budget;
-        let Some(adaptive) = self.explorer.exploration(&self.gpu, &self.content, budget) else {
+        let Some(adaptive) =
+            self.explorer
+                .exploration(&self.gpu, &self.content, self.instances, budget)
+        else {
             return Ok(());
         };
         let stats = adaptive.stats(&self.gpu)?;

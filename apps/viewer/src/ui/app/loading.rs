@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Viewer;
 use crate::io::find::{Found, OpenRequest};
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::document::{Neuron, SourceId};
 use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::session::{self, Session};
@@ -111,7 +111,7 @@ impl Viewer {
             self.state.problem(file.display().to_string(), why);
         }
         if let [.., report] = &found.reports[..] {
-            self.state.run(Command::SetReport(Some(report.clone())));
+            self.state.run(Edit::SetReport(Some(report.clone())));
             self.state.status = format!("{} is shown", report.display());
             for other in &found.reports[..found.reports.len() - 1] {
                 let why = "one report shows at a time: open it alone";

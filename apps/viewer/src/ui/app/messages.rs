@@ -12,9 +12,7 @@ impl Viewer {
             Message::Reloaded(id, source) => match *source {
                 Ok(source) => {
                     self.state.status = format!("{} was read again", source.name);
-                    if let Some(there) = self.state.sources.get_mut(id) {
-                        *there = source;
-                    }
+                    self.state.sources.replace(id, source);
                     self.watch();
                 }
                 Err(why) => {
@@ -28,25 +26,19 @@ impl Viewer {
                 }
             },
             Message::Soma(id, edit, generated) => {
-                if let Some(source) = self.state.sources.get_mut(id)
-                    && !generated.mesh.patches.is_empty()
-                {
-                    source.set_generated(*generated);
-                    source.soma = edit;
-                } else if let Some(source) = self.state.sources.get_mut(id) {
-                    source.soma = edit;
-                    let name = source.name.clone();
-                    self.state.problem(
-                        name,
-                        "this soma leaves nothing to draw: choose another method",
-                    );
+                let draws = !generated.mesh.patches.is_empty();
+                let name = self.state.sources.get(id).map(|s| s.name.clone());
+                self.state
+                    .sources
+                    .set_soma(id, edit, draws.then_some(*generated));
+                if !draws {
+                    let why = "this soma leaves nothing to draw: choose another method";
+                    self.state.problem(name.unwrap_or_default(), why);
                 }
             }
             Message::Files(files) => {
                 for (id, stale) in files {
-                    if let Some(source) = self.state.sources.get_mut(id) {
-                        source.stale = stale;
-                    }
+                    self.state.sources.set_stale(id, stale);
                 }
             }
             Message::Saved(Ok(said)) => self.state.status = said,
@@ -63,14 +55,24 @@ impl Viewer {
             return;
         }
         let document = &self.state.document;
-        let mut used = document.neurons.iter().map(|n| n.source);
-        let wanted = used.find_map(|id| {
+        let members = document.neurons.revisions().members;
+        let key = [
+            members,
+            document.somata.revision(),
+            self.state.sources.geometry(),
+        ];
+        if self.somata_checked == Some(key) {
+            return;
+        }
+        let mut used = document.neurons.sources().iter();
+        let due = used.find_map(|&id| {
             let source = self.state.sources.get(id)?;
             let edit = document.soma(id);
             (source.soma != edit).then(|| (id, source.morphology.clone(), edit))
         });
-        if let Some((id, morphology, edit)) = wanted {
-            self.worker.soma(id, morphology, edit);
+        match due {
+            Some((id, morphology, edit)) => self.worker.soma(id, morphology, edit),
+            None => self.somata_checked = Some(key),
         }
     }
 }

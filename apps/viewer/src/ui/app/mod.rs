@@ -14,6 +14,7 @@ use neurotess::render::DeviceError;
 use crate::io::tasks::Worker;
 use crate::model::command::{Command, listed};
 use crate::model::document::SomaEdit;
+use crate::model::revision::Revision;
 use crate::model::settings::Settings;
 use crate::model::state::{Effect, State};
 use crate::scene::stage::Stage;
@@ -47,6 +48,8 @@ pub struct Viewer {
     ticked: Instant,
     /// Where the session is saved when the program must end.
     rescue: PathBuf,
+    /// Neurons, wishes for somata and meshes that were compared last, and fitted.
+    somata_checked: Option<[Revision; 3]>,
     hears: Option<Hears>,
 }
 
@@ -84,6 +87,7 @@ impl Viewer {
             soma: SomaEdit::default(),
             ticked: Instant::now(),
             rescue: crate::model::settings::folder().unwrap_or_default(),
+            somata_checked: None,
             hears: None,
         })
     }
@@ -217,7 +221,7 @@ impl Viewer {
             }
             Effect::Go(view) => self.motion.fly(&mut self.state, view),
             Effect::Quit => self.quits = true,
-            Effect::Save(command) => self.save(command),
+            Effect::Save(request) => self.save(request),
         }
     }
 

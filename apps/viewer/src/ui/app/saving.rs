@@ -5,10 +5,9 @@ use std::path::Path;
 use super::Viewer;
 use crate::io::save::{self, MeshPlan, video};
 use crate::io::tasks::Job;
-use crate::model::command::Command;
 use crate::model::document::Neuron;
 use crate::model::film::{FilmFrame, film_frames};
-use crate::model::save::FilmOptions;
+use crate::model::save::{FilmOptions, SaveRequest};
 use crate::model::session::{self, Session};
 use crate::model::settings;
 use crate::scene::content;
@@ -28,8 +27,8 @@ impl Viewer {
         }
     }
 
-    pub(super) fn save(&mut self, command: Command) {
-        if let Command::SaveSession(path) = &command {
+    pub(super) fn save(&mut self, request: SaveRequest) {
+        if let SaveRequest::Session(path) = &request {
             // It is small, and written at once, whatever else is being written.
             return self.save_session(path);
         }
@@ -38,8 +37,9 @@ impl Viewer {
                 .problem("save", "wait until the last one is written, or stop it");
             return;
         }
-        match command {
-            Command::SaveMeshes(options) => {
+        match request {
+            SaveRequest::Session(path) => self.save_session(&path),
+            SaveRequest::Meshes(options) => {
                 let plans = self.mesh_plans(options.all);
                 let (view, detail) = (self.state.view, self.state.document.detail);
                 let height = self.stage.height();
@@ -48,7 +48,7 @@ impl Viewer {
                     save::meshes(&plans, &options, &view, &detail, height, job)
                 });
             }
-            Command::SavePicture(options) => {
+            SaveRequest::Picture(options) => {
                 self.state.settings.picture_size = options.size;
                 let still_scene = self.still_scene();
                 let film_frame = FilmFrame {
@@ -62,10 +62,9 @@ impl Viewer {
                         Ok(format!("Saved {}", file.unwrap_or_default()))
                     });
             }
-            Command::SaveFilm(film) => {
+            SaveRequest::Film(film) => {
                 self.save_film(film);
             }
-            _ => {}
         }
     }
 
@@ -116,9 +115,10 @@ impl Viewer {
 
     fn mesh_plans(&self, all: bool) -> Vec<MeshPlan> {
         let state = &self.state;
-        let neurons = state.document.neurons.iter().zip(state.placements());
+        let placements = state.placements();
+        let neurons = state.document.neurons.iter().zip(placements.iter());
         let inputs = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
-        let plan = |(neuron, placement): (&Neuron, _)| {
+        let plan = |(neuron, &placement): (&Neuron, &_)| {
             Some(MeshPlan {
                 name: neuron.name.clone(),
                 generated: state.sources.get(neuron.source)?.generated.clone(),
@@ -135,7 +135,7 @@ impl Viewer {
             content: self.stage.content().clone(),
             look: self.state.document.look.clone(),
             states: content::states(&self.state.document),
-            spheres: self.state.spheres(|_| true),
+            spheres: self.state.spheres(),
         }
     }
 

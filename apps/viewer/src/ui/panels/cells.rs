@@ -8,15 +8,15 @@ use neurotess::morphology::{Attachment, Morphology, SectionId};
 
 use super::measured;
 use super::tip::Tip;
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::sources::{SectionFacts, Stale};
 use crate::model::state::{CellPart, Picked, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     ui.add_space(4.0);
     let neurons = state.document.neurons.len();
-    let hidden = state.document.neurons.iter().filter(|n| n.hidden).count();
-    let rows = rows(state);
+    let hidden = state.document.neurons.hidden();
+    let rows = state.found();
     ui.horizontal(|ui| {
         let title = match state.search.is_empty() {
             true => count(neurons, "neuron"),
@@ -33,7 +33,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                 .tip("Show all")
                 .clicked()
         {
-            state.requests.push(Command::ShowAll);
+            state.requests.push(Edit::ShowAll.into());
         }
     });
     if neurons > FEW || !state.search.is_empty() {
@@ -70,16 +70,6 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
 
 /// With so few neurons nobody needs to search.
 const FEW: usize = 8;
-
-/// Neurons whose names have what is searched.
-fn rows(state: &State) -> Vec<usize> {
-    let wanted = state.search.to_lowercase();
-    let neurons = state.document.neurons.iter().enumerate();
-    neurons
-        .filter(|(_, n)| wanted.is_empty() || n.name.to_lowercase().contains(&wanted))
-        .map(|(i, _)| i)
-        .collect()
-}
 
 fn list(
     state: &mut State,
@@ -126,7 +116,7 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
         let mut shown = !hidden;
         let says = if hidden { "Show" } else { "Hide" };
         if ui.checkbox(&mut shown, "").tip(says).changed() {
-            state.requests.push(Command::SetHidden(index, !shown));
+            state.requests.push(Edit::SetHidden(index, !shown).into());
         }
         // From the right: what is said of it, then its name in what is left.
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -166,12 +156,12 @@ fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &m
         *hovered = Some(soma);
     }
     if response.double_clicked() {
-        state.requests.push(Command::Select(vec![index], false));
+        state.requests.push(Edit::Select(vec![index], false).into());
         state.requests.push(Command::Focus);
     } else if response.clicked() {
         let modifiers = response.ctx.input(|i| i.modifiers);
         let adds = modifiers.shift || modifiers.command;
-        state.requests.push(Command::Select(vec![index], adds));
+        state.requests.push(Edit::Select(vec![index], adds).into());
         state.picked = Some(soma);
     }
     response.context_menu(|ui| menu(state, index, ui));
@@ -184,11 +174,15 @@ fn menu(state: &mut State, index: usize, ui: &mut egui::Ui) {
             ui.close();
         }
     };
-    let select = Command::Select(vec![index], false);
+    let select = Command::from(Edit::Select(vec![index], false));
     choice(ui, "Focus", vec![select.clone(), Command::Focus]);
-    choice(ui, "Isolate", vec![select.clone(), Command::Isolate]);
-    choice(ui, "Hide", vec![Command::SetHidden(index, true)]);
-    choice(ui, "Remove from the list", vec![select, Command::Remove]);
+    choice(ui, "Isolate", vec![select.clone(), Edit::Isolate.into()]);
+    choice(ui, "Hide", vec![Edit::SetHidden(index, true).into()]);
+    choice(
+        ui,
+        "Remove from the list",
+        vec![select, Edit::Remove.into()],
+    );
 }
 
 fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &mut egui::Ui) {
@@ -263,7 +257,7 @@ impl Leaf<'_> {
             self.state.picked = Some(picked);
             self.state
                 .requests
-                .push(Command::Select(vec![self.neuron], false));
+                .push(Edit::Select(vec![self.neuron], false).into());
         }
     }
 }

@@ -8,7 +8,7 @@ use eframe::egui::{self, Color32, Pos2, Sense, Stroke, Ui, vec2};
 use super::number::slider;
 use super::tip::Tip;
 use super::{figures, grouped, heading};
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::document::{Detail, LodKind};
 use crate::model::state::{Draft, Lowered, State};
 use crate::ui::file_panel::size;
@@ -43,7 +43,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         if ui.checkbox(&mut wires, "Wireframe").changed() {
             let mut look = state.document.look.clone();
             look.wireframe = wires;
-            state.requests.push(Command::SetLook(Box::new(look)));
+            state.requests.push(Edit::SetLook(Box::new(look)).into());
         }
     });
     let mut frozen = state.frozen.is_some();
@@ -52,7 +52,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         state.requests.push(Command::SetFrozen(frozen));
     }
     if detail != before {
-        state.requests.push(Command::SetDetail(detail));
+        state.requests.push(Edit::SetDetail(detail).into());
     } else if ui.input(|i| i.pointer.any_released()) {
         state.history.end_joining();
     }

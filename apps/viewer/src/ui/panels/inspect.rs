@@ -6,13 +6,12 @@ use neurotess::morphology::{Measures, NeuriteKind};
 use super::cells::{count, kind_name};
 use super::tip::Tip;
 use super::{figures, grouped, heading, measured};
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::sources::Source;
 use crate::model::state::{CellPart, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
-    let selected: Vec<usize> = state.document.selected().collect();
-    match &selected[..] {
+    match *state.document.neurons.selected() {
         [] => {
             ui.weak(
                 "Nothing is selected. Click a neuron in the picture or in the list; Shift + click selects several.",
@@ -21,25 +20,22 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
             all(state, ui);
         }
         [one] => {
-            let name = state.document.neurons[*one].name.clone();
+            let name = state.document.neurons[one].name.clone();
             ui.label(RichText::new(name).size(16.0).strong());
-            if let Some(source) = state.source_of(*one) {
+            if let Some(source) = state.source_of(one) {
                 ui.weak(source.file.display().to_string());
             }
             buttons(state, ui);
-            part(state, *one, ui);
-            if let Some(source) = state.source_of(*one) {
+            part(state, one, ui);
+            if let Some(source) = state.source_of(one) {
                 cell(source, ui);
             }
         }
-        many => {
-            ui.label(
-                RichText::new(count(many.len(), "neuron"))
-                    .size(16.0)
-                    .strong(),
-            );
+        [..] => {
+            let many = state.document.neurons.selected().len();
+            ui.label(RichText::new(count(many, "neuron")).size(16.0).strong());
             buttons(state, ui);
-            sums(state, many, ui);
+            sums(state, ui);
         }
     }
 }
@@ -52,11 +48,11 @@ fn buttons(state: &mut State, ui: &mut egui::Ui) {
                 Command::Focus,
                 "Zoom to the selection (F or double click)",
             ),
-            ("Hide", Command::Hide, "Hide the selection (H)"),
-            ("Isolate", Command::Isolate, "Hide everything else (I)"),
+            ("Hide", Edit::Hide.into(), "Hide the selection (H)"),
+            ("Isolate", Edit::Isolate.into(), "Hide everything else (I)"),
             (
                 "Show all",
-                Command::ShowAll,
+                Edit::ShowAll.into(),
                 "Show all that is hidden (Ctrl H)",
             ),
         ] {
@@ -237,46 +233,36 @@ fn by_type(m: &Measures, ui: &mut egui::Ui) {
     }
 }
 
-fn sums(state: &State, selected: &[usize], ui: &mut egui::Ui) {
-    let measures = || {
-        selected
-            .iter()
-            .filter_map(|&i| Some(&state.source_of(i)?.measures))
-    };
-    let sum = |of: fn(&Measures) -> f64| measures().map(|m| of(m)).sum::<f64>();
-    let count =
-        |of: fn(&Measures) -> usize| grouped(measures().map(|m| of(m)).sum::<usize>() as u64);
+/// Of what is selected, or of all.
+fn sums(state: &State, ui: &mut egui::Ui) {
+    let sums = state.totals();
     heading(ui, "Totals");
     figures(
         ui,
         "sums",
         &[
-            ("length", measured(sum(|m| m.length), "µm")),
-            ("area", measured(sum(|m| m.area), "µm²")),
-            ("volume", measured(sum(|m| m.volume), "µm³")),
-            ("neurites", count(|m| m.n_neurites)),
-            ("sections", count(|m| m.n_sections)),
-            ("ends", count(|m| m.n_ends)),
-            ("points", count(|m| m.n_points)),
+            ("length", measured(sums.length, "µm")),
+            ("area", measured(sums.area, "µm²")),
+            ("volume", measured(sums.volume, "µm³")),
+            ("neurites", grouped(sums.neurites as u64)),
+            ("sections", grouped(sums.sections as u64)),
+            ("ends", grouped(sums.ends as u64)),
+            ("points", grouped(sums.points as u64)),
         ],
     );
 }
 
 fn all(state: &State, ui: &mut egui::Ui) {
-    let every: Vec<usize> = (0..state.document.neurons.len()).collect();
-    if every.len() == 1 {
+    let neurons = state.document.neurons.len();
+    if neurons == 1 {
         if let Some(source) = state.source_of(0) {
             cell(source, ui);
         }
     } else {
-        sums(state, &every, ui);
+        sums(state, ui);
     }
-    let kinds: std::collections::BTreeSet<i32> = state
-        .sources
-        .iter()
-        .flat_map(|(_, s)| s.morphology.sections.iter().map(|s| s.kind.0))
-        .collect();
-    if kinds.len() > 1 && every.len() > 1 {
+    let kinds = state.kinds();
+    if kinds.len() > 1 && neurons > 1 {
         let names: Vec<String> = kinds
             .iter()
             .map(|&k| NeuriteKind(k).name().replace('_', " "))

@@ -6,7 +6,7 @@ use neurotess::render::{ColorMap, Legend, Palette};
 use super::heading;
 use super::number::{field, slider};
 use super::tip::Tip;
-use crate::model::command::{Ask, Command};
+use crate::model::command::{Ask, Command, Edit};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
 
@@ -49,12 +49,12 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     if chosen_now && state.document.report.is_none() {
         look.color_by = before;
         state.requests.push(match state.circuits.reports().pop() {
-            Some((_, file)) => Command::SetReport(Some(file)),
+            Some((_, file)) => Edit::SetReport(Some(file)).into(),
             None => Command::AskFiles(Ask::Report),
         });
     }
     if look != state.document.look {
-        state.requests.push(Command::SetLook(Box::new(look)));
+        state.requests.push(Edit::SetLook(Box::new(look)).into());
     } else if released {
         state.history.end_joining();
     }
@@ -170,7 +170,7 @@ fn report(state: &mut State, ui: &mut Ui) {
                 let chosen = shown.as_ref() == Some(&file);
                 let line = ui.selectable_label(chosen, name);
                 if line.tip(file.display().to_string()).clicked() {
-                    state.requests.push(Command::SetReport(Some(file)));
+                    state.requests.push(Edit::SetReport(Some(file)).into());
                 }
             }
             if ui.selectable_label(false, "another file…").clicked() {

@@ -54,14 +54,14 @@ pub(super) fn rings(state: &State, rect: Rect, painter: &Painter) {
         return;
     };
     let (placements, neurons) = (state.placements(), &state.document.neurons);
-    for (neuron, placement) in neurons.iter().zip(placements) {
+    for (neuron, placement) in neurons.iter().zip(placements.iter()) {
         if neuron.source != id || neuron.hidden {
             continue;
         }
         let projection = Projection {
             camera: state.view.camera(),
             rect,
-            placement: &placement,
+            placement,
             origin: source.generated.mesh.origin,
         };
         let rings = source.generated.rings.iter();

@@ -19,7 +19,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                     let enabled = match item.command {
                         Command::Undo => undo.is_some(),
                         Command::Redo => redo.is_some(),
-                        Command::Reload => state.stale() > 0,
+                        Command::Reload => state.sources.stale() > 0,
                         _ => true,
                     };
                     let mut button = Button::new(title);

@@ -5,7 +5,7 @@ use eframe::egui::{Button, Color32, Label, RichText, Sense, Ui};
 use super::cells;
 use super::number::slider;
 use super::tip::Tip;
-use crate::model::command::Command;
+use crate::model::command::Edit;
 use crate::model::document::SourceId;
 use crate::model::sources::Source;
 use crate::model::state::{CellPart, Picked, State};
@@ -39,7 +39,7 @@ pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
             .tip("All first rings at their automatic positions")
             .clicked()
         {
-            state.requests.push(Command::ResetRings(id));
+            state.requests.push(Edit::ResetRings(id).into());
         }
     });
     ui.weak("0: on the soma's sphere, 1: at the first traced point");
@@ -112,7 +112,7 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
         if value != before {
             state
                 .requests
-                .push(Command::SetRing(id, row.neurite, Some(value)));
+                .push(Edit::SetRing(id, row.neurite, Some(value)).into());
         } else if ended {
             state.history.end_joining();
         }
@@ -122,7 +122,9 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
             .tip("Automatic position")
             .clicked()
         {
-            state.requests.push(Command::SetRing(id, row.neurite, None));
+            state
+                .requests
+                .push(Edit::SetRing(id, row.neurite, None).into());
         }
     });
     if touched {

@@ -55,8 +55,8 @@ const FORMATS: [Format; 6] = [
 
 fn meshes(state: &mut State, ui: &mut Ui) {
     heading(ui, "Meshes");
-    let shown = state.document.neurons.iter().filter(|n| !n.hidden).count();
-    let selected = state.document.selected().count();
+    let shown = state.document.neurons.len() - state.document.neurons.hidden();
+    let selected = state.document.neurons.selected().len();
     let (form, folder) = (&mut state.save, &state.settings.folder);
     ui.horizontal_wrapped(|ui| {
         ui.radio_value(&mut form.mesh.all, true, format!("visible ({shown})"));

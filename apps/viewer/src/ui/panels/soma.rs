@@ -5,24 +5,22 @@ use eframe::egui::{Button, Ui};
 use super::number::slider;
 use super::tip::Tip;
 use super::{figures, heading, measured, rings};
-use crate::model::command::Command;
+use crate::model::command::Edit;
 use crate::model::document::{Method, SomaEdit, SourceId};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
-    let mut sources = state.document.selected_sources();
-    let every = state.document.neurons.len();
-    if sources.is_empty() {
-        sources = state.document.neurons.iter().map(|n| n.source).collect();
-        sources.sort_unstable();
-        sources.dedup();
-        if every > 1 {
-            ui.weak("No neuron is selected: changes apply to all somata.");
-        }
+    let neurons = &state.document.neurons;
+    let sources = match neurons.selected_sources() {
+        [] => neurons.sources(),
+        selected => selected,
+    };
+    if neurons.selected().is_empty() && neurons.len() > 1 {
+        ui.weak("No neuron is selected: changes apply to all somata.");
     } else if sources.len() > 1 {
         ui.weak(format!("Changes apply to {} somata.", sources.len()));
     }
-    let Some(&first) = sources.first() else {
+    let (count, Some(&first)) = (sources.len(), sources.first()) else {
         return;
     };
     let mut edit = state.document.soma(first);
@@ -76,14 +74,17 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         edit = usual;
     }
     if edit != before {
-        state
-            .requests
-            .push(Command::SetSoma(sources.clone(), edit.clone()));
+        let sources = match state.document.neurons.selected_sources() {
+            [] => state.document.neurons.sources(),
+            selected => selected,
+        };
+        let command = Edit::SetSoma(sources.to_vec(), edit.clone()).into();
+        state.requests.push(command);
     } else if dropped {
         state.history.end_joining();
     }
     if edit.places_rings() {
-        match sources.len() {
+        match count {
             1 => rings::show(state, first, ui),
             _ => {
                 heading(ui, "First rings");

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align, Layout, ProgressBar, RichText, Ui};
 use super::cells::count;
 use super::grouped;
 use crate::io::tasks::Job;
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::state::{Lowered, State};
 
 pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f32>, ui: &mut Ui) {
@@ -23,11 +23,11 @@ pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f
             }
         }
         problems(state, ui);
-        let hidden = state.document.neurons.iter().filter(|n| n.hidden).count();
+        let hidden = state.document.neurons.hidden();
         if hidden > 0 {
             let link = ui.link(format!("{hidden} hidden"));
             if link.on_hover_text("Show all").clicked() {
-                state.requests.push(Command::ShowAll);
+                state.requests.push(Edit::ShowAll.into());
             }
         }
         lowered(state, ui);
@@ -39,7 +39,7 @@ pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f
 }
 
 fn problems(state: &mut State, ui: &mut Ui) {
-    let stale = state.stale();
+    let stale = state.sources.stale();
     if stale > 0 {
         let text = format!("{} changed or gone", count(stale, "file"));
         let response = ui.link(RichText::new(text).color(ui.visuals().warn_fg_color));
@@ -108,7 +108,7 @@ fn right(state: &State, drawing: Option<f32>, ui: &mut Ui) {
     if let Some(share) = drawing {
         ui.weak(format!("drawing {:.0} %", 100.0 * share));
     }
-    let selected = state.document.selected().count();
+    let selected = state.document.neurons.selected().len();
     if selected > 0 {
         ui.label(format!("{selected} selected"));
     }

@@ -3,7 +3,7 @@
 use eframe::egui::{Button, Rect, Response, RichText, Role, Shape, Stroke, Ui, WidgetInfo, vec2};
 
 use super::number::{field, slider};
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::playback::{Facts, Pace, digits};
 use crate::model::state::State;
 
@@ -21,7 +21,7 @@ pub(super) fn show(state: &mut State, facts: &Facts, ui: &mut Ui) {
             .on_hover_text("Close the report")
             .clicked()
         {
-            state.requests.push(Command::SetReport(None));
+            state.requests.push(Edit::SetReport(None).into());
         }
     });
     ui.add_space(2.0);

@@ -8,7 +8,7 @@ use glam::DVec3;
 use neurotess::render::{Legend, is_dark, nice_length};
 
 use super::{Screen, marks, plate, tip};
-use crate::model::command::Command;
+use crate::model::command::{Command, Edit};
 use crate::model::state::{Picked, State};
 
 /// Radians per point that the mouse is dragged.
@@ -199,17 +199,17 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
                 .neurons
                 .get(picked.neuron)
                 .is_some_and(|n| n.selected);
-            let only = state.document.selected().count() == 1;
+            let only = state.document.neurons.selected().len() == 1;
             // Another piece of the same neuron is no other selection.
             if adds || !already || !only {
                 state
                     .requests
-                    .push(Command::Select(vec![picked.neuron], adds));
+                    .push(Edit::Select(vec![picked.neuron], adds).into());
             }
         }
         None if !adds => {
             state.picked = None;
-            state.requests.push(Command::SelectNone);
+            state.requests.push(Edit::SelectNone.into());
         }
         None => {}
     }
@@ -218,9 +218,9 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
 fn menu(state: &mut State, ui: &mut Ui) {
     for (title, command) in [
         ("Zoom to the selection", Command::Focus),
-        ("Hide selected", Command::Hide),
-        ("Isolate selected", Command::Isolate),
-        ("Show all", Command::ShowAll),
+        ("Hide selected", Edit::Hide.into()),
+        ("Isolate selected", Edit::Isolate.into()),
+        ("Show all", Edit::ShowAll.into()),
         ("Everything, from the front", Command::Home),
         ("Keep this view for a film", Command::AddKeyView),
     ] {
