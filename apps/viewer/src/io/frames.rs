@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use eframe::egui;
 use neurotess::coloring::Recording;
 use neurotess::render::InstanceValues;
+
+use crate::io::task::caught;
 
 /// Pictures that are read ahead.
 const AHEAD: u64 = 8;
@@ -60,11 +61,11 @@ impl Shared {
 }
 
 impl FrameReader {
-    /// `ctx` is told when something is there.
-    pub(crate) fn new(recording: Arc<Recording>, ctx: &egui::Context) -> Self {
+    /// `wake` is called when the frame that shows is there.
+    pub(crate) fn new(recording: Arc<Recording>, wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
-        let (own, of, ctx) = (Arc::clone(&shared), Arc::clone(&recording), ctx.clone());
-        std::thread::spawn(move || read(&own, &of, &ctx));
+        let (own, of) = (Arc::clone(&shared), Arc::clone(&recording));
+        std::thread::spawn(move || read(&own, &of, &wake));
         Self { shared, recording }
     }
 
@@ -136,7 +137,7 @@ impl Inner {
     }
 }
 
-fn read(shared: &Shared, recording: &Recording, ctx: &egui::Context) {
+fn read(shared: &Shared, recording: &Recording, wake: &impl Fn()) {
     let frames = recording.time.frames;
     loop {
         let mut inner = shared.lock();
@@ -154,11 +155,15 @@ fn read(shared: &Shared, recording: &Recording, ctx: &egui::Context) {
         };
         drop(inner);
         let shows = |place: usize| inputs.shows.get(place).copied().unwrap_or(true);
-        let values = recording.at(recording.time.time_of(frame), inputs.decay, &shows);
+        let time = recording.time.time_of(frame);
+        let values = caught(|| {
+            let values = recording.at(time, inputs.decay, &shows);
+            values.map_err(|e| e.to_string())
+        });
         let (values, problem) = match values {
             Ok(values) => (values.values(inputs.range), None),
             // Gray instead of the values of another time; it is not read again and again.
-            Err(e) => (none(inputs.shows.len()), Some(e.to_string())),
+            Err(why) => (none(inputs.shows.len()), Some(why)),
         };
         let mut inner = shared.lock();
         inner.problem = problem.or(inner.problem.take());
@@ -172,7 +177,7 @@ fn read(shared: &Shared, recording: &Recording, ctx: &egui::Context) {
         let due = inner.frame == frame;
         drop(inner);
         if due {
-            ctx.request_repaint();
+            wake();
         }
     }
 }

@@ -5,4 +5,5 @@ pub(crate) mod frames;
 pub(crate) mod load;
 pub(crate) mod paths;
 pub(crate) mod save;
-pub(crate) mod tasks;
+pub(crate) mod task;
+pub(crate) mod worker;

@@ -547,6 +547,17 @@ impl State {
         self.sources.get(neuron.source)
     }
 
+    /// Tells how saving ended.
+    pub(crate) fn note_saved(&mut self, result: Result<String, String>) {
+        match result {
+            Ok(saved) => self.status = saved,
+            Err(why) => {
+                self.status = format!("Not saved: {why}");
+                self.problem("save", why);
+            }
+        }
+    }
+
     /// Notes something that went wrong.
     pub fn problem(&mut self, what: impl Into<String>, why: impl Into<String>) {
         let problem = Problem {

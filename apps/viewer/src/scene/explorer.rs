@@ -2,7 +2,6 @@
 //! triangles whatever there is. It is made beside; until it is there, the other maker draws coarsely.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
 
 use eframe::egui;
 use neurotess::generate::Generated;
@@ -10,6 +9,7 @@ use neurotess::render::{
     DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy, ProxyPickResolver, ProxyPickTargets,
 };
 
+use crate::io::task::{Progress, Task};
 use crate::model::revision::Revision;
 use crate::scene::content::{self, InstancesKey, SceneContent};
 
@@ -20,7 +20,7 @@ const LEAST_BUDGET: u32 = 12_500;
 #[derive(Default)]
 pub(crate) struct Explorer {
     built: Option<BuiltScene>,
-    making: Option<(Revision, Receiver<ProxyResult>)>,
+    making: Option<(Revision, Task<ProxyResult>)>,
     /// What could not be sketched is not tried again.
     refused: Option<Revision>,
     budget: Option<u32>,
@@ -40,15 +40,19 @@ struct BuiltScene {
 
 impl Explorer {
     /// Takes what was made and begins what is not there yet.
-    pub(crate) fn update(&mut self, gpu: &Arc<Gpu>, content: &SceneContent, ctx: &egui::Context) {
-        if let Some((key, receiver)) = &self.making {
-            let Ok(built) = receiver.try_recv() else {
-                return;
-            };
+    pub(crate) fn update(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        content: &SceneContent,
+        ctx: &egui::Context,
+    ) -> Option<String> {
+        let mut problem = None;
+        if let Some((key, task)) = &self.making {
+            let built = task.take()?;
             let key = *key;
             self.making = None;
             match built {
-                Ok((exploration, names)) => {
+                Ok(Ok((exploration, names))) => {
                     self.built = Some(BuiltScene {
                         exploration,
                         names,
@@ -56,8 +60,9 @@ impl Explorer {
                         instances: None,
                     });
                 }
-                // Too large for the device: the other maker draws it.
-                Err(_) => self.refused = Some(key),
+                // Too large for the device: the adaptive source draws it.
+                Ok(Err(_)) => self.refused = Some(key),
+                Err(why) => (self.refused, problem) = (Some(key), Some(why)),
             }
         }
         let fits = |key: &Revision| *key == content.revision;
@@ -66,36 +71,33 @@ impl Explorer {
             || known.is_some_and(fits)
             || self.refused.as_ref().is_some_and(fits)
         {
-            return;
+            return problem;
         }
         self.built = None;
         self.begin(gpu, content, ctx);
+        problem
     }
 
     fn begin(&mut self, gpu: &Arc<Gpu>, content: &SceneContent, ctx: &egui::Context) {
-        let (sender, receiver) = channel();
-        self.making = Some((content.revision, receiver));
         self.builds += 1;
         let meshes = content.sources.iter().map(|s| Arc::clone(&s.generated));
         let meshes: Vec<Arc<Generated>> = meshes.collect();
         let coloring = Arc::clone(&content.coloring);
         let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
-        std::thread::spawn(move || {
+        let work = move |_: &Progress| {
             let cells = meshes.iter().zip(&coloring.color_keys);
             let proxies: Vec<Proxy> = cells
                 .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
                 .collect();
-            let built = Exploration::new(&gpu, 1).and_then(|mut adaptive| {
-                adaptive.add(&gpu, &proxies)?;
-                Ok((
-                    adaptive,
-                    proxies.iter().map(ProxyPickTargets::new).collect(),
-                ))
-            });
-            // Nobody waits for it if the window is closed.
-            let _ = sender.send(built);
-            ctx.request_repaint();
-        });
+            Ok(Exploration::new(&gpu, 1).and_then(|mut exploration| {
+                exploration.add(&gpu, &proxies)?;
+                let targets = proxies.iter().map(ProxyPickTargets::new);
+                Ok((exploration, targets.collect()))
+            }))
+        };
+        let progress = Progress::new("preparing drafts", "cells", 0);
+        let task = Task::start(progress, move || ctx.request_repaint(), work);
+        self.making = Some((content.revision, task));
     }
 
     /// The maker of a sketch of just this, with all neurons where they stand.

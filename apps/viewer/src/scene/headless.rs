@@ -7,7 +7,7 @@ use neurotess::render::Gpu;
 
 use crate::io::find::{self, OpenRequest};
 use crate::io::load;
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 use crate::model::document::Neuron;
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
@@ -86,7 +86,7 @@ pub fn draw_session(
         &still_scene,
         &[film_frame],
         picture,
-        &Job::new("drawing", "tiles", 0),
+        &Progress::new("drawing", "tiles", 0),
     )?;
     Ok(drawn)
 }

@@ -13,7 +13,7 @@ use neurotess::render::{
 };
 
 use crate::io::save::existing;
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 use crate::model::document::Look;
 use crate::model::film::FilmFrame;
 use crate::model::playback::said;
@@ -80,7 +80,7 @@ pub(crate) fn pictures(
     still_scene: &StillScene,
     film_frames: &[FilmFrame],
     options: &PictureFile,
-    job: &Job,
+    progress: &Progress,
 ) -> Result<Vec<PathBuf>, String> {
     let stem = options
         .out
@@ -109,18 +109,20 @@ pub(crate) fn pictures(
     });
     if let Some(film_frame) = film_frames.first() {
         let tiles = picture.tiles(gpu, &film_frame.view.camera());
-        job.all.store(tiles * film_frames.len(), Ordering::Relaxed);
+        progress
+            .all
+            .store(tiles * film_frames.len(), Ordering::Relaxed);
     }
     let mut renderer = StillRenderer::new();
     renderer.set_states(&still_scene.states);
     renderer.set_watch(Watch {
-        tiles: Arc::clone(&job.done),
-        stopped: Arc::clone(&job.canceled),
+        tiles: Arc::clone(&progress.done),
+        stopped: Arc::clone(&progress.canceled),
     });
     let overlay = still_scene.overlay(film_frames, options)?;
     for (number, (film_frame, file)) in film_frames.iter().zip(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
-        if job.is_canceled() {
+        if progress.is_canceled() {
             return Err(stopped());
         }
         let camera = film_frame.view.camera();

@@ -14,7 +14,7 @@ use neurotess::refine::{
 use neurotess::render::{CullView, Placement};
 
 use super::existing;
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 use crate::model::document::Detail;
 use crate::model::save::{MeshLod, MeshOptions};
 use crate::model::view::View;
@@ -34,7 +34,7 @@ pub(crate) fn meshes(
     view: &View,
     detail: &Detail,
     height: f64,
-    job: &Job,
+    progress: &Progress,
 ) -> Result<String, String> {
     let files = mesh_files(plans, options)?;
     for file in &files {
@@ -47,12 +47,12 @@ pub(crate) fn meshes(
     }
     let (mut faces, mut written) = (0, 0);
     for (plan, file) in plans.iter().zip(&files) {
-        if job.is_canceled() {
+        if progress.is_canceled() {
             return Err(format!("stopped after {written} of {} meshes", files.len()));
         }
         faces += write_mesh(plan, options, view, detail, height, file)?;
         written += 1;
-        job.done.fetch_add(1, Ordering::Relaxed);
+        progress.done.fetch_add(1, Ordering::Relaxed);
     }
     let what = match &files[..] {
         [one] => one.display().to_string(),
@@ -224,7 +224,7 @@ mod tests {
                 &view,
                 &Detail::default(),
                 600.0,
-                &Job::new("", "", 1),
+                &Progress::new("", "", 1),
             )
         };
         for lod in [

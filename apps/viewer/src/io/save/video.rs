@@ -8,7 +8,7 @@ use std::time::Duration;
 use neurotess::output::Output;
 
 use super::existing;
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 
 /// Whether ffmpeg is installed.
 pub(crate) fn has_ffmpeg() -> bool {
@@ -21,7 +21,7 @@ pub(crate) fn has_ffmpeg() -> bool {
 }
 
 /// Makes a video of numbered pictures, 30 in a second. Stopped or failed, it leaves none.
-pub(crate) fn video(first: &Path, replace: bool, job: &Job) -> Result<PathBuf, String> {
+pub(crate) fn video(first: &Path, replace: bool, progress: &Progress) -> Result<PathBuf, String> {
     let text = first.display().to_string();
     let pattern = text.replace("_0000.png", "_%04d.png");
     let out = PathBuf::from(text.replace("_0000.png", ".mp4"));
@@ -38,15 +38,15 @@ pub(crate) fn video(first: &Path, replace: bool, job: &Job) -> Result<PathBuf, S
         .stderr(Stdio::piped())
         .spawn()
         .map_err(|e| kept(format!("ffmpeg cannot be started ({e}): install it")))?;
-    wait(&mut ffmpeg, job).map_err(kept)?;
+    wait(&mut ffmpeg, progress).map_err(kept)?;
     output.finish().map_err(|e| kept(e.to_string()))?;
     Ok(out)
 }
 
 /// Waits until it is done, or ends it.
-fn wait(ffmpeg: &mut Child, job: &Job) -> Result<(), String> {
+fn wait(ffmpeg: &mut Child, progress: &Progress) -> Result<(), String> {
     loop {
-        if job.is_canceled() {
+        if progress.is_canceled() {
             drop(ffmpeg.kill());
             drop(ffmpeg.wait());
             return Err("stopped before the video was whole".into());
@@ -75,16 +75,17 @@ mod tests {
     fn a_video_that_is_stopped_or_refused_leaves_nothing() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = folder.path().join("f_0000.png");
-        let job = Job::new("", "", 1);
-        job.canceled
+        let progress = Progress::new("", "", 1);
+        progress
+            .canceled
             .store(true, std::sync::atomic::Ordering::Relaxed);
         // Without ffmpeg it says so, with it that it was stopped.
-        let error = video(&first, false, &job).expect_err("stopped");
+        let error = video(&first, false, &progress).expect_err("stopped");
         assert!(error.contains("the pictures are there"), "{error}");
         let left = std::fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(left, 0);
         std::fs::write(folder.path().join("f.mp4"), "mine").expect("written");
-        let error = video(&first, false, &job).expect_err("is there");
+        let error = video(&first, false, &progress).expect_err("is there");
         assert!(error.contains("exists"), "{error}");
         let kept = std::fs::read(folder.path().join("f.mp4")).expect("there");
         assert_eq!(kept, b"mine");

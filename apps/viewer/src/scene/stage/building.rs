@@ -1,7 +1,6 @@
 //! What stands on the device, brought up to date: at once where that is quick, else beside.
 
 use std::sync::Arc;
-use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use eframe::egui;
@@ -9,7 +8,8 @@ use neurotess::coloring::Coloring;
 use neurotess::generate::Generated;
 use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 
-use super::Stage;
+use super::{Checked, Stage};
+use crate::io::task::{Progress, Task};
 use crate::model::state::State;
 use crate::scene::colors::{ColorInputs, ColorRequest};
 use crate::scene::content::{self, BuildError, InstancesKey, SceneContent};
@@ -37,15 +37,23 @@ impl Stage {
         state: &mut State,
         ctx: &egui::Context,
     ) -> Result<(), DeviceError> {
-        let Some(building) = &self.building else {
+        let Some((_, task)) = &self.building else {
             return Ok(());
         };
-        let Ok(built) = building.try_recv() else {
+        let Some(result) = task.take() else {
             ctx.request_repaint_after(Duration::from_millis(15));
             return Ok(());
         };
-        self.building = None;
-        let built = built?;
+        let of = self.building.take().map(|(of, _)| of);
+        let built = match result {
+            Ok(built) => built?,
+            Err(why) => {
+                // The same would fail again.
+                self.checked = of;
+                state.problem("preparing the picture", why);
+                return Ok(());
+            }
+        };
         self.progressive.set_colors(built.content.table.clone());
         self.rebuilds.colors += 1;
         match built.templates {
@@ -118,7 +126,7 @@ impl Stage {
             self.checked = Some(checked);
             return self.replace(sources, &changed, &request);
         }
-        self.build(state, sources, colors, ctx);
+        self.build(state, sources, checked, ctx);
         Ok(())
     }
 
@@ -158,17 +166,16 @@ impl Stage {
         &mut self,
         state: &State,
         sources: Vec<SceneTemplate>,
-        colors: ColorInputs,
+        of: Checked,
         ctx: &egui::Context,
     ) {
-        let (sender, receiver) = channel();
         let (gpu, ctx) = (Arc::clone(&self.gpu), ctx.clone());
         let request = ColorRequest::new(state, &sources);
         let instances = content::instances(state, &sources);
         let instances_key = InstancesKey::new(state, self.content.revision);
         let before = Before::of(&self.content);
-        self.building = Some(receiver);
-        std::thread::spawn(move || {
+        let colors = of.2.clone();
+        let work = move |_: &Progress| {
             let sources = request.cut(sources);
             let mut colored = request.colors(&sources);
             let problem = colored.problem.take();
@@ -184,10 +191,11 @@ impl Stage {
                 instances: instances_key,
                 problem,
             });
-            // Nobody waits for it if the window is closed.
-            let _ = sender.send(built);
-            ctx.request_repaint();
-        });
+            Ok(built)
+        };
+        let progress = Progress::new("preparing the picture", "cells", 0);
+        let task = Task::start(progress, move || ctx.request_repaint(), work);
+        self.building = Some((of, task));
     }
 }
 

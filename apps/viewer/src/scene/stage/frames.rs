@@ -23,7 +23,10 @@ impl Stage {
         let same =
             |reader: &FrameReader| recording.is_some_and(|r| Arc::ptr_eq(reader.recording(), r));
         if !self.reader.as_ref().is_some_and(same) {
-            self.reader = recording.map(|recording| FrameReader::new(Arc::clone(recording), ctx));
+            self.reader = recording.map(|recording| {
+                let ctx = ctx.clone();
+                FrameReader::new(Arc::clone(recording), move || ctx.request_repaint())
+            });
             self.values = None;
         }
         self.tell(state);

@@ -10,7 +10,6 @@ mod rest;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 use eframe::egui;
@@ -22,6 +21,7 @@ use neurotess::render::{
 };
 
 use crate::io::frames::FrameReader;
+use crate::io::task::Task;
 use crate::model::document::{Cut, Detail, Look};
 use crate::model::revision::Revision;
 use crate::model::state::{Draft, Rebuilds, SpheresKey, State};
@@ -61,7 +61,7 @@ pub struct Stage {
     rebuilds: Rebuilds,
     /// Of what was drawn last.
     legend: Legend,
-    building: Option<Receiver<Built>>,
+    building: Option<(Checked, Task<Built>)>,
     /// Reads the recording that shows.
     reader: Option<FrameReader>,
     values: Option<Arc<InstanceValues>>,
@@ -237,7 +237,9 @@ impl Stage {
     ) -> Result<Option<egui::TextureId>, DeviceError> {
         self.take_built(state, ctx)?;
         self.update_templates(state, ctx)?;
-        self.explorer.update(&self.gpu, &self.content, ctx);
+        if let Some(why) = self.explorer.update(&self.gpu, &self.content, ctx) {
+            state.problem("preparing drafts", why);
+        }
         if size.contains(&0) {
             return Ok(None);
         }

@@ -11,7 +11,7 @@ use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::render::DeviceError;
 
-use crate::io::tasks::Worker;
+use crate::io::worker::Worker;
 use crate::model::command::{Command, listed};
 use crate::model::document::SomaEdit;
 use crate::model::revision::Revision;
@@ -122,11 +122,6 @@ impl Viewer {
         !self.worker.is_busy() && !self.motion.is_flying() && self.loading.is_none() && drawn
     }
 
-    /// Job of reading and of saving, for the status bar.
-    fn jobs(&self) -> [Option<crate::io::tasks::Job>; 2] {
-        [self.worker.loading.clone(), self.worker.saving.clone()]
-    }
-
     /// One frame.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
@@ -156,13 +151,12 @@ impl Viewer {
 
     /// Shows everything; what cannot go on is kept in `fatal`.
     fn show_panels(&mut self, ui: &mut egui::Ui) {
-        let jobs = self.jobs();
         let mut screen = Screen {
             state: &mut self.state,
             stage: &mut self.stage,
             motion: &mut self.motion,
             files: &mut self.files,
-            jobs,
+            tasks: self.worker.progress(),
             failed: None,
         };
         panels::show(&mut screen, ui);
@@ -213,10 +207,9 @@ impl Viewer {
             Effect::Reload => self.reload(),
             Effect::Cancel => {
                 self.waiting.clear();
-                for job in self.jobs().into_iter().flatten() {
-                    job.canceled
-                        .store(true, std::sync::atomic::Ordering::Relaxed);
-                    self.state.status = format!("Stopped {}", job.what);
+                for progress in self.worker.progress().into_iter().flatten() {
+                    progress.cancel();
+                    self.state.status = format!("Stopped {}", progress.what);
                 }
             }
             Effect::Go(view) => self.motion.fly(&mut self.state, view),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Viewer;
 use crate::io::save::{self, MeshPlan, video};
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 use crate::model::document::Neuron;
 use crate::model::film::{FilmFrame, film_frames};
 use crate::model::save::{FilmOptions, SaveRequest};
@@ -32,7 +32,7 @@ impl Viewer {
             // It is small, and written at once, whatever else is being written.
             return self.save_session(path);
         }
-        if self.worker.saving.is_some() {
+        if self.worker.is_saving() {
             self.state
                 .problem("save", "wait until the last one is written, or stop it");
             return;
@@ -43,9 +43,9 @@ impl Viewer {
                 let plans = self.mesh_plans(options.all);
                 let (view, detail) = (self.state.view, self.state.document.detail);
                 let height = self.stage.height();
-                let steps = (plans.len(), "meshes");
-                self.worker.save("writing meshes", steps, move |job| {
-                    save::meshes(&plans, &options, &view, &detail, height, job)
+                let progress = Progress::new("writing meshes", "meshes", plans.len());
+                self.worker.save(progress, move |progress| {
+                    save::meshes(&plans, &options, &view, &detail, height, progress)
                 });
             }
             SaveRequest::Picture(options) => {
@@ -55,12 +55,12 @@ impl Viewer {
                     view: self.state.view,
                     time: Some(self.state.playback.pace.time),
                 };
-                self.worker
-                    .save("drawing the picture", (0, "tiles"), move |job| {
-                        let files = pictures(&still_scene, &[film_frame], &options, job)?;
-                        let file = files.first().map(|f| f.display().to_string());
-                        Ok(format!("Saved {}", file.unwrap_or_default()))
-                    });
+                let progress = Progress::new("drawing the picture", "tiles", 0);
+                self.worker.save(progress, move |progress| {
+                    let files = pictures(&still_scene, &[film_frame], &options, progress)?;
+                    let file = files.first().map(|f| f.display().to_string());
+                    Ok(format!("Saved {}", file.unwrap_or_default()))
+                });
             }
             SaveRequest::Film(film) => {
                 self.save_film(film);
@@ -80,12 +80,12 @@ impl Viewer {
             return;
         }
         let still_scene = self.still_scene();
-        let work = move |job: &Job| {
-            let files = pictures(&still_scene, &film_frames, &film.picture, job)?;
+        let work = move |progress: &Progress| {
+            let files = pictures(&still_scene, &film_frames, &film.picture, progress)?;
             let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
             let also = match film.video && count > 1 {
                 true => {
-                    let video = video::video(&first, film.picture.replace, job)?;
+                    let video = video::video(&first, film.picture.replace, progress)?;
                     format!(" and {}", video.display())
                 }
                 false => String::new(),
@@ -95,7 +95,8 @@ impl Viewer {
                 first.display()
             ))
         };
-        self.worker.save("drawing the film", (0, "tiles"), work);
+        let progress = Progress::new("drawing the film", "tiles", 0);
+        self.worker.save(progress, work);
     }
 
     fn save_session(&mut self, path: &Path) {

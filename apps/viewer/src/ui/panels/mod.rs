@@ -23,7 +23,7 @@ use eframe::egui::{
 };
 use neurotess::render::DeviceError;
 
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 use crate::model::command::{Command, Tab};
 use crate::model::state::State;
 use crate::scene::stage::Stage;
@@ -38,7 +38,7 @@ pub(crate) struct Screen<'a> {
     /// The panel of files, while it is open.
     pub(crate) files: &'a mut Option<FilePanel>,
     /// Reading and saving, if they are under way.
-    pub(crate) jobs: [Option<Job>; 2],
+    pub(crate) tasks: [Option<Progress>; 2],
     /// Why the picture could not be drawn.
     pub(crate) failed: Option<DeviceError>,
 }
@@ -51,7 +51,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
     let progress = screen.stage.progress();
     Panel::bottom("status").show(ui, |ui| {
-        status::show(screen.state, &screen.jobs, progress, ui);
+        status::show(screen.state, &screen.tasks, progress, ui);
     });
     let any = !screen.state.document.neurons.is_empty();
     if let Some(facts) = screen.state.playback.facts.clone().filter(|_| any) {
@@ -77,7 +77,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
         if any {
             viewport::show(screen, before, ui);
         } else {
-            let reads = screen.jobs[0].is_some();
+            let reads = screen.tasks[0].is_some();
             empty::show(screen.state, reads, ui);
         }
     });

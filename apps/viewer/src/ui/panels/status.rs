@@ -4,15 +4,20 @@ use eframe::egui::{self, Align, Layout, ProgressBar, RichText, Ui};
 
 use super::cells::count;
 use super::grouped;
-use crate::io::tasks::Job;
+use crate::io::task::Progress;
 use crate::model::command::{Command, Edit};
 use crate::model::state::{Lowered, State};
 
-pub(super) fn show(state: &mut State, jobs: &[Option<Job>; 2], drawing: Option<f32>, ui: &mut Ui) {
+pub(super) fn show(
+    state: &mut State,
+    tasks: &[Option<Progress>; 2],
+    drawing: Option<f32>,
+    ui: &mut Ui,
+) {
     ui.horizontal(|ui| {
-        for job in jobs.iter().flatten() {
-            let share = job.share();
-            ui.label(job.said());
+        for progress in tasks.iter().flatten() {
+            let share = progress.share();
+            ui.label(progress.text());
             ui.add(
                 ProgressBar::new(share)
                     .desired_width(110.0)
