@@ -24,7 +24,7 @@ pub(crate) struct CircuitCell {
     pub(crate) instance: neurotess::circuit::Instance,
 }
 
-/// What is asked for.
+/// What somebody opens.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OpenRequest {
     /// Files, folders, circuits with their cells.
@@ -63,21 +63,21 @@ pub(crate) struct Found {
     /// Reports and spikes.
     pub(crate) reports: Vec<PathBuf>,
     /// Cells of circuits; files that no cell stands for are shown where they were traced.
-    pub(crate) standing: Vec<CircuitCell>,
+    pub(crate) cells: Vec<CircuitCell>,
     /// What could not be searched or opened: file and reason.
     pub(crate) failures: Vec<(PathBuf, String)>,
 }
 
 /// Files below folders, cells of circuits.
-pub(crate) fn find(wanted: &OpenRequest) -> Found {
+pub(crate) fn find(request: &OpenRequest) -> Found {
     let mut found = Found::default();
-    for path in &wanted.circuits {
+    for path in &request.circuits {
         match Circuit::open(path) {
             Ok(circuit) => found.circuits.push((path.clone(), Arc::new(circuit))),
             Err(e) => found.failures.push((path.clone(), e.to_string())),
         }
     }
-    for path in &wanted.paths {
+    for path in &request.paths {
         if is_sample(path) {
             found.files.push(path.clone());
         } else if is_circuit(path) {
@@ -164,7 +164,7 @@ fn find_circuit(path: &Path, found: &mut Found) {
             found.files.push(template.clone());
             next
         });
-        found.standing.push(CircuitCell {
+        found.cells.push(CircuitCell {
             file,
             circuit: number,
             instance,
@@ -201,15 +201,15 @@ mod tests {
     fn folders_are_searched_and_empty_ones_told_of() {
         let folder = tempfile::tempdir().expect("a folder");
         let root = folder.path();
-        let wanted = OpenRequest {
+        let request = OpenRequest {
             paths: vec![root.to_path_buf()],
             ..OpenRequest::default()
         };
-        let empty = find(&wanted);
+        let empty = find(&request);
         assert_eq!((empty.files.len(), empty.failures.len()), (0, 1));
         for name in ["b.swc", "a.SWC", "note.txt", ".c.swc"] {
             fs::write(root.join(name), "1 1 0 0 0 5 -1\n").expect("written");
         }
-        assert_eq!(find(&wanted).files.len(), 2);
+        assert_eq!(find(&request).files.len(), 2);
     }
 }

@@ -44,7 +44,7 @@ impl Circuits {
         Some(Node { circuit, node })
     }
 
-    /// Attributes that neurons can be told apart by.
+    /// Attributes that colors can show.
     pub fn attributes(&self) -> Vec<String> {
         coloring::attributes(self.iter().map(|(_, circuit)| circuit))
     }

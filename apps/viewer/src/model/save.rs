@@ -45,7 +45,7 @@ pub struct MeshOptions {
     pub linear: bool,
     /// Disks at the ends.
     pub flat: bool,
-    /// Where neurons stand in the window instead of where they were traced.
+    /// Where neurons are in the window instead of where they were traced.
     pub placed: bool,
     /// All that is shown instead of what is selected.
     pub all: bool,

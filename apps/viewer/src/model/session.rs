@@ -63,7 +63,7 @@ pub struct Session {
     /// The recording whose values can be shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<PathBuf>,
-    /// The moment of it.
+    /// Time and speed of it.
     #[serde(default)]
     pub playback: Pace,
     /// Circuits that neurons are of.

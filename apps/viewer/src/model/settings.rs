@@ -58,7 +58,7 @@ impl Default for Settings {
 
 impl Settings {
     /// Those of the last start; the usual ones where there are none or they cannot be understood, with
-    /// a word about it.
+    /// the reason.
     pub fn load() -> (Self, Option<String>) {
         let Some(file) = file() else {
             return (Self::default(), None);

@@ -19,13 +19,13 @@ use crate::scene::templates::SceneTemplate;
 /// What colors depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColorInputs {
-    /// What they tell, and of whom.
+    /// What they show, and of which neurons.
     pub(crate) subject: ColorSubject,
     /// Which they are.
     pub(crate) style: ColorStyle,
 }
 
-/// What colors tell, and of whom.
+/// What colors show, and of which neurons.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColorSubject {
     by: ColorBy,
@@ -105,7 +105,7 @@ pub(crate) struct ColorResult {
     pub(crate) coloring: Coloring,
     /// A recording with the range of its values.
     pub(crate) recording: Option<(Arc<Recording>, [f32; 2])>,
-    /// What could not be told by colors: what, and why.
+    /// What colors could not show, and why.
     pub(crate) problem: Option<(String, String)>,
 }
 
@@ -120,7 +120,7 @@ impl From<Coloring> for ColorResult {
 }
 
 impl ColorRequest {
-    /// `sources`: as they stand on the device, sorted.
+    /// `sources`: the templates, sorted by id.
     pub(crate) fn new(state: &State, sources: &[SceneTemplate]) -> Self {
         let document = &state.document;
         let neurons = document.neurons.iter().map(|neuron| {
@@ -136,7 +136,7 @@ impl ColorRequest {
         }
     }
 
-    /// The sources with a point at the middle of each element of the report, if its values show: a dendrite of
+    /// The templates with a point at the middle of each compartment of the report, if its values show: a dendrite of
     /// two traced points has room for all its compartments then. What cannot be meshed so stays as it is.
     pub(crate) fn cut(&self, mut sources: Vec<SceneTemplate>) -> Vec<SceneTemplate> {
         let report = self.report.as_ref();
@@ -150,7 +150,7 @@ impl ColorRequest {
                 Some((*source, node))
             });
             let nodes_of_cells: Vec<_> = nodes_of_cells.collect();
-            // What is wrong with the report is told by its colors.
+            // What is wrong with the report comes up with its colors.
             cuts = coloring::cuts(report, circuit, &nodes_of_cells).unwrap_or_default();
             if !cuts.is_empty() {
                 break;

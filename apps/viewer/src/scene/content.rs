@@ -18,7 +18,7 @@ use crate::model::state::{PlacementsKey, State};
 use crate::scene::colors::ColorResult;
 use crate::scene::templates::SceneTemplate;
 
-/// Width (pixels) of wires.
+/// Width (pixels) of a wireframe's lines.
 const WIRE: f32 = 1.0;
 /// Color of what is selected.
 pub(crate) const SELECTION: [u8; 3] = [255, 140, 0];
@@ -134,7 +134,7 @@ pub(crate) struct SceneInstance {
     pub(crate) hidden: bool,
 }
 
-/// Where all neurons stand. `sources`: as on the device, sorted.
+/// Instances of all neurons. `sources`: the templates, sorted by id.
 pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneInstance> {
     let placements = state.placements();
     let neurons = state.document.neurons.iter().zip(placements.iter());
@@ -182,7 +182,7 @@ pub(crate) fn device_instances(instances: &[SceneInstance]) -> Vec<Instance> {
     instances.iter().map(instance).collect()
 }
 
-/// A maker for a whole scene, for pictures that are saved.
+/// A vertex source of the whole scene, for pictures that are saved.
 pub(crate) fn adaptive(
     gpu: &Gpu,
     content: &SceneContent,
@@ -208,22 +208,22 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
         VisibleParts::Neurites => WITHOUT_SOMA,
     };
     let state = |selected: bool| {
-        let marked = if selected && look.highlight_selected {
+        let highlighted = if selected && look.highlight_selected {
             HIGHLIGHTED
         } else {
             0
         };
-        let faint = if any && !selected && look.ghost_others {
+        let ghosted = if any && !selected && look.ghost_others {
             GHOSTED
         } else {
             0
         };
-        parts | marked | faint
+        parts | highlighted | ghosted
     };
     document.neurons.iter().map(|n| state(n.selected)).collect()
 }
 
-/// Light, wires and colors of states.
+/// Light, wireframe and colors of states.
 pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
     neurotess::render::Look {
         light: look.light.light(),

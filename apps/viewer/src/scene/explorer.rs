@@ -1,5 +1,5 @@
-//! What draws while something moves: the scene as a sketch, whose frames have a bounded number of
-//! triangles whatever there is. It is made beside; until it is there, the other maker draws coarsely.
+//! What draws while something moves: proxies of all templates, whose frames have a bounded number of
+//! triangles whatever there is. It is made beside; until it is there, the adaptive source draws coarsely.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ use crate::scene::content::{self, InstancesKey, SceneContent};
 /// Fewest triangles of a frame, however slow the device.
 const LEAST_BUDGET: u32 = 12_500;
 
-/// A sketch of what is shown, if it is there.
+/// Proxies of what is shown, once they are made.
 #[derive(Default)]
 pub(crate) struct Explorer {
     built: Option<BuiltScene>,
     making: Option<(Revision, Task<ProxyResult>)>,
-    /// What could not be sketched is not tried again.
+    /// Content that proxies could not be made of; it is not tried again.
     refused: Option<Revision>,
     budget: Option<u32>,
     builds: u64,
@@ -100,7 +100,7 @@ impl Explorer {
         self.making = Some((content.revision, task));
     }
 
-    /// The maker of a sketch of just this, with all neurons where they stand.
+    /// The vertex source of proxies of just this content, with all its instances.
     /// `budget`: its triangles.
     pub(crate) fn exploration(
         &mut self,
@@ -122,19 +122,19 @@ impl Explorer {
         Some(&mut built.exploration)
     }
 
-    /// Whether there is a sketch of just this.
+    /// Whether there are proxies of just this content.
     pub(crate) fn fits(&self, content: &SceneContent) -> bool {
         self.built
             .as_ref()
             .is_some_and(|built| built.content == content.revision)
     }
 
-    /// Whether a sketch will be there soon.
+    /// Whether proxies are being made.
     pub(crate) fn is_making(&self) -> bool {
         self.making.is_some()
     }
 
-    /// Who tells what ids of pictures of the sketch mean.
+    /// Resolves ids of pictures that were drawn from proxies.
     pub(crate) fn resolver(&self) -> Option<ProxyPickResolver> {
         let built = self.built.as_ref()?;
         Some(built.exploration.namer(Arc::clone(&built.names)))

@@ -21,7 +21,7 @@ pub(crate) struct SceneTemplate {
     pub(crate) options: GenerateOptions,
 }
 
-/// Sources that neurons stand for, in their order.
+/// Templates of the neurons in the list, by the ids of their tracings.
 pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
     let used = state.document.neurons.sources().iter();
     let templates = used.filter_map(|&id| {

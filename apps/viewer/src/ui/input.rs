@@ -304,8 +304,8 @@ mod tests {
         }
     }
 
-    fn typed(words: &str) -> Vec<Event> {
-        words.chars().map(|c| Event::Text(c.to_string())).collect()
+    fn typed(text: &str) -> Vec<Event> {
+        text.chars().map(|c| Event::Text(c.to_string())).collect()
     }
 
     fn button(pressed: bool) -> Event {

@@ -45,7 +45,7 @@ pub enum ViewError {
     Lost(String),
 }
 
-/// Opens the window and stays until it is closed. `hears` is told of every command before it runs.
+/// Opens the window and returns when it is closed. `hears` gets every command before it runs.
 ///
 /// # Errors
 /// Why it cannot be opened, or why it had to close.

@@ -55,11 +55,11 @@ fn wait(ffmpeg: &mut Child, progress: &Progress) -> Result<(), String> {
             Ok(None) => std::thread::sleep(Duration::from_millis(40)),
             Ok(Some(status)) if status.success() => return Ok(()),
             Ok(Some(_)) => {
-                let mut words = String::new();
+                let mut text = String::new();
                 if let Some(mut from) = ffmpeg.stderr.take() {
-                    drop(from.read_to_string(&mut words));
+                    drop(from.read_to_string(&mut text));
                 }
-                let last = words.lines().last().unwrap_or("no word");
+                let last = text.lines().last().unwrap_or("no word");
                 return Err(format!("ffmpeg failed ({last})"));
             }
             Err(e) => return Err(format!("ffmpeg cannot be waited for ({e})")),

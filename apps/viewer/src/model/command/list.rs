@@ -12,7 +12,7 @@ pub struct Listed {
     pub title: &'static str,
     /// The keys for it.
     pub keys: Option<KeyboardShortcut>,
-    /// It.
+    /// What it runs.
     pub command: Command,
 }
 

@@ -40,7 +40,7 @@ pub struct Document {
 /// A tracing somewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neuron {
-    /// Its shape.
+    /// Its tracing.
     pub source: SourceId,
     /// What it is in its circuit, if it is of one.
     pub node: Option<CircuitNode>,
@@ -103,7 +103,7 @@ impl Document {
     }
 }
 
-/// Where neurons stand side by side: `extents` are center and size (µm) of each in its own place.
+/// Placements of neurons side by side: `extents` are center and size (µm) of each in its own place.
 pub fn grid(neurons: &[Neuron], extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
     let columns = (neurons.len() as f64).sqrt().ceil().max(1.0) as usize;
     let widest = |axis: usize| {

@@ -54,7 +54,7 @@ impl Default for SomaEdit {
 }
 
 impl SomaEdit {
-    /// What the generator is told.
+    /// The generator's options.
     pub fn options(&self) -> GenerateOptions {
         GenerateOptions {
             soma: match self.method {

@@ -108,7 +108,7 @@ impl CostModel {
 }
 
 impl Stage {
-    /// Holds more than so many patches in the picture for too dear, whatever was measured: for tests.
+    /// Takes more than so many patches in the picture for too expensive, whatever was measured: for tests.
     pub fn limit_patches(&mut self, most: Option<u64>) {
         self.cost_model.most_patches = most;
     }
@@ -140,13 +140,13 @@ impl Stage {
         patches.sum()
     }
 
-    /// Who draws the picture at rest.
+    /// How the picture at rest is drawn.
     pub(super) fn select_rest_mode(&mut self, params: &ViewParams) -> RestMode {
         if !self.cost_model.too_many(self.patches) {
             return RestMode::Refined;
         }
-        let sketched = explorable(params) && self.explorer.fits(&self.content);
-        match sketched {
+        let has_proxies = explorable(params) && self.explorer.fits(&self.content);
+        match has_proxies {
             true => RestMode::Explored,
             false => RestMode::Coarser,
         }

@@ -1,4 +1,4 @@
-//! The moment of a recording: values of the neurons that show, taken when they are there.
+//! The present frame of a recording: values of the neurons that show, taken when they are read.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -78,7 +78,7 @@ impl Stage {
         valued == 0 || valued == state.document.neurons.len()
     }
 
-    /// Takes the values of the moment if they are there; whether they are other ones than before.
+    /// Takes the values of the present frame if they are read; whether they are other ones than before.
     pub(super) fn take_values(&mut self, state: &mut State, ctx: &egui::Context) -> bool {
         self.values_due = false;
         let (Some(reader), Some(facts)) = (&self.reader, &state.playback.facts) else {

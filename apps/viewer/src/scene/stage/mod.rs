@@ -65,7 +65,7 @@ pub struct Stage {
     /// Reads the recording that shows.
     reader: Option<FrameReader>,
     values: Option<Arc<InstanceValues>>,
-    /// Whether values of the moment have not come yet.
+    /// Whether values of the present frame are not read yet.
     values_due: bool,
     /// Whether values are other ones than those that were drawn.
     revalued: bool,
@@ -84,7 +84,7 @@ pub struct Stage {
     rest_mode: RestMode,
     /// Patches of the neurons in the picture.
     patches: u64,
-    /// Triangles of the explored picture that are drawn, and that are wanted, once they are known.
+    /// Triangles of the explored picture that are drawn, and that half a pixel would take, once they are known.
     surveyed: Option<[u64; 2]>,
     /// Whether the last work was a slice, whose time tells something.
     timed: bool,
@@ -191,7 +191,7 @@ impl Stage {
         drawn && self.building.is_none() && !self.values_due
     }
 
-    /// Whether values are those of the recording's moment, in a draft or a better picture.
+    /// Whether values are those of the recording's present frame, in a draft or a better picture.
     pub fn shows_frame(&self) -> bool {
         !self.values_due && !self.revalued && self.drawn.is_some()
     }

@@ -51,24 +51,24 @@ impl Viewer {
             first: self.state.document.neurons.is_empty(),
             ..Loading::default()
         };
-        let wanted = match session {
+        let request = match session {
             Some((file, session)) => {
                 self.take_session(&file, &session);
-                let wanted = OpenRequest::of_session(&session);
+                let request = OpenRequest::of_session(&session);
                 loading.session = Some(Box::new(session));
-                wanted
+                request
             }
             None => OpenRequest {
                 paths,
                 ..OpenRequest::default()
             },
         };
-        let wanted = OpenRequest {
+        let request = OpenRequest {
             usual: std::mem::take(&mut self.soma),
-            ..wanted
+            ..request
         };
         self.loading = Some(loading);
-        self.worker.load(wanted);
+        self.worker.load(request);
     }
 
     /// All but the cells.
@@ -150,12 +150,8 @@ impl Viewer {
             *place = Some(id);
         }
         // Cells of circuits and sessions come together, in their order, when all files are read.
-        let stands = loading.session.is_some()
-            || loading
-                .found
-                .standing
-                .iter()
-                .any(|standing| standing.file == index);
+        let stands =
+            loading.session.is_some() || loading.found.cells.iter().any(|cell| cell.file == index);
         if !stands {
             let first = loading.first;
             self.open(Neuron::new(id, name));
@@ -199,16 +195,16 @@ impl Viewer {
                 }
             }
             None => {
-                for standing in &loading.found.standing {
-                    let id = loading.ids.get(standing.file).copied().flatten();
+                for cell in &loading.found.cells {
+                    let id = loading.ids.get(cell.file).copied().flatten();
                     if let Some((id, source)) =
                         id.and_then(|id| Some((id, self.state.sources.get(id)?)))
                     {
-                        let (name, placement) = standing.place(source);
-                        let circuit = loading.circuits.get(standing.circuit);
+                        let (name, placement) = cell.place(source);
+                        let circuit = loading.circuits.get(cell.circuit);
                         let node = circuit.map(|&circuit| CircuitNode {
                             circuit,
-                            node: standing.instance.node,
+                            node: cell.instance.node,
                         });
                         self.open(Neuron {
                             placement,

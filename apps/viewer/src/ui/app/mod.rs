@@ -48,7 +48,7 @@ pub struct Viewer {
     ticked: Instant,
     /// Where the session is saved when the program must end.
     rescue: PathBuf,
-    /// Neurons, wishes for somata and meshes that were compared last, and fitted.
+    /// Stamps of neurons, edits of somata and meshes when every mesh was as its edit wants it.
     somata_checked: Option<[Revision; 3]>,
     hears: Option<Hears>,
 }

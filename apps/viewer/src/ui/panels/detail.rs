@@ -39,10 +39,10 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         {
             detail = usual;
         }
-        let mut wires = state.document.look.wireframe;
-        if ui.checkbox(&mut wires, "Wireframe").changed() {
+        let mut wireframe = state.document.look.wireframe;
+        if ui.checkbox(&mut wireframe, "Wireframe").changed() {
             let mut look = state.document.look.clone();
-            look.wireframe = wires;
+            look.wireframe = wireframe;
             state.requests.push(Edit::SetLook(Box::new(look)).into());
         }
     });

@@ -17,7 +17,7 @@ pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Conte
         Over::Nothing => Over::Nothing,
         Over::Keys => keys(state, ctx),
         Over::Problems => problems(state, ctx),
-        Over::Palette(words, chosen) => palette(state, words, chosen, ctx),
+        Over::Palette(text, chosen) => palette(state, text, chosen, ctx),
         Over::Files(ask) => files(state, ask, panel, ctx),
         Over::Replace(path, command) => replace(state, path, command, ctx),
     };
@@ -187,7 +187,7 @@ fn problems(state: &mut State, ctx: &Context) -> Over {
     if open { Over::Problems } else { Over::Nothing }
 }
 
-fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Context) -> Over {
+fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Over {
     let mut done = false;
     egui::Window::new("palette")
         .title_bar(false)
@@ -195,7 +195,7 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
         .anchor(Align2::CENTER_TOP, [0.0, 70.0])
         .fixed_size([440.0, 330.0])
         .show(ctx, |ui| {
-            let line = TextEdit::singleline(&mut words)
+            let line = TextEdit::singleline(&mut text)
                 .hint_text("Find a command")
                 .desired_width(f32::INFINITY);
             let line = ui.add(line);
@@ -203,7 +203,7 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
             let [up, down, enter] = [Key::ArrowUp, Key::ArrowDown, Key::Enter]
                 .map(|key| ui.input(|i| i.key_pressed(key)));
             // Found by the words of now: Enter may have come with the last letter.
-            let items = found(state, &words);
+            let items = found(state, &text);
             let last = items.len().saturating_sub(1);
             chosen = match (up, down) {
                 _ if line.changed() => 0,
@@ -242,24 +242,23 @@ fn palette(state: &mut State, mut words: String, mut chosen: usize, ctx: &Contex
     if done {
         Over::Nothing
     } else {
-        Over::Palette(words, chosen)
+        Over::Palette(text, chosen)
     }
 }
 
 /// Commands with their menus, of those whose names have all words.
-fn found(state: &State, words: &str) -> Vec<(&'static str, Listed)> {
+fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
     let all = listed(&state.toggles());
     all.into_iter()
         .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
-        .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), words))
+        .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), text))
         .collect()
 }
 
 /// Whether all words are in a title, in any order.
-fn matches_words(title: &str, words: &str) -> bool {
+fn matches_words(title: &str, text: &str) -> bool {
     let title = title.to_lowercase();
-    words
-        .to_lowercase()
+    text.to_lowercase()
         .split_whitespace()
         .all(|word| title.contains(word))
 }

@@ -1,30 +1,30 @@
 //! All that the window shows, in one place; panels are functions of it.
 
-use std::collections::BTreeSet;
-use std::path::PathBuf;
-use std::sync::Arc;
+mod counters;
+mod derived;
 
-use neurotess::render::{BoundingSphere, Placement, Side};
+use std::path::PathBuf;
+
+use neurotess::render::Side;
 
 use crate::model::circuits::Circuits;
 use crate::model::command::{Ask, Command, Edit, Tab, Toggles};
-use crate::model::document::{self, Document, Neuron, NeuronRevisions, SourceId};
+use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
 use crate::model::playback::Playback;
-use crate::model::revision::{Memo, Revision};
 use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources, extent};
-use crate::model::totals::{self, Totals};
 use crate::model::view::View;
 
-/// From so many neurons on, a few balls around each will do.
-const MANY: usize = 64;
+pub use counters::{Counters, Draft, Lowered, Rebuilds};
+use derived::Derived;
+pub(crate) use derived::{PlacementsKey, SpheresKey};
 
-/// A piece of a cell.
+/// A part of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CellPart {
-    /// Its soma.
+    /// The soma, of which a cell may have several.
     Soma,
     /// A neurite, from 0.
     Neurite(u32),
@@ -35,9 +35,9 @@ pub enum CellPart {
 /// What the cursor is at or was clicked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Picked {
-    /// Place among the neurons.
+    /// Index among the neurons.
     pub neuron: usize,
-    /// Which piece of it.
+    /// Which part of it.
     pub part: CellPart,
 }
 
@@ -50,96 +50,7 @@ pub struct Problem {
     pub why: String,
 }
 
-/// What a frame drew, for the panel.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Counters {
-    /// Triangles drawn, if counted.
-    pub triangles: u64,
-    /// Patches drawn, and those there are.
-    pub patches: [u64; 2],
-    /// Bytes on the device: of cells, and of pictures.
-    pub bytes: [u64; 2],
-    /// Milliseconds of the last frames.
-    pub frames_ms: Vec<f32>,
-    /// How often the picture's parts were made.
-    pub rebuilds: Rebuilds,
-    /// How drafts are lowered.
-    pub draft: Draft,
-    /// How the picture at rest is lowered, if it is.
-    pub lowered: Option<Lowered>,
-}
-
-/// How the picture at rest is less than what is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lowered {
-    /// By exploration: triangles drawn, and those that half a pixel would take, once they are known.
-    Triangles(Option<[u64; 2]>),
-    /// So many times the error.
-    Error(f32),
-}
-
-/// How what is drawn while something moves is less than the full picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Draft {
-    /// At most so many triangles, for those that show most.
-    Budget(u32),
-    /// So many times the error.
-    Error(f32),
-}
-
-impl Default for Draft {
-    fn default() -> Self {
-        Self::Error(1.0)
-    }
-}
-
-/// What placements depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct PlacementsKey {
-    /// Of the neurons.
-    pub(crate) members: Revision,
-    /// Of the meshes, if neurons are side by side.
-    grid: Option<Revision>,
-}
-
-/// What the bounding spheres of all that shows depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SpheresKey {
-    placements: PlacementsKey,
-    hidden: Revision,
-    geometry: Revision,
-}
-
-/// What follows from the rest and takes time that grows with the number of neurons.
-#[derive(Debug, Default)]
-struct Derived {
-    placements: Memo<PlacementsKey, Vec<Placement>>,
-    spheres: Memo<SpheresKey, Vec<BoundingSphere>>,
-    found: Memo<(Revision, String), Vec<usize>>,
-    totals: Memo<(NeuronRevisions, Revision), Totals>,
-    kinds: Memo<Revision, BTreeSet<i32>>,
-}
-
-/// How often the picture's parts were made since the window opened: an idle frame makes none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rebuilds {
-    /// Placements of all neurons.
-    pub placements: u64,
-    /// Bounding spheres of all that shows.
-    pub spheres: u64,
-    /// Instances on the device.
-    pub instances: u64,
-    /// Selected, ghosted: states of instances on the device.
-    pub states: u64,
-    /// Meshes of templates on the device.
-    pub templates: u64,
-    /// Proxies of templates on the device.
-    pub proxies: u64,
-    /// Tables of colors.
-    pub colors: u64,
-}
-
-/// All that there is.
+/// All that the window shows.
 pub struct State {
     /// What can be undone and is saved.
     pub document: Document,
@@ -151,7 +62,7 @@ pub struct State {
     pub circuits: Circuits,
     /// The recording's time, and how that goes on.
     pub playback: Playback,
-    /// From where one looks.
+    /// Where the camera is.
     pub view: View,
     /// The side from which the view shows everything, until it is moved by hand.
     pub fitted: Option<Side>,
@@ -167,11 +78,11 @@ pub struct State {
     pub picked: Option<Picked>,
     /// What went wrong, in the order in which it did.
     pub problems: Vec<Problem>,
-    /// The last word, for the status bar.
+    /// What was done last, for the status bar.
     pub status: String,
     /// The panel on the right.
     pub tab: Tab,
-    /// Words to search the list by.
+    /// Text to search the list by.
     pub search: String,
     /// Which window is open over the others.
     pub over: Over,
@@ -417,128 +328,6 @@ impl State {
         let there = |p: &Picked| p.neuron < neurons;
         self.hovered = self.hovered.filter(there);
         self.picked = self.picked.filter(there);
-    }
-
-    /// Where all neurons are, in the order of the list.
-    pub fn placements(&self) -> Arc<Vec<Placement>> {
-        let neurons = &self.document.neurons;
-        self.derived.placements.get(self.placements_key(), || {
-            if !self.document.grid {
-                return neurons.iter().map(|n| n.placement).collect();
-            }
-            let extents = neurons.iter().map(|neuron| {
-                let (low, high) = extent(&self.spheres_of(neuron.source, neuron.placement));
-                ((low + high) / 2.0, high - low)
-            });
-            document::grid(neurons, &extents.collect::<Vec<_>>())
-        })
-    }
-
-    /// What placements depend on.
-    pub(crate) fn placements_key(&self) -> PlacementsKey {
-        let grid = self.document.grid;
-        PlacementsKey {
-            members: self.document.neurons.revisions().members,
-            // Side by side, neurons need room for their meshes.
-            grid: grid.then(|| self.sources.geometry()),
-        }
-    }
-
-    fn spheres_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
-        let many = self.document.neurons.len() >= MANY;
-        let spheres = self.sources.get(source).map_or(&[][..], |s| match many {
-            true => &s.few_spheres,
-            false => &s.spheres,
-        });
-        spheres
-            .iter()
-            .map(|&(c, r)| (placement.world_from_cell(c), r * placement.scale))
-            .collect()
-    }
-
-    /// Bounding spheres (µm) of all that shows.
-    pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
-        let derive = || self.spheres_where(|_| true);
-        self.derived.spheres.get(self.spheres_key(), derive)
-    }
-
-    /// What the spheres of all that shows depend on.
-    pub(crate) fn spheres_key(&self) -> SpheresKey {
-        SpheresKey {
-            placements: self.placements_key(),
-            hidden: self.document.neurons.revisions().hidden,
-            geometry: self.sources.geometry(),
-        }
-    }
-
-    fn spheres_where(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
-        let placements = self.placements();
-        let neurons = self.document.neurons.iter().zip(placements.iter());
-        neurons
-            .filter(|(n, _)| !n.hidden && fits(n))
-            .flat_map(|(n, placement)| self.spheres_of(n.source, *placement))
-            .collect()
-    }
-
-    /// Spheres (µm) at the tracing points of what shows and fits: tighter than [`State::spheres`], to
-    /// frame it. Of many neurons a few spheres each.
-    pub fn outline(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
-        let placements = self.placements();
-        let neurons = self.document.neurons.iter().zip(placements.iter());
-        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && fits(n)).collect();
-        if shown.len() >= MANY {
-            return self.spheres_where(fits);
-        }
-        let spheres = |(neuron, placement): (&Neuron, &Placement)| {
-            let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
-            let points = mesh.into_iter().flat_map(|mesh| {
-                let points = mesh.tracing.iter();
-                points.map(|p| (mesh.origin + p.center.as_dvec3(), f64::from(p.radius)))
-            });
-            let placed = points.map(|(c, r)| (placement.world_from_cell(c), r * placement.scale));
-            placed.collect::<Vec<_>>()
-        };
-        shown.into_iter().flat_map(spheres).collect()
-    }
-
-    /// Indices of the neurons whose names contain the search text.
-    pub(crate) fn found(&self) -> Arc<Vec<usize>> {
-        let members = self.document.neurons.revisions().members;
-        let derive = || {
-            let text = self.search.to_lowercase();
-            let neurons = self.document.neurons.iter().enumerate();
-            let found =
-                neurons.filter(|(_, n)| text.is_empty() || n.name.to_lowercase().contains(&text));
-            found.map(|(i, _)| i).collect()
-        };
-        self.derived
-            .found
-            .get((members, self.search.clone()), derive)
-    }
-
-    /// Sums over what is selected; over all, if nothing is.
-    pub(crate) fn totals(&self) -> Arc<Totals> {
-        let neurons = &self.document.neurons;
-        let key = (neurons.revisions(), self.sources.geometry());
-        self.derived.totals.get(key, || {
-            let any = !neurons.selected().is_empty();
-            let counted = neurons.iter().filter(|n| n.selected || !any);
-            Totals::of(counted.filter_map(|n| Some(&*self.sources.get(n.source)?.measures)))
-        })
-    }
-
-    /// Kinds of sections of all open tracings.
-    pub(crate) fn kinds(&self) -> Arc<BTreeSet<i32>> {
-        let derive = || totals::kinds(&self.sources);
-        self.derived.kinds.get(self.sources.geometry(), derive)
-    }
-
-    /// How often what grows with the neurons was derived: placements, and spheres.
-    pub(crate) fn derivations(&self) -> [u64; 2] {
-        [
-            self.derived.placements.derived(),
-            self.derived.spheres.derived(),
-        ]
     }
 
     /// The source of a neuron.
