@@ -111,7 +111,12 @@ impl Stage {
         if self.states != Some(inputs.states) {
             self.set_states(state, inputs.states);
         }
-        self.picks = None;
+        // A selection moves nothing: the second click of two still finds what the first one did.
+        let before = self.drawn.map(|d| (d.params, d.instances));
+        if before != Some((inputs.params, inputs.instances)) {
+            self.picks = None;
+        }
+        self.picks_stale = true;
         self.resolver = None;
         self.counts = None;
         let any = !state.document.neurons.selected().is_empty();

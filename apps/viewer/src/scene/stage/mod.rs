@@ -76,6 +76,8 @@ pub struct Stage {
     slices: u32,
     frames: VecDeque<f32>,
     picks: Option<Picks>,
+    /// Whether `picks` are of the picture before this one.
+    picks_stale: bool,
     resolver: Option<Resolver>,
     mask: Option<MaskKey>,
     /// Triangles and patches of the picture at rest, and all patches, once they are counted.
@@ -159,6 +161,7 @@ impl Stage {
             slices: if software { 2 } else { 1 },
             frames: VecDeque::new(),
             picks: None,
+            picks_stale: false,
             resolver: None,
             mask: None,
             counts: None,

@@ -54,7 +54,7 @@ impl Stage {
 
     /// Whether it is known what is where.
     pub fn can_pick(&self) -> bool {
-        self.picks.is_some()
+        self.picks.is_some() && !self.picks_stale
     }
 
     pub(super) fn take_ids(&mut self, ctx: &egui::Context) -> Result<(), DeviceError> {
@@ -71,6 +71,7 @@ impl Stage {
             return Ok(());
         };
         let content = &self.content;
+        self.picks_stale = false;
         self.picks = Some(Picks::new(size, &ids, |id| {
             let named = resolver.name(id)?;
             let instances = content.instances.get(named.instance as usize)?;
@@ -83,7 +84,7 @@ impl Stage {
 
     /// Outlines around what is selected and hovered, when that has changed.
     pub(super) fn outline(&mut self, state: &State) {
-        let (Some(picks), Some(drawn)) = (&self.picks, &self.drawn) else {
+        let (Some(picks), Some(drawn), false) = (&self.picks, &self.drawn, self.picks_stale) else {
             return;
         };
         let revisions = state.document.neurons.revisions();

@@ -89,8 +89,7 @@ impl Stage {
             }
         }
         // As soon as the first step shows, the cursor may ask.
-        let asks =
-            !self.progressive.shows_draft() && self.resolver.is_none() && self.picks.is_none();
+        let asks = !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
         self.timed = !asks;
         let budget = self.cost_model.budget;
         let adaptive: &mut dyn VertexSource = match self.rest_mode {
