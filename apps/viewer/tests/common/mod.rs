@@ -98,6 +98,11 @@ const FEW_PIXELS: usize = 12;
 
 /// A picture of the window beside the one that is kept; what changes by itself is masked.
 pub(crate) fn snapshot(window: &mut Window, name: &str) {
+    // A cursor that blinks is there or not.
+    window
+        .ctx
+        .all_styles_mut(|style| style.visuals.text_cursor.blink = false);
+    window.step();
     let masks = changing(window);
     let mut image = window.render().expect("a picture");
     for mask in masks {
@@ -123,7 +128,7 @@ fn changing(window: &Window) -> Vec<Rect> {
         // The line at the bottom of the window is none of them.
         masks.push(Rect::from_min_max(
             rect.left_bottom(),
-            Pos2::new(SIZE.x, SIZE.y - 26.0),
+            Pos2::new(SIZE.x, SIZE.y - 36.0),
         ));
     }
     if let Some(name) = window.query_all_by_label("computed in").next() {
