@@ -18,6 +18,7 @@ use egui_kittest::Harness;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use egui_wgpu::RendererOptions;
 use neurotess::synth::Kind;
+use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::{Neuron, SourceId};
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::{Command, Viewer, wgpu_setup};
@@ -64,7 +65,9 @@ fn main() {
             .neurons
             .push(Neuron::new(source, format!("n{i}")));
     }
-    state.document.neurons.truncate(neurons);
+    let mut index = 0..;
+    let keeps = |_: &Neuron| index.next().is_some_and(|i| i < neurons);
+    state.document.neurons.retain(keeps);
     state.document.grid = true;
     state.run(Command::Home);
     settle(&mut window);
@@ -102,7 +105,7 @@ fn rings(window: &mut Harness<'_, Option<Viewer>>) -> Vec<f64> {
         let position = 2.0 * step as f64 / TURNS as f64;
         let clock = Instant::now();
         let viewer = window.state_mut().as_mut().unwrap();
-        viewer.state.run(Command::SetRing(id, 0, Some(position)));
+        viewer.state.run(Edit::SetRing(id, 0, Some(position)));
         loop {
             window.step();
             let state = &window.state().as_ref().unwrap().state;

@@ -24,6 +24,7 @@ use egui_wgpu::RendererOptions;
 use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::coloring::{Cell, DECAY, Recording};
 use neurotess::generate::{GenerateOptions, generate};
+use neurotess_viewer::command::Edit;
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::{Command, Viewer, wgpu_setup};
 
@@ -106,7 +107,7 @@ fn play(circuit: &Path, report: &Path) {
     window.step();
     run(&mut window, Command::Open(vec![circuit.to_path_buf()]));
     let clock = Instant::now();
-    run(&mut window, Command::SetReport(Some(report.to_path_buf())));
+    run(&mut window, Edit::SetReport(Some(report.to_path_buf())));
     println!("report chosen to full picture: {:.0} ms", ms(clock));
     let adapter = window.state().as_ref().unwrap().state.adapter.0.clone();
     println!("drawn on {adapter}");
@@ -120,7 +121,7 @@ fn play(circuit: &Path, report: &Path) {
             let clock = Instant::now();
             state(&mut window).run(Command::Seek(axis.time_of(frame)));
             window.step();
-            while !window.state().as_ref().unwrap().stage.shows_moment() {
+            while !window.state().as_ref().unwrap().stage.shows_frame() {
                 window.step();
             }
             window.state().as_ref().unwrap().stage.gpu().wait().unwrap();
@@ -167,7 +168,7 @@ fn state(window: &mut Window) -> &mut neurotess_viewer::state::State {
     &mut window.state_mut().as_mut().unwrap().state
 }
 
-fn run(window: &mut Window, command: Command) {
+fn run(window: &mut Window, command: impl Into<Command>) {
     state(window).run(command);
     for _ in 0..2 {
         window.step();

@@ -11,33 +11,14 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub mod app;
-pub mod circuits;
-mod colors;
-pub mod command;
-pub mod document;
-mod explorer;
-pub mod files;
-mod headless;
-pub mod history;
-mod input;
-mod panels;
-mod paths;
-pub mod picks;
-pub mod playback;
-mod reader;
-pub mod save;
+mod io;
+mod model;
 mod scene;
-pub mod session;
-pub mod settings;
-pub mod sources;
-pub mod stage;
-pub mod state;
-pub mod view;
-mod window;
-pub mod worker;
+mod ui;
 
-pub use app::{Hears, Viewer};
-pub use command::Command;
-pub use headless::{Drawn, draw_session};
-pub use window::{Options, ViewError, run, wgpu_setup};
+pub use model::command::Command;
+pub use model::{command, document, playback, save, session, settings, sources, state, view};
+pub use scene::headless::{SessionPicture, draw_session};
+pub use scene::stage::Stage;
+pub use ui::app::{Hears, Viewer};
+pub use ui::window::{Options, ViewError, run, wgpu_setup};

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use eframe::egui::{DroppedFile, HoveredFile};
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
+use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::ColorBy;
 
 use common::circuit::write_circuit;
@@ -130,7 +131,7 @@ fn a_session_is_dropped() {
     };
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mine.neurotess");
-    run(&mut window, Command::SetHidden(0, true));
+    run(&mut window, Edit::SetHidden(0, true));
     run(&mut window, Command::SaveSession(file.clone()));
     let Some(mut other) = self::window() else {
         return;

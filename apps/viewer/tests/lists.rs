@@ -9,12 +9,12 @@ use eframe::egui::{Event, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Ask, Tab};
+use neurotess_viewer::command::{Ask, Edit, Tab};
 use neurotess_viewer::document::{ColorBy, Look};
-use neurotess_viewer::state::{Part, Picked};
+use neurotess_viewer::state::{CellPart, Picked};
 
 use common::{
-    SIZE, Window, click, picture, run, seen_at, settle, state, viewer, window, with_samples,
+    SIZE, Window, click, hit_at, picture, run, settle, state, viewer, window, with_samples,
 };
 
 /// A window with so many cells of three neurites, `cell_00` and so on.
@@ -57,7 +57,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
         lines.any(|line| line.is_positive() && panel.contains_rect(line))
     };
     assert!(!inside(&window, "cell_37"));
-    let soma = seen_at(&mut window, glam::DVec3::new(37.0 * 90.0, 0.0, 0.0));
+    let soma = hit_at(&mut window, glam::DVec3::new(37.0 * 90.0, 0.0, 0.0));
     click(&mut window, soma, Modifiers::NONE);
     let picked = state(&mut window).picked.expect("picked");
     assert_eq!(picked.neuron, 37);
@@ -79,7 +79,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     assert!(!inside(&window, &label));
     let picked = Picked {
         neuron: 0,
-        part: Part::Section(last as u32),
+        part: CellPart::Section(last as u32),
     };
     let state_of = state(&mut window);
     (state_of.picked, state_of.reveal) = (Some(picked), Some(picked));
@@ -96,7 +96,7 @@ fn what_is_hidden_is_not_marked() {
     window.run_steps(3);
     let hovered = |window: &mut Window| state(window).hovered.map(|h| h.neuron);
     assert_eq!(hovered(&mut window), Some(1));
-    run(&mut window, Command::SetHidden(1, true));
+    run(&mut window, Edit::SetHidden(1, true));
     window.event(Event::PointerMoved(row + Vec2::new(1.0, 0.0)));
     window.run_steps(3);
     assert_eq!(hovered(&mut window), None);
@@ -111,7 +111,7 @@ fn a_resized_window_keeps_the_cells_in_view() {
             glam::DVec3::new(185.0, 0.0, 0.0),
         ];
         let rect = picture(window);
-        places.map(|place| (seen_at(window, place).x - rect.left()) / rect.width())
+        places.map(|place| (hit_at(window, place).x - rect.left()) / rect.width())
     };
     let within = |[left, right]: [f32; 2]| left > 0.0 && right < 1.0 && right - left > 0.6;
     assert!(within(ends(&mut window)), "{:?}", ends(&mut window));
@@ -165,7 +165,7 @@ fn the_legend_is_that_of_the_picture() {
         color_by: ColorBy::PathDistance,
         ..state(&mut window).document.look.clone()
     };
-    state(&mut window).run(Command::SetLook(Box::new(look)));
+    state(&mut window).run(Edit::SetLook(Box::new(look)));
     // Drafts that are too dear wait until the explorer has made its own; the old picture stays meanwhile.
     viewer(&mut window).stage.limit_patches(Some(0));
     for _ in 0..2000 {

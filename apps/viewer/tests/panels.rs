@@ -8,9 +8,9 @@ use egui_kittest::kittest::Queryable;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::Tab;
+use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::{
-    ColorBy, Criterion, Cut, Detail, Document, Lighting, Look, SomaEdit, SourceId,
+    ColorBy, Cut, Detail, Document, Lighting, LodKind, Look, SomaEdit, SourceId,
 };
 
 use common::{Window, run, settle, state, window, with_samples};
@@ -41,8 +41,8 @@ fn uneven(document: &Document) -> (Look, Detail, SomaEdit) {
             right: -33.333_33,
             up: 200.7,
         },
-        faint_others: true,
-        faint: 0.987_654_3,
+        ghost_others: true,
+        ghost_opacity: 0.987_654_3,
         decay: 4_321.098_765,
         range: Some([0.123_456_79, 7654.321]),
         cut: Some(Cut {
@@ -77,7 +77,7 @@ fn looking_at_panels_changes_nothing() {
             return;
         };
         look_at_all_panels(&mut window, kind.name());
-        run(&mut window, Command::Select(vec![0], false));
+        run(&mut window, Edit::Select(vec![0], false));
         look_at_all_panels(&mut window, kind.name());
         assert_eq!(state(&mut window).history.names(), [Some("Select"), None]);
     }
@@ -91,32 +91,29 @@ fn looking_at_numbers_that_are_not_round_changes_nothing() {
     let file = folder.path().join("uneven.swc");
     fs::write(&file, UNEVEN).expect("written");
     run(&mut window, Command::Open(vec![file]));
-    run(&mut window, Command::Select(vec![0], false));
+    run(&mut window, Edit::Select(vec![0], false));
     let source = state(&mut window).source_of(0).expect("there");
     let rings: Vec<f64> = source.generated.rings.iter().map(|r| r.position).collect();
     let uneven_ring = |p: &f64| (p * 100.0 - (p * 100.0).round()).abs() > 1e-3;
     assert!(rings.iter().any(uneven_ring), "{rings:?}");
     look_at_all_panels(&mut window, "uneven rings");
     let (look, detail, soma) = uneven(&state(&mut window).document);
-    run(
-        &mut window,
-        Command::SetSoma(vec![SourceId(0)], soma.clone()),
-    );
+    run(&mut window, Edit::SetSoma(vec![SourceId(0)], soma.clone()));
     for (&neurite, &position) in &soma.rings {
         run(
             &mut window,
-            Command::SetRing(SourceId(0), neurite, Some(position)),
+            Edit::SetRing(SourceId(0), neurite, Some(position)),
         );
     }
     for criterion in [
-        Criterion::Error,
-        Criterion::Size,
-        Criterion::Homogeneous,
-        Criterion::Distance,
+        LodKind::Error,
+        LodKind::Size,
+        LodKind::Homogeneous,
+        LodKind::Distance,
     ] {
         run(
             &mut window,
-            Command::SetDetail(Detail {
+            Edit::SetDetail(Detail {
                 criterion,
                 ..detail
             }),
@@ -129,7 +126,7 @@ fn looking_at_numbers_that_are_not_round_changes_nothing() {
             attribute: "none such".into(),
             ..look.clone()
         };
-        run(&mut window, Command::SetLook(Box::new(look)));
+        run(&mut window, Edit::SetLook(Box::new(look)));
         look_at_all_panels(&mut window, "uneven look");
     }
     assert_eq!(state(&mut window).document.soma(SourceId(0)), soma);

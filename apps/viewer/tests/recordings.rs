@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::Tab;
+use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::{ColorBy, Lighting, Look};
 use neurotess_viewer::playback::Pace;
 use neurotess_viewer::save::{FilmOptions, PictureFile};
@@ -36,7 +36,7 @@ fn with_circuit() -> Option<(Window, tempfile::TempDir)> {
 fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
     let mut look = state(window).document.look.clone();
     change(&mut look);
-    run(window, Command::SetLook(Box::new(look)));
+    run(window, Edit::SetLook(Box::new(look)));
 }
 
 /// The distinct colors of the picture alone, without its legend, roughly.
@@ -67,12 +67,12 @@ fn neurons_of_one_tracing_have_their_own_colors() {
         look.color_by = ColorBy::Neuron;
     });
     let each = hues(&mut window);
-    run(&mut window, Command::Select(vec![4], false));
-    run(&mut window, Command::Isolate);
-    run(&mut window, Command::SelectNone);
+    run(&mut window, Edit::Select(vec![4], false));
+    run(&mut window, Edit::Isolate);
+    run(&mut window, Edit::SelectNone);
     let one = hues(&mut window);
     assert!(each > 2 * one, "{each}, {one}");
-    run(&mut window, Command::ShowAll);
+    run(&mut window, Edit::ShowAll);
     set_look(&mut window, |look| {
         look.color_by = ColorBy::Attribute;
         look.attribute = "synapse_class".into();
@@ -81,8 +81,8 @@ fn neurons_of_one_tracing_have_their_own_colors() {
     run(&mut window, Command::Show(Tab::Look));
     snapshot(&mut window, "attribute");
     // The color goes with the neuron when others go.
-    run(&mut window, Command::Select(vec![0, 1], false));
-    run(&mut window, Command::Remove);
+    run(&mut window, Edit::Select(vec![0, 1], false));
+    run(&mut window, Edit::Remove);
     assert_eq!(state(&mut window).problems, []);
     set_look(&mut window, |look| look.attribute = "weather".into());
     let problems = &state(&mut window).problems;
@@ -114,10 +114,10 @@ fn a_stick_of_two_points_shows_all_its_compartments() {
         (look.occlusion, look.light) = (false, Lighting::Flat);
     });
     let report = folder.path().join("stick.h5");
-    run(&mut window, Command::SetReport(Some(report)));
-    run(&mut window, Command::Select(vec![0], false));
-    run(&mut window, Command::Isolate);
-    run(&mut window, Command::SelectNone);
+    run(&mut window, Edit::SetReport(Some(report)));
+    run(&mut window, Edit::Select(vec![0], false));
+    run(&mut window, Edit::Isolate);
+    run(&mut window, Edit::SelectNone);
     assert_eq!(state(&mut window).problems, []);
     run(&mut window, Command::Look(Side::Front));
     let bands = bands(&mut window);
@@ -155,7 +155,7 @@ fn a_report_is_played_stepped_and_saved() {
         return;
     };
     let report = folder.path().join("voltage.h5");
-    run(&mut window, Command::SetReport(Some(report.clone())));
+    run(&mut window, Edit::SetReport(Some(report.clone())));
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert_eq!((facts.unit.as_str(), facts.time.frames), ("mV", 20));
     assert_eq!(facts.without, [2, 9]);
@@ -242,7 +242,7 @@ fn a_frame_changes_values_and_nothing_else() {
         return;
     };
     let report = folder.path().join("voltage.h5");
-    run(&mut window, Command::SetReport(Some(report)));
+    run(&mut window, Edit::SetReport(Some(report)));
     let first = window.render().expect("a picture");
     run(&mut window, Command::Seek(9.0));
     let last = window.render().expect("a picture");
@@ -272,7 +272,7 @@ fn spikes_flash() {
         return;
     };
     let spikes = folder.path().join("spikes.h5");
-    run(&mut window, Command::SetReport(Some(spikes)));
+    run(&mut window, Edit::SetReport(Some(spikes)));
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert!(facts.spikes && facts.range == [0.0, 1.0] && facts.without == [0, 9]);
     run(&mut window, Command::Show(Tab::Look));
@@ -300,12 +300,12 @@ fn reports_that_do_not_fit_are_told_while_the_rest_shows() {
         (folder.path().join("none.h5"), "cannot be read"),
     ] {
         state(&mut window).problems.clear();
-        run(&mut window, Command::SetReport(Some(file)));
+        run(&mut window, Edit::SetReport(Some(file)));
         let state = state(&mut window);
         assert!(state.problems[0].why.contains(said), "{:?}", state.problems);
         assert!(state.playback.facts.is_none());
     }
-    run(&mut window, Command::SetReport(None));
+    run(&mut window, Edit::SetReport(None));
     assert_eq!(state(&mut window).document.look.color_by, ColorBy::Type);
 }
 
@@ -317,7 +317,7 @@ fn a_report_without_a_circuit_waits_for_it() {
     write_circuit(folder.path(), 4, 2, 4);
     let at = |name: &str| folder.path().join(name);
     run(&mut window, Command::OpenSample(Kind::Star));
-    run(&mut window, Command::SetReport(Some(at("voltage.h5"))));
+    run(&mut window, Edit::SetReport(Some(at("voltage.h5"))));
     let problems = &state(&mut window).problems;
     assert!(problems[0].why.contains("open its circuit"), "{problems:?}");
     run(
@@ -343,7 +343,7 @@ fn a_film_runs_through_the_time_of_a_report() {
         return;
     };
     let report = folder.path().join("voltage.h5");
-    run(&mut window, Command::SetReport(Some(report)));
+    run(&mut window, Edit::SetReport(Some(report)));
     let out = folder.path().join("film");
     let film = FilmOptions {
         picture: PictureFile {
@@ -388,7 +388,7 @@ fn a_film_runs_through_the_time_of_a_report() {
     );
     // Without either there is none.
     run(&mut window, Command::DropKeyView(1));
-    run(&mut window, Command::SetReport(None));
+    run(&mut window, Edit::SetReport(None));
     run(&mut window, Command::SaveFilm(film));
     assert!(
         state(&mut window).problems[0]

@@ -75,9 +75,9 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     state(&mut window).run(Command::Cancel);
     settle(&mut window);
     assert!(
-        state(&mut window).said.contains("stopped"),
+        state(&mut window).status.contains("stopped"),
         "{}",
-        state(&mut window).said
+        state(&mut window).status
     );
     assert_eq!(
         names(folder.path()),

@@ -12,7 +12,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
-use egui_kittest::{Harness, SnapshotOptions};
+use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
 use egui_wgpu::RendererOptions;
 use neurotess::render::adapters;
 use neurotess::synth::Kind;
@@ -79,7 +79,7 @@ pub(crate) fn settle(window: &mut Window) {
     }
 }
 
-pub(crate) fn run(window: &mut Window, command: Command) {
+pub(crate) fn run(window: &mut Window, command: impl Into<Command>) {
     state(window).run(command);
     settle(window);
 }
@@ -93,12 +93,52 @@ pub(crate) fn with_samples(kinds: &[Kind]) -> Option<Window> {
     Some(window)
 }
 
-/// A picture of the window beside the one that is kept.
+/// Pixels that may differ from the picture that is kept: single ones.
+const FEW_PIXELS: usize = 12;
+
+/// A picture of the window beside the one that is kept; what changes by itself is masked.
 pub(crate) fn snapshot(window: &mut Window, name: &str) {
+    // A cursor that blinks is there or not.
+    window
+        .ctx
+        .all_styles_mut(|style| style.visuals.text_cursor.blink = false);
+    window.step();
+    let masks = changing(window);
+    let mut image = window.render().expect("a picture");
+    for mask in masks {
+        let [left, top] = [mask.left(), mask.top()].map(|n| n.max(0.0) as u32);
+        for y in top..(mask.bottom() as u32).min(image.height()) {
+            for x in left..(mask.right() as u32).min(image.width()) {
+                image.get_pixel_mut(x, y).0 = [128, 128, 128, 255];
+            }
+        }
+    }
     let options = SnapshotOptions::new()
         .threshold(0.8)
-        .max_failed_pixels((SIZE.x * SIZE.y * 0.005) as usize);
-    window.snapshot_options(name, &options);
+        .max_failed_pixels(FEW_PIXELS);
+    image_snapshot_options(&image, name, &options);
+}
+
+/// Where the window tells times that it has measured: the soma's, and below their heading those of drawing.
+fn changing(window: &Window) -> Vec<Rect> {
+    let mut masks = Vec::new();
+    let heading = window.query_all_by_label("Drawing times").next();
+    if let Some(heading) = heading {
+        let rect = heading.rect();
+        // The line at the bottom of the window is none of them.
+        masks.push(Rect::from_min_max(
+            rect.left_bottom(),
+            Pos2::new(SIZE.x, SIZE.y - 36.0),
+        ));
+    }
+    if let Some(name) = window.query_all_by_label("computed in").next() {
+        let row = name.rect();
+        masks.push(Rect::from_min_max(
+            row.right_top(),
+            Pos2::new(SIZE.x, row.bottom()),
+        ));
+    }
+    masks
 }
 
 /// Where the picture is.
@@ -107,7 +147,7 @@ pub(crate) fn picture(window: &Window) -> Rect {
 }
 
 /// Where a place of the world is seen.
-pub(crate) fn seen_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
+pub(crate) fn hit_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
     let rect = picture(window);
     let size = [rect.width(), rect.height()].map(|n| n as u32);
     let pixel = state(window).view.camera().pixel_of(place, size);

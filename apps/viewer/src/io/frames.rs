@@ -1,0 +1,228 @@
+//! Values of a recording, read before they are due on a thread of their own: the window never waits.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use neurotess::coloring::Recording;
+use neurotess::render::InstanceValues;
+
+use crate::io::task::caught;
+
+/// Pictures that are read ahead.
+const AHEAD: u64 = 8;
+/// Most frames that are kept.
+const MOST: usize = 64;
+
+/// Reads until it is dropped.
+pub(crate) struct FrameReader {
+    shared: Arc<Shared>,
+    recording: Arc<Recording>,
+}
+
+/// What values depend on, beside the frame.
+#[derive(Clone, Debug)]
+pub(crate) struct ValueInputs {
+    /// By neuron: whether it shows.
+    pub(crate) shows: Arc<[bool]>,
+    /// Numbers at both ends of the color map.
+    pub(crate) range: [f32; 2],
+    /// Of flashes (ms).
+    pub(crate) decay: f64,
+}
+
+impl PartialEq for ValueInputs {
+    fn eq(&self, other: &Self) -> bool {
+        let same = Arc::ptr_eq(&self.shows, &other.shows) || self.shows == other.shows;
+        same && (self.range, self.decay) == (other.range, other.decay)
+    }
+}
+
+#[derive(Default)]
+struct Shared {
+    inner: Mutex<Inner>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Inner {
+    inputs: Option<Arc<ValueInputs>>,
+    frame: u64,
+    /// Frames from one picture to the next; 0: no more than one is wanted.
+    stride: u64,
+    ready: BTreeMap<u64, Arc<InstanceValues>>,
+    problem: Option<String>,
+    ends: bool,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl FrameReader {
+    /// `wake` is called when the frame that shows is there.
+    pub(crate) fn new(recording: Arc<Recording>, wake: impl Fn() + Send + 'static) -> Self {
+        let shared = Arc::new(Shared::default());
+        let (own, of) = (Arc::clone(&shared), Arc::clone(&recording));
+        std::thread::spawn(move || read(&own, &of, &wake));
+        Self { shared, recording }
+    }
+
+    /// What it reads.
+    pub(crate) fn recording(&self) -> &Arc<Recording> {
+        &self.recording
+    }
+
+    /// The values of a frame if they are there; if not they are read next. `stride`: the frames that will
+    /// be wanted after this one; 0: none.
+    pub(crate) fn get(
+        &self,
+        frame: u64,
+        stride: u64,
+        inputs: &ValueInputs,
+    ) -> Option<Arc<InstanceValues>> {
+        let mut inner = self.shared.lock();
+        if inner.inputs.as_deref() != Some(inputs) {
+            inner.inputs = Some(Arc::new(inputs.clone()));
+            inner.ready.clear();
+        }
+        if (inner.frame, inner.stride) != (frame, stride) || !inner.ready.contains_key(&frame) {
+            (inner.frame, inner.stride) = (frame, stride);
+            self.shared.changed.notify_one();
+        }
+        inner.ready.get(&frame).cloned()
+    }
+
+    /// What went wrong since this was asked last.
+    pub(crate) fn problem(&self) -> Option<String> {
+        self.shared.lock().problem.take()
+    }
+}
+
+impl Drop for FrameReader {
+    fn drop(&mut self) {
+        self.shared.lock().ends = true;
+        self.shared.changed.notify_one();
+    }
+}
+
+impl Inner {
+    /// The frame to read next: the one that shows, then those that will.
+    fn next(&self, frames: u64) -> Option<(u64, Arc<ValueInputs>)> {
+        let inputs = self.inputs.as_ref()?;
+        let ahead = if self.stride > 0 { AHEAD } else { 0 };
+        let due = (0..=ahead).map(|i| {
+            let frame = self.frame + i * self.stride;
+            // It may begin again.
+            if frame < frames {
+                frame
+            } else {
+                (frame - frames) % frames.max(1)
+            }
+        });
+        let mut missing = due.filter(|frame| !self.ready.contains_key(frame));
+        Some((missing.next()?, Arc::clone(inputs)))
+    }
+
+    fn keep(&mut self, frame: u64, values: InstanceValues, frames: u64) {
+        self.ready.insert(frame, Arc::new(values));
+        // The one that will not be wanted for longest goes.
+        let until = |&frame: &u64| (frame + frames - self.frame.min(frames)) % frames.max(1);
+        if self.ready.len() > MOST
+            && let Some(far) = self.ready.keys().copied().max_by_key(until)
+        {
+            self.ready.remove(&far);
+        }
+    }
+}
+
+fn read(shared: &Shared, recording: &Recording, wake: &impl Fn()) {
+    let frames = recording.time.frames;
+    loop {
+        let mut inner = shared.lock();
+        let (frame, inputs) = loop {
+            if inner.ends {
+                return;
+            }
+            if let Some(next) = inner.next(frames) {
+                break next;
+            }
+            inner = match shared.changed.wait(inner) {
+                Ok(inner) => inner,
+                Err(poisoned) => poisoned.into_inner(),
+            };
+        };
+        drop(inner);
+        let shows = |place: usize| inputs.shows.get(place).copied().unwrap_or(true);
+        let time = recording.time.time_of(frame);
+        let values = caught(|| {
+            let values = recording.at(time, inputs.decay, &shows);
+            values.map_err(|e| e.to_string())
+        });
+        let (values, problem) = match values {
+            Ok(values) => (values.values(inputs.range), None),
+            // Gray instead of the values of another time; it is not read again and again.
+            Err(why) => (none(inputs.shows.len()), Some(why)),
+        };
+        let mut inner = shared.lock();
+        inner.problem = problem.or(inner.problem.take());
+        if inner
+            .inputs
+            .as_ref()
+            .is_some_and(|now| Arc::ptr_eq(now, &inputs))
+        {
+            inner.keep(frame, values, frames);
+        }
+        let due = inner.frame == frame;
+        drop(inner);
+        if due {
+            wake();
+        }
+    }
+}
+
+fn none(neurons: usize) -> InstanceValues {
+    let mut values = InstanceValues::default();
+    (0..neurons).for_each(|_| values.push(&[]));
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn inner(frame: u64, stride: u64, ready: &[u64]) -> Inner {
+        let inputs = ValueInputs {
+            shows: [true].into(),
+            range: [0.0, 1.0],
+            decay: 5.0,
+        };
+        Inner {
+            inputs: Some(Arc::new(inputs)),
+            frame,
+            stride,
+            ready: ready.iter().map(|&f| (f, Arc::default())).collect(),
+            ..Inner::default()
+        }
+    }
+
+    #[test]
+    fn what_shows_is_read_first_and_then_what_will() {
+        let next = |inner: Inner| inner.next(100).map(|(frame, _)| frame);
+        assert_eq!(next(inner(5, 2, &[])), Some(5));
+        assert_eq!(next(inner(5, 2, &[5, 7])), Some(9));
+        assert_eq!(next(inner(97, 2, &[97, 99])), Some(1), "it begins again");
+        assert_eq!(next(inner(5, 0, &[5])), None);
+    }
+
+    #[test]
+    fn what_is_long_over_is_forgotten() {
+        let mut inner = inner(50, 1, &[]);
+        for frame in 0..=MOST as u64 + 20 {
+            inner.keep(frame, InstanceValues::default(), 100);
+        }
+        assert_eq!(inner.ready.len(), MOST);
+        assert!(inner.ready.contains_key(&50) && !inner.ready.contains_key(&49));
+    }
+}

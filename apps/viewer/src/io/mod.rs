@@ -1,0 +1,9 @@
+//! Files, and the threads that read and write them.
+
+pub(crate) mod find;
+pub(crate) mod frames;
+pub(crate) mod load;
+pub(crate) mod paths;
+pub(crate) mod save;
+pub(crate) mod task;
+pub(crate) mod worker;

@@ -1,0 +1,290 @@
+//! Work beside the window: reading, meshing, saving. Results come back as messages; the window is told
+//! that there is one.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
+
+use neurotess::generate::{Generated, generate};
+use neurotess::morphology::Morphology;
+
+use crate::io::find::{self, Found, OpenRequest};
+use crate::io::load;
+use crate::io::task::{Progress, Task, caught};
+use crate::model::document::{SomaEdit, SourceId};
+use crate::model::sources::{Source, Stale};
+
+/// What work gives.
+#[derive(Debug)]
+pub(crate) enum Message {
+    /// What was found of what was asked for.
+    Found(Box<Found>),
+    /// A file that was read; the number is its place among those found of that loading.
+    Loaded(usize, Box<Result<Source, (PathBuf, String)>>),
+    /// All files of a loading are read, or it was canceled.
+    LoadingDone(Result<(), String>),
+    /// A file that was read again.
+    Reloaded(SourceId, Box<Result<Source, String>>),
+    /// A soma that was made again.
+    Soma(SourceId, SomaEdit, Box<Result<Generated, String>>),
+    /// What has become of files.
+    Files(Vec<(SourceId, Option<Stale>)>),
+    /// Why files are no longer looked after.
+    NotWatched(String),
+    /// Saving ended: what to say, or what went wrong.
+    Saved(Result<String, String>),
+}
+
+/// A file that is looked after, and when it was written last.
+pub(crate) type Watched = (SourceId, PathBuf, Option<SystemTime>);
+
+/// Starts work and takes its results.
+pub(crate) struct Worker {
+    /// What tasks tell before they end.
+    sender: Sender<Message>,
+    receiver: Receiver<Message>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+    loading: Option<Task<()>>,
+    saving: Option<Task<String>>,
+    reloading: Vec<(SourceId, Task<Source>)>,
+    remeshing: Option<(SourceId, SomaEdit, Task<Generated>)>,
+    watching: Option<Task<()>>,
+    watched: Arc<Mutex<Vec<Watched>>>,
+}
+
+impl Worker {
+    /// `wake` is called when there is a message.
+    pub(crate) fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
+        let (sender, receiver) = channel();
+        Self {
+            sender,
+            receiver,
+            wake: Arc::new(wake),
+            loading: None,
+            saving: None,
+            reloading: Vec::new(),
+            remeshing: None,
+            watching: None,
+            watched: Arc::default(),
+        }
+    }
+
+    /// Messages that have come.
+    pub(crate) fn messages(&mut self) -> Vec<Message> {
+        // Before what came on the way is taken: a task tells nothing after its end.
+        let loaded = self.loading.as_ref().and_then(Task::take);
+        let watched = self.watching.as_ref().and_then(Task::take);
+        let mut messages: Vec<Message> = self.receiver.try_iter().collect();
+        if let Some(result) = loaded {
+            self.loading = None;
+            messages.push(Message::LoadingDone(result));
+        }
+        if let Some(result) = watched {
+            self.watching = None;
+            messages.extend(result.err().map(Message::NotWatched));
+        }
+        if let Some(result) = self.saving.as_ref().and_then(Task::take) {
+            self.saving = None;
+            messages.push(Message::Saved(result));
+        }
+        self.reloading.retain(|(id, task)| match task.take() {
+            Some(result) => {
+                messages.push(Message::Reloaded(*id, Box::new(result)));
+                false
+            }
+            None => true,
+        });
+        let remeshed = self.remeshing.as_ref().and_then(|(.., task)| task.take());
+        if let Some(result) = remeshed
+            && let Some((id, edit, _)) = self.remeshing.take()
+        {
+            messages.push(Message::Soma(id, edit, Box::new(result)));
+        }
+        messages
+    }
+
+    /// Whether anything is under way whose result will come.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.loading.is_some() || self.saving.is_some() || self.remeshing.is_some()
+    }
+
+    /// Whether files are being written.
+    pub(crate) fn is_saving(&self) -> bool {
+        self.saving.is_some()
+    }
+
+    /// How far reading and saving are.
+    pub(crate) fn progress(&self) -> [Option<Progress>; 2] {
+        let reading = self.loading.as_ref().map(Task::progress);
+        let saving = self.saving.as_ref().map(Task::progress);
+        [reading.cloned(), saving.cloned()]
+    }
+
+    fn start<T: Send + 'static>(
+        &self,
+        progress: Progress,
+        work: impl FnOnce(&Progress) -> Result<T, String> + Send + 'static,
+    ) -> Task<T> {
+        let wake = Arc::clone(&self.wake);
+        Task::start(progress, move || wake(), work)
+    }
+
+    /// Tells a message on the way.
+    fn teller(&self) -> impl Fn(Message) + Send + 'static {
+        let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
+        move |message| {
+            // Nobody listens any more: the window is closed.
+            let _ = sender.send(message);
+            wake();
+        }
+    }
+
+    /// Reads files, folders and circuits on all cores.
+    pub(crate) fn load(&mut self, request: OpenRequest) {
+        let send = self.teller();
+        let task = self.start(Progress::new("reading", "files", 0), move |progress| {
+            let found = find::find(&request);
+            let files = found.files.clone();
+            progress.all.store(files.len(), Ordering::Relaxed);
+            send(Message::Found(Box::new(found)));
+            let next = AtomicUsize::new(0);
+            let cores = std::thread::available_parallelism().map_or(1, usize::from);
+            let (sender, receiver) = channel();
+            std::thread::scope(|scope| {
+                for _ in 0..cores.min(files.len()) {
+                    let (sender, next, files) = (sender.clone(), &next, &files);
+                    let (somata, usual) = (&request.somata, &request.usual);
+                    scope.spawn(move || {
+                        loop {
+                            let index = next.fetch_add(1, Ordering::Relaxed);
+                            let Some(file) = files.get(index).filter(|_| !progress.is_canceled())
+                            else {
+                                break;
+                            };
+                            let soma = somata.iter().find(|(path, _)| path == file);
+                            let soma = soma.map_or(usual, |(_, soma)| soma).clone();
+                            let loaded = caught(|| load::load(file, soma));
+                            let loaded = loaded.map_err(|why| (file.clone(), why));
+                            progress.done.fetch_add(1, Ordering::Relaxed);
+                            let _ = sender.send((index, loaded));
+                        }
+                    });
+                }
+                drop(sender);
+                // In the order of the files, whoever was first: the list is the same every time.
+                let (mut early, mut next) = (BTreeMap::new(), 0);
+                for (index, loaded) in receiver {
+                    early.insert(index, loaded);
+                    while let Some(loaded) = early.remove(&next) {
+                        send(Message::Loaded(next, Box::new(loaded)));
+                        next += 1;
+                    }
+                }
+            });
+            Ok(())
+        });
+        self.loading = Some(task);
+    }
+
+    /// Reads a file again.
+    pub(crate) fn reload(&mut self, id: SourceId, file: PathBuf, soma: SomaEdit) {
+        let progress = Progress::new("reading", "files", 1);
+        let task = self.start(progress, move |_| load::load(&file, soma));
+        self.reloading.push((id, task));
+    }
+
+    /// Whether a cell is being meshed again.
+    pub(crate) fn is_remeshing(&self) -> bool {
+        self.remeshing.is_some()
+    }
+
+    /// Meshes a cell again, with another soma.
+    pub(crate) fn remesh(&mut self, id: SourceId, morphology: Arc<Morphology>, edit: SomaEdit) {
+        let options = edit.options();
+        let task = self.start(Progress::new("meshing", "cells", 1), move |_| {
+            generate(&morphology, &options).map_err(|e| e.to_string())
+        });
+        self.remeshing = Some((id, edit, task));
+    }
+
+    /// Saves something; `work` says how far it is and looks when to stop.
+    pub(crate) fn save(
+        &mut self,
+        progress: Progress,
+        work: impl FnOnce(&Progress) -> Result<String, String> + Send + 'static,
+    ) {
+        self.saving = Some(self.start(progress, work));
+    }
+
+    /// Looks after these files from now on, every two seconds, on a thread of its own.
+    pub(crate) fn watch(&mut self, files: Vec<Watched>) {
+        let any = !files.is_empty();
+        *self.watched.lock().unwrap_or_else(PoisonError::into_inner) = files;
+        if !any || self.watching.is_some() {
+            return;
+        }
+        let (watched, send) = (Arc::downgrade(&self.watched), self.teller());
+        let task = self.start(Progress::new("watching", "files", 0), move |_| {
+            let mut known: Vec<(SourceId, Option<Stale>)> = Vec::new();
+            loop {
+                std::thread::sleep(Duration::from_secs(2));
+                // The window is closed, or all files are.
+                let Some(watched) = watched.upgrade() else {
+                    return Ok(());
+                };
+                let files = watched
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .clone();
+                if files.is_empty() {
+                    return Ok(());
+                }
+                let now: Vec<_> = files
+                    .iter()
+                    .map(|(id, file, written)| (*id, load::stale(file, *written)))
+                    .collect();
+                if now != known && (now.iter().any(|(_, s)| s.is_some()) || !known.is_empty()) {
+                    send(Message::Files(now.clone()));
+                }
+                known = now;
+            }
+        });
+        self.watching = Some(task);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::settings::Settings;
+    use crate::model::state::State;
+
+    #[test]
+    fn a_task_that_panics_shows_its_text_as_a_problem() {
+        let mut worker = Worker::new(|| {});
+        worker.save(Progress::new("writing", "files", 1), |_| {
+            panic!("patch {} has no corner", 5)
+        });
+        let message = loop {
+            if let Some(message) = worker.messages().pop() {
+                break message;
+            }
+            std::thread::yield_now();
+        };
+        assert!(!worker.is_busy());
+        let mut state = State::new(Settings::default());
+        let Message::Saved(result) = message else {
+            panic!("{message:?}");
+        };
+        state.note_saved(result);
+        let [problem] = &state.problems[..] else {
+            panic!("{:?}", state.problems);
+        };
+        assert_eq!(problem.what, "save");
+        assert!(problem.why.contains("patch 5 has no corner"), "{problem:?}");
+        assert!(state.status.starts_with("Not saved"), "{}", state.status);
+    }
+}

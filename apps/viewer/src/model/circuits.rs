@@ -1,0 +1,76 @@
+//! Circuits that are open: what their nodes have beside shape and place.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use neurotess::circuit::{Circuit, NodeRef};
+use neurotess::coloring::{self, Node};
+
+use crate::model::ids::{CircuitId, CircuitNode};
+
+/// A circuit and the file or folder that was opened.
+pub(crate) type Opened = (PathBuf, Arc<Circuit>);
+
+/// All circuits that are open or were.
+#[derive(Clone, Debug, Default)]
+pub struct Circuits(Vec<Opened>);
+
+impl Circuits {
+    /// Adds one.
+    pub fn add(&mut self, opened: Opened) -> CircuitId {
+        self.0.push(opened);
+        CircuitId(self.0.len() as u32 - 1)
+    }
+
+    /// The file or folder of one.
+    pub fn file(&self, id: CircuitId) -> Option<&Path> {
+        self.0.get(id.0 as usize).map(|(file, _)| file.as_path())
+    }
+
+    /// One of them.
+    pub fn get(&self, id: CircuitId) -> Option<&Circuit> {
+        self.0.get(id.0 as usize).map(|(_, circuit)| &**circuit)
+    }
+
+    /// All with their numbers.
+    pub fn iter(&self) -> impl Iterator<Item = (CircuitId, &Circuit)> {
+        let circuits = self.0.iter().map(|(_, circuit)| &**circuit);
+        (0..).map(CircuitId).zip(circuits)
+    }
+
+    /// A node with its circuit, as colors want it.
+    pub fn node(&self, of: CircuitNode) -> Option<Node<'_>> {
+        let (circuit, node) = (self.get(of.circuit)?, of.node);
+        Some(Node { circuit, node })
+    }
+
+    /// Attributes that colors can show.
+    pub fn attributes(&self) -> Vec<String> {
+        coloring::attributes(self.iter().map(|(_, circuit)| circuit))
+    }
+
+    /// Files of the reports that circuits name, with the names.
+    pub fn reports(&self) -> Vec<(String, PathBuf)> {
+        let all = self.iter().flat_map(|(_, circuit)| &circuit.reports);
+        all.map(|(name, file)| (name.clone(), file.clone()))
+            .collect()
+    }
+}
+
+/// The node of an id in a population.
+pub(crate) fn node(circuit: &Circuit, population: &str, id: u64) -> Option<NodeRef> {
+    let place = circuit
+        .populations
+        .iter()
+        .position(|p| p.name == population)?;
+    let ids = &circuit.populations[place].ids;
+    // Most files count from 0.
+    let own = usize::try_from(id)
+        .ok()
+        .filter(|&row| ids.get(row) == Some(&id));
+    let row = own.or_else(|| ids.iter().position(|&other| other == id))?;
+    Some(NodeRef {
+        population: place as u32,
+        row: row as u32,
+    })
+}

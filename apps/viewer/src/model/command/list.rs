@@ -1,0 +1,265 @@
+//! Commands as they stand in menus and the palette.
+
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use neurotess::render::Side;
+use neurotess::synth::Kind;
+
+use super::{Ask, Command, Edit, Tab};
+
+/// A command that stands in menus and the palette.
+pub struct Listed {
+    /// What it is called.
+    pub title: &'static str,
+    /// The keys for it.
+    pub keys: Option<KeyboardShortcut>,
+    /// What it runs.
+    pub command: Command,
+}
+
+const PLAIN: Modifiers = Modifiers::NONE;
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers {
+    shift: true,
+    ..Modifiers::COMMAND
+};
+
+/// All commands that need nothing more said, by menu. `y_down` and so on: as they are now.
+pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
+    let item = |title, keys: Option<(Modifiers, Key)>, command| Listed {
+        title,
+        keys: keys.map(|(modifiers, key)| KeyboardShortcut::new(modifiers, key)),
+        command,
+    };
+    let samples = Kind::ALL.into_iter().zip(SAMPLE_TITLES);
+    let samples = samples.map(|(kind, title)| item(title, None, Command::OpenSample(kind)));
+    let choose =
+        |on: bool, to_on: &'static str, to_off: &'static str| if on { to_off } else { to_on };
+    vec![
+        (
+            "File",
+            vec![
+                item("Open…", Some((CTRL, Key::O)), Command::AskFiles(Ask::Open)),
+                item(
+                    "Open report or spikes…",
+                    Some((CTRL_SHIFT, Key::O)),
+                    Command::AskFiles(Ask::Report),
+                ),
+                item("Close the report", None, Edit::SetReport(None).into()),
+                item(
+                    "Save session…",
+                    Some((CTRL, Key::S)),
+                    Command::AskFiles(Ask::SaveSession),
+                ),
+                item(
+                    "Save mesh, picture or film…",
+                    Some((CTRL, Key::E)),
+                    Command::Show(Tab::Save),
+                ),
+                item(
+                    "Reload changed files",
+                    Some((CTRL, Key::R)),
+                    Command::Reload,
+                ),
+                item("Stop reading or saving", None, Command::Cancel),
+                item("Quit", Some((CTRL, Key::Q)), Command::Quit),
+            ],
+        ),
+        ("Samples", samples.collect()),
+        (
+            "Edit",
+            vec![
+                item("Undo", Some((CTRL, Key::Z)), Command::Undo),
+                item("Redo", Some((CTRL_SHIFT, Key::Z)), Command::Redo),
+                item("Select all", Some((CTRL, Key::A)), Edit::SelectAll.into()),
+                item(
+                    "Select none",
+                    Some((PLAIN, Key::Escape)),
+                    Edit::SelectNone.into(),
+                ),
+                item(
+                    "Invert the selection",
+                    Some((CTRL, Key::I)),
+                    Edit::SelectOthers.into(),
+                ),
+                item(
+                    "Remove selected from the list",
+                    Some((PLAIN, Key::Delete)),
+                    Edit::Remove.into(),
+                ),
+            ],
+        ),
+        (
+            "View",
+            vec![
+                item(
+                    "Home: everything, from the front",
+                    Some((PLAIN, Key::Home)),
+                    Command::Home,
+                ),
+                item(
+                    "Zoom to the selection",
+                    Some((PLAIN, Key::F)),
+                    Command::Focus,
+                ),
+                item(
+                    "Front",
+                    Some((PLAIN, Key::Num1)),
+                    Command::Look(Side::Front),
+                ),
+                item(
+                    "Right",
+                    Some((PLAIN, Key::Num2)),
+                    Command::Look(Side::Right),
+                ),
+                item("Top", Some((PLAIN, Key::Num3)), Command::Look(Side::Top)),
+                item("Back", Some((CTRL, Key::Num1)), Command::Look(Side::Back)),
+                item("Left", Some((CTRL, Key::Num2)), Command::Look(Side::Left)),
+                item(
+                    "Bottom",
+                    Some((CTRL, Key::Num3)),
+                    Command::Look(Side::Bottom),
+                ),
+                item(
+                    "From a corner",
+                    Some((PLAIN, Key::Num4)),
+                    Command::Look(Side::Iso),
+                ),
+                item("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
+                item(
+                    "Isolate selected",
+                    Some((PLAIN, Key::I)),
+                    Edit::Isolate.into(),
+                ),
+                item("Show all", Some((CTRL, Key::H)), Edit::ShowAll.into()),
+                item(
+                    choose(now.y_down, "y axis down (electron microscopy)", "y axis up"),
+                    Some((PLAIN, Key::Y)),
+                    Command::SetYDown(!now.y_down),
+                ),
+                item(
+                    choose(now.grid, "Lay out side by side", "Place as traced"),
+                    Some((PLAIN, Key::G)),
+                    Edit::SetGrid(!now.grid).into(),
+                ),
+                item(
+                    choose(
+                        now.frozen,
+                        "Freeze the level of detail",
+                        "Unfreeze the level of detail",
+                    ),
+                    Some((CTRL, Key::F)),
+                    Command::SetFrozen(!now.frozen),
+                ),
+                item(
+                    choose(now.playing, "Play the report", "Stop the report"),
+                    Some((PLAIN, Key::Space)),
+                    Command::TogglePlay,
+                ),
+                item(
+                    "Previous frame",
+                    Some((PLAIN, Key::Comma)),
+                    Command::StepTime(-1),
+                ),
+                item(
+                    "Next frame",
+                    Some((PLAIN, Key::Period)),
+                    Command::StepTime(1),
+                ),
+                item(
+                    "Keep this view for a film",
+                    Some((PLAIN, Key::K)),
+                    Command::AddKeyView,
+                ),
+            ],
+        ),
+        (
+            "Window",
+            vec![
+                item(
+                    "Inspect",
+                    Some((CTRL_SHIFT, Key::I)),
+                    Command::Show(Tab::Inspect),
+                ),
+                item(
+                    "Soma editor",
+                    Some((CTRL_SHIFT, Key::S)),
+                    Command::Show(Tab::Soma),
+                ),
+                item("Look", Some((CTRL_SHIFT, Key::L)), Command::Show(Tab::Look)),
+                item(
+                    "Level of detail",
+                    Some((CTRL_SHIFT, Key::D)),
+                    Command::Show(Tab::Detail),
+                ),
+                item(
+                    choose(now.dark, "Dark theme", "Light theme"),
+                    None,
+                    Command::SetDark(!now.dark),
+                ),
+                item(
+                    "Show or hide the panels",
+                    Some((PLAIN, Key::Tab)),
+                    Command::TogglePanels,
+                ),
+                item("What went wrong", None, Command::ToggleProblems),
+            ],
+        ),
+        (
+            "Help",
+            vec![
+                item(
+                    "Find a command…",
+                    Some((CTRL, Key::P)),
+                    Command::TogglePalette,
+                ),
+                item(
+                    "Keys and mouse",
+                    Some((PLAIN, Key::Questionmark)),
+                    Command::ToggleKeys,
+                ),
+            ],
+        ),
+    ]
+}
+
+const SAMPLE_TITLES: [&str; 6] = [
+    "Pyramidal cell",
+    "Purkinje cell",
+    "Granule cell",
+    "Basket cell",
+    "Motor neuron",
+    "Star-shaped interneuron",
+];
+
+/// What titles of commands depend on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Toggles {
+    /// y runs down.
+    pub y_down: bool,
+    /// Side by side.
+    pub grid: bool,
+    /// Levels are frozen.
+    pub frozen: bool,
+    /// Dark theme.
+    pub dark: bool,
+    /// A recording's time goes on.
+    pub playing: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_keys_are_used_twice() {
+        let menus = listed(&Toggles::default());
+        let keys: Vec<_> = menus
+            .iter()
+            .flat_map(|(_, items)| items)
+            .filter_map(|i| i.keys)
+            .collect();
+        for (i, a) in keys.iter().enumerate() {
+            assert!(!keys[..i].contains(a), "{a:?}");
+        }
+    }
+}

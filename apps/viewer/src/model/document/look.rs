@@ -1,0 +1,256 @@
+//! Colors, light, what is shown of cells.
+
+use neurotess::coloring;
+use neurotess::render::{ColorMap, Light, Palette, Rgb};
+use serde::{Deserialize, Serialize};
+
+/// Background unless another one is chosen: a light gray, before which neither pale lines nor dark somata
+/// are as hard as before white.
+pub const PAPER: Rgb = [238, 240, 243];
+
+/// Colors, light, what is shown of cells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Look {
+    /// What colors tell.
+    #[serde(alias = "colour_by")]
+    pub color_by: ColorBy,
+    /// Name of the attribute, where that is what they tell.
+    pub attribute: String,
+    /// Numbers at both ends of the color map; none: those that fit.
+    pub range: Option<[f32; 2]>,
+    /// After this time (ms) the flash of a spike has a third of its light.
+    pub decay: f64,
+    /// Colors of types.
+    #[serde(with = "palette")]
+    pub palette: Palette,
+    /// Colors of numbers.
+    #[serde(with = "color_map", alias = "colour_map")]
+    pub color_map: ColorMap,
+    /// Whether the end of the color map that is as light or dark as the background is left out.
+    pub trim_map: bool,
+    /// Behind everything.
+    pub background: Rgb,
+    /// What surfaces are lit by.
+    pub light: Lighting,
+    /// Whether corners darken one another.
+    pub occlusion: bool,
+    /// Triangles.
+    #[serde(alias = "wires")]
+    pub wireframe: bool,
+    /// What colors mean.
+    pub legend: bool,
+    /// A length to compare with.
+    pub scale_bar: bool,
+    /// Directions of x, y and z.
+    pub axes: bool,
+    /// A color of its own for what is selected.
+    #[serde(alias = "mark_selected")]
+    pub highlight_selected: bool,
+    /// Whether one looks through what is not selected.
+    #[serde(alias = "faint_others")]
+    pub ghost_others: bool,
+    /// Share of what is not selected that is still seen.
+    #[serde(alias = "faint")]
+    pub ghost_opacity: f32,
+    /// What is drawn of cells.
+    pub parts: VisibleParts,
+    /// What is cut away.
+    pub cut: Option<Cut>,
+}
+
+/// What colors tell; see [`coloring::ColorBy`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum ColorBy {
+    #[default]
+    Type,
+    Neuron,
+    Neurite,
+    Section,
+    #[serde(rename = "order", alias = "branchorder")]
+    BranchOrder,
+    Radius,
+    #[serde(rename = "depth", alias = "pathdistance")]
+    PathDistance,
+    Attribute,
+    Value,
+}
+
+impl ColorBy {
+    /// All, with names for people.
+    pub const ALL: [(Self, &'static str); 9] = [
+        (Self::Type, "type"),
+        (Self::Neuron, "neuron"),
+        (Self::Neurite, "neurite"),
+        (Self::Section, "section"),
+        (Self::BranchOrder, "branch order"),
+        (Self::Radius, "radius"),
+        (Self::PathDistance, "path distance"),
+        (Self::Attribute, "attribute"),
+        (Self::Value, "values of a report"),
+    ];
+
+    /// Whether tracings alone have it.
+    pub fn is_of_tracings(self) -> bool {
+        self.in_library().is_some()
+    }
+
+    /// Whether it differs among neurons of one tracing.
+    pub fn is_of_neurons(self) -> bool {
+        matches!(self, Self::Neuron | Self::Attribute | Self::Value)
+    }
+
+    /// Whether it may be a number, whose range can be fixed.
+    pub fn has_range(self) -> bool {
+        self.is_number() || self == Self::Attribute
+    }
+
+    /// Whether it is a number, with a color map.
+    pub fn is_number(self) -> bool {
+        matches!(
+            self,
+            Self::BranchOrder | Self::Radius | Self::PathDistance | Self::Value
+        )
+    }
+
+    /// As the library has it; none: it is no matter of a tracing alone.
+    pub(crate) fn in_library(self) -> Option<coloring::ColorBy> {
+        Some(match self {
+            Self::Type => coloring::ColorBy::Type,
+            Self::Neuron => coloring::ColorBy::Neuron,
+            Self::Neurite => coloring::ColorBy::Neurite,
+            Self::Section => coloring::ColorBy::Section,
+            Self::BranchOrder => coloring::ColorBy::BranchOrder,
+            Self::Radius => coloring::ColorBy::Radius,
+            Self::PathDistance => coloring::ColorBy::PathDistance,
+            Self::Attribute | Self::Value => return None,
+        })
+    }
+}
+
+/// What surfaces are lit by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Lighting {
+    /// From the upper left.
+    #[default]
+    Soft,
+    /// Not at all.
+    Flat,
+    /// From a direction (degrees): to the right, and upwards.
+    From {
+        /// From −180 to 180; 0 is from the viewer.
+        right: f32,
+        /// From −90 to 90.
+        up: f32,
+    },
+}
+
+impl Lighting {
+    pub(crate) fn light(self) -> Light {
+        match self {
+            Self::Soft => Light::Soft,
+            Self::Flat => Light::Flat,
+            Self::From { right, up } => {
+                let (right, up) = (right.to_radians(), up.to_radians());
+                Light::From(glam::Vec3::new(
+                    right.sin() * up.cos(),
+                    up.sin(),
+                    right.cos() * up.cos(),
+                ))
+            }
+        }
+    }
+}
+
+/// What is drawn of cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum VisibleParts {
+    /// All.
+    #[default]
+    All,
+    /// Somata.
+    Soma,
+    /// Neurites.
+    Neurites,
+}
+
+/// A plane across the scene: what lies behind it is cut away.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cut {
+    /// 0: x, 1: y, 2: z.
+    pub axis: usize,
+    /// Where, from 0 to 1 through the scene.
+    pub place: f32,
+    /// The other side is cut away.
+    pub flipped: bool,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            color_by: ColorBy::Type,
+            attribute: String::new(),
+            range: None,
+            decay: coloring::DECAY,
+            palette: Palette::default(),
+            color_map: ColorMap::default(),
+            trim_map: false,
+            background: PAPER,
+            light: Lighting::Soft,
+            occlusion: true,
+            wireframe: false,
+            legend: true,
+            scale_bar: true,
+            axes: true,
+            highlight_selected: false,
+            ghost_others: false,
+            ghost_opacity: 0.25,
+            parts: VisibleParts::All,
+            cut: None,
+        }
+    }
+}
+
+macro_rules! by_name {
+    ($module:ident, $type:ty) => {
+        mod $module {
+            use serde::{Deserialize, Deserializer, Serializer};
+
+            pub(super) fn serialize<S: Serializer>(
+                value: &$type,
+                serializer: S,
+            ) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(value.name())
+            }
+
+            pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+                deserializer: D,
+            ) -> Result<$type, D::Error> {
+                String::deserialize(deserializer)?
+                    .parse()
+                    .map_err(serde::de::Error::custom)
+            }
+        }
+    };
+}
+
+by_name!(palette, neurotess::render::Palette);
+by_name!(color_map, neurotess::render::ColorMap);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_of_earlier_versions_are_read() {
+        let text = "colour_by = 'depth'\nwires = true\nmark_selected = true\nfaint_others = true\nfaint = 0.5";
+        let look: Look = toml::from_str(text).expect("read");
+        assert_eq!(look.color_by, ColorBy::PathDistance);
+        assert!(look.wireframe && look.highlight_selected && look.ghost_others);
+        assert_eq!(look.ghost_opacity, 0.5);
+    }
+}

@@ -1,0 +1,165 @@
+//! What can be undone and is saved: the cells that are shown and how.
+
+mod detail;
+mod look;
+mod neurons;
+mod placement;
+mod soma;
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use neurotess::render::Placement;
+
+use crate::model::revision::Tracked;
+
+pub use crate::model::ids::{CircuitNode, SourceId};
+pub use detail::{Detail, LodKind};
+pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
+pub use neurons::{NeuronRevisions, Neurons};
+pub(crate) use placement::PlacementEntry;
+pub use soma::{Method, SomaEdit};
+
+/// All that an edit changes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// What is shown, in the order of the list.
+    pub neurons: Neurons,
+    /// Somata that are not as usual, by source.
+    pub somata: Tracked<Vec<(SourceId, SomaEdit)>>,
+    /// Colors, light, what is shown of cells.
+    pub look: Look,
+    /// How finely.
+    pub detail: Detail,
+    /// Side by side instead of where they were traced.
+    pub grid: bool,
+    /// The recording whose values can be shown.
+    pub report: Option<PathBuf>,
+}
+
+/// A tracing somewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Neuron {
+    /// Its tracing.
+    pub source: SourceId,
+    /// What it is in its circuit, if it is of one.
+    pub node: Option<CircuitNode>,
+    /// Name in the list.
+    pub name: String,
+    /// Where it was traced, or where its circuit puts it.
+    pub placement: Placement,
+    /// Not drawn.
+    pub hidden: bool,
+    /// Selected.
+    pub selected: bool,
+}
+
+impl Neuron {
+    /// A tracing where its own coordinates put it.
+    pub fn new(source: SourceId, name: String) -> Self {
+        Self {
+            source,
+            node: None,
+            name,
+            placement: Placement::default(),
+            hidden: false,
+            selected: false,
+        }
+    }
+}
+
+impl Document {
+    /// How the soma of a source is made.
+    pub fn soma(&self, source: SourceId) -> SomaEdit {
+        let edit = self.somata.iter().find(|(id, _)| *id == source);
+        edit.map(|(_, edit)| edit.clone()).unwrap_or_default()
+    }
+
+    /// Another soma for a source.
+    pub fn set_soma(&mut self, source: SourceId, edit: SomaEdit) {
+        if self.soma(source) == edit {
+            return;
+        }
+        self.somata.retain(|(id, _)| *id != source);
+        if edit != SomaEdit::default() {
+            self.somata.push((source, edit));
+            self.somata.sort_by_key(|(id, _)| *id);
+        }
+    }
+
+    /// Shows the values of a recording, or no longer.
+    pub fn set_report(&mut self, report: Option<PathBuf>) {
+        match (&report, self.look.color_by) {
+            (Some(_), _) => self.look.color_by = ColorBy::Value,
+            (None, ColorBy::Value) => self.look.color_by = ColorBy::default(),
+            (None, _) => {}
+        }
+        self.report = report;
+    }
+
+    /// Indices of what is selected.
+    pub fn selected(&self) -> impl Iterator<Item = usize> {
+        self.neurons.selected().iter().copied()
+    }
+}
+
+/// Placements of neurons side by side: `extents` are center and size (µm) of each in its own place.
+pub fn grid(neurons: &[Neuron], extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
+    let columns = (neurons.len() as f64).sqrt().ceil().max(1.0) as usize;
+    let widest = |axis: usize| {
+        extents
+            .iter()
+            .map(|(_, size)| size[axis])
+            .fold(0.0, f64::max)
+    };
+    let step = DVec3::new(1.1 * widest(0), 1.1 * widest(1), 0.0);
+    let place = |(i, (neuron, (center, _))): (usize, (&Neuron, &(DVec3, DVec3)))| {
+        let cell = DVec3::new((i % columns) as f64, -((i / columns) as f64), 0.0);
+        Placement {
+            translation: neuron.placement.translation + cell * step - *center,
+            ..neuron.placement
+        }
+    };
+    neurons.iter().zip(extents).enumerate().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neurons_on_a_grid_do_not_overlap() {
+        let neurons: Vec<Neuron> = (0..5)
+            .map(|i| Neuron::new(SourceId(i), String::new()))
+            .collect();
+        let extents: Vec<(DVec3, DVec3)> = (0..5)
+            .map(|i| {
+                (
+                    DVec3::splat(f64::from(i)),
+                    DVec3::new(10.0 + f64::from(i), 20.0, 5.0),
+                )
+            })
+            .collect();
+        let places = grid(&neurons, &extents);
+        for (i, (a, (center_a, size))) in places.iter().zip(&extents).enumerate() {
+            for (b, (center_b, other)) in places[..i].iter().zip(&extents) {
+                let apart = (a.translation + *center_a - b.translation - *center_b).abs();
+                let room = (*size + *other) / 2.0;
+                assert!(apart.x > room.x || apart.y > room.y, "{i}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_usual_soma_is_not_kept() {
+        let mut document = Document::default();
+        let edit = SomaEdit {
+            poisson: 0.1,
+            ..SomaEdit::default()
+        };
+        document.set_soma(SourceId(3), edit.clone());
+        assert_eq!(document.soma(SourceId(3)), edit);
+        document.set_soma(SourceId(3), SomaEdit::default());
+        assert!(document.somata.is_empty());
+    }
+}

@@ -1,0 +1,201 @@
+//! The list of neurons, with a stamp for each thing that others derive from it.
+
+use std::ops::Deref;
+
+use super::Neuron;
+use crate::model::ids::SourceId;
+use crate::model::revision::Revision;
+
+/// Neurons in the order of the list. They are read as a slice and changed by methods, which know what else
+/// must follow.
+#[derive(Clone, Debug, Default)]
+pub struct Neurons {
+    list: Vec<Neuron>,
+    selected: Vec<usize>,
+    hidden: usize,
+    sources: Vec<SourceId>,
+    selected_sources: Vec<SourceId>,
+    revisions: NeuronRevisions,
+}
+
+/// Stamps of the list of neurons.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NeuronRevisions {
+    /// Which there are, their order and where they are.
+    pub members: Revision,
+    /// Which are hidden.
+    pub hidden: Revision,
+    /// Which are selected.
+    pub selection: Revision,
+}
+
+impl Deref for Neurons {
+    type Target = [Neuron];
+
+    fn deref(&self) -> &[Neuron] {
+        &self.list
+    }
+}
+
+impl PartialEq for Neurons {
+    fn eq(&self, other: &Self) -> bool {
+        self.revisions == other.revisions || self.list == other.list
+    }
+}
+
+impl<'a> IntoIterator for &'a Neurons {
+    type Item = &'a Neuron;
+    type IntoIter = std::slice::Iter<'a, Neuron>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.list.iter()
+    }
+}
+
+impl FromIterator<Neuron> for Neurons {
+    fn from_iter<I: IntoIterator<Item = Neuron>>(neurons: I) -> Self {
+        let mut list = Self {
+            list: neurons.into_iter().collect(),
+            ..Self::default()
+        };
+        list.members_changed();
+        list
+    }
+}
+
+impl Neurons {
+    /// The stamps of now.
+    pub fn revisions(&self) -> NeuronRevisions {
+        self.revisions
+    }
+
+    /// Indices of what is selected, ascending.
+    pub fn selected(&self) -> &[usize] {
+        &self.selected
+    }
+
+    /// Number of hidden neurons.
+    pub fn hidden(&self) -> usize {
+        self.hidden
+    }
+
+    /// Tracings of the neurons, each once, sorted.
+    pub fn sources(&self) -> &[SourceId] {
+        &self.sources
+    }
+
+    /// Tracings of what is selected, each once, sorted.
+    pub fn selected_sources(&self) -> &[SourceId] {
+        &self.selected_sources
+    }
+
+    /// Adds a neuron at the end.
+    pub fn push(&mut self, neuron: Neuron) {
+        if let Err(at) = self.sources.binary_search(&neuron.source) {
+            self.sources.insert(at, neuron.source);
+        }
+        if neuron.selected {
+            self.selected.push(self.list.len());
+            if let Err(at) = self.selected_sources.binary_search(&neuron.source) {
+                self.selected_sources.insert(at, neuron.source);
+            }
+        }
+        self.hidden += usize::from(neuron.hidden);
+        self.list.push(neuron);
+        self.stamp_all();
+    }
+
+    /// Keeps the neurons that fit.
+    pub fn retain(&mut self, keeps: impl FnMut(&Neuron) -> bool) {
+        let before = self.list.len();
+        self.list.retain(keeps);
+        if self.list.len() != before {
+            self.members_changed();
+        }
+    }
+
+    /// Hides and selects: `state` says of each neuron whether it is hidden, and whether it is selected.
+    pub fn set_states(&mut self, mut state: impl FnMut(usize, &Neuron) -> (bool, bool)) {
+        let (mut hides, mut selects) = (false, false);
+        for (i, neuron) in self.list.iter_mut().enumerate() {
+            let (hidden, selected) = state(i, neuron);
+            hides |= neuron.hidden != hidden;
+            selects |= neuron.selected != selected;
+            (neuron.hidden, neuron.selected) = (hidden, selected);
+        }
+        if hides {
+            self.hidden = self.list.iter().filter(|n| n.hidden).count();
+            self.revisions.hidden = Revision::next();
+        }
+        if selects {
+            self.find_selected();
+            self.revisions.selection = Revision::next();
+        }
+    }
+
+    fn members_changed(&mut self) {
+        self.hidden = self.list.iter().filter(|n| n.hidden).count();
+        self.sources = distinct(self.list.iter());
+        self.find_selected();
+        self.stamp_all();
+    }
+
+    fn find_selected(&mut self) {
+        let neurons = self.list.iter().enumerate();
+        self.selected = neurons
+            .filter(|(_, n)| n.selected)
+            .map(|(i, _)| i)
+            .collect();
+        self.selected_sources = distinct(self.list.iter().filter(|n| n.selected));
+    }
+
+    fn stamp_all(&mut self) {
+        self.revisions = NeuronRevisions {
+            members: Revision::next(),
+            hidden: Revision::next(),
+            selection: Revision::next(),
+        };
+    }
+}
+
+fn distinct<'a>(neurons: impl Iterator<Item = &'a Neuron>) -> Vec<SourceId> {
+    let mut sources: Vec<SourceId> = neurons.map(|n| n.source).collect();
+    sources.sort_unstable();
+    sources.dedup();
+    sources
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_change_stamps_what_it_changes() {
+        let neuron = |i: u32| Neuron::new(SourceId(i % 2), format!("n{i}"));
+        let mut neurons: Neurons = (0..4).map(neuron).collect();
+        let before = neurons.clone();
+        neurons.set_states(|i, n| (n.hidden, i == 2));
+        let (old, now) = (before.revisions(), neurons.revisions());
+        assert_eq!((old.members, old.hidden), (now.members, now.hidden));
+        assert_ne!(old.selection, now.selection);
+        assert_eq!(
+            (neurons.selected(), neurons.selected_sources()),
+            (&[2][..], &[SourceId(0)][..])
+        );
+        neurons.set_states(|i, n| (i == 2, n.selected));
+        assert_eq!(neurons.revisions().selection, now.selection);
+        assert_ne!(neurons.revisions().hidden, now.hidden);
+        assert_eq!(neurons.hidden(), 1);
+        let same = neurons.clone();
+        neurons.set_states(|_, n| (n.hidden, n.selected));
+        assert_eq!(neurons.revisions(), same.revisions(), "nothing changed");
+        neurons.retain(|n| !n.selected);
+        assert_eq!(
+            (neurons.len(), neurons.hidden(), neurons.selected().len()),
+            (3, 0, 0)
+        );
+        assert_ne!(neurons.revisions().members, now.members);
+        neurons.push(neuron(7));
+        assert_eq!(neurons.sources(), [SourceId(0), SourceId(1)]);
+    }
+}

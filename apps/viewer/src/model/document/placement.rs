@@ -1,0 +1,44 @@
+//! Where a neuron stands, as a session has it.
+
+use glam::{DQuat, DVec3};
+use neurotess::render::Placement;
+use serde::{Deserialize, Serialize};
+
+/// Rotation and place as a session has them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PlacementEntry {
+    pub(crate) rotation: [f64; 4],
+    pub(crate) scale: f64,
+    pub(crate) translation: [f64; 3],
+}
+
+impl From<Placement> for PlacementEntry {
+    fn from(p: Placement) -> Self {
+        Self {
+            rotation: p.rotation.to_array(),
+            scale: p.scale,
+            translation: p.translation.to_array(),
+        }
+    }
+}
+
+impl From<PlacementEntry> for Placement {
+    fn from(p: PlacementEntry) -> Self {
+        let rotation = DQuat::from_array(p.rotation);
+        Self {
+            rotation: if rotation.is_finite() && rotation.length() > 1e-6 {
+                rotation.normalize()
+            } else {
+                DQuat::IDENTITY
+            },
+            scale: if p.scale.is_finite() && p.scale > 0.0 {
+                p.scale
+            } else {
+                1.0
+            },
+            translation: DVec3::from_array(
+                p.translation.map(|c| if c.is_finite() { c } else { 0.0 }),
+            ),
+        }
+    }
+}

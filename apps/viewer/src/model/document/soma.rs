@@ -1,0 +1,130 @@
+//! How a soma is made.
+
+use std::collections::BTreeMap;
+
+use neurotess::generate::{GenerateOptions, SomaMethod, SphereKind};
+use serde::{Deserialize, Serialize};
+
+/// How a soma is made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SomaEdit {
+    /// The method.
+    pub method: Method,
+    /// Poisson's ratio, 0 to 0.49.
+    pub poisson: f64,
+    /// Factor on the radius.
+    pub scale: f64,
+    /// The paper's octahedron instead of a cube.
+    pub octahedron: bool,
+    /// Resolution of the reference sphere; 0: what fits.
+    pub level: u32,
+    /// Positions of first rings by the neurite's number, from 0: see
+    /// [`GenerateOptions::rings`]. In a session: a list, with numbers from 1 as people see them.
+    #[serde(with = "rings", skip_serializing_if = "BTreeMap::is_empty")]
+    pub rings: BTreeMap<u32, f64>,
+}
+
+/// How a soma is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// A sphere deformed by elasticity.
+    #[default]
+    Elastic,
+    /// A sphere.
+    Sphere,
+    /// LiveMesh's radius function.
+    Profile,
+    /// None.
+    None,
+}
+
+impl Default for SomaEdit {
+    fn default() -> Self {
+        Self {
+            method: Method::Elastic,
+            poisson: 0.3,
+            scale: 1.0,
+            octahedron: false,
+            level: 0,
+            rings: BTreeMap::new(),
+        }
+    }
+}
+
+impl SomaEdit {
+    /// The generator's options.
+    pub fn options(&self) -> GenerateOptions {
+        GenerateOptions {
+            soma: match self.method {
+                Method::Elastic => SomaMethod::Fem,
+                Method::Sphere => SomaMethod::Sphere,
+                Method::Profile => SomaMethod::Profile,
+                Method::None => SomaMethod::None,
+            },
+            poisson: self.poisson.clamp(0.0, 0.49),
+            soma_scale: self.scale.clamp(0.05, 20.0),
+            sphere: match self.octahedron {
+                true => SphereKind::Octahedron,
+                false => SphereKind::Cube,
+            },
+            sphere_level: (self.level > 0).then(|| {
+                let (low, high) = self.levels();
+                self.level.clamp(low, high)
+            }),
+            rings: self.rings.clone(),
+            kinds: None,
+        }
+    }
+
+    /// Whether first rings can be placed.
+    pub fn places_rings(&self) -> bool {
+        matches!(self.method, Method::Elastic | Method::Profile)
+    }
+
+    /// Least and greatest resolution of the sphere.
+    pub fn levels(&self) -> (u32, u32) {
+        if self.octahedron { (1, 5) } else { (2, 32) }
+    }
+}
+
+mod rings {
+    use std::collections::BTreeMap;
+
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Ring {
+        neurite: u32,
+        position: f64,
+    }
+
+    pub(super) fn serialize<S: Serializer>(
+        rings: &BTreeMap<u32, f64>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let rings = rings.iter().map(|(&n, &position)| Ring {
+            neurite: n + 1,
+            position,
+        });
+        serializer.collect_seq(rings)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<BTreeMap<u32, f64>, D::Error> {
+        let rings = Vec::<Ring>::deserialize(deserializer)?;
+        rings
+            .into_iter()
+            .map(|ring| match ring.neurite.checked_sub(1) {
+                Some(neurite) if (0.0..=2.0).contains(&ring.position) => {
+                    Ok((neurite, ring.position))
+                }
+                Some(_) => Err(serde::de::Error::custom("positions are from 0 to 2")),
+                None => Err(serde::de::Error::custom("neurites are counted from 1")),
+            })
+            .collect()
+    }
+}

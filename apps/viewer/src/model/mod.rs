@@ -1,0 +1,18 @@
+//! What is open and how it shows: values and the commands that change them. No threads, no device, no
+//! widgets.
+
+pub(crate) mod circuits;
+pub mod command;
+pub mod document;
+pub(crate) mod film;
+pub(crate) mod history;
+pub(crate) mod ids;
+pub mod playback;
+pub(crate) mod revision;
+pub mod save;
+pub mod session;
+pub mod settings;
+pub mod sources;
+pub mod state;
+pub(crate) mod totals;
+pub mod view;

@@ -1,0 +1,392 @@
+//! Sessions: a file that people can read and change.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use neurotess::formats::read_regular;
+use neurotess::output::{Existing, write_whole};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::model::circuits::{self, Circuits};
+use crate::model::document::{Detail, Look, Neuron, PlacementEntry, SomaEdit};
+use crate::model::ids::{CircuitId, CircuitNode, SourceId};
+use crate::model::playback::Pace;
+use crate::model::state::State;
+use crate::model::view::View;
+
+/// Extension of sessions.
+pub const EXTENSION: &str = "neurotess";
+/// What stands in the file.
+const VERSION: u32 = 1;
+
+/// Why a session cannot be read. Displays without the file's name, which stands beside it in the window.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}{why}", .line.map_or(String::new(), |line| format!("line {line}: ")))]
+pub struct SessionError {
+    line: Option<usize>,
+    why: String,
+}
+
+impl SessionError {
+    /// `FILE:LINE: what: what to do`
+    pub fn of(&self, file: &Path) -> String {
+        let line = self.line.map_or(String::new(), |line| format!("{line}:"));
+        format!("{}:{line} {}", file.display(), self.why)
+    }
+}
+
+/// All that a session keeps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Session {
+    /// Of the format.
+    pub version: u32,
+    /// Side by side.
+    #[serde(default)]
+    pub grid: bool,
+    /// y runs down.
+    #[serde(default)]
+    pub y_down: bool,
+    /// From where.
+    #[serde(default)]
+    pub view: View,
+    /// Colors and light.
+    #[serde(default)]
+    pub look: Look,
+    /// How finely.
+    #[serde(default)]
+    pub detail: Detail,
+    /// Views of a film.
+    #[serde(default)]
+    pub key_view: Vec<View>,
+    /// The recording whose values can be shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub report: Option<PathBuf>,
+    /// Time and speed of it.
+    #[serde(default)]
+    pub playback: Pace,
+    /// Circuits that neurons are of.
+    #[serde(default)]
+    pub circuit: Vec<CircuitEntry>,
+    /// Tracings.
+    #[serde(default)]
+    pub file: Vec<FileEntry>,
+    /// What is shown of them.
+    #[serde(default)]
+    pub neuron: Vec<NeuronEntry>,
+}
+
+/// A circuit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitEntry {
+    /// Relative to the session's folder where it can be.
+    pub path: PathBuf,
+}
+
+/// A node of a circuit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NodeEntry {
+    /// Place of the circuit in the list, from 0.
+    pub circuit: usize,
+    /// The population's name.
+    pub population: String,
+    /// Its id there.
+    pub id: u64,
+}
+
+/// A tracing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileEntry {
+    /// Relative to the session's folder where it can be.
+    pub path: PathBuf,
+    /// How its soma is made; nothing: as usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub soma: Option<SomaEdit>,
+}
+
+/// A neuron.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NeuronEntry {
+    /// Name in the list.
+    pub name: String,
+    /// Place of its tracing in the list of files, from 0.
+    pub file: usize,
+    /// Not drawn.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub hidden: bool,
+    /// Selected.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub selected: bool,
+    /// What it is in its circuit; nothing: it is of none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<NodeEntry>,
+    /// Where it stands; nothing: where it was traced.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) place: Option<PlacementEntry>,
+}
+
+impl NeuronEntry {
+    /// The neuron of this entry, whose tracing is `source`.
+    pub(crate) fn neuron(&self, source: SourceId) -> Neuron {
+        Neuron {
+            placement: self.place.map(Into::into).unwrap_or_default(),
+            hidden: self.hidden,
+            selected: self.selected && !self.hidden,
+            ..Neuron::new(source, self.name.clone())
+        }
+    }
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// Whether a file is named as sessions are.
+pub fn is_session(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION))
+}
+
+impl Session {
+    /// What is there now. `folder`: where the session will lie.
+    pub fn of(state: &State, folder: &Path) -> Self {
+        let document = &state.document;
+        let mut used: Vec<_> = document.neurons.iter().map(|n| n.source).collect();
+        used.sort_unstable();
+        used.dedup();
+        let file = used.iter().filter_map(|&id| {
+            let source = state.sources.get(id)?;
+            let soma = document.soma(id);
+            Some(FileEntry {
+                path: relative(&source.file, folder),
+                soma: (soma != SomaEdit::default()).then_some(soma),
+            })
+        });
+        let mut circuits: Vec<CircuitId> = document
+            .neurons
+            .iter()
+            .filter_map(|neuron| Some(neuron.node?.circuit))
+            .collect();
+        circuits.sort_unstable();
+        circuits.dedup();
+        let node = |of: CircuitNode| {
+            let population = &state.circuits.get(of.circuit)?.populations;
+            let population = population.get(of.node.population as usize)?;
+            Some(NodeEntry {
+                circuit: circuits.binary_search(&of.circuit).ok()?,
+                population: population.name.clone(),
+                id: *population.ids.get(of.node.row as usize)?,
+            })
+        };
+        let circuit = circuits.iter().filter_map(|&id| {
+            let path = relative(state.circuits.file(id)?, folder);
+            Some(CircuitEntry { path })
+        });
+        let neuron = document.neurons.iter().map(|neuron| NeuronEntry {
+            node: neuron.node.and_then(node),
+            name: neuron.name.clone(),
+            file: used.binary_search(&neuron.source).unwrap_or(0),
+            hidden: neuron.hidden,
+            selected: neuron.selected,
+            place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
+        });
+        Self {
+            version: VERSION,
+            grid: document.grid,
+            y_down: state.settings.y_down,
+            view: state.view,
+            look: document.look.clone(),
+            detail: document.detail,
+            key_view: state.key_views.clone(),
+            report: document.report.as_ref().map(|file| relative(file, folder)),
+            playback: state.playback.pace,
+            circuit: circuit.collect(),
+            file: file.collect(),
+            neuron: neuron.collect(),
+        }
+    }
+
+    /// Reads a session; paths come back absolute or relative to where the program runs.
+    ///
+    /// # Errors
+    /// What is wrong, with its line, and what to do.
+    pub fn read(path: &Path) -> Result<Self, SessionError> {
+        let whole = |why: String| SessionError { line: None, why };
+        let text = read_regular(path).map_err(|e| whole(format!("cannot be read: {e}")))?;
+        let no_text = "not a session: it is no text; open the files themselves";
+        let text = String::from_utf8(text).map_err(|_| whole(no_text.into()))?;
+        let mut session: Self = toml::from_str(&text).map_err(|e| {
+            let line = e.span().map(|s| text[..s.start].lines().count().max(1));
+            let why = format!("{}: correct it, or open the files themselves", e.message());
+            SessionError { line, why }
+        })?;
+        if session.version > VERSION {
+            return Err(whole(format!(
+                "it is of version {}, this program knows {VERSION}: get a newer one",
+                session.version
+            )));
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let files = session.file.iter_mut().map(|entry| &mut entry.path);
+        let circuits = session.circuit.iter_mut().map(|entry| &mut entry.path);
+        for path in files.chain(circuits).chain(&mut session.report) {
+            if path.is_relative() && !path.to_string_lossy().starts_with("sample:") {
+                *path = folder.join(&*path);
+            }
+        }
+        if let Some(neuron) = session.neuron.iter().find(|n| n.file >= session.file.len()) {
+            return Err(whole(format!(
+                "neuron '{}' is of file {}, but there are {}: correct it",
+                neuron.name,
+                neuron.file,
+                session.file.len()
+            )));
+        }
+        Ok(session)
+    }
+
+    /// The node that a neuron is, if its circuit is open.
+    pub(crate) fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<CircuitNode> {
+        let said = entry.node.as_ref()?;
+        let file = self.circuit.get(said.circuit)?.path.as_path();
+        let mut ids = open.iter().map(|(id, _)| id);
+        let circuit = ids.find(|&id| open.file(id) == Some(file))?;
+        let node = circuits::node(open.get(circuit)?, &said.population, said.id)?;
+        Some(CircuitNode { circuit, node })
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What went wrong and what to do.
+    pub fn write(&self, path: &Path) -> Result<(), String> {
+        let text = toml::to_string_pretty(self).map_err(|e| e.to_string())?;
+        write_whole(path, Existing::Replace, |to| {
+            use std::io::Write;
+            writeln!(
+                to,
+                "# A session of neurotess: `neurotess view FILE` opens it. Lengths are µm."
+            )?;
+            to.write_all(text.as_bytes())
+        })
+        .map_err(|e| e.to_string())
+    }
+}
+
+/// A path as a session keeps it: relative to its folder if it lies below, so that both can be moved.
+fn relative(path: &Path, folder: &Path) -> PathBuf {
+    if path.to_string_lossy().starts_with("sample:") {
+        return path.to_path_buf();
+    }
+    let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let folder = fs::canonicalize(if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    });
+    let folder = folder.unwrap_or_default();
+    whole
+        .strip_prefix(&folder)
+        .map(Path::to_path_buf)
+        .unwrap_or(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::load;
+    use crate::model::command::{Command, Edit};
+    use crate::model::document::{ColorBy, Cut, Lighting};
+    use crate::model::settings::Settings;
+    use crate::model::sources;
+
+    fn state() -> State {
+        let mut state = State::new(Settings::default());
+        let star = sources::sample(neurotess::synth::Kind::Star);
+        let source = load::load(&star, SomaEdit::default()).expect("grown");
+        let id = state.sources.add(source);
+        for name in ["one", "two \"quoted\" µ"] {
+            let mut neuron = Neuron::new(id, name.into());
+            neuron.placement.translation.x = name.len() as f64;
+            state.document.neurons.push(neuron);
+        }
+        state.run(Edit::Select(vec![1], false));
+        state.run(Edit::SetHidden(0, true));
+        let soma = SomaEdit {
+            poisson: 0.12,
+            octahedron: true,
+            level: 3,
+            ..SomaEdit::default()
+        };
+        state.run(Edit::SetSoma(vec![id], soma));
+        state.run(Edit::SetRing(id, 0, Some(1.25)));
+        state.run(Edit::SetRing(id, 3, Some(0.0)));
+        let mut look = state.document.look.clone();
+        look.color_by = ColorBy::PathDistance;
+        look.light = Lighting::From {
+            right: 30.0,
+            up: -10.5,
+        };
+        look.cut = Some(Cut {
+            axis: 2,
+            place: 0.25,
+            flipped: true,
+        });
+        state.run(Edit::SetLook(Box::new(look)));
+        state.run(Command::AddKeyView);
+        state
+    }
+
+    #[test]
+    fn a_session_comes_back_as_it_was() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.neurotess");
+        let session = Session::of(&state(), folder.path());
+        session.write(&file).expect("written");
+        assert_eq!(Session::read(&file).expect("read"), session);
+        assert!(is_session(&file));
+    }
+
+    #[test]
+    fn broken_sessions_have_a_line_and_a_reason() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.neurotess");
+        for (text, said) in [
+            ("version = 1\ngrid = 7\n", "line 2"),
+            ("version = 1\nunknown = 7\n", "unknown"),
+            ("version = 99\n", "newer"),
+            ("not a session", "line 1"),
+            ("version = 1\n[[neuron]]\nname = 'a'\nfile = 3\n", "file 3"),
+            (
+                "version = 1\n[[file]]\npath = 'a'\nsoma.rings = [{ neurite = 1, position = 3 }]",
+                "from 0 to 2",
+            ),
+            (
+                "version = 1\n[[file]]\npath = 'a'\nsoma.rings = [{ neurite = 0, position = 1 }]",
+                "from 1",
+            ),
+        ] {
+            fs::write(&file, text).expect("written");
+            let error = Session::read(&file).expect_err("broken").to_string();
+            assert!(error.contains(said), "{error}");
+        }
+        assert!(Session::read(&folder.path().join("none.neurotess")).is_err());
+    }
+
+    #[test]
+    fn files_beside_the_session_are_named_relatively() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let cell = folder.path().join("cell.swc");
+        fs::write(&cell, "").expect("written");
+        assert_eq!(relative(&cell, folder.path()), PathBuf::from("cell.swc"));
+        assert_eq!(
+            relative(Path::new("sample:star"), folder.path()),
+            PathBuf::from("sample:star")
+        );
+    }
+}

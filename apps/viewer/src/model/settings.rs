@@ -1,0 +1,172 @@
+//! What is remembered between starts: a file in the user's configuration folder.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use directories::ProjectDirs;
+use neurotess::output::{Existing, write_whole};
+use serde::{Deserialize, Serialize};
+
+use crate::model::document::{ColorBy, Detail, Look};
+
+/// Most files in the recent list.
+const RECENT: usize = 12;
+/// What is to be remembered and is not yet written.
+static UNWRITTEN: Mutex<Option<Settings>> = Mutex::new(None);
+
+/// Environment variable that names another folder for it.
+pub const FOLDER_VARIABLE: &str = "NEUROTESS_CONFIG";
+
+/// What is remembered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Dark theme.
+    pub dark: bool,
+    /// y runs down.
+    pub y_down: bool,
+    /// Folder of the last file.
+    pub folder: PathBuf,
+    /// Files that were opened last, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// Size (pixels) of pictures that are saved.
+    pub picture_size: [u32; 2],
+    /// Factor on everything's size.
+    pub zoom: f32,
+    /// Colors and light.
+    pub look: Look,
+    /// How finely.
+    pub detail: Detail,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            dark: true,
+            y_down: false,
+            folder: std::env::current_dir().unwrap_or_default(),
+            recent: Vec::new(),
+            picture_size: [1920, 1440],
+            zoom: 1.0,
+            look: Look::default(),
+            detail: Detail::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Those of the last start; the usual ones where there are none or they cannot be understood, with
+    /// the reason.
+    pub fn load() -> (Self, Option<String>) {
+        let Some(file) = file() else {
+            return (Self::default(), None);
+        };
+        let Ok(text) = fs::read_to_string(&file) else {
+            return (Self::default(), None);
+        };
+        match toml::from_str::<Self>(&text) {
+            Ok(mut settings) => {
+                // A cut of another scene would hide half of this one.
+                settings.look.cut = None;
+                settings.look.ghost_others = false;
+                // So would colors of another circuit be.
+                settings.look.range = None;
+                if !settings.look.color_by.is_of_tracings() {
+                    settings.look.color_by = ColorBy::default();
+                }
+                (settings, None)
+            }
+            Err(e) => (
+                Self::default(),
+                Some(format!(
+                    "{} was not understood ({}): what was remembered is lost",
+                    file.display(),
+                    e.message()
+                )),
+            ),
+        }
+    }
+
+    /// Writes them.
+    ///
+    /// # Errors
+    /// Why that did not work.
+    pub fn save(&self) -> Result<(), String> {
+        let Some(file) = file() else {
+            return Ok(());
+        };
+        let text = toml::to_string_pretty(self).map_err(|e| e.to_string())?;
+        write_whole(&file, Existing::Replace, |to| to.write_all(text.as_bytes()))
+            .map_err(|e| e.to_string())
+    }
+
+    /// Notes them for whoever ends the program before the window closes.
+    pub(crate) fn note(&self) {
+        *UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.clone());
+    }
+
+    /// Puts files on top of the recent list.
+    pub fn remember_files(&mut self, paths: &[PathBuf]) {
+        for path in paths {
+            let whole = fs::canonicalize(path).unwrap_or_else(|_| path.clone());
+            if let Some(folder) = whole.parent() {
+                self.folder = folder.to_path_buf();
+            }
+            self.recent.retain(|known| *known != whole);
+            self.recent.insert(0, whole);
+        }
+        self.recent.truncate(RECENT);
+    }
+}
+
+/// Writes what is not yet written: for a program that is asked to end, from any thread.
+///
+/// # Errors
+/// Why that did not work.
+pub fn write_noted() -> Result<(), String> {
+    let noted = UNWRITTEN
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take();
+    noted.map_or(Ok(()), |settings| settings.save())
+}
+
+/// The folder of what is remembered.
+pub fn folder() -> Option<PathBuf> {
+    if let Some(folder) = std::env::var_os(FOLDER_VARIABLE) {
+        return Some(PathBuf::from(folder));
+    }
+    let dirs = ProjectDirs::from("", "", "neurotess")?;
+    Some(dirs.config_dir().to_path_buf())
+}
+
+fn file() -> Option<PathBuf> {
+    folder().map(|folder| folder.join(Path::new("viewer.toml")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_remembered_survives_a_round_trip() {
+        let mut settings = Settings {
+            dark: false,
+            ..Settings::default()
+        };
+        for i in 0..20 {
+            settings.remember_files(&[PathBuf::from(format!("/a/{i}.swc"))]);
+        }
+        settings.remember_files(&[PathBuf::from("/a/15.swc")]);
+        assert_eq!(settings.recent.len(), RECENT);
+        assert_eq!(settings.recent[0], PathBuf::from("/a/15.swc"));
+        let text = toml::to_string_pretty(&settings).expect("written");
+        assert_eq!(toml::from_str::<Settings>(&text).expect("read"), settings);
+        assert_eq!(
+            toml::from_str::<Settings>("dark = false").map(|s| s.dark),
+            Ok(false)
+        );
+    }
+}

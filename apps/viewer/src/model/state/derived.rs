@@ -1,0 +1,167 @@
+//! What follows from the state and takes time that grows with the number of neurons: kept until what it
+//! follows from has another stamp.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use neurotess::render::{BoundingSphere, Placement};
+
+use super::State;
+use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
+use crate::model::revision::{Memo, Revision};
+use crate::model::sources::extent;
+use crate::model::totals::{self, Totals};
+
+/// From so many neurons on, a few spheres around each will do.
+const MANY: usize = 64;
+
+/// What placements depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PlacementsKey {
+    /// Of the neurons.
+    pub(crate) members: Revision,
+    /// Of the meshes, if neurons are side by side.
+    grid: Option<Revision>,
+}
+
+/// What the bounding spheres of all that shows depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SpheresKey {
+    placements: PlacementsKey,
+    hidden: Revision,
+    geometry: Revision,
+}
+
+/// What follows from the rest and takes time that grows with the number of neurons.
+#[derive(Debug, Default)]
+pub(super) struct Derived {
+    placements: Memo<PlacementsKey, Vec<Placement>>,
+    spheres: Memo<SpheresKey, Vec<BoundingSphere>>,
+    found: Memo<(Revision, String), Vec<usize>>,
+    totals: Memo<(NeuronRevisions, Revision), Totals>,
+    kinds: Memo<Revision, BTreeSet<i32>>,
+}
+
+impl State {
+    /// Where all neurons are, in the order of the list.
+    pub fn placements(&self) -> Arc<Vec<Placement>> {
+        let neurons = &self.document.neurons;
+        self.derived.placements.get(self.placements_key(), || {
+            if !self.document.grid {
+                return neurons.iter().map(|n| n.placement).collect();
+            }
+            let extents = neurons.iter().map(|neuron| {
+                let (low, high) = extent(&self.spheres_of(neuron.source, neuron.placement));
+                ((low + high) / 2.0, high - low)
+            });
+            document::grid(neurons, &extents.collect::<Vec<_>>())
+        })
+    }
+
+    /// What placements depend on.
+    pub(crate) fn placements_key(&self) -> PlacementsKey {
+        let grid = self.document.grid;
+        PlacementsKey {
+            members: self.document.neurons.revisions().members,
+            // Side by side, neurons need room for their meshes.
+            grid: grid.then(|| self.sources.geometry()),
+        }
+    }
+
+    fn spheres_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
+        let many = self.document.neurons.len() >= MANY;
+        let spheres = self.sources.get(source).map_or(&[][..], |s| match many {
+            true => &s.few_spheres,
+            false => &s.spheres,
+        });
+        spheres
+            .iter()
+            .map(|&(c, r)| (placement.world_from_cell(c), r * placement.scale))
+            .collect()
+    }
+
+    /// Bounding spheres (µm) of all that shows.
+    pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
+        let derive = || self.spheres_where(|_| true);
+        self.derived.spheres.get(self.spheres_key(), derive)
+    }
+
+    /// What the spheres of all that shows depend on.
+    pub(crate) fn spheres_key(&self) -> SpheresKey {
+        SpheresKey {
+            placements: self.placements_key(),
+            hidden: self.document.neurons.revisions().hidden,
+            geometry: self.sources.geometry(),
+        }
+    }
+
+    fn spheres_where(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+        let placements = self.placements();
+        let neurons = self.document.neurons.iter().zip(placements.iter());
+        neurons
+            .filter(|(n, _)| !n.hidden && fits(n))
+            .flat_map(|(n, placement)| self.spheres_of(n.source, *placement))
+            .collect()
+    }
+
+    /// Spheres (µm) at the tracing points of what shows and fits: tighter than [`State::spheres`], to
+    /// frame it. Of many neurons a few spheres each.
+    pub fn outline(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+        let placements = self.placements();
+        let neurons = self.document.neurons.iter().zip(placements.iter());
+        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && fits(n)).collect();
+        if shown.len() >= MANY {
+            return self.spheres_where(fits);
+        }
+        let spheres = |(neuron, placement): (&Neuron, &Placement)| {
+            let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
+            let points = mesh.into_iter().flat_map(|mesh| {
+                let points = mesh.tracing.iter();
+                points.map(|p| (mesh.origin + p.center.as_dvec3(), f64::from(p.radius)))
+            });
+            let placed = points.map(|(c, r)| (placement.world_from_cell(c), r * placement.scale));
+            placed.collect::<Vec<_>>()
+        };
+        shown.into_iter().flat_map(spheres).collect()
+    }
+
+    /// Indices of the neurons whose names contain the search text.
+    pub(crate) fn found(&self) -> Arc<Vec<usize>> {
+        let members = self.document.neurons.revisions().members;
+        let derive = || {
+            let text = self.search.to_lowercase();
+            let neurons = self.document.neurons.iter().enumerate();
+            let found =
+                neurons.filter(|(_, n)| text.is_empty() || n.name.to_lowercase().contains(&text));
+            found.map(|(i, _)| i).collect()
+        };
+        self.derived
+            .found
+            .get((members, self.search.clone()), derive)
+    }
+
+    /// Sums over what is selected; over all, if nothing is.
+    pub(crate) fn totals(&self) -> Arc<Totals> {
+        let neurons = &self.document.neurons;
+        let key = (neurons.revisions(), self.sources.geometry());
+        self.derived.totals.get(key, || {
+            let any = !neurons.selected().is_empty();
+            let counted = neurons.iter().filter(|n| n.selected || !any);
+            Totals::of(counted.filter_map(|n| Some(&*self.sources.get(n.source)?.measures)))
+        })
+    }
+
+    /// Kinds of sections of all open tracings.
+    pub(crate) fn kinds(&self) -> Arc<BTreeSet<i32>> {
+        let derive = || totals::kinds(&self.sources);
+        self.derived.kinds.get(self.sources.geometry(), derive)
+    }
+
+    /// How often what grows with the neurons was derived: placements, and spheres.
+    pub(crate) fn derivations(&self) -> [u64; 2] {
+        [
+            self.derived.placements.derived(),
+            self.derived.spheres.derived(),
+        ]
+    }
+}

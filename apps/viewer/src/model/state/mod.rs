@@ -1,0 +1,360 @@
+//! All that the window shows, in one place; panels are functions of it.
+
+mod counters;
+mod derived;
+
+use std::path::PathBuf;
+
+use neurotess::render::Side;
+
+use crate::model::circuits::Circuits;
+use crate::model::command::{Ask, Command, Edit, Tab, Toggles};
+use crate::model::document::{Document, SourceId};
+use crate::model::history::History;
+use crate::model::playback::Playback;
+use crate::model::save::{SaveForm, SaveRequest};
+use crate::model::settings::Settings;
+use crate::model::sources::{self, Source, Sources, extent};
+use crate::model::view::View;
+
+pub use counters::{Counters, Draft, Lowered, Rebuilds};
+use derived::Derived;
+pub(crate) use derived::{PlacementsKey, SpheresKey};
+
+/// A part of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CellPart {
+    /// The soma, of which a cell may have several.
+    Soma,
+    /// A neurite, from 0.
+    Neurite(u32),
+    /// A section, as in the morphology.
+    Section(u32),
+}
+
+/// What the cursor is at or was clicked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Picked {
+    /// Index among the neurons.
+    pub neuron: usize,
+    /// Which part of it.
+    pub part: CellPart,
+}
+
+/// Something that went wrong or was lowered, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The file or thing.
+    pub what: String,
+    /// The reason, and what to do.
+    pub why: String,
+}
+
+/// All that the window shows.
+pub struct State {
+    /// What can be undone and is saved.
+    pub document: Document,
+    /// Documents before and after.
+    pub history: History,
+    /// Open tracings.
+    pub sources: Sources,
+    /// Open circuits.
+    pub circuits: Circuits,
+    /// The recording's time, and how that goes on.
+    pub playback: Playback,
+    /// Where the camera is.
+    pub view: View,
+    /// The side from which the view shows everything, until it is moved by hand.
+    pub fitted: Option<Side>,
+    /// Views of a film.
+    pub key_views: Vec<View>,
+    /// The view that levels are frozen for.
+    pub frozen: Option<View>,
+    /// What is under the cursor, in the picture or in the tree.
+    pub hovered: Option<Picked>,
+    /// The neurite whose ring's slider is touched.
+    pub touched: Option<(SourceId, u32)>,
+    /// What was clicked last.
+    pub picked: Option<Picked>,
+    /// What went wrong, in the order in which it did.
+    pub problems: Vec<Problem>,
+    /// What was done last, for the status bar.
+    pub status: String,
+    /// The panel on the right.
+    pub tab: Tab,
+    /// Text to search the list by.
+    pub search: String,
+    /// Which window is open over the others.
+    pub over: Over,
+    /// Whether the side panels show.
+    pub panels: bool,
+    /// What is remembered between starts.
+    pub settings: Settings,
+    /// What is to be saved, and how.
+    pub save: SaveForm,
+    /// Counters of the level of detail.
+    pub counters: Counters,
+    /// The adapter, and whether it is software.
+    pub adapter: (String, bool),
+    /// The session's file, once there is one.
+    pub session: Option<PathBuf>,
+    /// Width by height of the picture.
+    pub aspect: f64,
+    /// What is to be done beside the state.
+    pub effects: Vec<Effect>,
+    /// Commands that panels asked for.
+    pub requests: Vec<Command>,
+    /// A part to be scrolled to in the tree.
+    pub reveal: Option<Picked>,
+    derived: Derived,
+}
+
+/// A window over the others.
+#[derive(Clone, Debug, Default)]
+pub enum Over {
+    /// None.
+    #[default]
+    Nothing,
+    /// Keys and mouse.
+    Keys,
+    /// Commands, with what is searched and which is chosen.
+    Palette(String, usize),
+    /// What went wrong.
+    Problems,
+    /// Files to choose.
+    Files(Ask),
+    /// Files exist: what to do if they may be replaced.
+    Replace(PathBuf, Box<Command>),
+}
+
+/// What a command asks of the program around.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Read files.
+    Load(Vec<PathBuf>),
+    /// Read changed files again.
+    Reload,
+    /// Write files.
+    Save(SaveRequest),
+    /// End what is under way.
+    Cancel,
+    /// Go to a view, smoothly.
+    Go(View),
+    /// Leave.
+    Quit,
+}
+
+impl State {
+    /// Nothing open.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            document: Document {
+                look: settings.look.clone(),
+                detail: settings.detail,
+                ..Document::default()
+            },
+            history: History::default(),
+            sources: Sources::default(),
+            circuits: Circuits::default(),
+            playback: Playback::default(),
+            view: View::default(),
+            fitted: None,
+            key_views: Vec::new(),
+            frozen: None,
+            hovered: None,
+            touched: None,
+            picked: None,
+            problems: Vec::new(),
+            status: String::new(),
+            tab: Tab::default(),
+            search: String::new(),
+            over: Over::Nothing,
+            panels: true,
+            save: SaveForm::new(&settings),
+            settings,
+            counters: Counters::default(),
+            adapter: (String::new(), false),
+            session: None,
+            aspect: 1.0,
+            effects: Vec::new(),
+            requests: Vec::new(),
+            reveal: None,
+            derived: Derived::default(),
+        }
+    }
+
+    /// What titles of commands depend on.
+    pub fn toggles(&self) -> Toggles {
+        Toggles {
+            y_down: self.settings.y_down,
+            grid: self.document.grid,
+            frozen: self.frozen.is_some(),
+            dark: self.settings.dark,
+            playing: self.playback.playing,
+        }
+    }
+
+    /// Does a command.
+    pub fn run(&mut self, command: impl Into<Command>) {
+        let command = command.into();
+        if !matches!(command, Command::Edit(_)) {
+            self.history.end_joining();
+        }
+        match command {
+            Command::Edit(edit) => self.edit(edit),
+            Command::Undo => {
+                self.status = match self.history.undo(&mut self.document) {
+                    Some(name) => format!("Undone: {}", name.to_lowercase()),
+                    None => "Nothing to undo".into(),
+                };
+                self.forget_what_is_gone();
+            }
+            Command::Redo => {
+                self.status = match self.history.redo(&mut self.document) {
+                    Some(name) => format!("Redone: {}", name.to_lowercase()),
+                    None => "Nothing to redo".into(),
+                };
+                self.forget_what_is_gone();
+            }
+            Command::AskFiles(ask) => self.over = Over::Files(ask),
+            Command::Open(paths) => {
+                self.settings.remember_files(&paths);
+                self.effects.push(Effect::Load(paths));
+            }
+            Command::OpenSample(kind) => {
+                let sample = sources::sample(kind);
+                self.effects.push(Effect::Load(vec![sample]));
+            }
+            Command::Reload => self.effects.push(Effect::Reload),
+            Command::Cancel => self.effects.push(Effect::Cancel),
+            Command::Quit => self.effects.push(Effect::Quit),
+            Command::Look(side) => {
+                self.effects.push(Effect::Go(self.fit(side)));
+                self.fitted = Some(side);
+            }
+            Command::Home => self.run(Command::Look(Side::Front)),
+            Command::Focus => {
+                let any = self.document.selected().next().is_some();
+                let spheres = self.outline(|n| n.selected || !any);
+                let (low, high) = extent(&spheres);
+                if !spheres.is_empty() {
+                    let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);
+                    self.run(Command::Go(self.view.focused(sphere)));
+                }
+            }
+            Command::Go(view) => {
+                self.effects.push(Effect::Go(view));
+                self.fitted = None;
+            }
+            Command::SetYDown(y_down) => {
+                self.settings.y_down = y_down;
+                self.run(Command::Home);
+            }
+            Command::TogglePlay => self.playback.play(!self.playback.playing),
+            Command::Seek(time) => self.playback.seek(time),
+            Command::StepTime(frames) => self.playback.step(frames),
+            Command::SetPace(pace) => self.playback.pace = pace,
+            Command::SetFrozen(frozen) => self.frozen = frozen.then_some(self.view),
+            Command::Show(tab) => (self.tab, self.panels) = (tab, true),
+            Command::ToggleKeys => self.toggle(Over::Keys),
+            Command::TogglePalette => self.toggle(Over::Palette(String::new(), 0)),
+            Command::ToggleProblems => self.toggle(Over::Problems),
+            Command::SetDark(dark) => {
+                self.settings.dark = dark;
+            }
+            Command::TogglePanels => self.panels = !self.panels,
+            Command::AddKeyView => {
+                self.key_views.push(self.view);
+                self.status = format!("Key view {} kept (Save, Film)", self.key_views.len());
+            }
+            Command::DropKeyView(which) => {
+                if which < self.key_views.len() {
+                    self.key_views.remove(which);
+                }
+            }
+            Command::SaveSession(path) => self.save(SaveRequest::Session(path)),
+            Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(options)),
+            Command::SavePicture(options) => self.save(SaveRequest::Picture(options)),
+            Command::SaveFilm(options) => self.save(SaveRequest::Film(options)),
+        }
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        let before = self.document.clone();
+        let (name, joins) = (edit.name(), edit.joins());
+        edit.apply(&mut self.document);
+        if self.document != before {
+            self.history.keep(name, before, joins);
+            self.remember();
+        }
+        self.forget_what_is_gone();
+    }
+
+    fn save(&mut self, request: SaveRequest) {
+        self.effects.push(Effect::Save(request));
+    }
+
+    /// Everything, from a side.
+    fn fit(&self, side: Side) -> View {
+        let spheres = self.outline(|_| true);
+        self.view
+            .fitted(side, self.settings.y_down, self.aspect, &spheres)
+    }
+
+    /// The picture has another form: what was seen is still seen. Gives the view, if it is another one.
+    pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
+        let before = std::mem::replace(&mut self.aspect, aspect);
+        if before == aspect || self.document.neurons.is_empty() {
+            return None;
+        }
+        Some(match self.fitted {
+            Some(side) => self.fit(side),
+            None => self.view.reshaped(before, aspect),
+        })
+    }
+
+    fn toggle(&mut self, over: Over) {
+        let same = std::mem::discriminant(&self.over) == std::mem::discriminant(&over);
+        self.over = if same { Over::Nothing } else { over };
+    }
+
+    fn remember(&mut self) {
+        self.settings.look = self.document.look.clone();
+        self.settings.detail = self.document.detail;
+    }
+
+    fn forget_what_is_gone(&mut self) {
+        let neurons = self.document.neurons.len();
+        let there = |p: &Picked| p.neuron < neurons;
+        self.hovered = self.hovered.filter(there);
+        self.picked = self.picked.filter(there);
+    }
+
+    /// The source of a neuron.
+    pub fn source_of(&self, neuron: usize) -> Option<&Source> {
+        let neuron = self.document.neurons.get(neuron)?;
+        self.sources.get(neuron.source)
+    }
+
+    /// Tells how saving ended.
+    pub(crate) fn note_saved(&mut self, result: Result<String, String>) {
+        match result {
+            Ok(saved) => self.status = saved,
+            Err(why) => {
+                self.status = format!("Not saved: {why}");
+                self.problem("save", why);
+            }
+        }
+    }
+
+    /// Notes something that went wrong.
+    pub fn problem(&mut self, what: impl Into<String>, why: impl Into<String>) {
+        let problem = Problem {
+            what: what.into(),
+            why: why.into(),
+        };
+        if !self.problems.contains(&problem) {
+            self.problems.push(problem);
+        }
+    }
+}

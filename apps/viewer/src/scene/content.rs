@@ -1,0 +1,246 @@
+//! What is on the device: templates, instances, colors.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use neurotess::coloring::{Coloring, Recording};
+use neurotess::render::{
+    Adaptive, AdaptiveSettings, BoundingSphere, Clip, ColorTable, DeviceError, GHOSTED, Gpu,
+    HIGHLIGHTED, Instance, Legend, Placement, Scene, SceneError, Template, TemplateId, Templates,
+    WITHOUT_NEURITES, WITHOUT_SOMA,
+};
+use thiserror::Error;
+
+use crate::model::document::{Document, Look, VisibleParts};
+use crate::model::revision::Revision;
+use crate::model::sources::extent;
+use crate::model::state::{PlacementsKey, State};
+use crate::scene::colors::ColorResult;
+use crate::scene::templates::SceneTemplate;
+
+/// Width (pixels) of a wireframe's lines.
+const WIRE: f32 = 1.0;
+/// Color of what is selected.
+pub(crate) const SELECTION: [u8; 3] = [255, 140, 0];
+
+/// Why there is no scene.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub(crate) enum BuildError {
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+/// What a scene is made of.
+#[derive(Clone, Debug)]
+pub(crate) struct SceneContent {
+    /// Stamp of meshes and color keys, so of what is uploaded of templates.
+    pub(crate) revision: Revision,
+    pub(crate) sources: Vec<SceneTemplate>,
+    pub(crate) instances: Vec<SceneInstance>,
+    /// What points say on the device.
+    pub(crate) coloring: Arc<Coloring>,
+    /// What that means now.
+    pub(crate) table: ColorTable,
+    pub(crate) legend: Legend,
+    /// A recording, with the range of all its values.
+    pub(crate) recording: Option<(Arc<Recording>, [f32; 2])>,
+}
+
+impl SceneContent {
+    pub(crate) fn new(
+        sources: Vec<SceneTemplate>,
+        instances: Vec<SceneInstance>,
+        colored: ColorResult,
+    ) -> Self {
+        let ColorResult {
+            coloring,
+            recording,
+            ..
+        } = colored;
+        Self {
+            revision: Revision::next(),
+            sources,
+            instances,
+            table: coloring.table.clone(),
+            legend: coloring.legend.clone(),
+            coloring: Arc::new(coloring),
+            recording,
+        }
+    }
+}
+
+impl SceneContent {
+    /// Takes the colors of other content that has the same meshes and color keys.
+    pub(crate) fn recolor(&mut self, other: Self) {
+        (self.table, self.legend) = (other.table, other.legend);
+        self.recording = other.recording;
+    }
+}
+
+/// What the instances on the device depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct InstancesKey {
+    placements: PlacementsKey,
+    hidden: Revision,
+    content: Revision,
+}
+
+impl InstancesKey {
+    /// Of instances of now. `content`: stamp of the templates.
+    pub(crate) fn new(state: &State, content: Revision) -> Self {
+        Self {
+            placements: state.placements_key(),
+            hidden: state.document.neurons.revisions().hidden,
+            content,
+        }
+    }
+
+    /// The same instances of other content.
+    pub(crate) fn of_content(self, content: Revision) -> Self {
+        Self { content, ..self }
+    }
+}
+
+/// What the states of instances depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StatesKey {
+    members: Revision,
+    selection: Revision,
+    parts: VisibleParts,
+    highlights: bool,
+    ghosts: bool,
+}
+
+impl StatesKey {
+    pub(crate) fn new(document: &Document) -> Self {
+        let revisions = document.neurons.revisions();
+        Self {
+            members: revisions.members,
+            selection: revisions.selection,
+            parts: document.look.parts,
+            highlights: document.look.highlight_selected,
+            ghosts: document.look.ghost_others,
+        }
+    }
+}
+
+/// A neuron: which source, where, and whether it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SceneInstance {
+    pub(crate) source: usize,
+    pub(crate) placement: Placement,
+    pub(crate) hidden: bool,
+}
+
+/// Instances of all neurons. `sources`: the templates, sorted by id.
+pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneInstance> {
+    let placements = state.placements();
+    let neurons = state.document.neurons.iter().zip(placements.iter());
+    let instances = neurons.map(|(neuron, &placement)| {
+        let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
+        SceneInstance {
+            source: source.unwrap_or(0),
+            placement,
+            // What is not there yet is not drawn, but keeps its place.
+            hidden: neuron.hidden || source.is_err(),
+        }
+    });
+    instances.collect()
+}
+
+/// Uploads all sources; their numbers are their places.
+pub(crate) fn templates(
+    gpu: &Gpu,
+    sources: &[SceneTemplate],
+    coloring: &Coloring,
+) -> Result<Templates, DeviceError> {
+    let list: Vec<Template<'_>> = sources
+        .iter()
+        .zip(&coloring.color_keys)
+        .map(|(source, color_keys)| Template {
+            mesh: &source.generated.mesh,
+            color_keys,
+            values: &[],
+        })
+        .collect();
+    let mut templates = Templates::new();
+    if !list.is_empty() {
+        templates.add(gpu, &list)?;
+    }
+    Ok(templates)
+}
+
+/// Instances of templates that were uploaded.
+pub(crate) fn device_instances(instances: &[SceneInstance]) -> Vec<Instance> {
+    let instance = |s: &SceneInstance| Instance {
+        placement: s.placement,
+        hidden: s.hidden,
+        ..Instance::new(TemplateId(s.source as u32))
+    };
+    instances.iter().map(instance).collect()
+}
+
+/// A vertex source of the whole scene, for pictures that are saved.
+pub(crate) fn adaptive(
+    gpu: &Gpu,
+    content: &SceneContent,
+    sub_pixels: u32,
+) -> Result<Adaptive, BuildError> {
+    let templates = templates(gpu, &content.sources, &content.coloring)?;
+    let scene = Scene::new(templates, device_instances(&content.instances))?;
+    Ok(Adaptive::new(
+        gpu,
+        scene,
+        AdaptiveSettings::default(),
+        sub_pixels,
+    )?)
+}
+
+/// States of all neurons, as the shading wants them.
+pub(crate) fn states(document: &Document) -> Vec<u32> {
+    let look = &document.look;
+    let any = !document.neurons.selected().is_empty();
+    let parts = match look.parts {
+        VisibleParts::All => 0,
+        VisibleParts::Soma => WITHOUT_NEURITES,
+        VisibleParts::Neurites => WITHOUT_SOMA,
+    };
+    let state = |selected: bool| {
+        let highlighted = if selected && look.highlight_selected {
+            HIGHLIGHTED
+        } else {
+            0
+        };
+        let ghosted = if any && !selected && look.ghost_others {
+            GHOSTED
+        } else {
+            0
+        };
+        parts | highlighted | ghosted
+    };
+    document.neurons.iter().map(|n| state(n.selected)).collect()
+}
+
+/// Light, wireframe and colors of states.
+pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
+    neurotess::render::Look {
+        light: look.light.light(),
+        wire: if look.wireframe { WIRE } else { 0.0 },
+        clip: None,
+        highlighted: (SELECTION, 0.75),
+        ghosted: look.ghost_opacity.clamp(0.0, 1.0),
+        contrast: Some(look.background),
+    }
+}
+
+/// The plane of the cut through what shows.
+pub(crate) fn clip(look: &Look, spheres: &[BoundingSphere]) -> Option<Clip> {
+    let cut = look.cut?;
+    let (low, high) = extent(spheres);
+    let mut normal = DVec3::ZERO;
+    normal[cut.axis.min(2)] = if cut.flipped { 1.0 } else { -1.0 };
+    let point = low + (high - low) * f64::from(cut.place.clamp(0.0, 1.0));
+    Some(Clip { point, normal })
+}

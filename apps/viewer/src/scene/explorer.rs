@@ -1,0 +1,162 @@
+//! What draws while something moves: proxies of all templates, whose frames have a bounded number of
+//! triangles whatever there is. It is made beside; until it is there, the adaptive source draws coarsely.
+
+use std::sync::Arc;
+
+use eframe::egui;
+use neurotess::generate::Generated;
+use neurotess::render::{
+    DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy, ProxyPickResolver, ProxyPickTargets,
+};
+
+use crate::io::task::{Progress, Task};
+use crate::model::revision::Revision;
+use crate::scene::content::{self, InstancesKey, SceneContent};
+
+/// Fewest triangles of a frame, however slow the device.
+const LEAST_BUDGET: u32 = 12_500;
+
+/// Proxies of what is shown, once they are made.
+#[derive(Default)]
+pub(crate) struct Explorer {
+    built: Option<BuiltScene>,
+    making: Option<(Revision, Task<ProxyResult>)>,
+    /// Content that proxies could not be made of; it is not tried again.
+    refused: Option<Revision>,
+    budget: Option<u32>,
+    builds: u64,
+}
+
+type ProxyResult = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
+
+struct BuiltScene {
+    exploration: Exploration,
+    names: Arc<[ProxyPickTargets]>,
+    /// Stamp of the content it was made of.
+    content: Revision,
+    /// Stamp of the instances it has.
+    instances: Option<InstancesKey>,
+}
+
+impl Explorer {
+    /// Takes what was made and begins what is not there yet.
+    pub(crate) fn update(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        content: &SceneContent,
+        ctx: &egui::Context,
+    ) -> Option<String> {
+        let mut problem = None;
+        if let Some((key, task)) = &self.making {
+            let built = task.take()?;
+            let key = *key;
+            self.making = None;
+            match built {
+                Ok(Ok((exploration, names))) => {
+                    self.built = Some(BuiltScene {
+                        exploration,
+                        names,
+                        content: key,
+                        instances: None,
+                    });
+                }
+                // Too large for the device: the adaptive source draws it.
+                Ok(Err(_)) => self.refused = Some(key),
+                Err(why) => (self.refused, problem) = (Some(key), Some(why)),
+            }
+        }
+        let fits = |key: &Revision| *key == content.revision;
+        let known = self.built.as_ref().map(|built| &built.content);
+        if content.sources.is_empty()
+            || known.is_some_and(fits)
+            || self.refused.as_ref().is_some_and(fits)
+        {
+            return problem;
+        }
+        self.built = None;
+        self.begin(gpu, content, ctx);
+        problem
+    }
+
+    fn begin(&mut self, gpu: &Arc<Gpu>, content: &SceneContent, ctx: &egui::Context) {
+        self.builds += 1;
+        let meshes = content.sources.iter().map(|s| Arc::clone(&s.generated));
+        let meshes: Vec<Arc<Generated>> = meshes.collect();
+        let coloring = Arc::clone(&content.coloring);
+        let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
+        let work = move |_: &Progress| {
+            let cells = meshes.iter().zip(&coloring.color_keys);
+            let proxies: Vec<Proxy> = cells
+                .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
+                .collect();
+            Ok(Exploration::new(&gpu, 1).and_then(|mut exploration| {
+                exploration.add(&gpu, &proxies)?;
+                let targets = proxies.iter().map(ProxyPickTargets::new);
+                Ok((exploration, targets.collect()))
+            }))
+        };
+        let progress = Progress::new("preparing drafts", "cells", 0);
+        let task = Task::start(progress, move || ctx.request_repaint(), work);
+        self.making = Some((content.revision, task));
+    }
+
+    /// The vertex source of proxies of just this content, with all its instances.
+    /// `budget`: its triangles.
+    pub(crate) fn exploration(
+        &mut self,
+        gpu: &Gpu,
+        content: &SceneContent,
+        instances_key: Option<InstancesKey>,
+        budget: u32,
+    ) -> Option<&mut Exploration> {
+        let built = self
+            .built
+            .as_mut()
+            .filter(|built| built.content == content.revision)?;
+        if built.instances != instances_key {
+            let instances = content::device_instances(&content.instances);
+            built.exploration.set_instances(gpu, instances).ok()?;
+            built.instances = instances_key;
+        }
+        built.exploration.set_budget(budget);
+        Some(&mut built.exploration)
+    }
+
+    /// Whether there are proxies of just this content.
+    pub(crate) fn fits(&self, content: &SceneContent) -> bool {
+        self.built
+            .as_ref()
+            .is_some_and(|built| built.content == content.revision)
+    }
+
+    /// Whether proxies are being made.
+    pub(crate) fn is_making(&self) -> bool {
+        self.making.is_some()
+    }
+
+    /// Resolves ids of pictures that were drawn from proxies.
+    pub(crate) fn resolver(&self) -> Option<ProxyPickResolver> {
+        let built = self.built.as_ref()?;
+        Some(built.exploration.namer(Arc::clone(&built.names)))
+    }
+
+    /// Frames have fewer triangles where they take too long, and more where there is time.
+    pub(crate) fn keep_up(&mut self, took_ms: f64, most_ms: f64) {
+        let budget = self.budget.unwrap_or(DEFAULT_BUDGET);
+        if took_ms > 1.5 * most_ms {
+            self.budget = Some((budget / 2).max(LEAST_BUDGET));
+        } else if took_ms < 0.4 * most_ms {
+            self.budget = Some((budget / 5 * 7).min(DEFAULT_BUDGET));
+        }
+    }
+
+    /// How often proxies were made.
+    pub(crate) fn builds(&self) -> u64 {
+        self.builds
+    }
+
+    /// Triangles of a frame.
+    pub(crate) fn budget(&self) -> u32 {
+        self.budget.unwrap_or(DEFAULT_BUDGET)
+    }
+}

@@ -1,0 +1,110 @@
+//! A session's picture without a window.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use neurotess::render::Gpu;
+
+use crate::io::find::{self, OpenRequest};
+use crate::io::load;
+use crate::io::task::Progress;
+use crate::model::document::Neuron;
+use crate::model::film::FilmFrame;
+use crate::model::save::PictureFile;
+use crate::model::session::Session;
+use crate::model::settings::Settings;
+use crate::model::state::State;
+use crate::scene::colors::ColorRequest;
+use crate::scene::content::{self, SceneContent};
+use crate::scene::pictures::{StillScene, pictures};
+use crate::scene::templates;
+
+/// A picture that was drawn, and what failed of the session.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SessionPicture {
+    /// Number of neurons that the picture shows.
+    pub neurons: usize,
+    /// Files of the session that could not be read: file and reason.
+    pub failures: Vec<(String, String)>,
+}
+
+/// Draws a session as the window would save it.
+///
+/// # Errors
+/// What is wrong with the session, the adapter or the file to write, and what to do.
+pub fn draw_session(
+    file: &Path,
+    picture: &PictureFile,
+    adapter: Option<&str>,
+) -> Result<SessionPicture, String> {
+    let session = Session::read(file).map_err(|e| e.of(file))?;
+    let mut state = State::new(Settings::default());
+    let mut drawn = SessionPicture::default();
+    let mut ids = Vec::new();
+    let found = find::find(&OpenRequest {
+        circuits: session.circuit.iter().map(|c| c.path.clone()).collect(),
+        ..OpenRequest::default()
+    });
+    for (file, why) in found.failures {
+        drawn.failures.push((file.display().to_string(), why));
+    }
+    for opened in found.circuits {
+        state.circuits.add(opened);
+    }
+    for entry in &session.file {
+        let soma = entry.soma.clone().unwrap_or_default();
+        ids.push(match load::load(&entry.path, soma) {
+            Ok(source) => Some(state.sources.add(source)),
+            Err(why) => {
+                let file = entry.path.display().to_string();
+                drawn.failures.push((file, why));
+                None
+            }
+        });
+    }
+    state.document.look = session.look.clone();
+    state.document.grid = session.grid;
+    state.document.report = session.report.clone();
+    state.playback.pace = session.playback;
+    for entry in &session.neuron {
+        if let Some(id) = ids.get(entry.file).copied().flatten() {
+            let node = session.node_of(entry, &state.circuits);
+            state.document.neurons.push(Neuron {
+                node,
+                ..entry.neuron(id)
+            });
+        }
+    }
+    drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
+    let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
+    let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
+    let film_frame = FilmFrame {
+        view: session.view,
+        time: Some(session.playback.time),
+    };
+    pictures(
+        &still_scene,
+        &[film_frame],
+        picture,
+        &Progress::new("drawing", "tiles", 0),
+    )?;
+    Ok(drawn)
+}
+
+fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> StillScene {
+    let sources = templates::templates(state);
+    let request = ColorRequest::new(state, &sources);
+    let sources = request.cut(sources);
+    let mut colored = request.colors(&sources);
+    drawn.failures.extend(colored.problem.take());
+    let instances = content::instances(state, &sources);
+    let content = SceneContent::new(sources, instances, colored);
+    StillScene {
+        gpu,
+        shared: false,
+        content,
+        look: state.document.look.clone(),
+        states: content::states(&state.document),
+        spheres: state.spheres(),
+    }
+}

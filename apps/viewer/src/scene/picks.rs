@@ -1,0 +1,228 @@
+//! What is seen at each pixel of a picture, and the mask of its outlines.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use neurotess::mesh::{CoarseMesh, PatchKind};
+use neurotess::render::{HOVERED, PICKED, PickHit, PickId, PickTarget, Placement, SELECTED};
+
+use crate::model::document::Document;
+use crate::model::sources::SectionFacts;
+use crate::model::state::{CellPart, Picked};
+
+/// Pixels around the cursor in which something thin is still meant.
+const REACH: i64 = 4;
+
+/// What is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CursorHit {
+    /// Which piece of which neuron.
+    pub picked: Picked,
+    /// The middle of the patch (µm, in the world).
+    pub place: DVec3,
+}
+
+/// By pixel.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Picks {
+    size: [u32; 2],
+    /// By pixel: 0 where nothing is, else one more than the place in `seen`.
+    index: Vec<u32>,
+    seen: Vec<CursorHit>,
+}
+
+impl Picks {
+    /// `name` tells what an id means.
+    pub(crate) fn new(
+        size: [u32; 2],
+        ids: &[PickId],
+        mut name: impl FnMut(PickId) -> Option<CursorHit>,
+    ) -> Self {
+        let mut seen = Vec::new();
+        let mut known: HashMap<PickId, u32> = HashMap::from([([0; 2], 0)]);
+        let mut last = ([0; 2], 0);
+        let index = ids.iter().map(|&id| {
+            // Neighbors are mostly alike.
+            if last.0 != id {
+                let index = *known.entry(id).or_insert_with(|| match name(id) {
+                    Some(found) => {
+                        seen.push(found);
+                        seen.len() as u32
+                    }
+                    None => 0,
+                });
+                last = (id, index);
+            }
+            last.1
+        });
+        let index = index.collect();
+        Self { size, index, seen }
+    }
+
+    /// Width and height (pixels).
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// What is at a pixel, or nearest within a few.
+    pub(crate) fn at(&self, x: f32, y: f32) -> Option<CursorHit> {
+        let (x, y) = (x.floor() as i64, y.floor() as i64);
+        let mut near: Vec<(i64, i64)> = (-REACH..=REACH)
+            .flat_map(|dy| (-REACH..=REACH).map(move |dx| (dx, dy)))
+            .filter(|(dx, dy)| dx * dx + dy * dy <= REACH * REACH)
+            .collect();
+        near.sort_by_key(|(dx, dy)| dx * dx + dy * dy);
+        near.into_iter()
+            .find_map(|(dx, dy)| self.exactly(x + dx, y + dy))
+    }
+
+    fn exactly(&self, x: i64, y: i64) -> Option<CursorHit> {
+        let [width, height] = self.size.map(i64::from);
+        if !(0..width).contains(&x) || !(0..height).contains(&y) {
+            return None;
+        }
+        let index = *self.index.get((y * width + x) as usize)?;
+        self.seen.get(index.checked_sub(1)? as usize).copied()
+    }
+
+    /// Bits of the outlines by pixel: around selected neurons, around what is hovered, and around the
+    /// piece that was clicked.
+    pub(crate) fn mask(
+        &self,
+        document: &Document,
+        hovered: Option<Picked>,
+        picked: Option<Picked>,
+        sections: impl Fn(usize, u32) -> Option<SectionFacts>,
+    ) -> Vec<u8> {
+        let within = |part: Option<Picked>, seen: &CursorHit| {
+            part.is_some_and(|part| covers(part, seen.picked, &sections))
+        };
+        let mut bits = vec![0];
+        bits.extend(self.seen.iter().map(|seen| {
+            let neuron = document.neurons.get(seen.picked.neuron);
+            let selected = if neuron.is_some_and(|n| n.selected) {
+                SELECTED
+            } else {
+                0
+            };
+            let hovered = if within(hovered, seen) { HOVERED } else { 0 };
+            // Of a neuron that is no longer selected nothing stays marked.
+            let picked = selected != 0 && within(picked, seen);
+            selected | hovered | if picked { PICKED } else { 0 }
+        }));
+        self.index
+            .iter()
+            .map(|&i| bits.get(i as usize).copied().unwrap_or(0))
+            .collect()
+    }
+}
+
+/// Whether a part holds what is seen.
+fn covers(
+    part: Picked,
+    seen: Picked,
+    sections: impl Fn(usize, u32) -> Option<SectionFacts>,
+) -> bool {
+    if part.neuron != seen.neuron {
+        return false;
+    }
+    match (part.part, seen.part) {
+        (CellPart::Neurite(neurite), CellPart::Section(section)) => {
+            sections(seen.neuron, section).is_some_and(|facts| facts.neurite == neurite)
+        }
+        (a, b) => a == b,
+    }
+}
+
+/// What a named patch is.
+pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<CursorHit> {
+    let (middle, tracing, soma) = match named.spot {
+        PickTarget::Patch(patch) => {
+            let patch = mesh.patches.get(patch as usize)?;
+            let corners = patch.corners.map(|v| &mesh.vertices[v as usize]);
+            let sum: DVec3 = corners.iter().map(|v| v.position.as_dvec3()).sum();
+            // The child's ring: a lateral patch belongs to the section that it leads to.
+            (sum / 4.0, corners[2].tracing, patch.kind == PatchKind::Soma)
+        }
+        PickTarget::Vertex(vertex) => {
+            let vertex = mesh.vertices.get(vertex as usize)?;
+            (vertex.position.as_dvec3(), vertex.tracing, false)
+        }
+        PickTarget::Point(point) | PickTarget::Soma(point) => {
+            let traced = mesh.tracing.get(point as usize)?;
+            let soma = matches!(named.spot, PickTarget::Soma(_));
+            (traced.center.as_dvec3(), point, soma)
+        }
+    };
+    let section = mesh.tracing[tracing as usize].section;
+    let part = match soma {
+        true => CellPart::Soma,
+        // Section 0 is the soma.
+        false => u32::try_from(section - 1).map_or(CellPart::Soma, CellPart::Section),
+    };
+    Some(CursorHit {
+        picked: Picked {
+            neuron: named.instance as usize,
+            part,
+        },
+        place: placement.world_from_cell(mesh.origin + middle),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::document::{Neuron, SourceId};
+
+    fn picks() -> Picks {
+        // Ten pixels in a row; the fourth shows a section, the fifth and sixth a soma.
+        let ids = [0, 0, 0, 7, 9, 9, 0, 0, 0, 0].map(|id| [id, id]);
+        Picks::new([10, 1], &ids, |id| {
+            let part = if id[0] == 7 {
+                CellPart::Section(2)
+            } else {
+                CellPart::Soma
+            };
+            Some(CursorHit {
+                picked: Picked { neuron: 0, part },
+                place: DVec3::ZERO,
+            })
+        })
+    }
+
+    #[test]
+    fn the_exact_pixel_wins_then_the_nearest() {
+        let picks = picks();
+        let part = |x| picks.at(x, 0.5).map(|s| s.picked.part);
+        assert_eq!(part(3.9), Some(CellPart::Section(2)));
+        assert_eq!(part(4.1), Some(CellPart::Soma));
+        assert_eq!(part(1.0), Some(CellPart::Section(2)));
+        assert_eq!(part(9.9), Some(CellPart::Soma));
+        assert_eq!(picks.at(3.0, 9.0), None);
+        assert_eq!(picks.at(-50.0, 0.0), None);
+    }
+
+    #[test]
+    fn masks_show_selected_neurons_and_hovered_parts() {
+        let mut document = Document::default();
+        document.neurons.push(Neuron::new(SourceId(0), "n".into()));
+        document.neurons.set_states(|_, _| (false, true));
+        let facts = |_, section| {
+            Some(SectionFacts {
+                neurite: section / 2,
+                ..Default::default()
+            })
+        };
+        let hovered = |part| Some(Picked { neuron: 0, part });
+        let mask = picks().mask(&document, hovered(CellPart::Neurite(1)), None, facts);
+        assert_eq!(mask, [0, 0, 0, 3, 1, 1, 0, 0, 0, 0]);
+        let mask = picks().mask(&document, hovered(CellPart::Soma), None, facts);
+        assert_eq!(mask, [0, 0, 0, 1, 3, 3, 0, 0, 0, 0]);
+        // What was clicked stays marked while the neuron is selected.
+        let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
+        assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
+        document.neurons.set_states(|_, _| (false, false));
+        let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
+        assert_eq!(mask, [0; 10]);
+    }
+}

@@ -1,0 +1,230 @@
+//! What stands on the device, brought up to date: at once where that is quick, else beside.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use eframe::egui;
+use neurotess::coloring::Coloring;
+use neurotess::generate::Generated;
+use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
+
+use super::{Checked, Stage};
+use crate::io::task::{Progress, Task};
+use crate::model::state::State;
+use crate::scene::colors::{ColorInputs, ColorRequest};
+use crate::scene::content::{self, BuildError, InstancesKey, SceneContent};
+use crate::scene::templates::{self, SceneTemplate};
+
+/// Cells up to which a soma is changed at once; with more, all colors are made anew beside.
+const QUICK: usize = 24;
+
+pub(super) type Built = Result<BuiltScene, DeviceError>;
+
+/// What was made beside.
+pub(super) struct BuiltScene {
+    /// Meshes and color keys on the device; none: they are what they were, only colors are others.
+    templates: Option<Templates>,
+    content: SceneContent,
+    colors: ColorInputs,
+    /// What the instances are of, but for the content's stamp.
+    instances: InstancesKey,
+    problem: Option<(String, String)>,
+}
+
+impl Stage {
+    pub(super) fn take_built(
+        &mut self,
+        state: &mut State,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
+        let Some((_, task)) = &self.building else {
+            return Ok(());
+        };
+        let Some(result) = task.take() else {
+            ctx.request_repaint_after(Duration::from_millis(15));
+            return Ok(());
+        };
+        let of = self.building.take().map(|(of, _)| of);
+        let built = match result {
+            Ok(built) => built?,
+            Err(why) => {
+                // The same would fail again.
+                self.checked = of;
+                state.problem("preparing the picture", why);
+                return Ok(());
+            }
+        };
+        self.progressive.set_colors(built.content.table.clone());
+        self.rebuilds.colors += 1;
+        match built.templates {
+            Some(templates) => {
+                let instances = content::device_instances(&built.content.instances);
+                let scene = Scene::new(templates, instances);
+                self.adaptive.set_scene(scene.unwrap_or_default());
+                self.rebuilds.templates += 1;
+                let instances = built.instances.of_content(built.content.revision);
+                self.content = built.content;
+                self.instances_are(instances);
+            }
+            None => self.content.recolor(built.content),
+        }
+        self.colors = Some(built.colors);
+        self.checked = None;
+        self.drawn = None;
+        self.recording(state, ctx);
+        if let Some((what, why)) = built.problem {
+            state.problem(what, why);
+        }
+        Ok(())
+    }
+
+    /// Brings templates and colors on the device up to date: at once where that is quick, or beside.
+    pub(super) fn update_templates(
+        &mut self,
+        state: &mut State,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
+        if self.building.is_some() {
+            return Ok(());
+        }
+        let colors = ColorInputs::new(&state.document);
+        let members = state.document.neurons.revisions().members;
+        let checked = (members, state.sources.geometry(), colors);
+        if self.checked.as_ref() == Some(&checked) {
+            return Ok(());
+        }
+        let colors = checked.2.clone();
+        let sources = templates::templates(state);
+        let same_sources = sources.len() == self.content.sources.len()
+            && sources
+                .iter()
+                .zip(&self.content.sources)
+                .all(|(a, b)| a.id == b.id);
+        let changed: Vec<usize> = if same_sources {
+            let pairs = sources.iter().zip(&self.content.sources).enumerate();
+            pairs
+                .filter(|(_, (a, b))| !Arc::ptr_eq(&a.traced, &b.traced))
+                .map(|(i, _)| i)
+                .collect()
+        } else {
+            Vec::new()
+        };
+        let recolored = self.colors.as_ref() != Some(&colors);
+        if same_sources && !recolored && changed.is_empty() {
+            self.checked = Some(checked);
+            return Ok(());
+        }
+        let records = self.content.recording.is_some();
+        let same_subject = self.colors.as_ref().map(|c| &c.subject) == Some(&colors.subject);
+        if same_sources && records && same_subject && changed.is_empty() {
+            self.restyle_values(state, colors);
+            self.checked = Some(checked);
+            return Ok(());
+        }
+        if same_sources && !recolored && !records && sources.len() <= QUICK {
+            let request = ColorRequest::new(state, &sources);
+            self.checked = Some(checked);
+            return self.replace(sources, &changed, &request);
+        }
+        self.build(state, sources, checked, ctx);
+        Ok(())
+    }
+
+    fn replace(
+        &mut self,
+        sources: Vec<SceneTemplate>,
+        changed: &[usize],
+        request: &ColorRequest,
+    ) -> Result<(), DeviceError> {
+        let colored = request.colors(&sources);
+        let color_keys = &colored.coloring.color_keys;
+        let mut scene = self.adaptive.take_scene();
+        let mut replaced = Ok(());
+        for &index in changed {
+            let template = Template {
+                mesh: &sources[index].generated.mesh,
+                color_keys: &color_keys[index],
+                values: &[],
+            };
+            let id = TemplateId(index as u32);
+            replaced = replaced.and_then(|()| scene.replace(&self.gpu, id, &template));
+        }
+        self.adaptive.set_scene(scene);
+        let instances = std::mem::take(&mut self.content.instances);
+        self.content = SceneContent::new(sources, instances, colored);
+        // Other meshes for the same instances.
+        let revision = self.content.revision;
+        self.instances = self.instances.map(|key| key.of_content(revision));
+        self.progressive.set_colors(self.content.table.clone());
+        self.rebuilds.templates += 1;
+        self.rebuilds.colors += 1;
+        self.drawn = None;
+        replaced
+    }
+
+    fn build(
+        &mut self,
+        state: &State,
+        sources: Vec<SceneTemplate>,
+        of: Checked,
+        ctx: &egui::Context,
+    ) {
+        let (gpu, ctx) = (Arc::clone(&self.gpu), ctx.clone());
+        let request = ColorRequest::new(state, &sources);
+        let instances = content::instances(state, &sources);
+        let instances_key = InstancesKey::new(state, self.content.revision);
+        let before = Before::of(&self.content);
+        let colors = of.2.clone();
+        let work = move |_: &Progress| {
+            let sources = request.cut(sources);
+            let mut colored = request.colors(&sources);
+            let problem = colored.problem.take();
+            let content = SceneContent::new(sources, instances, colored);
+            let templates = match before.fits(&content) {
+                true => Ok(None),
+                false => content::templates(&gpu, &content.sources, &content.coloring).map(Some),
+            };
+            let built = templates.map(|templates| BuiltScene {
+                templates,
+                content,
+                colors,
+                instances: instances_key,
+                problem,
+            });
+            Ok(built)
+        };
+        let progress = Progress::new("preparing the picture", "cells", 0);
+        let task = Task::start(progress, move || ctx.request_repaint(), work);
+        self.building = Some((of, task));
+    }
+}
+
+/// Meshes and color keys that are on the device.
+struct Before {
+    meshes: Vec<Arc<Generated>>,
+    coloring: Arc<Coloring>,
+}
+
+impl Before {
+    fn of(content: &SceneContent) -> Self {
+        let meshes = content.sources.iter().map(|s| Arc::clone(&s.generated));
+        Self {
+            meshes: meshes.collect(),
+            coloring: Arc::clone(&content.coloring),
+        }
+    }
+
+    /// Whether other content has the same ones.
+    fn fits(&self, other: &SceneContent) -> bool {
+        let mut pairs = self.meshes.iter().zip(&other.sources);
+        self.meshes.len() == other.sources.len()
+            && pairs.all(|(mesh, source)| Arc::ptr_eq(mesh, &source.generated))
+            && self.coloring.color_keys == other.coloring.color_keys
+    }
+}
+
+impl From<BuildError> for String {
+    fn from(error: BuildError) -> Self {
+        error.to_string()
+    }
+}

@@ -1,0 +1,218 @@
+//! What a full picture may cost. Where refining everything would hold the window up, exploration draws the
+//! picture at rest too, with as many triangles as there is time for.
+
+use neurotess::render::{ViewParams, any_shows};
+
+use super::{Stage, whole};
+use crate::model::state::{Lowered, State};
+use crate::scene::content::SceneInstance;
+
+/// No slice of a full picture may be expected to take longer: no input is answered meanwhile.
+const LIMIT_MS: f64 = 600.0;
+/// A slice of an explored picture should take no longer.
+const EXPLORED_MS: f64 = 150.0;
+/// Triangles of an explored picture: at first, at least and at most.
+const FIRST_BUDGET: u32 = 200_000;
+const LEAST_BUDGET: u32 = 50_000;
+const MOST_BUDGET: u32 = 2_000_000;
+/// Milliseconds of a slice for each patch that may show, until it was measured: in software, else.
+const SOFTWARE_PATCH_MS: f64 = 2.5e-4;
+const PATCH_MS: f64 = 1e-5;
+/// Fewer patches are never too many: what a slice takes is not theirs.
+const FEW: u64 = 100_000;
+
+/// How the picture at rest is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RestMode {
+    /// As it is saved.
+    Refined,
+    /// By the explorer, within a budget.
+    Explored,
+    /// As coarsely as drafts: what the explorer cannot draw.
+    Coarser,
+}
+
+/// What was measured, and what follows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CostModel {
+    /// Milliseconds of a slice for each patch: now, and before anything was measured.
+    patch_ms: f64,
+    first_ms: f64,
+    /// Patches that are too many, if that is not to be measured.
+    most_patches: Option<u64>,
+    /// Triangles of an explored picture.
+    pub(super) budget: u32,
+    /// The quickest slice (ms) of the explored picture under way: the first also chooses and looks for
+    /// dark corners, and other work on the machine holds up one or another.
+    best_ms: f64,
+}
+
+impl CostModel {
+    pub(super) fn new(software: bool) -> Self {
+        let first_ms = match software {
+            true => SOFTWARE_PATCH_MS,
+            false => PATCH_MS,
+        };
+        Self {
+            patch_ms: first_ms,
+            first_ms,
+            most_patches: None,
+            budget: FIRST_BUDGET,
+            best_ms: f64::MAX,
+        }
+    }
+
+    /// Whether a slice of so many patches is expected to take too long.
+    pub(super) fn too_many(&self, patches: u64) -> bool {
+        match self.most_patches {
+            Some(most) => patches > most,
+            None => patches >= FEW && self.patch_ms * patches as f64 > LIMIT_MS,
+        }
+    }
+
+    /// Learns from a slice of the refined picture. The mean with what was known: shaders that are
+    /// compiled, or other work on the machine, hold up one slice, not all.
+    pub(super) fn note_refined(&mut self, took_ms: f64, patches: u64) {
+        if patches >= FEW {
+            self.patch_ms = (self.patch_ms * took_ms / patches as f64).sqrt();
+        }
+    }
+
+    /// Another picture is begun.
+    pub(super) fn begin(&mut self) {
+        self.best_ms = f64::MAX;
+    }
+
+    /// Learns from a slice of the explored picture.
+    pub(super) fn note_explored(&mut self, took_ms: f64) {
+        self.best_ms = self.best_ms.min(took_ms);
+    }
+
+    /// Another budget for the next explored picture; whether that is worth a picture now. `wanted`:
+    /// triangles that half a pixel everywhere would take.
+    pub(super) fn adapt(&mut self, inputs: u64) -> bool {
+        let (before, took) = (self.budget, self.best_ms.max(1.0));
+        self.best_ms = f64::MAX;
+        // What was slow once is tried again some time.
+        self.patch_ms = (0.95 * self.patch_ms).max(self.first_ms);
+        let room = EXPLORED_MS / took;
+        if room < 0.67 {
+            let fits = f64::from(before) * room.max(0.25);
+            self.budget = (fits as u32).max(LEAST_BUDGET);
+        } else if room > 1.5 && inputs > u64::from(before) {
+            let fits = f64::from(before) * room.min(4.0);
+            self.budget = (fits as u32).min(MOST_BUDGET);
+        }
+        f64::from(self.budget) > 1.2 * f64::from(before)
+    }
+}
+
+impl Stage {
+    /// Takes more than so many patches in the picture for too expensive, whatever was measured: for tests.
+    pub fn limit_patches(&mut self, most: Option<u64>) {
+        self.cost_model.most_patches = most;
+    }
+
+    /// Patches of all neurons of which something may show.
+    pub(super) fn patches_in(&self, state: &State, params: &ViewParams) -> u64 {
+        let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
+        let frame = whole(camera, near, params.size);
+        let shows = |instance: &&SceneInstance| {
+            let Some(source) = self.content.sources.get(instance.source) else {
+                return false;
+            };
+            let placement = &instance.placement;
+            let spheres = state
+                .sources
+                .get(source.id)
+                .map_or(&[][..], |s| &s.few_spheres);
+            let sphere = |&(c, r)| (placement.world_from_cell(c), r * placement.scale);
+            any_shows(&spheres.iter().map(sphere).collect::<Vec<_>>(), &frame)
+        };
+        let seen = self
+            .content
+            .instances
+            .iter()
+            .filter(|s| !s.hidden)
+            .filter(shows);
+        let patches =
+            seen.map(|s| self.content.sources[s.source].generated.mesh.patches.len() as u64);
+        patches.sum()
+    }
+
+    /// How the picture at rest is drawn.
+    pub(super) fn select_rest_mode(&mut self, params: &ViewParams) -> RestMode {
+        if !self.cost_model.too_many(self.patches) {
+            return RestMode::Refined;
+        }
+        let has_proxies = explorable(params) && self.explorer.fits(&self.content);
+        match has_proxies {
+            true => RestMode::Explored,
+            false => RestMode::Coarser,
+        }
+    }
+
+    /// Learns from the slice that is done.
+    pub(super) fn note_slice(&mut self, took_ms: f64) {
+        match self.rest_mode {
+            RestMode::Refined => self.cost_model.note_refined(took_ms, self.patches),
+            RestMode::Explored => self.cost_model.note_explored(took_ms),
+            RestMode::Coarser => {}
+        }
+    }
+
+    /// How the picture at rest is less than it should be.
+    pub(super) fn lowered(&self) -> Option<Lowered> {
+        match self.rest_mode {
+            RestMode::Refined => None,
+            RestMode::Explored => Some(Lowered::Triangles(self.surveyed)),
+            RestMode::Coarser => Some(Lowered::Error(self.coarser)),
+        }
+    }
+}
+
+/// Exploration knows neither grids nor another camera.
+pub(super) fn explorable(params: &ViewParams) -> bool {
+    params.look.wire <= 0.0 && params.frozen.is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_slow_is_too_much_and_less_of_it_is_not() {
+        let mut cost_model = CostModel::new(true);
+        assert!(cost_model.too_many(20_000_000) && !cost_model.too_many(1_000_000));
+        cost_model.note_refined(300.0, 1_000_000);
+        assert!(!cost_model.too_many(2_000_000) && cost_model.too_many(2_400_000));
+        // Once held up is not slow.
+        cost_model.note_refined(800.0, 1_000_000);
+        assert!(!cost_model.too_many(1_000_000));
+        cost_model.note_refined(1600.0, 1_000_000);
+        assert!(cost_model.too_many(1_000_000) && !cost_model.too_many(99_000));
+        cost_model.note_refined(3000.0, 20_000);
+        assert!(!cost_model.too_many(500_000), "few patches tell nothing");
+        // Some time later it may be tried again.
+        for _ in 0..30 {
+            cost_model.note_explored(150.0);
+            cost_model.adapt(u64::MAX);
+        }
+        assert!(!cost_model.too_many(1_000_000) && cost_model.too_many(20_000_000));
+    }
+
+    #[test]
+    fn budgets_grow_where_there_is_time_and_more_to_draw() {
+        let mut cost_model = CostModel::new(true);
+        cost_model.note_explored(30.0);
+        assert!(cost_model.adapt(u64::MAX) && cost_model.budget == 4 * FIRST_BUDGET);
+        cost_model.note_explored(30.0);
+        assert!(cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET);
+        cost_model.note_explored(600.0);
+        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET / 4);
+        cost_model.note_explored(140.0);
+        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET / 4);
+        cost_model.note_explored(10.0);
+        assert!(!cost_model.adapt(1_000), "all that is wanted is there");
+    }
+}

@@ -1,0 +1,214 @@
+//! What is drawn while something moves.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use neurotess::render::{
+    AdaptiveSettings, Camera, Clip, DeviceError, OUTLINED, Occlusion, Outlines, Scene, ViewParams,
+};
+
+use super::cost_model::explorable;
+use super::pointing::OUTLINES;
+use super::rest::REST;
+use super::{PictureInputs, RestPhase, Stage};
+use crate::model::state::State;
+use crate::scene::content::{self, InstancesKey, StatesKey};
+
+/// A draft should take no longer.
+const DRAFT_MS: f64 = 40.0;
+/// Drafts that are coarser than this have half as many pixels to each side.
+const HALF_FROM: f32 = 6.0;
+/// So many frame times are shown.
+const FRAMES: usize = 90;
+
+impl Stage {
+    /// What the picture of now depends on. Takes no time that grows with the neurons while they stay as
+    /// they are.
+    pub(super) fn inputs(&mut self, state: &State, size: [u32; 2]) -> PictureInputs {
+        let look = &state.document.look;
+        let camera = state.view.camera();
+        let mut surface = content::surface_look(look);
+        surface.clip = self.clip(state);
+        let frozen = state.frozen.map(|view| {
+            let camera = view.camera();
+            (camera, self.near(state, 1, camera))
+        });
+        PictureInputs {
+            params: ViewParams {
+                camera,
+                near: self.near(state, 0, camera),
+                size,
+                look: surface,
+                occlusion: if look.occlusion {
+                    Occlusion::Fit
+                } else {
+                    Occlusion::Off
+                },
+                background: look.background,
+                frozen,
+            },
+            detail: state.document.detail,
+            states: StatesKey::new(&state.document),
+            instances: InstancesKey::new(state, self.content.revision),
+        }
+    }
+
+    /// The near plane of a camera; `which`: 0 for that of the picture, 1 for that of frozen levels.
+    fn near(&mut self, state: &State, which: usize, camera: Camera) -> f64 {
+        let key = (camera, state.spheres_key());
+        match self.near[which] {
+            Some((known, near)) if known == key => near,
+            _ => {
+                let near = camera.near(&state.spheres());
+                self.near[which] = Some((key, near));
+                near
+            }
+        }
+    }
+
+    fn clip(&mut self, state: &State) -> Option<Clip> {
+        let key = (state.document.look.cut?, state.spheres_key());
+        match self.clip {
+            Some((known, clip)) if known == key => clip,
+            _ => {
+                let clip = content::clip(&state.document.look, &state.spheres());
+                self.clip = Some((key, clip));
+                clip
+            }
+        }
+    }
+
+    /// Draws at once and coarsely, as coarsely as it takes to keep up.
+    pub(super) fn draft(
+        &mut self,
+        state: &State,
+        inputs: PictureInputs,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
+        self.moved = Instant::now();
+        self.phase = RestPhase::Waits;
+        self.progressive.stop();
+        if self.progressive.is_busy(&self.gpu) {
+            // What was submitted must end first: drafts that pile up come too late.
+            ctx.request_repaint_after(Duration::from_millis(3));
+            return Ok(());
+        }
+        if self.instances != Some(inputs.instances) {
+            self.set_instances(state, inputs.instances);
+        }
+        self.patches = self.patches_in(state, &inputs.params);
+        if self.explorer.is_making()
+            && explorable(&inputs.params)
+            && self.cost_model.too_many(self.patches)
+        {
+            // Refined, even a draft would take seconds.
+            ctx.request_repaint_after(Duration::from_millis(15));
+            return Ok(());
+        }
+        if self.drawn.is_some() && self.progressive.shows_draft() {
+            self.keep_up();
+        }
+        if self.states != Some(inputs.states) {
+            self.set_states(state, inputs.states);
+        }
+        // A selection moves nothing: the second click of two still finds what the first one did.
+        let before = self.drawn.map(|d| (d.params, d.instances));
+        if before != Some((inputs.params, inputs.instances)) {
+            self.picks = None;
+        }
+        self.picks_stale = true;
+        self.resolver = None;
+        self.counts = None;
+        let any = !state.document.neurons.selected().is_empty();
+        let outlines = Outlines {
+            // Looking for outlines takes time.
+            width: u32::from(any),
+            ..OUTLINES
+        };
+        self.progressive.set_outlines(&self.gpu, outlines, None);
+        self.mask = None;
+        self.draw_draft(&inputs)?;
+        self.drawn = Some(inputs);
+        self.legend.clone_from(&self.content.legend);
+        self.revalued = false;
+        ctx.request_repaint_after(REST);
+        Ok(())
+    }
+
+    /// By the explorer where it can: it knows neither grids nor another camera.
+    pub(super) fn draw_draft(&mut self, inputs: &PictureInputs) -> Result<(), DeviceError> {
+        let mut params = inputs.params;
+        let budget = self.explorer.budget();
+        let explorer = match explorable(&params) {
+            true => self
+                .explorer
+                .exploration(&self.gpu, &self.content, self.instances, budget),
+            false => None,
+        };
+        self.explored = explorer.is_some();
+        if let Some(adaptive) = explorer {
+            return self.progressive.draft(&self.gpu, adaptive, &params);
+        }
+        self.adaptive.set_settings(AdaptiveSettings {
+            // Nothing is left out that would show at rest: holes that come and go look broken.
+            lod: inputs.detail.lod().coarser(self.coarser),
+            smallest: inputs.detail.smallest,
+            wireframe: params.look.wire > 0.0,
+            ..AdaptiveSettings::default()
+        });
+        if self.coarser > HALF_FROM {
+            params.size = params.size.map(|n| n.div_ceil(2));
+        }
+        self.progressive
+            .draft(&self.gpu, &mut self.adaptive, &params)
+    }
+
+    fn set_instances(&mut self, state: &State, key: InstancesKey) {
+        self.content.instances = content::instances(state, &self.content.sources);
+        let (templates, _) = self.adaptive.take_scene().into_parts();
+        let instances = content::device_instances(&self.content.instances);
+        match Scene::new(templates, instances) {
+            Ok(scene) => self.adaptive.set_scene(scene),
+            // Placements are finite by construction; if not, all is built anew.
+            Err(_) => (self.colors, self.checked) = (None, None),
+        }
+        self.instances_are(key);
+    }
+
+    /// Notes what the instances of the content are.
+    pub(super) fn instances_are(&mut self, key: InstancesKey) {
+        self.shows = self.content.instances.iter().map(|s| !s.hidden).collect();
+        self.instances = Some(key);
+        self.rebuilds.instances += 1;
+    }
+
+    fn set_states(&mut self, state: &State, key: StatesKey) {
+        let mut states = content::states(&state.document);
+        for &neuron in state.document.neurons.selected() {
+            states[neuron] |= OUTLINED;
+        }
+        self.progressive.set_states(states);
+        self.states = Some(key);
+        self.rebuilds.states += 1;
+    }
+
+    /// Drafts become coarser where they take too long, and finer where there is time.
+    pub(super) fn keep_up(&mut self) {
+        let took = self.progressive.last_ms();
+        self.note_frame(took);
+        if self.explored {
+            self.explorer.keep_up(took, DRAFT_MS);
+        } else if took > 1.5 * DRAFT_MS {
+            self.coarser = (self.coarser * 2.0).min(32.0);
+        } else if took < 0.4 * DRAFT_MS {
+            self.coarser = (self.coarser / 1.4).max(1.0);
+        }
+    }
+
+    pub(super) fn note_frame(&mut self, took: f64) {
+        self.frames.push_back(took as f32);
+        if self.frames.len() > FRAMES {
+            self.frames.pop_front();
+        }
+    }
+}

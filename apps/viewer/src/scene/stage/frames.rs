@@ -1,0 +1,122 @@
+//! The present frame of a recording: values of the neurons that show, taken when they are read.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use eframe::egui;
+use neurotess::render::ColorTable;
+
+use super::Stage;
+use crate::io::frames::{FrameReader, ValueInputs};
+use crate::model::playback::Facts;
+use crate::model::state::State;
+use crate::scene::colors::{ColorInputs, color_scheme};
+
+impl Stage {
+    /// Another recording shows, or none: it is read from now on.
+    pub(super) fn recording(&mut self, state: &mut State, ctx: &egui::Context) {
+        let recording = self
+            .content
+            .recording
+            .as_ref()
+            .map(|(recording, _)| recording);
+        let same =
+            |reader: &FrameReader| recording.is_some_and(|r| Arc::ptr_eq(reader.recording(), r));
+        if !self.reader.as_ref().is_some_and(same) {
+            self.reader = recording.map(|recording| {
+                let ctx = ctx.clone();
+                FrameReader::new(Arc::clone(recording), move || ctx.request_repaint())
+            });
+            self.values = None;
+        }
+        self.tell(state);
+    }
+
+    /// What the window knows of the recording.
+    fn tell(&self, state: &mut State) {
+        let range = color_scheme(&state.document.look).range;
+        let facts = self
+            .content
+            .recording
+            .as_ref()
+            .map(|(recording, all)| Facts {
+                title: recording.title.clone(),
+                unit: recording.unit.clone(),
+                time: recording.time,
+                spikes: recording.is_of_spikes(),
+                range: range.unwrap_or(*all),
+                without: [recording.without(), recording.places()],
+            });
+        if facts != state.playback.facts {
+            state.playback.set_facts(facts);
+        }
+    }
+
+    /// Other colors of the same values: nothing of the scene changes.
+    pub(super) fn restyle_values(&mut self, state: &mut State, key: ColorInputs) {
+        let Some((recording, all)) = &self.content.recording else {
+            return;
+        };
+        let color_scheme = color_scheme(&state.document.look);
+        let restyled = recording.coloring(color_scheme.range.unwrap_or(*all), &color_scheme);
+        let values = std::mem::take(&mut self.content.table.values);
+        self.content.table = ColorTable {
+            values,
+            ..restyled.table
+        };
+        self.content.legend = restyled.legend;
+        self.progressive.set_colors(self.content.table.clone());
+        self.colors = Some(key);
+        self.rebuilds.colors += 1;
+        self.drawn = None;
+        self.tell(state);
+    }
+
+    /// Whether values are those of the neurons there are.
+    pub(super) fn is_in_order(&self, state: &State) -> bool {
+        let valued = self.content.table.values.instances();
+        valued == 0 || valued == state.document.neurons.len()
+    }
+
+    /// Takes the values of the present frame if they are read; whether they are other ones than before.
+    pub(super) fn take_values(&mut self, state: &mut State, ctx: &egui::Context) -> bool {
+        self.values_due = false;
+        let (Some(reader), Some(facts)) = (&self.reader, &state.playback.facts) else {
+            return false;
+        };
+        let Some(frame) = state.playback.frame() else {
+            return false;
+        };
+        let value_inputs = ValueInputs {
+            shows: Arc::clone(&self.shows),
+            range: facts.range,
+            decay: state.document.look.decay,
+        };
+        let stride = match state.playback.playing {
+            true => state.playback.stride(),
+            false => 0,
+        };
+        let values = reader.get(frame, stride, &value_inputs);
+        if let Some(why) = reader.problem() {
+            state.problem(reader.recording().file.clone(), why);
+        }
+        if let Some(seconds) = state.playback.next() {
+            ctx.request_repaint_after(Duration::from_secs_f64(seconds.min(1.0)));
+        }
+        let Some(values) = values else {
+            self.values_due = true;
+            return false;
+        };
+        if self
+            .values
+            .as_ref()
+            .is_some_and(|v| Arc::ptr_eq(v, &values))
+        {
+            return false;
+        }
+        self.progressive.set_values((*values).clone());
+        self.content.table.values = (*values).clone();
+        self.values = Some(values);
+        true
+    }
+}

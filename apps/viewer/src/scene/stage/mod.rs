@@ -1,0 +1,337 @@
+//! The picture in the window: the scene on the device, drafts while something moves, the full picture at
+//! rest, and what is under the cursor. Nothing is drawn when nothing changes.
+
+mod building;
+mod cost_model;
+mod drafts;
+mod frames;
+mod pointing;
+mod rest;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Instant;
+
+use eframe::egui;
+use egui_wgpu::RenderState;
+use neurotess::coloring::{ColorBy, coloring};
+use neurotess::render::{
+    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Frame, Gpu, InstanceValues, Legend,
+    ProgressiveRenderer, Scene, Tile, ViewParams,
+};
+
+use crate::io::frames::FrameReader;
+use crate::io::task::Task;
+use crate::model::document::{Cut, Detail, Look};
+use crate::model::revision::Revision;
+use crate::model::state::{Draft, Rebuilds, SpheresKey, State};
+use crate::scene::colors::{ColorInputs, color_scheme};
+use crate::scene::content::{InstancesKey, SceneContent, StatesKey};
+use crate::scene::explorer::Explorer;
+use crate::scene::picks::Picks;
+use building::Built;
+use cost_model::{CostModel, RestMode};
+pub(crate) use pointing::OUTLINES;
+use pointing::{MaskKey, Resolver};
+
+/// All that draws.
+pub struct Stage {
+    gpu: Arc<Gpu>,
+    render: RenderState,
+    progressive: ProgressiveRenderer,
+    adaptive: Adaptive,
+    explorer: Explorer,
+    /// Whether the last draft was the explorer's.
+    explored: bool,
+    texture: Option<(egui::TextureId, [u32; 2], bool)>,
+    /// What is on the device.
+    content: SceneContent,
+    colors: Option<ColorInputs>,
+    /// What the templates on the device were compared with last, and fitted.
+    checked: Option<Checked>,
+    /// What the instances on the device are of.
+    instances: Option<InstancesKey>,
+    /// By instance: whether it shows.
+    shows: Arc<[bool]>,
+    /// What the states on the device are of.
+    states: Option<StatesKey>,
+    /// Near planes of the picture's camera and of that of frozen levels.
+    near: [Option<((Camera, SpheresKey), f64)>; 2],
+    clip: Option<((Cut, SpheresKey), Option<Clip>)>,
+    rebuilds: Rebuilds,
+    /// Of what was drawn last.
+    legend: Legend,
+    building: Option<(Checked, Task<Built>)>,
+    /// Reads the recording that shows.
+    reader: Option<FrameReader>,
+    values: Option<Arc<InstanceValues>>,
+    /// Whether values of the present frame are not read yet.
+    values_due: bool,
+    /// Whether values are other ones than those that were drawn.
+    revalued: bool,
+    drawn: Option<PictureInputs>,
+    moved: Instant,
+    phase: RestPhase,
+    coarser: f32,
+    slices: u32,
+    frames: VecDeque<f32>,
+    picks: Option<Picks>,
+    /// Whether `picks` are of the picture before this one.
+    picks_stale: bool,
+    resolver: Option<Resolver>,
+    mask: Option<MaskKey>,
+    /// Triangles and patches of the picture at rest, and all patches, once they are counted.
+    counts: Option<[u64; 3]>,
+    cost_model: CostModel,
+    rest_mode: RestMode,
+    /// Patches of the neurons in the picture.
+    patches: u64,
+    /// Triangles of the explored picture that are drawn, and that half a pixel would take, once they are known.
+    surveyed: Option<[u64; 2]>,
+    /// Whether the last work was a slice, whose time tells something.
+    timed: bool,
+}
+
+/// What templates on the device depend on: neurons, meshes, colors.
+type Checked = (Revision, Revision, ColorInputs);
+
+/// What a picture depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PictureInputs {
+    params: ViewParams,
+    detail: Detail,
+    states: StatesKey,
+    instances: InstancesKey,
+}
+
+/// How far the full picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RestPhase {
+    /// Something moved a moment ago.
+    Waits,
+    /// Slices are being made.
+    Slices,
+    /// All is drawn by exploration; what it left out is asked for.
+    Surveys,
+    /// All is drawn.
+    Done,
+}
+
+impl Stage {
+    /// On a device that the window has.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(render: RenderState) -> Result<Self, DeviceError> {
+        let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
+        let progressive = ProgressiveRenderer::new(&gpu);
+        let mut adaptive = Adaptive::new(&gpu, Scene::default(), AdaptiveSettings::default(), 1)?;
+        let no_colors = coloring(&[], ColorBy::Type, &color_scheme(&Look::default()));
+        let content = SceneContent::new(Vec::new(), Vec::new(), no_colors.into());
+        let legend = content.legend.clone();
+        adaptive.set_keeping(true);
+        let software = gpu.adapter.software;
+        Ok(Self {
+            gpu: Arc::new(gpu),
+            render,
+            progressive,
+            adaptive,
+            explorer: Explorer::default(),
+            explored: false,
+            texture: None,
+            content,
+            colors: None,
+            checked: None,
+            instances: None,
+            shows: Arc::default(),
+            states: None,
+            near: [None; 2],
+            clip: None,
+            rebuilds: Rebuilds::default(),
+            legend,
+            building: None,
+            reader: None,
+            values: None,
+            values_due: false,
+            revalued: false,
+            drawn: None,
+            moved: Instant::now(),
+            phase: RestPhase::Done,
+            coarser: if software { 4.0 } else { 1.0 },
+            slices: if software { 2 } else { 1 },
+            frames: VecDeque::new(),
+            picks: None,
+            picks_stale: false,
+            resolver: None,
+            mask: None,
+            counts: None,
+            cost_model: CostModel::new(software),
+            rest_mode: RestMode::Refined,
+            patches: 0,
+            surveyed: None,
+            timed: false,
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    /// What is on the device.
+    pub(crate) fn content(&self) -> &SceneContent {
+        &self.content
+    }
+
+    /// What the colors of the picture mean, also while others are being made.
+    pub fn legend(&self) -> &Legend {
+        &self.legend
+    }
+
+    /// Whether all that there is to draw is drawn.
+    pub fn is_settled(&self) -> bool {
+        let drawn = self.phase == RestPhase::Done && self.drawn.is_some();
+        drawn && self.building.is_none() && !self.values_due
+    }
+
+    /// Whether values are those of the recording's present frame, in a draft or a better picture.
+    pub fn shows_frame(&self) -> bool {
+        !self.values_due && !self.revalued && self.drawn.is_some()
+    }
+
+    /// Whether what shows is of the neurons and colors of now, in a draft at least.
+    pub fn is_drawn(&self) -> bool {
+        self.drawn.is_some()
+    }
+
+    /// Whether it is the full picture that shows, its first step at least, and no draft.
+    pub fn is_sharp(&self) -> bool {
+        !self.progressive.shows_draft()
+    }
+
+    /// Whether what was drawn last, perhaps a draft, is seen from here.
+    pub fn is_from(&self, camera: &Camera) -> bool {
+        self.drawn
+            .as_ref()
+            .is_some_and(|d| d.params.camera == *camera)
+    }
+
+    /// Height (pixels) of the picture.
+    pub fn height(&self) -> f64 {
+        self.drawn
+            .as_ref()
+            .map_or(800.0, |d| f64::from(d.params.size[1]))
+    }
+
+    /// Share of the full picture that is made, while it is.
+    pub fn progress(&self) -> Option<f32> {
+        self.progressive.progress()
+    }
+
+    /// Draws what has changed; asks for another frame while there is more to draw.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn update(
+        &mut self,
+        state: &mut State,
+        size: [u32; 2],
+        ctx: &egui::Context,
+    ) -> Result<Option<egui::TextureId>, DeviceError> {
+        self.take_built(state, ctx)?;
+        self.update_templates(state, ctx)?;
+        if let Some(why) = self.explorer.update(&self.gpu, &self.content, ctx) {
+            state.problem("preparing drafts", why);
+        }
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        if self.building.is_some() && !self.is_in_order(state) {
+            // Neurons came or went: values are still those of others.
+            return Ok(self.texture_id());
+        }
+        self.revalued |= self.take_values(state, ctx);
+        let inputs = self.inputs(state, size);
+        if self.revalued || self.drawn.as_ref() != Some(&inputs) {
+            self.draft(state, inputs, ctx)?;
+        } else {
+            self.refine(state, ctx)?;
+        }
+        self.take_ids(ctx)?;
+        self.outline(state);
+        state.counters.bytes = self.bytes();
+        let [triangles, patches, all] = self.counts.unwrap_or_default();
+        (state.counters.triangles, state.counters.patches) = (triangles, [patches, all]);
+        state.counters.rebuilds = self.rebuilds(state);
+        state.counters.frames_ms = self.frames.iter().copied().collect();
+        state.counters.draft = match self.explored {
+            true => Draft::Budget(self.explorer.budget()),
+            false => Draft::Error(self.coarser),
+        };
+        state.counters.lowered = self.lowered();
+        self.gpu.check()?;
+        Ok(self.texture_id())
+    }
+
+    fn rebuilds(&self, state: &State) -> Rebuilds {
+        let [placements, spheres] = state.derivations();
+        Rebuilds {
+            placements,
+            spheres,
+            proxies: self.explorer.builds(),
+            ..self.rebuilds
+        }
+    }
+
+    /// Bytes on the device: of cells, and of pictures.
+    fn bytes(&self) -> [u64; 2] {
+        let cells = self.adaptive.bytes().iter().map(|(_, bytes)| bytes).sum();
+        [cells, self.progressive.bytes()]
+    }
+
+    /// The picture for egui; the same number for as long as the texture is the same.
+    fn texture_id(&mut self) -> Option<egui::TextureId> {
+        let texture = self.progressive.texture()?;
+        let key = (
+            [texture.width(), texture.height()],
+            self.progressive.shows_draft(),
+        );
+        if let Some((id, size, draft)) = self.texture
+            && (size, draft) == key
+        {
+            return Some(id);
+        }
+        let view = texture.create_view(&Default::default());
+        let mut renderer = self.render.renderer.write();
+        // Drafts may be smaller than they are shown.
+        let filter = match key.1 {
+            true => wgpu::FilterMode::Linear,
+            false => wgpu::FilterMode::Nearest,
+        };
+        let id = match self.texture {
+            Some((id, ..)) => {
+                let device = &self.render.device;
+                renderer.update_egui_texture_from_wgpu_texture(device, &view, filter, id);
+                id
+            }
+            None => renderer.register_native_texture(&self.render.device, &view, filter),
+        };
+        self.texture = Some((id, key.0, key.1));
+        Some(id)
+    }
+}
+
+/// A frame without tiles.
+fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
+    Frame {
+        camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
+    }
+}

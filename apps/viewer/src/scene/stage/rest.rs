@@ -1,0 +1,179 @@
+//! The full picture, when nothing has moved for a while.
+
+use std::time::Duration;
+
+use eframe::egui;
+use neurotess::render::{AdaptiveSettings, DeviceError, Steps, VertexSource, ViewParams};
+
+use super::cost_model::RestMode;
+use super::pointing::Resolver;
+use super::{RestPhase, Stage, whole};
+use crate::model::command::Tab;
+use crate::model::document::Detail;
+use crate::model::state::State;
+
+/// How long nothing must have moved before the full picture is made.
+pub(super) const REST: Duration = Duration::from_millis(130);
+/// A slice of a picture should take no longer.
+const SLICE_MS: f64 = 120.0;
+/// Most slices of a step: beyond a million patches each is chosen for itself, so many would take longer
+/// together.
+const MOST_SLICES: f64 = 3.0;
+
+impl Stage {
+    pub(super) fn refine(
+        &mut self,
+        state: &mut State,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
+        let Some(drawn) = &self.drawn else {
+            return Ok(());
+        };
+        let (params, detail) = (drawn.params, drawn.detail);
+        match self.phase {
+            RestPhase::Waits if self.moved.elapsed() < REST => {
+                ctx.request_repaint_after(REST.saturating_sub(self.moved.elapsed()));
+            }
+            RestPhase::Done => self.count(state)?,
+            _ if self.progressive.is_busy(&self.gpu) => {
+                ctx.request_repaint_after(Duration::from_millis(5));
+            }
+            RestPhase::Waits => {
+                self.begin(params, detail);
+                ctx.request_repaint();
+            }
+            RestPhase::Slices => {
+                self.slice(params)?;
+                ctx.request_repaint();
+            }
+            RestPhase::Surveys => {
+                self.survey()?;
+                ctx.request_repaint();
+            }
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, params: ViewParams, detail: Detail) {
+        self.rest_mode = self.select_rest_mode(&params);
+        let lod = match self.rest_mode {
+            RestMode::Coarser => detail.lod().coarser(self.coarser),
+            RestMode::Refined | RestMode::Explored => detail.lod(),
+        };
+        self.adaptive.set_settings(AdaptiveSettings {
+            lod,
+            smallest: detail.smallest,
+            wireframe: params.look.wire > 0.0,
+            ..AdaptiveSettings::default()
+        });
+        let steps = Steps {
+            steps: 4,
+            slices: self.slices,
+        };
+        self.progressive.begin(params, steps);
+        self.cost_model.begin();
+        self.timed = false;
+        self.phase = RestPhase::Slices;
+    }
+
+    fn slice(&mut self, params: ViewParams) -> Result<(), DeviceError> {
+        if self.timed {
+            self.learn();
+            if self.rest_mode == RestMode::Refined
+                && self.select_rest_mode(&params) != RestMode::Refined
+            {
+                // It would go on like this: begun anew, it is drawn otherwise.
+                self.progressive.stop();
+                self.phase = RestPhase::Waits;
+                return Ok(());
+            }
+        }
+        // As soon as the first step shows, the cursor may ask.
+        let asks = !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
+        self.timed = !asks;
+        let budget = self.cost_model.budget;
+        let adaptive: &mut dyn VertexSource = match self.rest_mode {
+            RestMode::Refined | RestMode::Coarser => &mut self.adaptive,
+            RestMode::Explored => {
+                match self
+                    .explorer
+                    .exploration(&self.gpu, &self.content, self.instances, budget)
+                {
+                    Some(adaptive) => adaptive,
+                    None => {
+                        self.phase = RestPhase::Waits;
+                        return Ok(());
+                    }
+                }
+            }
+        };
+        if asks {
+            self.progressive.identify(&self.gpu, adaptive, &params)?;
+            self.resolver = match self.rest_mode {
+                RestMode::Refined | RestMode::Coarser => {
+                    Some(Resolver::Refined(self.adaptive.namer()))
+                }
+                RestMode::Explored => self.explorer.resolver().map(Resolver::Explored),
+            };
+            return Ok(());
+        }
+        self.progressive.slice(&self.gpu, adaptive)?;
+        if self.progressive.progress().is_none() {
+            self.phase = match self.rest_mode {
+                RestMode::Explored => RestPhase::Surveys,
+                RestMode::Refined | RestMode::Coarser => RestPhase::Done,
+            };
+        }
+        Ok(())
+    }
+
+    /// From the slice that is done.
+    fn learn(&mut self) {
+        let took = self.progressive.last_ms();
+        self.note_frame(took);
+        self.note_slice(took);
+        if self.rest_mode == RestMode::Refined {
+            // For the next picture: slices of this one are laid out.
+            let inputs = f64::from(self.slices) * took / SLICE_MS;
+            self.slices = ((f64::from(self.slices) + inputs) / 2.0).clamp(1.0, MOST_SLICES) as u32;
+        }
+    }
+
+    /// What the explored picture left out; where there is time for more, it is drawn once more.
+    fn survey(&mut self) -> Result<(), DeviceError> {
+        self.learn();
+        self.phase = RestPhase::Done;
+        let budget = self.cost_model.budget;
+        let Some(adaptive) =
+            self.explorer
+                .exploration(&self.gpu, &self.content, self.instances, budget)
+        else {
+            return Ok(());
+        };
+        let stats = adaptive.stats(&self.gpu)?;
+        self.surveyed = Some([stats.triangles, stats.wanted]);
+        if self.cost_model.adapt(stats.wanted) {
+            self.phase = RestPhase::Waits;
+        }
+        Ok(())
+    }
+
+    /// Triangles and patches of the picture at rest, while somebody looks at their panel.
+    fn count(&mut self, state: &State) -> Result<(), DeviceError> {
+        let Some(drawn) = self.drawn.as_ref().filter(|_| self.counts.is_none()) else {
+            return Ok(());
+        };
+        let looked_at = state.tab == Tab::Detail && state.panels;
+        // Where it is explored, counting would take as long as drawing.
+        if !looked_at || self.rest_mode != RestMode::Refined {
+            return Ok(());
+        }
+        let params = drawn.params;
+        let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
+        let frame = whole(camera, near, params.size);
+        self.adaptive.prepare(&self.gpu, &frame)?;
+        let stats = self.adaptive.stats(&self.gpu)?;
+        self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);
+        Ok(())
+    }
+}

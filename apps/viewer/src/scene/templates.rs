@@ -1,0 +1,39 @@
+//! Tracings as templates of the picture.
+
+use std::sync::Arc;
+
+use neurotess::generate::{GenerateOptions, Generated};
+use neurotess::morphology::Morphology;
+
+use crate::model::ids::SourceId;
+use crate::model::state::State;
+
+/// A tracing as a template.
+#[derive(Clone, Debug)]
+pub(crate) struct SceneTemplate {
+    pub(crate) id: SourceId,
+    pub(crate) name: String,
+    pub(crate) morphology: Arc<Morphology>,
+    pub(crate) generated: Arc<Generated>,
+    /// As the tracing was meshed; another one than `generated` where a report has made room for its values.
+    pub(crate) traced: Arc<Generated>,
+    /// Of its mesh.
+    pub(crate) options: GenerateOptions,
+}
+
+/// Templates of the neurons in the list, by the ids of their tracings.
+pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
+    let used = state.document.neurons.sources().iter();
+    let templates = used.filter_map(|&id| {
+        let source = state.sources.get(id)?;
+        Some(SceneTemplate {
+            id,
+            name: source.name.clone(),
+            morphology: Arc::clone(&source.morphology),
+            generated: Arc::clone(&source.generated),
+            traced: Arc::clone(&source.generated),
+            options: source.soma.options(),
+        })
+    });
+    templates.collect()
+}

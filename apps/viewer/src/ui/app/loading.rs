@@ -1,0 +1,247 @@
+//! Files on their way into the list.
+
+use std::path::{Path, PathBuf};
+
+use super::Viewer;
+use crate::io::find::{Found, OpenRequest};
+use crate::model::command::{Command, Edit};
+use crate::model::document::{Neuron, SourceId};
+use crate::model::ids::{CircuitId, CircuitNode};
+use crate::model::session::{self, Session};
+use crate::model::sources::{Source, Stale};
+use crate::model::state::{Effect, State};
+
+/// A loading: what was found, and its cells by file.
+#[derive(Default)]
+pub(super) struct Loading {
+    found: Found,
+    ids: Vec<Option<SourceId>>,
+    circuits: Vec<CircuitId>,
+    session: Option<Box<Session>>,
+    failed: usize,
+    /// Nothing was open before: the camera goes home.
+    first: bool,
+}
+
+impl Viewer {
+    pub(super) fn load(&mut self, paths: Vec<PathBuf>) {
+        if self.loading.is_some() {
+            self.waiting.extend(paths);
+            return;
+        }
+        let sessions: Vec<&PathBuf> = paths.iter().filter(|p| session::is_session(p)).collect();
+        let session = match &sessions[..] {
+            [] => None,
+            [one] => match Session::read(one) {
+                Ok(session) => Some((one.to_path_buf(), session)),
+                Err(e) => {
+                    let why = e.to_string();
+                    self.state.problem(one.display().to_string(), why);
+                    self.state.status = "The session was not opened".into();
+                    return;
+                }
+            },
+            _ => {
+                self.state
+                    .problem("open", "one session at a time: open one of them");
+                return;
+            }
+        };
+        let mut loading = Loading {
+            first: self.state.document.neurons.is_empty(),
+            ..Loading::default()
+        };
+        let request = match session {
+            Some((file, session)) => {
+                self.take_session(&file, &session);
+                let request = OpenRequest::of_session(&session);
+                loading.session = Some(Box::new(session));
+                request
+            }
+            None => OpenRequest {
+                paths,
+                ..OpenRequest::default()
+            },
+        };
+        let request = OpenRequest {
+            usual: std::mem::take(&mut self.soma),
+            ..request
+        };
+        self.loading = Some(loading);
+        self.worker.load(request);
+    }
+
+    /// All but the cells.
+    fn take_session(&mut self, file: &Path, session: &Session) {
+        let state = &mut self.state;
+        let settings = std::mem::take(&mut state.settings);
+        let (adapter, aspect) = (state.adapter.clone(), state.aspect);
+        *state = State::new(settings);
+        (state.adapter, state.aspect) = (adapter, aspect);
+        state.settings.y_down = session.y_down;
+        state.document.look = session.look.clone();
+        state.document.detail = session.detail;
+        state.document.grid = session.grid;
+        state.document.report = session.report.clone();
+        state.playback.pace = session.playback;
+        (state.view, state.fitted) = (session.view, None);
+        state.key_views = session.key_view.clone();
+        state.session = Some(file.to_path_buf());
+        self.motion.stop();
+    }
+
+    pub(super) fn reload(&mut self) {
+        let stale: Vec<_> = self
+            .state
+            .sources
+            .iter()
+            .filter(|(_, s)| s.stale == Some(Stale::Changed))
+            .map(|(id, s)| (id, s.file.clone(), s.soma.clone()))
+            .collect();
+        if stale.is_empty() {
+            self.state.status = "No file has changed".into();
+        }
+        for (id, file, soma) in stale {
+            self.worker.reload(id, file, soma);
+        }
+    }
+
+    pub(super) fn found(&mut self, found: Found) {
+        for (file, why) in &found.failures {
+            self.state.problem(file.display().to_string(), why);
+        }
+        if let [.., report] = &found.reports[..] {
+            self.state.run(Edit::SetReport(Some(report.clone())));
+            self.state.status = format!("{} is shown", report.display());
+            for other in &found.reports[..found.reports.len() - 1] {
+                let why = "one report shows at a time: open it alone";
+                self.state.problem(other.display().to_string(), why);
+            }
+        }
+        if let Some(loading) = &mut self.loading {
+            let circuits = found.circuits.iter().cloned();
+            let add = |opened| self.state.circuits.add(opened);
+            loading.circuits = circuits.map(add).collect();
+            loading.ids = vec![None; found.files.len()];
+            loading.failed += found.failures.len();
+            loading.found = found;
+        }
+    }
+
+    pub(super) fn loaded(&mut self, index: usize, loaded: Result<Source, (PathBuf, String)>) {
+        let source = match loaded {
+            Ok(source) => source,
+            Err((file, why)) => {
+                self.state.problem(file.display().to_string(), why);
+                if let Some(loading) = &mut self.loading {
+                    loading.failed += 1;
+                }
+                return;
+            }
+        };
+        let soma = source.soma.clone();
+        let name = source.name.clone();
+        let id = self.state.sources.add(source);
+        self.state.document.set_soma(id, soma);
+        let Some(loading) = &mut self.loading else {
+            return;
+        };
+        if let Some(place) = loading.ids.get_mut(index) {
+            *place = Some(id);
+        }
+        // Cells of circuits and sessions come together, in their order, when all files are read.
+        let stands =
+            loading.session.is_some() || loading.found.cells.iter().any(|cell| cell.file == index);
+        if !stands {
+            let first = loading.first;
+            self.open(Neuron::new(id, name));
+            if first && self.state.document.neurons.len() == 1 {
+                self.home();
+            }
+        }
+    }
+
+    fn open(&mut self, neuron: Neuron) {
+        self.state.history.opened(&neuron);
+        self.state.document.neurons.push(neuron);
+    }
+
+    fn home(&mut self) {
+        self.state.run(Command::Home);
+        for effect in std::mem::take(&mut self.state.effects) {
+            match effect {
+                // Nothing was there before: there is no way to go.
+                Effect::Go(view) => self.motion.jump(&mut self.state, view),
+                other => self.effect(other),
+            }
+        }
+    }
+
+    pub(super) fn end_loading(&mut self) {
+        let Some(loading) = self.loading.take() else {
+            return;
+        };
+        match &loading.session {
+            Some(session) => {
+                for entry in &session.neuron {
+                    let id = loading.ids.get(entry.file).copied().flatten();
+                    if let Some(id) = id {
+                        let node = session.node_of(entry, &self.state.circuits);
+                        self.open(Neuron {
+                            node,
+                            ..entry.neuron(id)
+                        });
+                    }
+                }
+            }
+            None => {
+                for cell in &loading.found.cells {
+                    let id = loading.ids.get(cell.file).copied().flatten();
+                    if let Some((id, source)) =
+                        id.and_then(|id| Some((id, self.state.sources.get(id)?)))
+                    {
+                        let (name, placement) = cell.place(source);
+                        let circuit = loading.circuits.get(cell.circuit);
+                        let node = circuit.map(|&circuit| CircuitNode {
+                            circuit,
+                            node: cell.instance.node,
+                        });
+                        self.open(Neuron {
+                            placement,
+                            node,
+                            ..Neuron::new(id, name)
+                        });
+                    }
+                }
+                if loading.first {
+                    self.home();
+                }
+            }
+        }
+        let waiting = std::mem::take(&mut self.waiting);
+        if !waiting.is_empty() {
+            self.state.effects.push(Effect::Load(waiting));
+        }
+        if loading.found.files.is_empty() && !loading.found.reports.is_empty() {
+            return;
+        }
+        let read = loading.ids.iter().flatten().count();
+        let failed = match loading.failed {
+            0 => String::new(),
+            n => format!(", {n} failed"),
+        };
+        let neurons = self.state.document.neurons.len();
+        self.state.status = format!("{read} read{failed}; {neurons} in the list");
+        self.watch();
+    }
+
+    pub(super) fn watch(&mut self) {
+        let files = self.state.sources.iter();
+        let files = files.filter(|(_, s)| s.written.is_some());
+        self.worker.watch(
+            files
+                .map(|(id, s)| (id, s.file.clone(), s.written))
+                .collect(),
+        );
+    }
+}

@@ -1,0 +1,91 @@
+//! What comes back from the workers, and what they are asked for.
+
+use super::Viewer;
+use neurotess::generate::Generated;
+
+use crate::io::worker::Message;
+use crate::model::document::{SomaEdit, SourceId};
+
+impl Viewer {
+    pub(super) fn take(&mut self, message: Message) {
+        match message {
+            Message::Found(found) => self.found(*found),
+            Message::Loaded(index, loaded) => self.loaded(index, *loaded),
+            Message::LoadingDone(result) => {
+                self.end_loading();
+                if let Err(why) = result {
+                    self.state.problem("reading", why);
+                }
+            }
+            Message::Reloaded(id, source) => match *source {
+                Ok(source) => {
+                    self.state.status = format!("{} was read again", source.name);
+                    self.state.sources.replace(id, source);
+                    self.watch();
+                }
+                Err(why) => {
+                    let file = self
+                        .state
+                        .sources
+                        .get(id)
+                        .map(|s| s.file.display().to_string());
+                    let kept = format!("{why}: what was read before still shows");
+                    self.state.problem(file.unwrap_or_default(), kept);
+                }
+            },
+            Message::Soma(id, edit, generated) => self.remeshed(id, edit, *generated),
+            Message::Files(files) => {
+                for (id, stale) in files {
+                    self.state.sources.set_stale(id, stale);
+                }
+            }
+            Message::NotWatched(why) => self.state.problem("watching files", why),
+            Message::Saved(result) => self.state.note_saved(result),
+        }
+    }
+
+    fn remeshed(&mut self, id: SourceId, edit: SomaEdit, generated: Result<Generated, String>) {
+        let empty = "this soma leaves nothing to draw: choose another method";
+        let drawn = generated.and_then(|generated| match generated.mesh.patches.is_empty() {
+            true => Err(empty.to_owned()),
+            false => Ok(generated),
+        });
+        let name = self.state.sources.get(id).map(|s| s.name.clone());
+        let (generated, why) = match drawn {
+            Ok(generated) => (Some(generated), None),
+            Err(why) => (None, Some(why)),
+        };
+        // What failed is not tried again until it is asked for otherwise.
+        self.state.sources.set_soma(id, edit, generated);
+        if let Some(why) = why {
+            self.state.problem(name.unwrap_or_default(), why);
+        }
+    }
+
+    /// Somata that are not as the document wants them are made again, one at a time, the newest edit of each.
+    pub(super) fn want_somata(&mut self) {
+        if self.worker.is_remeshing() {
+            return;
+        }
+        let document = &self.state.document;
+        let members = document.neurons.revisions().members;
+        let key = [
+            members,
+            document.somata.revision(),
+            self.state.sources.geometry(),
+        ];
+        if self.somata_checked == Some(key) {
+            return;
+        }
+        let mut used = document.neurons.sources().iter();
+        let due = used.find_map(|&id| {
+            let source = self.state.sources.get(id)?;
+            let edit = document.soma(id);
+            (source.soma != edit).then(|| (id, source.morphology.clone(), edit))
+        });
+        match due {
+            Some((id, morphology, edit)) => self.worker.remesh(id, morphology, edit),
+            None => self.somata_checked = Some(key),
+        }
+    }
+}

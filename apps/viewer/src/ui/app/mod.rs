@@ -1,0 +1,266 @@
+//! The window: state, workers and stage together.
+
+mod loading;
+mod messages;
+mod saving;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use eframe::egui;
+use egui_wgpu::RenderState;
+use neurotess::render::DeviceError;
+
+use crate::io::worker::Worker;
+use crate::model::command::{Command, listed};
+use crate::model::document::SomaEdit;
+use crate::model::revision::Revision;
+use crate::model::settings::Settings;
+use crate::model::state::{Effect, State};
+use crate::scene::stage::Stage;
+use crate::ui::file_panel::FilePanel;
+use crate::ui::input::Input;
+use crate::ui::motion::Motion;
+use crate::ui::panels::{self, Screen};
+use loading::Loading;
+
+/// The whole program, without its frame.
+pub struct Viewer {
+    /// All that shows.
+    pub state: State,
+    /// What draws.
+    pub stage: Stage,
+    worker: Worker,
+    /// A loading: what was found, and its cells by file.
+    loading: Option<Loading>,
+    /// What is to be read after it.
+    waiting: Vec<PathBuf>,
+    motion: Motion,
+    files: Option<FilePanel>,
+    /// What is fatal: the device is lost.
+    pub fatal: Option<String>,
+    quits: bool,
+    theme: Option<(bool, u32)>,
+    remembered: Settings,
+    /// Somata of what is opened first.
+    soma: SomaEdit,
+    /// When the recording's time was looked at last.
+    ticked: Instant,
+    /// Where the session is saved when the program must end.
+    rescue: PathBuf,
+    /// Stamps of neurons, edits of somata and meshes when every mesh was as its edit wants it.
+    somata_checked: Option<[Revision; 3]>,
+    hears: Option<Hears>,
+}
+
+/// Told of every command before it runs.
+pub type Hears = Box<dyn Fn(&Command)>;
+
+impl Viewer {
+    /// In a window that has a device.
+    ///
+    /// # Errors
+    /// The device refuses.
+    pub fn new(
+        ctx: &egui::Context,
+        render: RenderState,
+        settings: Settings,
+    ) -> Result<Self, DeviceError> {
+        let waker = ctx.clone();
+        ctx.add_plugin(Input::new());
+        let stage = Stage::new(render)?;
+        let mut state = State::new(settings.clone());
+        let adapter = &stage.gpu().adapter;
+        state.adapter = (adapter.to_string(), adapter.software);
+        Ok(Self {
+            state,
+            stage,
+            worker: Worker::new(move || waker.request_repaint()),
+            loading: None,
+            waiting: Vec::new(),
+            motion: Motion::new(),
+            files: None,
+            fatal: None,
+            quits: false,
+            theme: None,
+            remembered: settings,
+            soma: SomaEdit::default(),
+            ticked: Instant::now(),
+            rescue: crate::model::settings::folder().unwrap_or_default(),
+            somata_checked: None,
+            hears: None,
+        })
+    }
+
+    /// A session that must be rescued goes to this folder instead of that of the settings.
+    pub fn with_rescue(mut self, folder: PathBuf) -> Self {
+        self.rescue = folder;
+        self
+    }
+
+    /// Somata of what is opened first are made so.
+    pub fn with_soma(mut self, soma: SomaEdit) -> Self {
+        self.soma = soma;
+        self
+    }
+
+    /// Tells somebody of every command before it runs.
+    pub fn with_hearing(mut self, hears: Hears) -> Self {
+        self.hears = Some(hears);
+        self
+    }
+
+    /// Views change at once: for tests.
+    pub fn without_motion(mut self) -> Self {
+        self.motion.set_smooth(false);
+        self
+    }
+
+    /// Whether nothing is under way: all that is to be read is, and all is drawn.
+    pub fn is_settled(&self) -> bool {
+        let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
+        !self.worker.is_busy() && !self.motion.is_flying() && self.loading.is_none() && drawn
+    }
+
+    /// One frame.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        self.look(&ctx);
+        for message in self.worker.messages() {
+            self.take(message);
+        }
+        self.take_drops(&ctx);
+        self.shortcuts(&ctx);
+        if self.motion.advance(&mut self.state) {
+            ctx.request_repaint();
+        }
+        self.tick();
+        self.show_panels(ui);
+        for command in std::mem::take(&mut self.state.requests) {
+            self.run(command);
+            ctx.request_repaint();
+        }
+        self.do_effects(&ctx);
+        self.want_somata();
+        self.note_settings();
+        self.end_input(&ctx);
+        if self.quits {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    /// Shows everything; what cannot go on is kept in `fatal`.
+    fn show_panels(&mut self, ui: &mut egui::Ui) {
+        let mut screen = Screen {
+            state: &mut self.state,
+            stage: &mut self.stage,
+            motion: &mut self.motion,
+            files: &mut self.files,
+            tasks: self.worker.progress(),
+            failed: None,
+        };
+        panels::show(&mut screen, ui);
+        match screen.failed {
+            None => {}
+            Some(DeviceError::Lost(why)) => {
+                self.fatal = Some(self.rescue(&lost(&why)));
+                self.quits = true;
+            }
+            Some(e) => self.state.problem("drawing", e.to_string()),
+        }
+    }
+
+    fn look(&mut self, ctx: &egui::Context) {
+        let zoom = self.state.settings.zoom.clamp(0.5, 3.0);
+        let theme = (self.state.settings.dark, (zoom * 100.0) as u32);
+        if self.theme != Some(theme) {
+            panels::style(ctx, theme.0);
+            ctx.set_zoom_factor(zoom);
+            self.theme = Some(theme);
+        }
+    }
+
+    fn take_drops(&mut self, ctx: &egui::Context) {
+        let paths: Vec<PathBuf> = ctx.input(|input| {
+            let files = input.raw.dropped_files.iter();
+            files.map(|file| file.path().to_path_buf()).collect()
+        });
+        let paths: Vec<PathBuf> = paths
+            .into_iter()
+            .filter(|p| !p.as_os_str().is_empty())
+            .collect();
+        if !paths.is_empty() {
+            self.run(Command::Open(paths));
+        }
+    }
+
+    /// Lets the recording's time go on by the clock.
+    fn tick(&mut self) {
+        let seconds = self.ticked.elapsed().as_secs_f64();
+        self.ticked = Instant::now();
+        self.state.playback.advance(seconds);
+    }
+
+    fn effect(&mut self, effect: Effect) {
+        match effect {
+            Effect::Load(paths) => self.load(paths),
+            Effect::Reload => self.reload(),
+            Effect::Cancel => {
+                self.waiting.clear();
+                for progress in self.worker.progress().into_iter().flatten() {
+                    progress.cancel();
+                    self.state.status = format!("Stopped {}", progress.what);
+                }
+            }
+            Effect::Go(view) => self.motion.fly(&mut self.state, view),
+            Effect::Quit => self.quits = true,
+            Effect::Save(request) => self.save(request),
+        }
+    }
+
+    /// Does what is asked of the program around.
+    fn do_effects(&mut self, ctx: &egui::Context) {
+        for effect in std::mem::take(&mut self.state.effects) {
+            self.effect(effect);
+            ctx.request_repaint();
+        }
+    }
+
+    /// Runs the shortcuts of this frame, in their order: what one changes counts for the next.
+    fn shortcuts(&mut self, ctx: &egui::Context) {
+        let pressed = ctx.with_plugin(Input::take_pressed).unwrap_or_default();
+        for keys in pressed {
+            let menus = listed(&self.state.toggles());
+            let mut items = menus.into_iter().flat_map(|(_, items)| items);
+            if let Some(item) = items.find(|item| item.keys == Some(keys)) {
+                self.run(item.command);
+                ctx.request_repaint();
+            }
+        }
+    }
+
+    /// Tells the input what is open, for the next frame.
+    fn end_input(&self, ctx: &egui::Context) {
+        let open = (&self.state.over).into();
+        let waits = ctx.with_plugin(|input: &mut Input| {
+            input.set_open(open);
+            input.waits()
+        });
+        if waits == Some(true) {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Does a command, and tells whoever listens.
+    fn run(&mut self, command: Command) {
+        if let Some(hears) = &self.hears {
+            hears(&command);
+        }
+        self.state.run(command);
+    }
+}
+
+/// What is said of a lost device.
+pub(crate) fn lost(why: &str) -> String {
+    format!("the graphics device was lost ({why})")
+}

@@ -1,0 +1,158 @@
+//! What goes to files.
+
+use std::path::Path;
+
+use super::Viewer;
+use crate::io::save::{self, MeshPlan, video};
+use crate::io::task::Progress;
+use crate::model::document::Neuron;
+use crate::model::film::{FilmFrame, film_frames};
+use crate::model::save::{FilmOptions, SaveRequest};
+use crate::model::session::{self, Session};
+use crate::model::settings;
+use crate::scene::content;
+use crate::scene::pictures::{StillScene, pictures};
+
+impl Viewer {
+    /// Saves the session before the program ends by itself; what to say.
+    pub(crate) fn rescue(&self, lost: &str) -> String {
+        if self.state.document.neurons.is_empty() {
+            return format!("{lost}: start again, or choose another one by NEUROTESS_ADAPTER");
+        }
+        let folder = &self.rescue;
+        let file = folder.join(format!("rescued.{}", session::EXTENSION));
+        match Session::of(&self.state, folder).write(&file) {
+            Ok(()) => format!("{lost}: your session is in {}", file.display()),
+            Err(e) => format!("{lost}, and the session could not be saved: {e}"),
+        }
+    }
+
+    pub(super) fn save(&mut self, request: SaveRequest) {
+        if let SaveRequest::Session(path) = &request {
+            // It is small, and written at once, whatever else is being written.
+            return self.save_session(path);
+        }
+        if self.worker.is_saving() {
+            self.state
+                .problem("save", "wait until the last one is written, or stop it");
+            return;
+        }
+        match request {
+            SaveRequest::Session(path) => self.save_session(&path),
+            SaveRequest::Meshes(options) => {
+                let plans = self.mesh_plans(options.all);
+                let (view, detail) = (self.state.view, self.state.document.detail);
+                let height = self.stage.height();
+                let progress = Progress::new("writing meshes", "meshes", plans.len());
+                self.worker.save(progress, move |progress| {
+                    save::meshes(&plans, &options, &view, &detail, height, progress)
+                });
+            }
+            SaveRequest::Picture(options) => {
+                self.state.settings.picture_size = options.size;
+                let still_scene = self.still_scene();
+                let film_frame = FilmFrame {
+                    view: self.state.view,
+                    time: Some(self.state.playback.pace.time),
+                };
+                let progress = Progress::new("drawing the picture", "tiles", 0);
+                self.worker.save(progress, move |progress| {
+                    let files = pictures(&still_scene, &[film_frame], &options, progress)?;
+                    let file = files.first().map(|f| f.display().to_string());
+                    Ok(format!("Saved {}", file.unwrap_or_default()))
+                });
+            }
+            SaveRequest::Film(film) => {
+                self.save_film(film);
+            }
+        }
+    }
+
+    fn save_film(&mut self, film: FilmOptions) {
+        let state = &self.state;
+        let (keys, now) = (&state.key_views, state.view);
+        let at = Some(state.playback.pace.time);
+        let time = film.time.filter(|_| state.playback.facts.is_some());
+        let film_frames = film_frames(keys, now, film.frames, time, at);
+        if film_frames.is_empty() {
+            let why = "keep two views for it (K), or open a report whose time goes on";
+            self.state.problem("film", why);
+            return;
+        }
+        let still_scene = self.still_scene();
+        let work = move |progress: &Progress| {
+            let files = pictures(&still_scene, &film_frames, &film.picture, progress)?;
+            let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
+            let also = match film.video && count > 1 {
+                true => {
+                    let video = video::video(&first, film.picture.replace, progress)?;
+                    format!(" and {}", video.display())
+                }
+                false => String::new(),
+            };
+            Ok(format!(
+                "Saved {count} pictures from {}{also}",
+                first.display()
+            ))
+        };
+        let progress = Progress::new("drawing the film", "tiles", 0);
+        self.worker.save(progress, work);
+    }
+
+    fn save_session(&mut self, path: &Path) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match Session::of(&self.state, folder).write(path) {
+            Ok(()) => {
+                self.state.status = format!("Saved {}", path.display());
+                self.state.session = Some(path.to_path_buf());
+                self.state.settings.remember_files(&[path.to_path_buf()]);
+            }
+            Err(why) => {
+                self.state.status = "The session was not saved".into();
+                self.state.problem(path.display().to_string(), why);
+            }
+        }
+    }
+
+    fn mesh_plans(&self, all: bool) -> Vec<MeshPlan> {
+        let state = &self.state;
+        let placements = state.placements();
+        let neurons = state.document.neurons.iter().zip(placements.iter());
+        let inputs = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
+        let plan = |(neuron, &placement): (&Neuron, &_)| {
+            Some(MeshPlan {
+                name: neuron.name.clone(),
+                generated: state.sources.get(neuron.source)?.generated.clone(),
+                placement,
+            })
+        };
+        inputs.filter_map(plan).collect()
+    }
+
+    fn still_scene(&self) -> StillScene {
+        StillScene {
+            gpu: self.stage.gpu().clone(),
+            shared: true,
+            content: self.stage.content().clone(),
+            look: self.state.document.look.clone(),
+            states: content::states(&self.state.document),
+            spheres: self.state.spheres(),
+        }
+    }
+
+    /// Writes what is remembered, if it has changed.
+    pub fn remember(&mut self) {
+        self.note_settings();
+        if let Err(why) = settings::write_noted() {
+            self.state.problem("settings", why);
+        }
+    }
+
+    /// Notes what is remembered, if it has changed: who ends the program writes it.
+    pub(super) fn note_settings(&mut self) {
+        if self.state.settings != self.remembered {
+            self.remembered = self.state.settings.clone();
+            self.remembered.note();
+        }
+    }
+}

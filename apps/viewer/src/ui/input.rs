@@ -1,0 +1,418 @@
+//! Keys and mouse in the order in which they came, whatever the frame rate.
+//!
+//! One slow frame may bring a whole drag, or a shortcut and the text that was typed after it. The toolkit
+//! looks at such a frame as at one moment: the drag is lost, and the text goes where the keyboard went
+//! before. So events wait in a queue, and a frame gets those up to the next one that changes what the
+//! others mean: a button of the mouse, a shortcut that opens a dialog, Enter in a line of text.
+//!
+//! Shortcuts are found here too. They must fit exactly: Ctrl+Shift+Z is not Ctrl+Z.
+
+use std::collections::VecDeque;
+
+use eframe::egui::{self, Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
+
+use crate::model::command::{Command, Toggles, listed};
+use crate::model::state::Over;
+
+/// A frame that is made of waiting events alone lasts so long (s): less than the time between two clicks,
+/// enough to fly by a tap.
+const MOMENT: f64 = 1.0 / 60.0;
+/// So many frames keys wait for a dialog's line of text to come.
+const PATIENCE: u32 = 6;
+
+/// What is open over the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Open {
+    #[default]
+    Nothing,
+    /// Something to read.
+    Sheet,
+    /// The list of commands.
+    Palette,
+    /// A question, or files to choose.
+    Question,
+}
+
+impl From<&Over> for Open {
+    fn from(over: &Over) -> Self {
+        match over {
+            Over::Nothing => Self::Nothing,
+            Over::Keys | Over::Problems => Self::Sheet,
+            Over::Palette(..) => Self::Palette,
+            Over::Files(_) | Over::Replace(..) => Self::Question,
+        }
+    }
+}
+
+impl Open {
+    /// Whether it must be answered first.
+    fn asks(self) -> bool {
+        matches!(self, Self::Palette | Self::Question)
+    }
+}
+
+/// Who hears the keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Hears {
+    /// A line of text has the keyboard.
+    text: bool,
+    /// Some control has it.
+    control: bool,
+    /// A menu is open.
+    menu: bool,
+}
+
+/// The queue of events.
+#[derive(Default)]
+pub(crate) struct Input {
+    /// With the times (s) at which they came.
+    waiting: VecDeque<(f64, Event)>,
+    /// Shortcuts of this frame, in their order.
+    pressed: Vec<KeyboardShortcut>,
+    open: Open,
+    /// Frames for which keys still wait for a dialog's text.
+    patience: u32,
+    /// The time (s) of the last frame.
+    time: f64,
+    shortcuts: Vec<(KeyboardShortcut, Command)>,
+}
+
+impl Input {
+    pub(crate) fn new() -> Self {
+        let items = listed(&Toggles::default())
+            .into_iter()
+            .flat_map(|(_, items)| items);
+        let shortcuts = items.filter_map(|item| Some((item.keys?, item.command)));
+        Self {
+            shortcuts: shortcuts.collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Shortcuts of this frame, in their order.
+    pub(crate) fn take_pressed(&mut self) -> Vec<KeyboardShortcut> {
+        std::mem::take(&mut self.pressed)
+    }
+
+    /// Tells what is open from now on.
+    pub(crate) fn set_open(&mut self, open: Open) {
+        if open != self.open && open.asks() {
+            self.patience = PATIENCE;
+        }
+        self.open = open;
+    }
+
+    /// Whether events wait for the next frame.
+    pub(crate) fn waits(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    /// The next events that mean one thing; `time`: now.
+    fn next(&mut self, hears: Hears, events: Vec<Event>, time: f64) -> (Vec<Event>, f64) {
+        self.waiting
+            .extend(events.into_iter().map(|event| (time, event)));
+        let mut batch = Batch::default();
+        let (mut came, waits) = (time, self.waits_for_text(hears));
+        while let Some((_, event)) = self.waiting.front() {
+            if (waits && is_typed(event)) || batch.ends_before(event, hears) {
+                break;
+            }
+            let Some((at, event)) = self.waiting.pop_front() else {
+                break;
+            };
+            came = at;
+            if let Some((keys, command)) = self.shortcut(&event, hears) {
+                self.pressed.push(keys);
+                self.drop_twin(&event);
+                if command.moves_keyboard() {
+                    break;
+                }
+                continue;
+            }
+            let ends = ends_after(&event, hears);
+            batch.add(event);
+            if ends {
+                break;
+            }
+        }
+        // As late as it came, so that two clicks that waited are still a double click.
+        self.time = came.max(self.time + MOMENT).min(time).max(self.time);
+        (batch.events, self.time)
+    }
+
+    /// Whether keys wait for a dialog that opens: its line of text is not there yet. In its first frame
+    /// what had the keyboard before may still have it.
+    fn waits_for_text(&mut self, hears: Hears) -> bool {
+        let waits = match self.patience {
+            0 => false,
+            PATIENCE => true,
+            _ => self.open.asks() && !hears.text,
+        };
+        self.patience = if waits { self.patience - 1 } else { 0 };
+        waits
+    }
+
+    /// The shortcut that an event is, if somebody listens to it.
+    fn shortcut(&self, event: &Event, hears: Hears) -> Option<(KeyboardShortcut, Command)> {
+        let (key, modifiers) = match event {
+            Event::Key {
+                key,
+                pressed: true,
+                modifiers,
+                ..
+            } => (*key, *modifiers),
+            // Some keyboards send it as a text only.
+            Event::Text(text) if text == "?" => (Key::Questionmark, Modifiers::NONE),
+            _ => return None,
+        };
+        let fits = |keys: &KeyboardShortcut| fits(keys, key, modifiers);
+        let (keys, command) = self.shortcuts.iter().find(|(keys, _)| fits(keys))?;
+        let heard = match (command, key) {
+            // The palette's own keys close it again.
+            (Command::TogglePalette, _) => self.open != Open::Question,
+            _ if hears.text || self.open.asks() => false,
+            (_, Key::Tab | Key::Space) => !hears.control,
+            (_, Key::Escape) => !hears.control && !hears.menu && self.open == Open::Nothing,
+            _ => true,
+        };
+        heard.then(|| (*keys, command.clone()))
+    }
+
+    /// The text of a key that was a shortcut is no text.
+    fn drop_twin(&mut self, event: &Event) {
+        let types = matches!(event, Event::Key { modifiers, .. } if !modifiers.command);
+        if types && matches!(self.waiting.front(), Some((_, Event::Text(_)))) {
+            self.waiting.pop_front();
+        }
+    }
+}
+
+impl Plugin for Input {
+    fn debug_name(&self) -> &'static str {
+        "input"
+    }
+
+    fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
+        let hears = Hears {
+            text: ctx.text_edit_focused(),
+            control: ctx.egui_wants_keyboard_input(),
+            menu: egui::Popup::is_any_open(ctx),
+        };
+        let events = std::mem::take(&mut input.events);
+        let now = input.time.unwrap_or(self.time + MOMENT);
+        let (events, time) = self.next(hears, events, now);
+        input.events = events;
+        input.time = input.time.map(|_| time);
+    }
+}
+
+/// Events of one frame.
+#[derive(Default)]
+struct Batch {
+    events: Vec<Event>,
+    moved: bool,
+    pressed: Vec<Key>,
+}
+
+impl Batch {
+    fn add(&mut self, event: Event) {
+        match &event {
+            Event::PointerMoved(_) => self.moved = true,
+            Event::Key {
+                key, pressed: true, ..
+            } => self.pressed.push(*key),
+            _ => {}
+        }
+        self.events.push(event);
+    }
+
+    /// Whether an event must come in another frame than those before it.
+    fn ends_before(&self, event: &Event, hears: Hears) -> bool {
+        match event {
+            // What was moved with the button down is moved before it is let go.
+            Event::PointerButton { pressed: false, .. } => self.moved,
+            // A key that flies is down in one frame at least.
+            Event::Key {
+                key,
+                pressed: false,
+                ..
+            } => !hears.text && self.pressed.contains(key),
+            _ => false,
+        }
+    }
+}
+
+/// Whether what comes after an event may mean something else.
+fn ends_after(event: &Event, hears: Hears) -> bool {
+    match event {
+        Event::PointerButton { .. } => true,
+        Event::Key {
+            key: Key::Enter | Key::Escape | Key::Tab,
+            pressed: true,
+            ..
+        } => hears.text || hears.control || hears.menu,
+        _ => false,
+    }
+}
+
+fn is_typed(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::Key { .. } | Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Copy
+    )
+}
+
+/// Whether keys are those of a shortcut, and no others. Signs and digits may need Shift or Alt to be typed
+/// at all.
+fn fits(keys: &KeyboardShortcut, key: Key, modifiers: Modifiers) -> bool {
+    if keys.logical_key != key {
+        return false;
+    }
+    let is_letter = key.name().len() == 1 && key.name().starts_with(char::is_alphabetic);
+    let is_named = matches!(
+        key,
+        Key::Tab | Key::Escape | Key::Home | Key::Delete | Key::Space
+    );
+    match is_letter || is_named {
+        true => modifiers.matches_exact(keys.modifiers),
+        false => modifiers.matches_logically(keys.modifiers),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{PointerButton, Pos2};
+
+    const WINDOW: Hears = Hears {
+        text: false,
+        control: false,
+        menu: false,
+    };
+    const TEXT: Hears = Hears {
+        text: true,
+        control: true,
+        menu: false,
+    };
+    fn key(key: Key, modifiers: Modifiers, pressed: bool) -> Event {
+        Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers,
+        }
+    }
+
+    fn typed(text: &str) -> Vec<Event> {
+        text.chars().map(|c| Event::Text(c.to_string())).collect()
+    }
+
+    fn button(pressed: bool) -> Event {
+        Event::PointerButton {
+            pos: Pos2::ZERO,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        }
+    }
+
+    fn moved(x: f32) -> Event {
+        Event::PointerMoved(Pos2::new(x, 0.0))
+    }
+
+    fn commands(input: &mut Input) -> Vec<Command> {
+        let keys = input.take_pressed();
+        let of = |keys| input.shortcuts.iter().find(|(k, _)| *k == keys);
+        keys.into_iter()
+            .filter_map(|keys| Some(of(keys)?.1.clone()))
+            .collect()
+    }
+
+    #[test]
+    fn every_shortcut_is_itself_and_no_other() {
+        let mut input = Input::new();
+        for (keys, command) in input.shortcuts.clone() {
+            let pressed = key(keys.logical_key, keys.modifiers, true);
+            let (rest, _) = input.next(WINDOW, vec![pressed], 0.0);
+            assert!(rest.is_empty(), "{keys:?} is heard once");
+            assert_eq!(commands(&mut input), [command]);
+        }
+        let more = key(Key::H, Modifiers::SHIFT, true);
+        assert_eq!(input.next(WINDOW, vec![more.clone()], 0.0).0, [more]);
+    }
+
+    #[test]
+    fn a_question_mark_is_one_whatever_the_keyboard_sends() {
+        let both = [
+            key(Key::Questionmark, Modifiers::SHIFT, true),
+            Event::Text("?".into()),
+        ];
+        for events in [&both[..], &both[..1], &both[1..]] {
+            let mut input = Input::new();
+            input.next(WINDOW, events.to_vec(), 0.0);
+            assert_eq!(commands(&mut input), [Command::ToggleKeys], "{events:?}");
+        }
+    }
+
+    #[test]
+    fn text_after_a_dialogs_keys_waits_for_its_line() {
+        let mut input = Input::new();
+        let mut events = vec![key(Key::O, Modifiers::COMMAND, true)];
+        events.extend(typed("/home"));
+        assert_eq!(input.next(WINDOW, events, 0.0).0, []);
+        assert_eq!(commands(&mut input).len(), 1);
+        input.set_open(Open::Question);
+        // The dialog shows, its line does not yet have the keyboard.
+        assert_eq!(input.next(WINDOW, vec![], 0.1).0, []);
+        let (there, _) = input.next(TEXT, vec![], 0.2);
+        assert_eq!(there, typed("/home"));
+        assert!(commands(&mut input).is_empty() && !input.waits());
+    }
+
+    #[test]
+    fn text_that_no_line_comes_for_runs_nothing() {
+        let mut input = Input::new();
+        input.set_open(Open::Question);
+        input.next(WINDOW, vec![key(Key::H, Modifiers::NONE, true)], 0.1);
+        assert!(input.waits());
+        (0..PATIENCE).for_each(|_| drop(input.next(WINDOW, vec![], 0.4)));
+        assert!(!input.waits() && commands(&mut input).is_empty());
+        input.next(WINDOW, vec![key(Key::Y, Modifiers::NONE, true)], 0.5);
+        assert!(!input.waits() && commands(&mut input).is_empty());
+    }
+
+    #[test]
+    fn a_drag_within_one_frame_becomes_three() {
+        let mut input = Input::new();
+        let all = vec![
+            moved(5.0),
+            button(true),
+            moved(9.0),
+            moved(30.0),
+            button(false),
+        ];
+        let frames: Vec<(Vec<Event>, f64)> = std::iter::once(input.next(WINDOW, all.clone(), 1.0))
+            .chain((1..4).map(|i| input.next(WINDOW, vec![], 1.0 + f64::from(i))))
+            .collect();
+        let sizes: Vec<usize> = frames.iter().map(|(events, _)| events.len()).collect();
+        assert_eq!(sizes, [2, 2, 1, 0]);
+        let joined: Vec<Event> = frames.iter().flat_map(|(e, _)| e.clone()).collect();
+        assert_eq!(joined, all);
+        // Two clicks that came together stay together in time.
+        assert!(
+            frames[2].1 - frames[0].1 < 0.1 && frames[3].1 > 3.0,
+            "{frames:?}"
+        );
+    }
+
+    #[test]
+    fn a_tapped_key_is_down_in_one_frame() {
+        let mut input = Input::new();
+        let [down, up] = [true, false].map(|pressed| key(Key::W, Modifiers::NONE, pressed));
+        let both = vec![down.clone(), up.clone()];
+        assert_eq!(input.next(WINDOW, both.clone(), 0.0).0, [down]);
+        assert_eq!(input.next(WINDOW, vec![], 0.1).0, [up]);
+        assert_eq!(input.next(TEXT, both.clone(), 0.2).0, both);
+    }
+}

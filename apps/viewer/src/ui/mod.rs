@@ -1,0 +1,9 @@
+//! The window: panels, keys and mouse, and what holds them together.
+
+pub(crate) mod app;
+mod file_panel;
+mod input;
+mod motion;
+mod panels;
+mod path_line;
+pub(crate) mod window;

@@ -1,0 +1,60 @@
+//! The bar of menus.
+
+use eframe::egui::{self, Button, MenuBar};
+
+use crate::model::command::{Command, listed};
+use crate::model::state::State;
+
+pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
+    let [undo, redo] = state.history.names();
+    MenuBar::new().ui(ui, |ui| {
+        for (name, items) in listed(&state.toggles()) {
+            ui.menu_button(name, |ui| {
+                for item in items {
+                    let title = match (&item.command, undo, redo) {
+                        (Command::Undo, Some(what), _) => format!("Undo: {}", what.to_lowercase()),
+                        (Command::Redo, _, Some(what)) => format!("Redo: {}", what.to_lowercase()),
+                        _ => item.title.to_owned(),
+                    };
+                    let enabled = match item.command {
+                        Command::Undo => undo.is_some(),
+                        Command::Redo => redo.is_some(),
+                        Command::Reload => state.sources.stale() > 0,
+                        _ => true,
+                    };
+                    let mut button = Button::new(title);
+                    if let Some(keys) = item.keys {
+                        button = button.shortcut_text(super::keys_text(ui, &keys));
+                    }
+                    if ui.add_enabled(enabled, button).clicked() {
+                        state.requests.push(item.command);
+                        ui.close();
+                    }
+                }
+                if name == "File" {
+                    recent(state, ui);
+                }
+            });
+        }
+    });
+}
+
+fn recent(state: &mut State, ui: &mut egui::Ui) {
+    if state.settings.recent.is_empty() {
+        return;
+    }
+    ui.separator();
+    ui.weak("Recent");
+    for path in state.settings.recent.clone() {
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let response = ui.button(name).on_hover_text(path.display().to_string());
+        if response.clicked() {
+            state.requests.push(Command::Open(vec![path]));
+            ui.close();
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Panels: plain functions of the state that ask for commands.
+
+mod cells;
+mod detail;
+mod empty;
+mod inspect;
+mod look;
+mod marks;
+mod menu;
+mod number;
+mod over;
+mod rings;
+mod save;
+mod soma;
+mod status;
+mod timeline;
+mod tip;
+mod viewport;
+
+use eframe::egui::{
+    self, CentralPanel, Color32, CornerRadius, Frame, Margin, Panel, RichText, ScrollArea, Sense,
+    UiBuilder, Visuals,
+};
+use neurotess::render::DeviceError;
+
+use crate::io::task::Progress;
+use crate::model::command::{Command, Tab};
+use crate::model::state::State;
+use crate::scene::stage::Stage;
+use crate::ui::file_panel::FilePanel;
+use crate::ui::motion::Motion;
+
+/// What panels show and change.
+pub(crate) struct Screen<'a> {
+    pub(crate) state: &'a mut State,
+    pub(crate) stage: &'a mut Stage,
+    pub(crate) motion: &'a mut Motion,
+    /// The panel of files, while it is open.
+    pub(crate) files: &'a mut Option<FilePanel>,
+    /// Reading and saving, if they are under way.
+    pub(crate) tasks: [Option<Progress>; 2],
+    /// Why the picture could not be drawn.
+    pub(crate) failed: Option<DeviceError>,
+}
+
+/// Everything.
+pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
+    let ctx = ui.ctx().clone();
+    let before = screen.state.hovered.take();
+    screen.state.touched = None;
+    Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
+    let progress = screen.stage.progress();
+    Panel::bottom("status").show(ui, |ui| {
+        status::show(screen.state, &screen.tasks, progress, ui);
+    });
+    let any = !screen.state.document.neurons.is_empty();
+    if let Some(facts) = screen.state.playback.facts.clone().filter(|_| any) {
+        Panel::bottom("time").show(ui, |ui| timeline::show(screen.state, &facts, ui));
+    }
+    if screen.state.panels && any {
+        // In a narrow window the picture keeps a third.
+        let all = ui.available_width();
+        let sized = |panel: Panel, [least, usual]: [f32; 2], share: f32| {
+            let most = share * all;
+            panel
+                .default_size(usual.min(most))
+                .size_range(least.min(most)..=most)
+        };
+        sized(Panel::left("cells"), [160.0, 236.0], 0.28).show(ui, |ui| {
+            kept_in(ui, |ui| cells::show(screen.state, ui));
+        });
+        sized(Panel::right("side"), [240.0, 292.0], 0.42).show(ui, |ui| {
+            kept_in(ui, |ui| side(screen, ui));
+        });
+    }
+    CentralPanel::no_frame().show(ui, |ui| {
+        if any {
+            viewport::show(screen, before, ui);
+        } else {
+            let reads = screen.tasks[0].is_some();
+            empty::show(screen.state, reads, ui);
+        }
+    });
+    over::show(screen.state, screen.files, &ctx);
+    over::hover(&ctx);
+}
+
+/// What is wider than its panel is cut off: it would push the panel over the picture.
+fn kept_in(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
+    let rect = ui.available_rect_before_wrap();
+    let mut inner = ui.new_child(UiBuilder::new().max_rect(rect));
+    inner.shrink_clip_rect(rect.expand(2.0));
+    show(&mut inner);
+    ui.allocate_rect(rect, Sense::hover());
+}
+
+fn side(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
+    ui.add_space(4.0);
+    // Sliders fill the panel, up to their usual length.
+    let room = (ui.available_width() - 150.0).clamp(40.0, 118.0);
+    ui.spacing_mut().slider_width = room;
+    ui.horizontal_wrapped(|ui| {
+        for (tab, name) in Tab::ALL {
+            let selected = screen.state.tab == tab;
+            if ui.selectable_label(selected, name).clicked() {
+                screen.state.requests.push(Command::Show(tab));
+            }
+        }
+    });
+    ui.separator();
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(2.0);
+        let state = &mut *screen.state;
+        match state.tab {
+            Tab::Inspect => inspect::show(state, ui),
+            Tab::Soma => soma::show(state, ui),
+            Tab::Look => look::show(state, screen.stage.legend(), ui),
+            Tab::Detail => detail::show(state, ui),
+            Tab::Save => save::show(state, ui),
+        }
+        ui.add_space(8.0);
+    });
+}
+
+/// Colors and spacing.
+pub(crate) fn style(ctx: &egui::Context, dark: bool) {
+    ctx.set_theme(if dark {
+        egui::Theme::Dark
+    } else {
+        egui::Theme::Light
+    });
+    ctx.all_styles_mut(|style| {
+        style.spacing.item_spacing = egui::vec2(8.0, 5.0);
+        style.spacing.button_padding = egui::vec2(7.0, 3.0);
+        style.spacing.slider_width = 118.0;
+        style.interaction.tooltip_delay = 0.4;
+    });
+    let mut visuals = if dark {
+        Visuals::dark()
+    } else {
+        Visuals::light()
+    };
+    let accent = Color32::from_rgb(0x2f, 0x7d, 0xc4);
+    visuals.selection.bg_fill = if dark {
+        accent.gamma_multiply(0.75)
+    } else {
+        accent.gamma_multiply(0.35)
+    };
+    visuals.hyperlink_color = accent;
+    if dark {
+        visuals.panel_fill = Color32::from_gray(30);
+        visuals.window_fill = Color32::from_gray(36);
+        visuals.extreme_bg_color = Color32::from_gray(18);
+        visuals.override_text_color = Some(Color32::from_gray(214));
+    } else {
+        visuals.override_text_color = Some(Color32::from_gray(28));
+    }
+    for widget in [
+        &mut visuals.widgets.noninteractive,
+        &mut visuals.widgets.inactive,
+        &mut visuals.widgets.hovered,
+        &mut visuals.widgets.active,
+        &mut visuals.widgets.open,
+    ] {
+        widget.corner_radius = CornerRadius::same(4);
+    }
+    ctx.set_visuals_of(
+        if dark {
+            egui::Theme::Dark
+        } else {
+            egui::Theme::Light
+        },
+        visuals,
+    );
+}
+
+/// A heading with room above it.
+fn heading(ui: &mut egui::Ui, text: &str) {
+    ui.add_space(6.0);
+    ui.label(RichText::new(text).strong().size(13.5));
+}
+
+/// Rows of a name and a value.
+fn figures(ui: &mut egui::Ui, id: &str, rows: &[(&str, String)]) {
+    egui::Grid::new(id)
+        .num_columns(2)
+        .spacing([14.0, 3.0])
+        .show(ui, |ui| {
+            for (name, value) in rows {
+                ui.weak(*name);
+                ui.label(value);
+                ui.end_row();
+            }
+        });
+}
+
+/// A box that stands on the picture.
+fn plate(ui: &egui::Ui) -> Frame {
+    Frame::new()
+        .fill(ui.visuals().window_fill.gamma_multiply(0.92))
+        .corner_radius(6)
+        .inner_margin(Margin::same(8))
+}
+
+/// A whole number with thin gaps between thousands.
+pub(crate) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            // No line is broken here.
+            text.push('\u{a0}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A length, area or volume with as many digits as mean something.
+fn measured(value: f64, unit: &str) -> String {
+    let a = value.abs();
+    if a >= 10_000.0 {
+        format!("{} {unit}", grouped(value.round().max(0.0) as u64))
+    } else if a >= 100.0 {
+        format!("{value:.0} {unit}")
+    } else if a >= 10.0 {
+        format!("{value:.1} {unit}")
+    } else {
+        format!("{value:.2} {unit}")
+    }
+}
+
+/// Keys as they stand on the keyboard: `?`, not "Questionmark".
+fn keys_text(ui: &egui::Ui, keys: &egui::KeyboardShortcut) -> String {
+    let key = keys.logical_key;
+    let text = ui.ctx().format_shortcut(keys);
+    text.replace(key.name(), key.symbol_or_name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_grouped_and_rounded() {
+        assert_eq!(grouped(1_234_567), "1\u{a0}234\u{a0}567");
+        assert_eq!(grouped(12), "12");
+        assert_eq!(measured(3.15159, "µm"), "3.15 µm");
+        assert_eq!(measured(31.5159, "µm"), "31.5 µm");
+        assert_eq!(measured(12345.6, "µm²"), "12\u{a0}346 µm²");
+    }
+}

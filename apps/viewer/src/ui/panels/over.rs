@@ -1,0 +1,311 @@
+//! Windows over the others: keys, commands, problems, files, questions.
+
+use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
+
+use super::keys_text;
+use crate::model::command::{Ask, Command, Listed, listed};
+use crate::model::state::{Over, State};
+use crate::ui::file_panel::FilePanel;
+
+pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Context) {
+    let over = std::mem::take(&mut state.over);
+    if !matches!(over, Over::Files(_)) {
+        *panel = None;
+    }
+    let escape = ctx.input(|i| i.key_pressed(Key::Escape));
+    let stays = match over {
+        Over::Nothing => Over::Nothing,
+        Over::Keys => keys(state, ctx),
+        Over::Problems => problems(state, ctx),
+        Over::Palette(text, chosen) => palette(state, text, chosen, ctx),
+        Over::Files(ask) => files(state, ask, panel, ctx),
+        Over::Replace(path, command) => replace(state, path, command, ctx),
+    };
+    let had = !matches!(stays, Over::Nothing);
+    state.over = if escape { Over::Nothing } else { stays };
+    if !matches!(state.over, Over::Files(_)) {
+        *panel = None;
+    }
+    if escape && had {
+        // This escape closed a window: it does not also drop the selection.
+        ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Escape));
+    }
+}
+
+fn files(state: &mut State, ask: Ask, panel: &mut Option<FilePanel>, ctx: &Context) -> Over {
+    let mut shown = panel
+        .take()
+        .filter(|panel| panel.is_for(ask))
+        .unwrap_or_else(|| {
+            let session = state.session.as_deref();
+            FilePanel::new(ask, &state.settings.folder, session)
+        });
+    let mut open = true;
+    state.requests.extend(shown.show(ctx, &mut open));
+    if !open {
+        return Over::Nothing;
+    }
+    *panel = Some(shown);
+    Over::Files(ask)
+}
+
+/// What a drop would do, while files are held over the window.
+pub(super) fn hover(ctx: &Context) {
+    let count = ctx.input(|input| input.raw.hovered_files.len());
+    if count == 0 {
+        return;
+    }
+    let rect = ctx.content_rect();
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let painter = ctx.layer_painter(layer);
+    painter.rect_filled(rect, 0.0, egui::Color32::from_black_alpha(150));
+    let text = match count {
+        1 => "Drop it to open it".to_owned(),
+        n => format!("Drop these {n} to open them"),
+    };
+    painter.text(
+        rect.center(),
+        Align2::CENTER_CENTER,
+        text,
+        egui::FontId::proportional(26.0),
+        egui::Color32::WHITE,
+    );
+}
+
+fn window<'a>(title: &'a str, ctx: &Context) -> egui::Window<'a> {
+    egui::Window::new(title)
+        .collapsible(false)
+        .resizable(false)
+        .pivot(Align2::CENTER_CENTER)
+        .default_pos(ctx.content_rect().center())
+}
+
+const MOUSE: [(&str, &str); 9] = [
+    ("left drag", "rotate"),
+    ("middle or right drag, Shift + left drag", "pan"),
+    ("wheel, two fingers, pinch", "zoom in and out at the cursor"),
+    ("click", "select; with Shift or Ctrl, select several"),
+    ("double click", "zoom to what is under the cursor"),
+    ("W A S D", "fly forward, left, back, right"),
+    ("Q E", "fly down and up; Shift: faster"),
+    ("arrows", "rotate"),
+    ("+  −", "zoom in and out"),
+];
+
+fn keys(state: &State, ctx: &Context) -> Over {
+    let mut open = true;
+    window("Keys and mouse", ctx)
+        .open(&mut open)
+        .show(ctx, |ui| {
+            let room = ctx.content_rect().size() - egui::vec2(60.0, 90.0);
+            // As large as it must be, and as the window allows.
+            let area = ScrollArea::both().max_width(room.x).max_height(room.y);
+            let area = area.min_scrolled_width(room.x).min_scrolled_height(room.y);
+            area.show(ui, |ui| keys_and_mouse(state, ui));
+        });
+    if open { Over::Keys } else { Over::Nothing }
+}
+
+fn keys_and_mouse(state: &State, ui: &mut Ui) {
+    ui.horizontal_top(|ui| {
+        ui.vertical(|ui| {
+            ui.strong("In the picture");
+            rows(
+                ui,
+                "mouse",
+                MOUSE.iter().map(|(a, b)| ((*a).to_owned(), *b)),
+            );
+            for (name, items) in listed(&state.toggles()).into_iter().take(3) {
+                menu(ui, name, items);
+            }
+        });
+        ui.add_space(18.0);
+        ui.vertical(|ui| {
+            for (name, items) in listed(&state.toggles()).into_iter().skip(3) {
+                menu(ui, name, items);
+            }
+        });
+    });
+}
+
+fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
+    let found: Vec<(String, &'static str)> = items
+        .into_iter()
+        .filter_map(|item| Some((keys_text(ui, &item.keys?), item.title)))
+        .collect();
+    if !found.is_empty() {
+        ui.add_space(6.0);
+        ui.strong(name);
+        rows(ui, name, found.into_iter());
+    }
+}
+
+fn rows<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
+    egui::Grid::new(("keys", id))
+        .num_columns(2)
+        .spacing([16.0, 3.0])
+        .show(ui, |ui| {
+            for (keys, what) in rows {
+                ui.label(RichText::new(keys).monospace().size(11.5));
+                ui.label(what);
+                ui.end_row();
+            }
+        });
+}
+
+fn problems(state: &mut State, ctx: &Context) -> Over {
+    let mut open = true;
+    window("What went wrong", ctx)
+        .open(&mut open)
+        .default_width(560.0)
+        .show(ctx, |ui| {
+            if state.problems.is_empty() {
+                ui.weak("Nothing.");
+                return;
+            }
+            ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
+                for problem in &state.problems {
+                    ui.label(RichText::new(&problem.what).strong());
+                    ui.label(&problem.why);
+                    ui.add_space(4.0);
+                }
+            });
+            ui.separator();
+            ui.horizontal(|ui| {
+                if ui.button("Copy").clicked() {
+                    let lines = state
+                        .problems
+                        .iter()
+                        .map(|p| format!("{}: {}\n", p.what, p.why));
+                    ui.ctx().copy_text(lines.collect());
+                }
+                if ui.button("Clear the list").clicked() {
+                    state.problems.clear();
+                }
+            });
+        });
+    if open { Over::Problems } else { Over::Nothing }
+}
+
+fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Over {
+    let mut done = false;
+    egui::Window::new("palette")
+        .title_bar(false)
+        .resizable(false)
+        .anchor(Align2::CENTER_TOP, [0.0, 70.0])
+        .fixed_size([440.0, 330.0])
+        .show(ctx, |ui| {
+            let line = TextEdit::singleline(&mut text)
+                .hint_text("Find a command")
+                .desired_width(f32::INFINITY);
+            let line = ui.add(line);
+            line.request_focus();
+            let [up, down, enter] = [Key::ArrowUp, Key::ArrowDown, Key::Enter]
+                .map(|key| ui.input(|i| i.key_pressed(key)));
+            // Found by the words of now: Enter may have come with the last letter.
+            let items = found(state, &text);
+            let last = items.len().saturating_sub(1);
+            chosen = match (up, down) {
+                _ if line.changed() => 0,
+                (_, true) => (chosen + 1).min(last),
+                (true, _) => chosen.min(last).saturating_sub(1),
+                _ => chosen.min(last),
+            };
+            ui.separator();
+            ScrollArea::vertical()
+                .max_height(280.0)
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    for (index, (menu, item)) in items.iter().enumerate() {
+                        let mut text = format!("{menu}:  {}", item.title);
+                        if let Some(keys) = &item.keys {
+                            text.push_str(&format!("    {}", keys_text(ui, keys)));
+                        }
+                        let response = ui.selectable_label(index == chosen, text);
+                        if index == chosen && (up || down) {
+                            response.scroll_to_me(None);
+                        }
+                        if response.clicked() || (enter && index == chosen) {
+                            state.requests.push(item.command.clone());
+                            done = true;
+                        }
+                    }
+                    if items.is_empty() {
+                        ui.weak("No command contains these words");
+                    }
+                });
+            if done {
+                // The next key is no text any more.
+                line.surrender_focus();
+            }
+        });
+    if done {
+        Over::Nothing
+    } else {
+        Over::Palette(text, chosen)
+    }
+}
+
+/// Commands with their menus, of those whose names have all words.
+fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
+    let all = listed(&state.toggles());
+    all.into_iter()
+        .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
+        .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), text))
+        .collect()
+}
+
+/// Whether all words are in a title, in any order.
+fn matches_words(title: &str, text: &str) -> bool {
+    let title = title.to_lowercase();
+    text.to_lowercase()
+        .split_whitespace()
+        .all(|word| title.contains(word))
+}
+
+fn replace(
+    state: &mut State,
+    path: std::path::PathBuf,
+    command: Box<Command>,
+    ctx: &Context,
+) -> Over {
+    let mut answer = None;
+    window("Replace?", ctx).show(ctx, |ui| {
+        let what = if path.is_dir() {
+            "There is a folder of this name; files in it may be replaced"
+        } else {
+            "This file exists"
+        };
+        ui.label(what);
+        ui.label(RichText::new(path.display().to_string()).monospace());
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            if ui.button("Replace").clicked() {
+                answer = Some(true);
+            }
+            if ui.button("Cancel").clicked() {
+                answer = Some(false);
+            }
+        });
+    });
+    match answer {
+        Some(true) => {
+            state.requests.push(*command);
+            Over::Nothing
+        }
+        Some(false) => Over::Nothing,
+        None => Over::Replace(path, command),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches_words;
+
+    #[test]
+    fn words_are_found_in_any_order() {
+        assert!(matches_words("View: Hide selected", "sel hide"));
+        assert!(!matches_words("View: Hide selected", "show"));
+        assert!(matches_words("anything", ""));
+    }
+}

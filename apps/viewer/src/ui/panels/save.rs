@@ -1,0 +1,320 @@
+//! Meshes, pictures, films, sessions.
+
+use std::path::PathBuf;
+
+use eframe::egui::{Button, ComboBox, RichText, Ui};
+use neurotess::mesh::Format;
+use neurotess::refine::LodCriterion;
+use neurotess::render::LARGEST;
+
+use super::cells::count;
+use super::heading;
+use super::number::field;
+use super::tip::Tip;
+use crate::io::save::video::has_ffmpeg;
+use crate::model::command::{Ask, Command};
+use crate::model::film::length;
+use crate::model::save::{FilmOptions, MeshLod, PictureFile};
+use crate::model::state::{Over, State};
+use crate::ui::path_line;
+
+pub(super) fn show(state: &mut State, ui: &mut Ui) {
+    meshes(state, ui);
+    ui.add_space(6.0);
+    ui.separator();
+    picture(state, ui);
+    ui.add_space(6.0);
+    ui.separator();
+    film(state, ui);
+    ui.add_space(6.0);
+    ui.separator();
+    heading(ui, "Session");
+    ui.weak("Keeps the files, the view, the look, soma settings, and what is hidden and selected, to continue later.");
+    if ui.button("Save session…").clicked() {
+        state.requests.push(Command::AskFiles(Ask::SaveSession));
+    }
+}
+
+/// Asks before files are replaced.
+fn ask(state: &mut State, out: PathBuf, exists: bool, command: Command, replacing: Command) {
+    if exists {
+        state.over = Over::Replace(out, Box::new(replacing));
+    } else {
+        state.requests.push(command);
+    }
+}
+
+const FORMATS: [Format; 6] = [
+    Format::Ply,
+    Format::Obj,
+    Format::Stl,
+    Format::Glb,
+    Format::Off,
+    Format::Vtu,
+];
+
+fn meshes(state: &mut State, ui: &mut Ui) {
+    heading(ui, "Meshes");
+    let shown = state.document.neurons.len() - state.document.neurons.hidden();
+    let selected = state.document.neurons.selected().len();
+    let (form, folder) = (&mut state.save, &state.settings.folder);
+    ui.horizontal_wrapped(|ui| {
+        ui.radio_value(&mut form.mesh.all, true, format!("visible ({shown})"));
+        ui.radio_value(&mut form.mesh.all, false, format!("selected ({selected})"));
+    });
+    ui.horizontal(|ui| {
+        ui.label("format");
+        ComboBox::from_id_salt("format")
+            .width(70.0)
+            .selected_text(form.mesh.format.extension())
+            .show_ui(ui, |ui| {
+                for format in FORMATS {
+                    if ui
+                        .selectable_value(&mut form.mesh.format, format, format.extension())
+                        .clicked()
+                    {
+                        let path = PathBuf::from(&form.mesh_out).with_extension(format.extension());
+                        form.mesh_out = path.display().to_string();
+                    }
+                }
+            });
+        let quads = form.mesh.format.has_quads();
+        ui.add_enabled_ui(quads, |ui| ui.checkbox(&mut form.mesh.quads, "quads"));
+    });
+    mesh_lod(&mut form.mesh.lod, ui);
+    ui.horizontal_wrapped(|ui| {
+        ui.checkbox(&mut form.mesh.placed, "placed as shown").tip(
+            "Positions as in the window (side by side, or in the circuit); otherwise the coordinates of each file",
+        );
+        ui.checkbox(&mut form.mesh.linear, "straight segments").tip("Straight between traced points; otherwise smooth curves through them");
+        ui.checkbox(&mut form.mesh.flat, "flat ends").tip("Neurites end in flat disks; otherwise in half spheres");
+    });
+    let extension = form.mesh.format.extension();
+    path_line::listing_line(&mut form.mesh_out, extension, folder, ui);
+    let number = if form.mesh.all { shown } else { selected };
+    if number > 1 {
+        ui.weak("Writes a folder of this name with a file for each neuron.");
+    }
+    let title = format!("Save {}", count(number, "mesh").replace("meshs", "meshes"));
+    let ready = number > 0 && !form.mesh_out.trim().is_empty();
+    if ui.add_enabled(ready, Button::new(title)).clicked() {
+        let mut options = form.mesh.clone();
+        options.out = PathBuf::from(form.mesh_out.trim());
+        options.replace = false;
+        let mut replacing = options.clone();
+        replacing.replace = true;
+        let out = match number {
+            1 => options.out.with_extension(options.format.extension()),
+            _ => options.out.with_extension(""),
+        };
+        let exists = out.exists();
+        ask(
+            state,
+            out,
+            exists,
+            Command::SaveMeshes(options),
+            Command::SaveMeshes(replacing),
+        );
+    }
+}
+
+fn mesh_lod(lod: &mut MeshLod, ui: &mut Ui) {
+    // Wrapped: what is too wide widens all that comes after it.
+    ui.horizontal_wrapped(|ui| {
+        let error = matches!(lod, MeshLod::Fixed(Some(LodCriterion::MaxError(_))));
+        let shown = matches!(lod, MeshLod::AsShown);
+        let level = !error && !shown;
+        if ui
+            .selectable_label(level, "subdivisions")
+            .tip("Of every edge of the coarse mesh; 0: the coarse mesh itself")
+            .clicked()
+            && !level
+        {
+            *lod = MeshLod::Fixed(Some(LodCriterion::Homogeneous(4)));
+        }
+        if ui
+            .selectable_label(error, "max. error")
+            .tip("As many subdivisions as keep the mesh within this distance of the smooth surface")
+            .clicked()
+            && !error
+        {
+            *lod = MeshLod::Fixed(Some(LodCriterion::MaxError(0.05)));
+        }
+        if ui
+            .selectable_label(shown, "as shown")
+            .tip("The subdivisions of the picture: finer where the camera is close")
+            .clicked()
+        {
+            *lod = MeshLod::AsShown;
+        }
+        match lod {
+            MeshLod::Fixed(Some(LodCriterion::MaxError(error))) => {
+                field(ui, error, 0.001..=10.0, 4, |field| {
+                    field.speed(0.005).suffix(" µm")
+                });
+            }
+            MeshLod::Fixed(criterion) => {
+                let mut level = match criterion {
+                    Some(LodCriterion::Homogeneous(level)) => *level,
+                    _ => 0,
+                };
+                field(ui, &mut level, 0..=64, 0, |field| field);
+                *criterion = (level > 0).then_some(LodCriterion::Homogeneous(level));
+            }
+            MeshLod::AsShown => {}
+        }
+    });
+}
+
+fn picture(state: &mut State, ui: &mut Ui) {
+    heading(ui, "Picture");
+    let (form, folder) = (&mut state.save, &state.settings.folder);
+    size(&mut form.picture, ui);
+    path_line::listing_line(&mut form.picture_out, "png", folder, ui);
+    let ready = !form.picture_out.trim().is_empty();
+    if ui.add_enabled(ready, Button::new("Save picture")).clicked() {
+        let out = PathBuf::from(form.picture_out.trim()).with_extension("png");
+        let options = PictureFile {
+            out: out.clone(),
+            replace: false,
+            ..form.picture.clone()
+        };
+        let replacing = PictureFile {
+            replace: true,
+            ..options.clone()
+        };
+        let exists = out.exists();
+        ask(
+            state,
+            out,
+            exists,
+            Command::SavePicture(options),
+            Command::SavePicture(replacing),
+        );
+    }
+}
+
+fn size(picture: &mut PictureFile, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        let [width, height] = &mut picture.size;
+        field(ui, width, 1..=LARGEST, 0, |field| field.speed(8));
+        ui.label("×");
+        field(ui, height, 1..=LARGEST, 0, |field| field.speed(8));
+        ui.label("pixels");
+    });
+    // Wrapped: what is too wide widens all that comes after it.
+    ui.horizontal_wrapped(|ui| {
+        ui.label("samples per pixel")
+            .tip("More give smoother edges and take longer");
+        for samples in [4, 16, 64] {
+            ui.selectable_value(&mut picture.samples, samples, samples.to_string());
+        }
+        ui.checkbox(&mut picture.transparent, "transparent background");
+    });
+}
+
+/// From when to when a recording goes on.
+fn film_time(state: &mut State, ui: &mut Ui) {
+    let Some(facts) = &state.playback.facts else {
+        return;
+    };
+    let axis = facts.time;
+    let (start, end) = (axis.start, axis.nearest(f64::INFINITY));
+    let form = &mut state.save;
+    if form.time[0] >= form.time[1] || form.time.iter().any(|t| *t < start || *t > end) {
+        form.time = [start, end];
+    }
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut form.over_time, "play the report")
+            .tip(
+                "The report plays through the film; with fewer than two kept views the camera stays here",
+            );
+        if form.over_time {
+            let [from, to] = form.time;
+            let [first, last] = &mut form.time;
+            field(ui, first, start..=to, 3, |field| field.speed(axis.step));
+            ui.label("–");
+            field(ui, last, from..=end, 3, |field| {
+                field.speed(axis.step).suffix(" ms")
+            });
+        }
+    });
+}
+
+fn film(state: &mut State, ui: &mut Ui) {
+    heading(ui, "Film");
+    if state.key_views.is_empty() {
+        ui.weak("Keep two or more views (K): the camera moves from one to the next.");
+    }
+    for (index, view) in state.key_views.clone().into_iter().enumerate() {
+        ui.horizontal(|ui| {
+            if ui
+                .button(format!("View {}", index + 1))
+                .tip("Go there")
+                .clicked()
+            {
+                state.requests.push(Command::Go(view));
+            }
+            if ui.small_button("×").tip("Remove this view").clicked() {
+                state.requests.push(Command::DropKeyView(index));
+            }
+        });
+    }
+    if ui.button("Keep this view").clicked() {
+        state.requests.push(Command::AddKeyView);
+    }
+    let keys = state.key_views.len();
+    film_time(state, ui);
+    let over_time = state.save.over_time && state.playback.facts.is_some();
+    if keys < 2 && !over_time {
+        return;
+    }
+    let (form, folder) = (&mut state.save, &state.settings.folder);
+    ui.horizontal(|ui| {
+        field(ui, &mut form.frames, 1..=3000, 0, |field| field);
+        ui.label(match keys {
+            0 | 1 => "frames",
+            _ => "frames from view to view",
+        });
+    });
+    let all = length(keys, form.frames, over_time);
+    ui.weak(format!(
+        "{all} frames, {:.1} s at 30 per second",
+        all as f64 / 30.0
+    ));
+    let ffmpeg = *form.ffmpeg.get_or_insert_with(has_ffmpeg);
+    ui.add_enabled_ui(ffmpeg, |ui| {
+        ui.checkbox(&mut form.video, "also a video (MP4)")
+            .on_disabled_hover_text("ffmpeg is not installed");
+    });
+    path_line::listing_line(&mut form.film_out, "png", folder, ui);
+    ui.label(
+        RichText::new("Size and samples as set for the picture above.")
+            .weak()
+            .small(),
+    );
+    if ui.button("Save film").clicked() {
+        let out = PathBuf::from(form.film_out.trim()).with_extension("png");
+        let stem = out
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let first = out.with_file_name(format!("{stem}_0000.png"));
+        let film = |replace| {
+            Command::SaveFilm(FilmOptions {
+                picture: PictureFile {
+                    out: out.clone(),
+                    replace,
+                    ..form.picture.clone()
+                },
+                frames: form.frames,
+                time: over_time.then_some(form.time),
+                video: form.video && ffmpeg,
+            })
+        };
+        let (command, replacing) = (film(false), film(true));
+        let exists = first.exists();
+        ask(state, first, exists, command, replacing);
+    }
+}

@@ -1,0 +1,387 @@
+//! The picture, what the mouse does in it, and what lies over it.
+
+use eframe::egui::{
+    self, Align2, Area, Color32, ColorImage, FontId, Id, Key, PointerButton, Pos2, Rect, Response,
+    Role, Sense, Stroke, TextureOptions, Ui, WidgetInfo, vec2,
+};
+use glam::DVec3;
+use neurotess::render::{Legend, is_dark, nice_length};
+
+use super::{Screen, marks, plate, tip};
+use crate::model::command::{Command, Edit};
+use crate::model::state::{Picked, State};
+
+/// Radians per point that the mouse is dragged.
+const TURN: f64 = 0.008;
+/// Nearer by this for each point that the wheel scrolls.
+const WHEEL: f64 = 0.0022;
+/// Flying: so many times the distance to the target in a second.
+const SPEED: f64 = 0.7;
+
+/// `before`: what was under the cursor in the frame before.
+pub(super) fn show(screen: &mut Screen<'_>, before: Option<Picked>, ui: &mut Ui) {
+    let rect = ui.available_rect_before_wrap();
+    let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
+    tip::set_picture(ui.ctx(), rect);
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
+    let points = ui.ctx().pixels_per_point();
+    let size = [rect.width(), rect.height()].map(|n| (n * points).round().max(0.0) as u32);
+    if size.contains(&0) {
+        return;
+    }
+    let window = ui.ctx().content_rect().size();
+    screen.motion.reshape(
+        screen.state,
+        f64::from(size[0]) / f64::from(size[1]),
+        window,
+    );
+    steer(screen, &response, ui);
+    point(screen, before, &response, points);
+    let ctx = ui.ctx().clone();
+    let texture = screen.picture(size, &ctx);
+    let [r, g, b] = screen.state.document.look.background;
+    ui.painter()
+        .rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+    if let Some(texture) = texture {
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        ui.painter().image(texture, rect, whole, Color32::WHITE);
+    }
+    over(screen, rect, ui);
+    response.context_menu(|ui| menu(screen.state, ui));
+}
+
+/// Camera by mouse and keys.
+fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
+    let view = screen.state.view;
+    let height = f64::from(response.rect.height());
+    let upwards = if screen.state.settings.y_down {
+        DVec3::NEG_Y
+    } else {
+        DVec3::Y
+    };
+    let drag = response.drag_delta();
+    let (dx, dy) = (f64::from(drag.x), f64::from(drag.y));
+    let shift = ui.input(|i| i.modifiers.shift);
+    let left = response.dragged_by(PointerButton::Primary);
+    let moves = response.dragged_by(PointerButton::Middle)
+        || response.dragged_by(PointerButton::Secondary)
+        || (left && shift);
+    if drag != egui::Vec2::ZERO {
+        if moves {
+            screen
+                .motion
+                .steer(screen.state, view.panned(dx, dy, height));
+        } else if left {
+            screen
+                .motion
+                .steer(screen.state, view.orbited(dx * TURN, dy * TURN, upwards));
+        }
+    }
+    if response.hovered() {
+        zoom(screen, response, ui);
+    }
+    if !ui.ctx().egui_wants_keyboard_input() {
+        fly(screen, upwards, ui);
+    }
+}
+
+fn zoom(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
+    let (scroll, pinch) = ui.input(|i| {
+        (
+            f64::from(i.smooth_scroll_delta().y),
+            f64::from(i.zoom_delta()),
+        )
+    });
+    let factor = (-scroll * WHEEL).exp() / pinch;
+    if factor == 1.0 {
+        return;
+    }
+    let view = screen.state.view;
+    let points = f64::from(ui.ctx().pixels_per_point());
+    let place = response.hover_pos().map(|at| {
+        let offset = at - response.rect.min;
+        let pixel = [f64::from(offset.x), f64::from(offset.y)];
+        let size = [
+            f64::from(response.rect.width()),
+            f64::from(response.rect.height()),
+        ];
+        // Towards what is there; in the air, towards the target's depth.
+        let seen = screen
+            .stage
+            .hit_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
+        match seen {
+            Some(seen) => view.at_depth(pixel, size, view.camera().depth(seen.place).max(1e-6)),
+            None => view.under(pixel, size),
+        }
+    });
+    if let Some(place) = place {
+        screen
+            .motion
+            .steer(screen.state, view.zoomed(factor, place));
+    }
+}
+
+fn fly(screen: &mut Screen<'_>, upwards: DVec3, ui: &Ui) {
+    let (keys, fast, dt) = ui.input(|i| {
+        let down = |key| {
+            if i.key_down(key) && !i.modifiers.command {
+                1.0
+            } else {
+                0.0
+            }
+        };
+        let keys = [
+            down(Key::D) - down(Key::A),
+            down(Key::E) - down(Key::Q),
+            down(Key::W) - down(Key::S),
+            down(Key::ArrowRight) - down(Key::ArrowLeft),
+            down(Key::ArrowUp) - down(Key::ArrowDown),
+            down(Key::Plus) + down(Key::Equals) - down(Key::Minus),
+        ];
+        (keys, i.modifiers.shift, f64::from(i.stable_dt.min(0.1)))
+    });
+    if keys == [0.0; 6] {
+        return;
+    }
+    let camera = screen.state.view.camera();
+    let distance = camera.eye().distance(camera.target());
+    let step = distance * SPEED * dt * if fast { 4.0 } else { 1.0 };
+    let turn = 1.2 * dt;
+    let view = screen
+        .state
+        .view
+        .flown(keys[0] * step, keys[1] * step, keys[2] * step)
+        .orbited(-keys[3] * turn, -keys[4] * turn, upwards)
+        .zoomed((-keys[5] * 1.5 * dt).exp(), camera.target());
+    screen.motion.steer(screen.state, view);
+    ui.ctx().request_repaint();
+}
+
+/// What is under the cursor, and what clicks do.
+fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, points: f32) {
+    let at = response
+        .hover_pos()
+        .map(|at| (at - response.rect.min) * points);
+    let seen = at.and_then(|at| screen.stage.hit_at(at.x, at.y));
+    // Lists and sliders have said what they point at; elsewhere it is the picture.
+    if at.is_some() {
+        screen.state.hovered = match screen.stage.can_pick() {
+            true => seen.map(|s| s.picked),
+            false => before,
+        };
+    }
+    if response.double_clicked() {
+        if let Some(seen) = seen {
+            let view = screen.state.view;
+            let camera = view.camera();
+            let near = camera.depth(seen.place) * 0.35;
+            let size = near * (camera.fov() / 2.0).tan();
+            screen
+                .state
+                .requests
+                .push(Command::Go(view.focused((seen.place, size))));
+        }
+    } else if response.clicked() {
+        click(screen.state, seen.map(|s| s.picked), response);
+    }
+}
+
+fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
+    let adds = response
+        .ctx
+        .input(|i| i.modifiers.shift || i.modifiers.command);
+    match picked {
+        Some(picked) => {
+            state.picked = Some(picked);
+            state.reveal = Some(picked);
+            let already = state
+                .document
+                .neurons
+                .get(picked.neuron)
+                .is_some_and(|n| n.selected);
+            let only = state.document.neurons.selected().len() == 1;
+            // Another piece of the same neuron is no other selection.
+            if adds || !already || !only {
+                state
+                    .requests
+                    .push(Edit::Select(vec![picked.neuron], adds).into());
+            }
+        }
+        None if !adds => {
+            state.picked = None;
+            state.requests.push(Edit::SelectNone.into());
+        }
+        None => {}
+    }
+}
+
+fn menu(state: &mut State, ui: &mut Ui) {
+    for (title, command) in [
+        ("Zoom to the selection", Command::Focus),
+        ("Hide selected", Edit::Hide.into()),
+        ("Isolate selected", Edit::Isolate.into()),
+        ("Show all", Edit::ShowAll.into()),
+        ("Everything, from the front", Command::Home),
+        ("Keep this view for a film", Command::AddKeyView),
+    ] {
+        if ui.button(title).clicked() {
+            state.requests.push(command);
+            ui.close();
+        }
+    }
+}
+
+fn ink(state: &State) -> Color32 {
+    if is_dark(state.document.look.background) {
+        Color32::from_gray(225)
+    } else {
+        Color32::from_gray(30)
+    }
+}
+
+/// Legend, scale bar, axes.
+fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
+    let look = &screen.state.document.look;
+    if look.legend {
+        legend(screen.stage.legend().clone(), screen, rect, ui);
+    }
+    if look.scale_bar {
+        scale_bar(screen.state, rect, ui);
+    }
+    if look.axes {
+        axes(screen.state, rect, ui);
+    }
+    let painter = ui.painter().with_clip_rect(rect);
+    marks::rings(screen.state, rect, &painter);
+    if !screen.stage.can_pick() {
+        marks::hovered(screen.state, rect, &painter);
+    }
+    if !screen.stage.is_settled() && screen.stage.content().sources.is_empty() {
+        Area::new(Id::unique("meshing"))
+            .fixed_pos(rect.center())
+            .pivot(Align2::CENTER_CENTER)
+            .show(ui.ctx(), |ui| {
+                plate(ui).show(ui, |ui| {
+                    ui.horizontal(|ui| {
+                        ui.spinner();
+                        ui.label("Preparing the picture…");
+                    });
+                });
+            });
+    }
+}
+
+/// A legend as a texture, made again when it says something else.
+fn legend(legend: Legend, screen: &Screen<'_>, rect: Rect, ui: &Ui) {
+    type Kept = (Legend, [u8; 3], u32, egui::TextureHandle);
+    let points = ui.ctx().pixels_per_point();
+    let background = screen.state.document.look.background;
+    let ink = if is_dark(background) {
+        [230; 3]
+    } else {
+        [25; 3]
+    };
+    let id = Id::unique("legend");
+    let line = (14.0 * points).round();
+    let kept: Option<Kept> = ui.data(|data| data.get_temp(id));
+    let fits = |kept: &Kept| kept.0 == legend && kept.1 == ink && kept.2 == line as u32;
+    let texture = match kept.filter(fits) {
+        Some((.., texture)) => texture,
+        None => {
+            let image = legend.draw(line, ink);
+            let size = [image.width as usize, image.height as usize];
+            if size.contains(&0) {
+                return;
+            }
+            let image = ColorImage::from_rgba_unmultiplied(size, &image.pixels);
+            let texture = ui
+                .ctx()
+                .load_texture("legend", image, TextureOptions::NEAREST);
+            ui.data_mut(|data| data.insert_temp(id, (legend, ink, line as u32, texture.clone())));
+            texture
+        }
+    };
+    let size = texture.size_vec2() / points;
+    if size.y > 0.8 * rect.height() || size.x > 0.6 * rect.width() || size.x < 4.0 {
+        return;
+    }
+    let place = Rect::from_min_size(rect.left_top() + vec2(14.0, 14.0), size);
+    set_off(screen.state, place.expand(7.0), ui);
+    let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    ui.painter()
+        .image(texture.id(), place, whole, Color32::WHITE);
+}
+
+/// Sets off what stands in a corner from what lies behind it.
+fn set_off(state: &State, rect: Rect, ui: &Ui) {
+    let [r, g, b] = state.document.look.background;
+    let behind = Color32::from_rgba_unmultiplied(r, g, b, 190);
+    ui.painter().rect_filled(rect, 5.0, behind);
+}
+
+fn scale_bar(state: &State, rect: Rect, ui: &Ui) {
+    let camera = state.view.camera();
+    let pixel = camera.pixel_slope(f64::from(rect.height())) * camera.depth(camera.target());
+    let length = nice_length(0.18 * f64::from(rect.width()) * pixel);
+    let width = (length / pixel) as f32;
+    if !width.is_finite() || width > rect.width() {
+        return;
+    }
+    let end = rect.right_bottom() - vec2(20.0, 22.0);
+    let (painter, ink) = (ui.painter(), ink(state));
+    let start = end - vec2(width, 0.0);
+    let shown = Rect::from_min_max(start - vec2(0.0, 24.0), end).expand(8.0);
+    set_off(state, shown, ui);
+    painter.line_segment([start, end], Stroke::new(3.0, ink));
+    let text = match length {
+        l if l >= 1000.0 => format!("{} mm", l / 1000.0),
+        l if l < 1.0 => format!("{} nm", (l * 1e3).round()),
+        l => format!("{l} µm"),
+    };
+    let at = start.lerp(end, 0.5) - vec2(0.0, 6.0);
+    painter.text(
+        at,
+        Align2::CENTER_BOTTOM,
+        text,
+        FontId::proportional(13.0),
+        ink,
+    );
+}
+
+fn axes(state: &State, rect: Rect, ui: &Ui) {
+    let [right, up, backward] = state.view.camera().axes();
+    let center = rect.left_bottom() + vec2(44.0, -44.0);
+    let mut arms = [
+        (DVec3::X, "x", Color32::from_rgb(214, 60, 60)),
+        (DVec3::Y, "y", Color32::from_rgb(70, 160, 70)),
+        (DVec3::Z, "z", Color32::from_rgb(60, 110, 220)),
+    ];
+    set_off(state, Rect::from_center_size(center, vec2(84.0, 84.0)), ui);
+    // The farthest first.
+    arms.sort_by(|a, b| a.0.dot(backward).total_cmp(&b.0.dot(backward)));
+    for (axis, name, color) in arms {
+        let tip = vec2(axis.dot(right) as f32, -axis.dot(up) as f32) * 26.0;
+        ui.painter()
+            .line_segment([center, center + tip], Stroke::new(2.0, color));
+        ui.painter().text(
+            center + tip * 1.35,
+            Align2::CENTER_CENTER,
+            name,
+            FontId::proportional(12.0),
+            color,
+        );
+    }
+}
+
+impl Screen<'_> {
+    /// Draws the picture of this size; why it cannot is kept in `failed`.
+    fn picture(&mut self, size: [u32; 2], ctx: &egui::Context) -> Option<egui::TextureId> {
+        match self.stage.update(self.state, size, ctx) {
+            Ok(texture) => texture,
+            Err(e) => {
+                self.failed = Some(e);
+                None
+            }
+        }
+    }
+}

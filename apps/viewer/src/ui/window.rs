@@ -1,0 +1,223 @@
+//! The frame of the desktop around the viewer.
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook, take_hook};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use eframe::egui::{self, ViewportBuilder};
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use neurotess::render::{DeviceError, device_descriptor, select_adapter};
+use thiserror::Error;
+
+use crate::model::command::{Command, Edit};
+use crate::model::document::SomaEdit;
+use crate::model::settings::Settings;
+use crate::ui::app::{Hears, Viewer, lost};
+
+/// What to begin with.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Files, folders, circuits or a session to open.
+    pub inputs: Vec<PathBuf>,
+    /// How their somata are made, but those of a session.
+    pub soma: SomaEdit,
+    /// A report or spikes to show on them.
+    pub report: Option<PathBuf>,
+    /// Adapter to draw with: a part of its name.
+    pub adapter: Option<String>,
+}
+
+/// Why there is no window, or no more: `what: what to do`.
+#[derive(Debug, Error)]
+pub enum ViewError {
+    /// No desktop.
+    #[error(
+        "no display ({0}): start it on a desktop (ssh -X, VNC, Xvfb), or draw without a window by \
+         neurotess render"
+    )]
+    NoDisplay(String),
+    /// No adapter, or its driver refuses.
+    #[error("{0}")]
+    NoAdapter(String),
+    /// The device was lost.
+    #[error("{0}")]
+    Lost(String),
+}
+
+/// Opens the window and returns when it is closed. `hears` gets every command before it runs.
+///
+/// # Errors
+/// Why it cannot be opened, or why it had to close.
+pub fn run(options: Options, hears: Option<Hears>) -> Result<(), ViewError> {
+    if !has_display() {
+        let why = "neither DISPLAY nor WAYLAND_DISPLAY is set";
+        return Err(ViewError::NoDisplay(why.into()));
+    }
+    let fatal: Arc<Mutex<Option<String>>> = Arc::default();
+    let refused: Arc<Mutex<Option<String>>> = Arc::default();
+    let native = eframe::NativeOptions {
+        viewport: ViewportBuilder::default()
+            .with_title("neurotess")
+            .with_app_id("neurotess")
+            .with_inner_size([1280.0, 820.0])
+            .with_min_inner_size([480.0, 320.0])
+            .with_drag_and_drop(true),
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: wgpu_setup(options.adapter.clone(), Arc::clone(&refused)),
+            ..WgpuConfiguration::default()
+        },
+        ..eframe::NativeOptions::default()
+    };
+    let out = Arc::clone(&fatal);
+    quiet_once_fatal(&fatal);
+    // Whoever draws the panels panics where the device is lost.
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        eframe::run_native(
+            "neurotess",
+            native,
+            Box::new(move |context| Ok(Box::new(Window::new(context, options, hears, out)?))),
+        )
+    }));
+    drop(take_hook());
+    if let Some(why) = taken(&fatal) {
+        return Err(ViewError::Lost(why));
+    }
+    let ended = ended.unwrap_or_else(|panic| resume_unwind(panic));
+    ended.map_err(|e| match (taken(&refused), e) {
+        (Some(why), _) => ViewError::NoAdapter(why),
+        (None, eframe::Error::Winit(e)) => ViewError::NoDisplay(e.to_string()),
+        (None, eframe::Error::WinitEventLoop(e)) => ViewError::NoDisplay(e.to_string()),
+        (None, e) => ViewError::NoAdapter(format!(
+            "the window cannot be drawn ({e}): choose another adapter with --adapter"
+        )),
+    })
+}
+
+fn taken(slot: &Mutex<Option<String>>) -> Option<String> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// What panics once it is known why the program ends has nothing to add.
+fn quiet_once_fatal(fatal: &Arc<Mutex<Option<String>>>) {
+    let (fatal, usual) = (Arc::clone(fatal), take_hook());
+    set_hook(Box::new(move |panic| {
+        let known = fatal.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.is_none() {
+            drop(known);
+            usual(panic);
+        }
+    }));
+}
+
+fn has_display() -> bool {
+    let desktop = cfg!(any(target_os = "windows", target_os = "macos"));
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    desktop || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
+
+/// The device that the renderer needs, shared with the window. Why none will do is left in `refused`.
+pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -> WgpuSetup {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    setup.instance_descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
+    setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+        let fits = |a: &&wgpu::Adapter| surface.is_none_or(|s| a.is_surface_supported(s));
+        let fitting: Vec<wgpu::Adapter> = adapters.iter().filter(fits).cloned().collect();
+        select_adapter(&fitting, wanted.as_deref()).map_err(|e| {
+            let why = e.to_string();
+            *refused.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.clone());
+            why
+        })
+    }));
+    setup.device_descriptor = Arc::new(device_descriptor);
+    WgpuSetup::CreateNew(setup)
+}
+
+/// Environment variable for tests: once the file that it names is there, the device is lost.
+const LOSE: &str = "NEUROTESS_TEST_LOSE_DEVICE";
+
+/// Times that a device is asked whether it is lost, every 10 ms.
+const LOST_POLLS: usize = 100;
+
+struct Window {
+    viewer: Viewer,
+    fatal: Arc<Mutex<Option<String>>>,
+    lose: Option<PathBuf>,
+}
+
+impl Window {
+    fn new(
+        context: &eframe::CreationContext<'_>,
+        options: Options,
+        hears: Option<Hears>,
+        fatal: Arc<Mutex<Option<String>>>,
+    ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
+        let render = context
+            .wgpu_render_state
+            .clone()
+            .ok_or("the window has no device")?;
+        let (settings, said) = Settings::load();
+        let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
+        let mut viewer = viewer.with_soma(options.soma);
+        if let Some(hears) = hears {
+            viewer = viewer.with_hearing(hears);
+        }
+        if let Some(said) = said {
+            viewer.state.problem("settings", said);
+        }
+        if !options.inputs.is_empty() {
+            viewer.state.run(Command::Open(options.inputs));
+        }
+        if options.report.is_some() {
+            viewer.state.run(Edit::SetReport(options.report));
+        }
+        Ok(Self {
+            viewer,
+            fatal,
+            lose: std::env::var_os(LOSE).map(PathBuf::from),
+        })
+    }
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if self.lose.as_ref().is_some_and(|file| file.exists()) {
+            self.viewer.stage.gpu().device.destroy();
+            self.lose = None;
+        }
+        self.viewer.ui(ui);
+        if let Some(why) = self.viewer.fatal.take() {
+            *self.fatal.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+        }
+    }
+
+    fn on_exit(&mut self) {
+        self.viewer.remember();
+    }
+}
+
+impl Drop for Window {
+    /// Where the panels cannot be drawn any more, the frame panics: what is there is saved.
+    fn drop(&mut self) {
+        let mut fatal = self.fatal.lock().unwrap_or_else(PoisonError::into_inner);
+        if !std::thread::panicking() || fatal.is_some() {
+            return;
+        }
+        let gpu = self.viewer.stage.gpu();
+        // Tells what has become of the device, once its work under way has ended.
+        let mut faults = (0..LOST_POLLS).filter_map(|_| {
+            std::thread::sleep(Duration::from_millis(10));
+            let _ = gpu.device.poll(wgpu::PollType::Poll);
+            gpu.check().err()
+        });
+        // What a lost device complains of besides is no reason.
+        let why = faults.find_map(|fault| match fault {
+            DeviceError::Lost(why) => Some(lost(&why)),
+            _ => None,
+        });
+        let bug = || "a bug in neurotess ended it, please report what stands above".into();
+        let why = why.unwrap_or_else(bug);
+        *fatal = Some(self.viewer.rescue(&why));
+    }
+}
