@@ -1,11 +1,6 @@
 //! Which formats there are.
 
-use std::io::{self, Write};
-
-use neurotess_morphology::Morphology;
-
-use crate::text::{BOM, refuse_other_text};
-use crate::{Fault, Warning, swc};
+use crate::Fault;
 
 /// A format of morphology files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -77,68 +72,6 @@ impl Format {
         let extension = extension.to_ascii_lowercase();
         let has = |format: &Self| format.extensions().contains(&&*extension);
         Self::ALL.into_iter().find(has)
-    }
-
-    /// The format that the content begins like.
-    pub(crate) fn of_content(bytes: &[u8]) -> Option<Self> {
-        match () {
-            () if bytes.starts_with(HDF5) => Some(Self::H5),
-            () if has_neuroml_element(bytes) => Some(Self::NeuroMl),
-            () if begins_with_bracket(bytes) => Some(Self::Asc),
-            () if swc::looks_like(bytes) => Some(Self::Swc),
-            () => None,
-        }
-    }
-}
-
-/// First bytes of every HDF5 file without a user block.
-const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-
-/// Whether there is an element of NeuroML near the start.
-fn has_neuroml_element(bytes: &[u8]) -> bool {
-    let start = &bytes[..bytes.len().min(4096)];
-    memchr::memmem::find(start, b"<neuroml").is_some()
-}
-
-/// Whether the first thing that is no comment is a bracket, as in Neurolucida's files.
-fn begins_with_bracket(bytes: &[u8]) -> bool {
-    if refuse_other_text(bytes).is_err() {
-        return false;
-    }
-    let mut rest = bytes.strip_prefix(BOM).unwrap_or(bytes);
-    while let Some((&byte, after)) = rest.split_first() {
-        rest = match byte {
-            b';' => &after[memchr::memchr2(b'\n', b'\r', after).unwrap_or(after.len())..],
-            b',' | 0x0b => after,
-            _ if byte.is_ascii_whitespace() => after,
-            _ => return byte == b'(',
-        };
-    }
-    false
-}
-
-/// Writes a morphology, and tells what the format cannot say of it.
-///
-/// # Errors
-/// Those of the writer; [`io::ErrorKind::Unsupported`] for a format that is only read, or that this build
-/// has no feature for.
-///
-/// # Panics
-/// If indices in the morphology point outside its arrays.
-pub fn write(
-    morphology: &Morphology,
-    format: Format,
-    writer: impl Write,
-) -> io::Result<Vec<Warning>> {
-    match format {
-        Format::Swc => swc::write(morphology, writer).map(|()| Vec::new()),
-        #[cfg(feature = "asc")]
-        Format::Asc => crate::asc::write(morphology, writer),
-        #[cfg(feature = "h5")]
-        Format::H5 => crate::h5::write(morphology, writer),
-        Format::NeuroMl => Err(io::ErrorKind::Unsupported.into()),
-        #[cfg(not(all(feature = "asc", feature = "h5")))]
-        other => Err(io::Error::new(io::ErrorKind::Unsupported, other.missing())),
     }
 }
 

@@ -38,6 +38,7 @@ mod losses;
 #[cfg(feature = "neuroml")]
 pub mod neuroml;
 mod number;
+mod recognize;
 mod regular;
 #[cfg(any(feature = "asc", feature = "h5", feature = "neuroml"))]
 mod sample;
@@ -46,17 +47,19 @@ mod text;
 #[cfg(any(feature = "asc", feature = "h5"))]
 mod traced;
 mod warning;
+mod write;
 
 use std::path::Path;
 
 use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
-pub use format::{EXTENSIONS, Format, write};
+pub use format::{EXTENSIONS, Format};
 pub use regular::{read_regular, regular};
 use text::Located;
 pub use warning::Warning;
 use warning::Warnings;
+pub use write::write;
 
 /// How to read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,7 +113,7 @@ pub fn read_bytes(
     format: Option<Format>,
     options: &ReadOptions,
 ) -> Result<Read, ReadError> {
-    match format.or_else(|| Format::of_content(&bytes)) {
+    match format.or_else(|| recognize::of_content(&bytes)) {
         Some(Format::Swc) => swc::read_bytes(&bytes, name, options),
         #[cfg(feature = "asc")]
         Some(Format::Asc) => asc::read_bytes(&bytes, name, options),
