@@ -1,11 +1,13 @@
 //! Exploration keeps its budget, spends it where it shows most, and loses nothing on the way.
 
+mod adapter;
 mod common;
 mod pictured;
 
 use std::convert::Infallible;
 
-use common::{Random, cell, extent, gpu, smooth_cell};
+use adapter::{device, gpu};
+use common::{Random, cell, extent, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{
@@ -13,6 +15,7 @@ use neurotess_render::{
     Image, Instance, LodRequest, MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene,
     Template, TemplateId, Templates, Tile, VertexSource, lod_requests, paint,
 };
+use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
 
 fn frame(camera: Camera, width: u32, height: u32) -> Frame {
@@ -63,9 +66,9 @@ fn any_camera(random: &mut Random, reach: f64) -> Camera {
     Camera::new(eye, target, up, random.real(0.1, 1.5)).expect("a camera")
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mut random = Random(5);
     let proxies: Vec<Proxy> = (0..3).map(|i| Proxy::new(&cell(i, 30), &[])).collect();
     for (count, edge) in [(1, 1.0), (7, 100.0), (300, 800.0)] {
@@ -95,9 +98,9 @@ fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_is_drawn_is_what_is_worth_most() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mut random = Random(11);
     let proxies: Vec<Proxy> = (0..2).map(|i| Proxy::new(&cell(i, 40), &[])).collect();
     let instances = places(&mut random, 40, proxies.len(), 300.0);
@@ -139,7 +142,7 @@ fn what_is_drawn_is_what_is_worth_most() {
             }
         }
     }
-    println!("{off} of {compared} runs on an edge");
+    note!("{off} of {compared} runs on an edge");
     assert!(off * 500 < compared, "{off} of {compared}");
 }
 
@@ -200,9 +203,9 @@ fn both(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Instance]) -> (Adaptive, Expl
     (adaptive, source)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn nothing_vanishes_near_or_far() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(3);
     let (_, table) = by_type(&mesh);
     let mut random = Random(2);
@@ -218,7 +221,7 @@ fn nothing_vanishes_near_or_far() {
             let all: f64 = wanted.iter().sum();
             let change = found.iter().sum::<f64>() / all - 1.0;
             let off: f64 = wanted.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
-            println!(
+            note!(
                 "{count} at {distance}: {change:+.4} ink, {:.4} off",
                 off / all
             );
@@ -229,9 +232,9 @@ fn nothing_vanishes_near_or_far() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn somata_are_seen_from_any_distance() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh("1 1 0 0 0 6 -1\n");
     let (_, table) = by_type(&mesh);
     let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
@@ -245,9 +248,9 @@ fn somata_are_seen_from_any_distance() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_place_in_the_world_does_not_matter() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     let (_, table) = by_type(&mesh);
     let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
@@ -272,9 +275,9 @@ fn the_place_in_the_world_does_not_matter() {
     assert!(off * 1000 < here.pixels.len(), "{off}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_slow_camera_sees_nothing_pop() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(3);
     let (_, table) = by_type(&mesh);
     let instances = places(&mut Random(4), 30, 1, 200.0);
@@ -300,14 +303,14 @@ fn a_slow_camera_sees_nothing_pop() {
     let all = worst(&mut source) / reference;
     source.set_budget(4_000);
     let few = worst(&mut source) / reference;
-    println!("changes: {all:.3} of the refined surface's; within a small budget {few:.3}");
+    note!("changes: {all:.3} of the refined surface's; within a small budget {few:.3}");
     assert!(all < 1.15, "{all}");
     assert!(few < 1.3, "{few}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_passes_beside_the_eye_takes_no_budget() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = cell(7, 60);
     let (_, table) = by_type(&mesh);
     let instances = places(&mut Random(6), 300, 1, 250.0);
@@ -322,13 +325,13 @@ fn what_passes_beside_the_eye_takes_no_budget() {
         .iter()
         .sum();
     let stats = source.stats(&gpu).expect("counted");
-    println!("{:.3} of the ink, {stats:?}", found / all);
+    note!("{:.3} of the ink, {stats:?}", found / all);
     assert!(stats.wanted > 10 * stats.budget && found > 0.8 * all);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn instances_hide_and_come_back() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let proxy = Proxy::new(&cell(1, 20), &[]);
     let mut random = Random(8);
     let instances = places(&mut random, 5, 1, 100.0);
@@ -366,9 +369,9 @@ fn instances_hide_and_come_back() {
     assert_eq!(seen(&mut source), [0]);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn templates_are_recolored_in_place() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     let (color_keys, table) = by_type(&mesh);
     let plain = vec![color_keys[0]; color_keys.len()];
@@ -397,9 +400,9 @@ fn templates_are_recolored_in_place() {
     assert_eq!(before, picture(&gpu, &mut source, &camera, &table));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let camera = Camera::new(DVec3::Z * 50.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
     let table = ColorTable {
         scale: vec![[0; 3]],
@@ -456,9 +459,9 @@ fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
     assert_eq!(source.instances().len(), 1, "those before stay");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     // Eight neurites of 400 points, each a wave that forks once.
     let mut swc = String::from("1 1 0 0 0 8 -1\n");
     for i in 0..3200_u32 {
@@ -490,10 +493,12 @@ fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
     let (few, per_point) = resident(20_000);
     let (many, _) = resident(40_000);
     let per_instance = (many - few) as f64 / 20_000.0;
-    println!(
+    note!(
         "{per_point:.1} bytes a point of {}, {per_instance:.1} an instance",
         proxy.point_count()
     );
     assert!(per_point < 16.0, "{per_point}");
     assert!(per_instance < 128.0, "{per_instance}");
 }
+
+neurotess_testing::main!();

@@ -1,7 +1,9 @@
 //! What the GPU decides and makes is what the reference on the CPU decides and makes.
+mod adapter;
 mod common;
 
-use common::{Random, cell, extent, gpu, look, random_values, sight};
+use adapter::{device, gpu};
+use common::{Random, cell, extent, look, random_values, sight};
 use glam::{DQuat, DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, PatchKind};
 use neurotess_refine::LodCriterion;
@@ -10,6 +12,7 @@ use neurotess_render::{
     AdaptiveSettings, CullView, ExpandedVertex, Gpu, GridPoint, Instance, Placement, Refiner,
     Scene, SelectedPatch, Template, Templates, decide,
 };
+use neurotess_testing::note;
 
 const CHOICES: [LodCriterion; 6] = [
     LodCriterion::Homogeneous(5),
@@ -69,9 +72,9 @@ fn choose(
     all
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn decisions_are_the_reference_s() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mut refiner = Refiner::new(&gpu).expect("a refiner");
     let mut random = Random(7);
     let (mut patches, mut culled, mut differing) = (0, 0, 0);
@@ -116,7 +119,7 @@ fn decisions_are_the_reference_s() {
             }
         }
     }
-    println!("{patches} decisions, {culled} culled, {differing} differing");
+    note!("{patches} decisions, {culled} culled, {differing} differing");
     assert!(culled > patches / 10 && culled < patches * 9 / 10);
     // The two devices round the last bits of distances differently: where a sphere touches a plane or a
     // level is about to change, one may fall to the other side.
@@ -145,9 +148,9 @@ fn places(chosen: &SelectedPatch, caps: Caps) -> Vec<GridPoint> {
     wanted
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn vertices_are_the_reference_s() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mut refiner = Refiner::new(&gpu).expect("a refiner");
     let mut random = Random(11);
     let (mut most, mut most_normal, mut count) = (0.0_f32, 0.0_f32, 0_usize);
@@ -216,10 +219,12 @@ fn vertices_are_the_reference_s() {
             }
         }
     }
-    println!("{count} vertices ({kinds:?}): {most:e} of the extent, normals {most_normal:e}");
+    note!("{count} vertices ({kinds:?}): {most:e} of the extent, normals {most_normal:e}");
     assert!(kinds.iter().all(|&n| n > 100), "{kinds:?}");
     // Measured on lavapipe: 2.7e-6 and 2.2e-3. Corners are relative to an eye five extents away, where an
     // f32 is rounded to 3e-7 of the extent, and some terms are added; both fall with the distance.
     assert!(most < 4e-6, "{most:e} of the extent");
     assert!(most_normal < 5e-3, "{most_normal:e}");
 }
+
+neurotess_testing::main!();

@@ -4,15 +4,18 @@
 //! lod_requests for, half a pixel by default: less than what shows. So there is neither hysteresis nor
 //! morphing, and a picture depends on its camera alone. Here a camera moves slowly, and what changes
 //! from frame to frame is compared with what changes on the level-64 surface.
+mod adapter;
 mod common;
 
-use common::{gpu, smooth_cell};
+use adapter::{device, gpu};
+use common::smooth_cell;
 use glam::DVec3;
 use neurotess_refine::LodCriterion;
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, ColorTable, Gpu, Image, Instance, Occlusion,
     PictureOptions, Scene, Template, Templates, paint,
 };
+use neurotess_testing::note;
 
 const FRAMES: usize = 10;
 
@@ -54,9 +57,9 @@ fn changes(frames: &[Image]) -> Vec<f64> {
     frames.windows(2).map(change).collect()
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_slow_camera_sees_no_level_change() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(3);
     let mut templates = Templates::new();
     let template = Template {
@@ -82,13 +85,15 @@ fn a_slow_camera_sees_no_level_change() {
             .iter()
             .zip(&reference)
             .map(|(found, wanted)| found / wanted);
-        println!("{lod:?}: {changes:.3?}");
+        note!("{lod:?}: {changes:.3?}");
         ratios.fold(0.0, f64::max)
     };
-    println!("level 32: {reference:.3?}");
+    note!("level 32: {reference:.3?}");
     let [half, coarse] = [0.5, 8.0].map(LodCriterion::PixelError).map(worst);
-    println!("{half} {coarse}");
+    note!("{half} {coarse}");
     // What changes anyway hides a step of a seventh of it; the measure tells popping where it is.
     assert!(half < 1.15, "{half}");
     assert!(coarse > half + 0.05, "{coarse}");
 }
+
+neurotess_testing::main!();

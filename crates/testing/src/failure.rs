@@ -14,7 +14,7 @@ static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
 /// Keeps a line for the test's failure, or prints it; see [`note!`](crate::note).
 #[expect(clippy::print_stdout, reason = "it was asked for by --nocapture")]
-pub fn keep_note(line: String) {
+pub fn keep_note(line: &str) {
     if AT_ONCE.load(Ordering::Relaxed) {
         println!("{line}");
     }
@@ -27,7 +27,7 @@ pub(crate) fn listen(notes_at_once: bool) {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
         // A thread that a test began has no test of its own: its panic goes to standard error.
-        if !say(described(info)) {
+        if !say(&described(info)) {
             usual(info);
         }
     }));
@@ -42,10 +42,10 @@ pub(crate) fn catch(test: fn()) -> Result<(), String> {
 }
 
 /// Whether this thread runs a test.
-fn say(line: String) -> bool {
+fn say(line: &str) -> bool {
     SAID.with_borrow_mut(|said| {
         let Some(said) = said else { return false };
-        *said += &line;
+        *said += line;
         said.push('\n');
         true
     })

@@ -24,7 +24,9 @@ impl Test {
 
     /// As libtest names it: without the crate.
     fn name(&self) -> &'static str {
-        self.path.split_once("::").map_or(self.path, |(_, name)| name)
+        self.path
+            .split_once("::")
+            .map_or(self.path, |(_, name)| name)
     }
 
     fn attempt(&self) -> Result<Completion, Failed> {

@@ -30,12 +30,14 @@
 mod failure;
 mod harness;
 mod need;
+mod python;
 mod shared;
 
 pub use failure::keep_note;
 pub use harness::{Test, run};
 pub use need::Need;
 pub use neurotess_testing_macros::test;
+pub use python::python_with;
 pub use shared::{shared, shared_data};
 
 /// What the attribute registers tests with.
@@ -62,5 +64,5 @@ macro_rules! main {
 /// it is printed at once.
 #[macro_export]
 macro_rules! note {
-    ($($text:tt)*) => { $crate::keep_note(::std::format!($($text)*)) };
+    ($($text:tt)*) => { $crate::keep_note(&::std::format!($($text)*)) };
 }

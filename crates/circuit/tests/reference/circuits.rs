@@ -1,12 +1,13 @@
 //! Circuits of others against values that h5py and bluepysnap give.
 
-mod shared;
-
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use neurotess_circuit::{Attribute, Circuit, Selection, soma_center};
+use neurotess_testing::shared;
 use serde_json::Value;
+
+use crate::sonata::sonata;
 
 /// Circuits, each with its file of nodes in the reference.
 const CIRCUITS: [(&str, &str, &str); 3] = [
@@ -33,11 +34,9 @@ fn vector(value: &Value) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|axis: usize| value[axis].as_f64().expect("a number")))
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let reference = reference(&sonata);
     for (circuit, file, population) in CIRCUITS {
         let circuit = Circuit::open(sonata.join(circuit)).expect("a circuit");
@@ -70,11 +69,9 @@ fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn a_blue_brain_circuit_opens_whole() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let circuit = Circuit::open(sonata.join("bbp/usecase1")).expect("a circuit");
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     assert_eq!((circuit.n_neurons(), circuit.templates.len()), (2, 1));
@@ -103,11 +100,9 @@ fn a_blue_brain_circuit_opens_whole() {
     assert!(placed.distance(nodes.positions[1]) < 1e-9);
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn types_give_what_nodes_do_not_have() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let circuit = Circuit::open(sonata.join("allen/5_cells_iclamp")).expect("a circuit");
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     assert_eq!((circuit.n_neurons(), circuit.templates.len()), (5, 5));
@@ -132,11 +127,9 @@ fn types_give_what_nodes_do_not_have() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn groups_that_lack_what_others_have_are_read() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let circuit = Circuit::open(sonata.join("brion/simple_network.json")).expect("a circuit");
     let nodes = &circuit.populations[0];
     // Rows of group 1 override the type's model.

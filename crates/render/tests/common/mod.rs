@@ -10,20 +10,8 @@ use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 use neurotess_morphology::{
     Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
 };
-use neurotess_render::{Camera, CullView, Gpu};
+use neurotess_render::{Camera, CullView};
 use trees::{Twig, grow};
-
-/// The device, or nothing with a color key about it.
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-pub(crate) fn gpu() -> Option<Gpu> {
-    match Gpu::open(None) {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("SKIPPED: {error}");
-            None
-        }
-    }
-}
 
 /// Splitmix64.
 pub(crate) struct Random(pub(crate) u64);

@@ -25,18 +25,6 @@ pub(crate) const CELL: &str = "1 1 0 0 0 5 -1
 10 4 -30 9 20 1 9
 ";
 
-/// The device, or `None` with a color key on why tests are skipped.
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-pub(crate) fn gpu() -> Option<Gpu> {
-    match Gpu::open(None) {
-        Ok(gpu) => Some(gpu),
-        Err(e) => {
-            println!("SKIPPED: {e}");
-            None
-        }
-    }
-}
-
 /// The coarse mesh of a tracing.
 pub(crate) fn mesh(swc_text: &str) -> CoarseMesh {
     let read = swc::read_bytes(swc_text.as_bytes(), "cell.swc", &ReadOptions::default());
