@@ -75,23 +75,26 @@ pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs a command, shows what it prints on standard output and hands each line over.
+/// Runs a command, shows what it prints and hands each line over: standard output and standard error in
+/// the order in which they were written.
 pub(crate) fn run_listening(
     command: &mut Command,
     mut heard: impl FnMut(&str),
 ) -> anyhow::Result<()> {
     println!("   $ {}", typed(command));
+    let (output, input) = std::io::pipe()?;
     let mut child = command
-        .stdout(Stdio::piped())
+        .stdout(input.try_clone()?)
+        .stderr(input)
         .spawn()
         .with_context(|| format!("cannot start: {}", typed(command)))?;
-    if let Some(output) = child.stdout.take() {
-        for line in BufReader::new(output).split(b'\n') {
-            let line = line?;
-            let line = String::from_utf8_lossy(&line);
-            println!("{line}");
-            heard(&line);
-        }
+    // The command holds the other ends of the pipe, and its output ends when they close.
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    for line in BufReader::new(output).split(b'\n') {
+        let line = line?;
+        let line = String::from_utf8_lossy(&line);
+        println!("{line}");
+        heard(&line);
     }
     let status = child.wait()?;
     if !status.success() {
