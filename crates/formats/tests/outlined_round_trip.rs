@@ -70,7 +70,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
     #[test]
     fn any_brackets_are_read_or_refused(
-        words in proptest::collection::vec(
+        tokens in proptest::collection::vec(
             prop_oneof![
                 Just("("), Just(")"), Just("|"), Just("<"), Just(">"), Just("(Axon)"),
                 Just("(CellBody)"), Just("\"CellBody\""), Just("(1 2 3 4)"), Just("(4 3 2 1)"),
@@ -80,7 +80,7 @@ proptest! {
             0..60,
         ),
     ) {
-        let text = words.join(" ");
+        let text = tokens.join(" ");
         if let Ok(read) = asc::read_bytes(text.as_bytes(), "any.asc", &ReadOptions::default()) {
             let mut bytes = Vec::new();
             let losses = as_asc(&read.morphology, &mut bytes);

@@ -91,11 +91,11 @@ fn a_picture_is_that_of_the_stored_surface() {
         false,
     )
     .expect("stored");
-    let wanted = picture(&gpu, &mut stored, &camera, [320, 240]);
+    let expected = picture(&gpu, &mut stored, &camera, [320, 240]);
     let instance = Instance::new(TemplateId(0));
     let mut source = adaptive(&gpu, &[mesh], &[instance], LodCriterion::Homogeneous(4));
     let found = picture(&gpu, &mut source, &camera, [320, 240]);
-    let differing = wanted
+    let differing = expected
         .pixels
         .chunks(4)
         .zip(found.pixels.chunks(4))
@@ -105,12 +105,13 @@ fn a_picture_is_that_of_the_stored_surface() {
         });
     let (differing, drawn) = (
         differing.count(),
-        wanted.pixels.chunks(4).filter(|p| p[0] < 250).count(),
+        expected.pixels.chunks(4).filter(|p| p[0] < 250).count(),
     );
     note!("{differing} of {drawn} pixels differ");
     assert!(drawn > 3000, "{drawn}");
-    // Normals are stored in 32 bits there; diagonals of grids between two sizes differ.
-    assert!(differing * 200 < drawn, "{differing} of {drawn}");
+    // Normals are stored in 32 bits there; diagonals of grids between two sizes differ. Measured on
+    // lavapipe: 4 of 4088.
+    assert!(differing * 500 < drawn, "{differing} of {drawn}");
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -288,7 +289,7 @@ fn scenes_beyond_a_million_patches_are_drawn_in_rounds() {
     assert!(image.pixels.chunks(4).any(|p| p[0] < 128));
     let stats = source.stats(&gpu).expect("statistics");
     assert!(stats.patches > 1 << 20);
-    // All lie in the cone of sight, all but a few as large as nothing.
+    // All lie in the view, all but a few as large as nothing.
     assert!(stats.patches_drawn > 1 << 20, "{stats:?}");
     let small: u64 = stats.level_histogram[1];
     assert!(small * 10 > 9 * 4 * stats.patches_drawn, "{stats:?}");

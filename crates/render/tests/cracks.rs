@@ -96,9 +96,10 @@ fn count(gpu: &Gpu, source: &dyn Fn(usize) -> String, cells: u64, trials: usize)
 #[neurotess_testing::test(needs(gpu))]
 fn no_back_face_shows_through_a_closed_surface() {
     let gpu = device();
-    let (front, back) = count(&gpu, &Refiner::vertex_wgsl, 3, 8);
-    note!("48 pictures, {front} pixels of front faces, {back} of back faces");
-    assert!(front > 500_000, "{front}");
+    let (front, back) = count(&gpu, &Refiner::vertex_wgsl, 6, 8);
+    note!("96 pictures, {front} pixels of front faces, {back} of back faces");
+    // Measured on lavapipe: 2,252,368. Enough of each cell is in the pictures.
+    assert!(front > 2_000_000, "{front}");
     assert_eq!(back, 0);
 }
 
@@ -124,7 +125,9 @@ fn an_edge_whose_faces_disagree_is_found() {
             }
         };
         let (_, back) = count(&gpu, &source, 1, 8);
-        assert!(back > 10, "{honest}: {back}");
+        note!("{back} pixels of back faces");
+        // Measured on lavapipe: 35 of what draws tubes, which makes few sides; 350 of all else.
+        assert!(back > 25, "{honest}: {back}");
     }
 }
 

@@ -144,7 +144,7 @@ fn a_scale_with_its_legend_on_nothing() {
     compare("scale", &image);
 }
 
-#[expect(clippy::print_stdout, reason = "a renewed picture is told of")]
+#[expect(clippy::print_stdout, reason = "whoever renews pictures looks at them")]
 fn compare(name: &str, image: &Image) {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
     if std::env::var("NEUROTESS_GOLDEN").is_ok_and(|value| value == "renew") {

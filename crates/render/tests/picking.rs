@@ -14,7 +14,7 @@ use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
 use renderer::{SIZE, picks, renderer, source, view};
 
-/// Whether a soma is named.
+/// Whether it is a soma.
 fn is_soma(mesh: &CoarseMesh, hit: &PickHit) -> bool {
     match hit.spot {
         PickTarget::Patch(patch) => mesh.patches[patch as usize].kind == PatchKind::Soma,
@@ -40,8 +40,8 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
     let mut renderer = renderer(&gpu, &mesh);
     let view = view(&mesh);
     let hits = picks(&gpu, &mut renderer, &mut source, &view);
-    let at = |place: DVec3| {
-        let [x, y] = view.camera.pixel_of(place, SIZE).expect("in front");
+    let at = |position: DVec3| {
+        let [x, y] = view.camera.pixel_of(position, SIZE).expect("in front");
         hits[y as usize * SIZE[0] as usize + x as usize]
     };
     let soma = at(DVec3::new(-1.0, 0.0, 0.0)).expect("the first soma");
@@ -49,7 +49,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
     assert!(is_soma(&mesh, &soma));
     assert_eq!(at(DVec3::X * 15.0).expect("the second soma").instance, 1);
     assert_eq!(hits[0], None);
-    // Every pixel of a tube lies near the tracing points of the patch that it hits.
+    // Every pixel of a tube lies near the corners of the patch that its id names.
     let mut tubes = 0;
     for (pixel, hit) in hits.iter().enumerate() {
         let Some(hit) = hit.filter(|hit| hit.instance == 0) else {
@@ -60,7 +60,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
         }
         tubes += 1;
         let [x, y] = [pixel % SIZE[0] as usize, pixel / SIZE[0] as usize].map(|n| n as f64);
-        // Of a flat patch a vertex is named: one of its corners, however long it is.
+        // For a flat patch the hit is a vertex: one of its corners, however long it is.
         let corners: Vec<_> = match hit.spot {
             PickTarget::Patch(patch) => mesh.patches[patch as usize].corners.to_vec(),
             PickTarget::Vertex(vertex) => {
@@ -72,8 +72,8 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
         let corners = corners.iter().map(|&v| &mesh.vertices[v as usize]);
         let reach: Vec<[f64; 2]> = corners
             .map(|v| {
-                let place = mesh.origin + v.position.as_dvec3();
-                view.camera.pixel_of(place, SIZE).expect("in front")
+                let position = mesh.origin + v.position.as_dvec3();
+                view.camera.pixel_of(position, SIZE).expect("in front")
             })
             .collect();
         let (low, high) = reach
@@ -166,7 +166,7 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
     let proxy = Proxy::new(&mesh, &[]);
     let hits = [ProxyPickTargets::default(), ProxyPickTargets::new(&proxy)];
     let mut explored = Exploration::new(&gpu, 1).expect("a source");
-    // Of another template before it there are runs too.
+    // Of another template before it there are chunks too.
     let ids = explored.add(&gpu, &[proxy.clone(), proxy]).expect("added");
     let instance = |&placement: &Placement| Instance {
         placement,
@@ -180,7 +180,7 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
     let resolver = explored.namer(hits.into());
     gpu.wait().expect("done");
     let (_, ids) = renderer.ids().expect("no fault").expect("arrived");
-    let pieces = ids.into_iter().map(|id| resolver.name(id));
+    let chunks = ids.into_iter().map(|id| resolver.name(id));
     let section = |hit: &PickHit| match hit.spot {
         _ if is_soma(&mesh, hit) => 0,
         PickTarget::Point(point) | PickTarget::Soma(point) => mesh.tracing[point as usize].section,
@@ -193,7 +193,7 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
         }
     };
     let known = patches.iter().filter(|hit| hit.is_some()).count();
-    let both = patches.iter().zip(pieces);
+    let both = patches.iter().zip(chunks);
     let both: Vec<_> = both.filter_map(|(a, b)| Some(((*a)?, b?))).collect();
     let same = |(a, b): &&(PickHit, PickHit)| a.instance == b.instance && section(a) == section(b);
     let same = both.iter().filter(same).count();

@@ -1,4 +1,4 @@
-//! What pictures must hold whatever they look like. Skipped, with a color key, where no adapter is.
+//! What holds of every picture, whatever it shows.
 
 mod adapter;
 mod pictured;
@@ -84,8 +84,18 @@ fn bounds_hold_the_refined_surface() {
                 .any(|&(center, radius)| p.distance(center) <= radius)
         );
     }
+    // Measured: 11.0 µm in the mean; 4 of 32 wider than 25, the widest 53.9, among them those whose eight
+    // patches end one neurite and begin the next, elsewhere.
     let mean = spheres.iter().map(|&(_, radius)| radius).sum::<f64>() / spheres.len() as f64;
-    assert!(mean < 30.0, "of little use: {mean}");
+    let widest = spheres
+        .iter()
+        .map(|&(_, radius)| radius)
+        .fold(0.0, f64::max);
+    let wide = spheres.iter().filter(|&&(_, radius)| radius > 25.0).count();
+    assert!(
+        mean < 12.0 && wide <= 4 && widest < 55.0,
+        "{mean} {wide} {widest}"
+    );
 }
 
 #[neurotess_testing::test(needs(gpu))]

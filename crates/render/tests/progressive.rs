@@ -92,7 +92,7 @@ fn a_lod_that_is_kept_changes_nothing() {
         translation: DVec3::Y * 4.0,
         ..Placement::default()
     };
-    // Another view, another way of settings, another scene, ids between: each is noticed.
+    // Another view, other settings, another scene, ids between: each is noticed.
     for change in 0..4 {
         for source in [&mut anew, &mut kept] {
             match change {
@@ -106,12 +106,12 @@ fn a_lod_that_is_kept_changes_nothing() {
             }
         }
         let view = if change == 0 { view(&mesh) } else { turned };
-        let wanted = picture(&gpu, &mut renderer, &mut anew, view, steps);
+        let expected = picture(&gpu, &mut renderer, &mut anew, view, steps);
         let first = picture(&gpu, &mut renderer, &mut kept, view, steps);
-        assert_eq!(difference(&wanted, &first), 0.0, "change {change}");
+        assert_eq!(difference(&expected, &first), 0.0, "change {change}");
         picks(&gpu, &mut renderer, &mut kept, &view);
         let again = picture(&gpu, &mut renderer, &mut kept, view, steps);
-        assert_eq!(difference(&wanted, &again), 0.0, "change {change}");
+        assert_eq!(difference(&expected, &again), 0.0, "change {change}");
     }
 }
 

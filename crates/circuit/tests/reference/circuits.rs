@@ -35,7 +35,7 @@ fn vector(value: &Value) -> DVec3 {
 }
 
 #[neurotess_testing::test(needs(shared))]
-fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
+fn nodes_have_the_positions_rotations_and_morphologies_of_the_reference() {
     let sonata = sonata();
     let reference = reference(&sonata);
     for (circuit, file, population) in CIRCUITS {
@@ -49,9 +49,9 @@ fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
             let row = node["index"].as_u64().expect("index") as usize;
             assert_eq!(Some(found.ids[row]), node["node_id"].as_u64());
             match node.get("xyz") {
-                Some(place) => {
-                    let place = vector(place);
-                    assert!(found.position(row).expect("a place").distance(place) < 1e-9);
+                Some(position) => {
+                    let position = vector(position);
+                    assert!(found.position(row).expect("a position").distance(position) < 1e-9);
                 }
                 None => assert_eq!(found.position(row), None, "{file} {row}"),
             }
@@ -113,8 +113,8 @@ fn types_give_what_nodes_do_not_have() {
         region: Some((DVec3::splat(-1.0), DVec3::new(1.0, 300.0, 1.0))),
         ..Selection::default()
     };
-    let chosen = circuit.select(&selection).expect("chosen");
-    assert_eq!(chosen.iter().map(|n| n.row).collect::<Vec<_>>(), [0, 3]);
+    let selected = circuit.select(&selection).expect("selected");
+    assert_eq!(selected.iter().map(|n| n.row).collect::<Vec<_>>(), [0, 3]);
     for template in &circuit.templates {
         let read = template.read().expect("a morphology");
         // Their somata are not at the origin: the first step of placing moves them there.
@@ -159,7 +159,7 @@ fn groups_that_lack_what_others_have_are_read() {
             .iter()
             .any(|w| w.code == "node_id_repeated")
     );
-    // Its edges, node sets and reports are not there, which is told.
+    // Its edges, node sets and reports are not there, and warnings say so.
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     let missing = |code| circuit.warnings.iter().filter(|w| w.code == code).count();
     let counts = ["edges_missing", "node_sets_missing", "report_missing"].map(missing);

@@ -72,7 +72,7 @@ fn reports_have_the_values_of_the_reference() {
 }
 
 #[neurotess_testing::test(needs(shared))]
-fn elements_have_their_sections() {
+fn compartments_have_their_sections() {
     let sonata = sonata();
     let report = Report::open(sonata.join("brion/compartment_report.h5")).expect("a report");
     let values = &report.populations[0];
@@ -96,7 +96,7 @@ fn elements_have_their_sections() {
 }
 
 #[neurotess_testing::test(needs(shared))]
-fn spikes_of_both_makers_are_read() {
+fn spikes_of_both_simulators_are_read() {
     let sonata = sonata();
     let bbp = Spikes::open(sonata.join("bbp/usecase1/reporting/spikes.h5")).expect("spikes");
     assert_eq!(

@@ -176,7 +176,7 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
     );
     for (file, says) in expected {
         let path = data.join("malformed").join(file);
-        let told = match read(&path, &ReadOptions::default()) {
+        let message = match read(&path, &ReadOptions::default()) {
             Ok(read) => read
                 .warnings
                 .iter()
@@ -186,8 +186,8 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
             Err(e) => e.to_string(),
         };
         assert!(
-            told.contains(says),
-            "{file}: {told:?} does not say {says:?}"
+            message.contains(says),
+            "{file}: {message:?} does not say {says:?}"
         );
         let strict = read(&path, &ReadOptions { strict: true });
         assert!(strict.is_err(), "{file} passes strictly");

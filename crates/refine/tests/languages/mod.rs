@@ -14,8 +14,8 @@ pub(crate) fn check(name: &str, text: &str) -> Module {
     let info = Validator::new(ValidationFlags::all(), Capabilities::default())
         .validate(&module)
         .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(text)));
-    let words = spv::write_vec(&module, &info, &spv::Options::default(), None);
-    assert!(!words.expect("SPIR-V").is_empty(), "{name}");
+    let spirv = spv::write_vec(&module, &info, &spv::Options::default(), None);
+    assert!(!spirv.expect("SPIR-V").is_empty(), "{name}");
     let options = msl::Options {
         lang_version: (2, 4),
         fake_missing_bindings: true,
@@ -78,7 +78,7 @@ pub(crate) fn fields(module: &Module, name: &str) -> (Vec<(String, usize, usize)
 }
 
 /// Asserts that a Rust struct and the WGSL struct of a given name have the same fields at the same
-/// places. Rust fields named `pad…` fill what WGSL leaves empty.
+/// offsets. Rust fields named `pad…` fill what WGSL leaves empty.
 #[macro_export]
 macro_rules! assert_layout {
     ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),+ $(,)?]) => {{

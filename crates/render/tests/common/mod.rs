@@ -1,4 +1,4 @@
-//! A device, and scenes with every kind of patch.
+//! Cells with every kind of patch.
 #![allow(dead_code)]
 
 #[path = "../../../refine/tests/common/mod.rs"]
@@ -167,6 +167,6 @@ pub(crate) fn look(mesh: &CoarseMesh, random: &mut Random, distance: f64) -> Cam
     Camera::new(eye, target, up, 0.7).expect("a camera")
 }
 
-pub(crate) fn sight(camera: &Camera, width: u32, height: u32) -> CullView {
+pub(crate) fn cull_view(camera: &Camera, width: u32, height: u32) -> CullView {
     CullView::new(camera, width, height, 1e-3)
 }

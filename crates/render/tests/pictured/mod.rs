@@ -1,4 +1,4 @@
-//! A device, a cell and its picture.
+//! A cell and its picture.
 #![allow(dead_code)]
 
 use glam::{DQuat, DVec3};
@@ -50,7 +50,7 @@ pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
     Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &spheres(mesh)).expect("fits")
 }
 
-/// Words and table by type.
+/// Color keys and table by type.
 pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColorTable) {
     let color_keys = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
     let table = ColorTable {
