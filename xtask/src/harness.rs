@@ -221,6 +221,11 @@ mod tests {
     }
 
     #[test]
+    fn this_workspace_leaves_no_test_out() {
+        check().expect("no fault");
+    }
+
+    #[test]
     fn manifests_say_which_harness_runs() {
         let package = root().join("crates/testing");
         let manifest = "[[test]]\nname = \"harness\"\nharness = false\n";

@@ -123,3 +123,18 @@ fn typed(command: &Command) -> String {
     let words: Vec<_> = words.map(|word| word.to_string_lossy()).collect();
     words.join(" ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_outputs_of_a_command_are_heard() {
+        let mut lines = Vec::new();
+        let mut hear = |line: &str| lines.push(line.to_owned());
+        run_listening(&mut cargo("--version"), &mut hear).expect("Cargo has a version");
+        run_listening(&mut cargo("no-such-command"), &mut hear).expect_err("it fails");
+        assert!(lines[0].starts_with("cargo "), "{lines:?}");
+        assert!(lines[1..].concat().contains("no-such-command"), "{lines:?}");
+    }
+}
