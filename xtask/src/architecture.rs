@@ -61,6 +61,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-viewer", &["neurotess"]),
     ("neurotess-cli", &["neurotess", "neurotess-viewer"]),
     ("xtask", &["neurotess"]),
+    // Tests of all crates may use it.
+    ("neurotess-testing", &["neurotess-testing-macros"]),
+    ("neurotess-testing-macros", &[]),
 ];
 
 /// An error that names each dependency that is not allowed, and each circle of imports.

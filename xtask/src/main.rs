@@ -9,7 +9,9 @@
 
 mod architecture;
 mod bench;
+mod counts;
 mod demo;
+mod harness;
 mod licenses;
 mod metadata;
 mod modules;

@@ -1,4 +1,4 @@
-//! `cargo xtask setup`: what tests want beside Rust. A software Vulkan driver where no other is, for
+//! `cargo xtask setup`: what tests need beside Rust. A software Vulkan driver where no other is, for
 //! pictures and their tests; a virtual display and what types on it, for the window's test; and the
 //! Python environment.
 
@@ -30,7 +30,7 @@ const DISPLAY_PACKAGES: [&str; 8] = [
     "libxrandr2",
 ];
 
-/// Sets up all that tests want; says how it is.
+/// Sets up all that tests need. Returns a line about each.
 pub(crate) fn run() -> anyhow::Result<String> {
     let (adapter, display) = (adapter(), display());
     let python = python::set_up(&python::TESTS)?;
@@ -48,7 +48,7 @@ fn display() -> String {
         return "a virtual display is there".into();
     }
     let by_hand = format!(
-        "install {} to test the window; its test skips",
+        "install {} to test the window; its test is skipped",
         DISPLAY_PACKAGES.join(" ")
     );
     if !starts("apt-get", "--version") {
@@ -67,7 +67,7 @@ fn display() -> String {
 }
 
 /// Installs lavapipe where no Vulkan driver is, on Debian and its kin; says how it is. Never fails:
-/// without a driver all but pictures works, and their tests say that they skip.
+/// without a driver all but pictures works, and their tests are skipped.
 fn adapter() -> String {
     if !cfg!(target_os = "linux") {
         return "this system has graphics of its own".into();
@@ -76,7 +76,7 @@ fn adapter() -> String {
         return "a Vulkan driver is there".into();
     }
     let by_hand = format!(
-        "install {} to draw; tests of pictures skip",
+        "install {} to draw; tests of pictures are skipped",
         PACKAGES.join(" ")
     );
     if !starts("apt-get", "--version") {

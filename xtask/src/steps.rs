@@ -75,23 +75,26 @@ pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs a command, shows what it prints on standard output and hands each line over.
+/// Runs a command, shows what it prints and hands each line over: standard output and standard error in
+/// the order in which they were written.
 pub(crate) fn run_listening(
     command: &mut Command,
     mut heard: impl FnMut(&str),
 ) -> anyhow::Result<()> {
     println!("   $ {}", typed(command));
+    let (output, input) = std::io::pipe()?;
     let mut child = command
-        .stdout(Stdio::piped())
+        .stdout(input.try_clone()?)
+        .stderr(input)
         .spawn()
         .with_context(|| format!("cannot start: {}", typed(command)))?;
-    if let Some(output) = child.stdout.take() {
-        for line in BufReader::new(output).split(b'\n') {
-            let line = line?;
-            let line = String::from_utf8_lossy(&line);
-            println!("{line}");
-            heard(&line);
-        }
+    // The command holds the other ends of the pipe, and its output ends when they close.
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    for line in BufReader::new(output).split(b'\n') {
+        let line = line?;
+        let line = String::from_utf8_lossy(&line);
+        println!("{line}");
+        heard(&line);
     }
     let status = child.wait()?;
     if !status.success() {
@@ -119,4 +122,19 @@ fn typed(command: &Command) -> String {
     let words = std::iter::once(name).chain(command.get_args());
     let words: Vec<_> = words.map(|word| word.to_string_lossy()).collect();
     words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_outputs_of_a_command_are_heard() {
+        let mut lines = Vec::new();
+        let mut hear = |line: &str| lines.push(line.to_owned());
+        run_listening(&mut cargo("--version"), &mut hear).expect("Cargo has a version");
+        run_listening(&mut cargo("no-such-command"), &mut hear).expect_err("it fails");
+        assert!(lines[0].starts_with("cargo "), "{lines:?}");
+        assert!(lines[1..].concat().contains("no-such-command"), "{lines:?}");
+    }
 }

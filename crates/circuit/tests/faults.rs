@@ -279,8 +279,8 @@ fn node_sets_are_judged_when_they_are_asked_for() {
             node_set: Some(name.into()),
             ..Selection::default()
         };
-        let chosen = circuit.select(&selection).map_err(|e| e.to_string())?;
-        Ok::<_, String>(chosen.iter().map(|n| n.row).collect::<Vec<_>>())
+        let selected = circuit.select(&selection).map_err(|e| e.to_string())?;
+        Ok::<_, String>(selected.iter().map(|n| n.row).collect::<Vec<_>>())
     };
     assert_eq!(rows("far"), Ok(vec![1, 2]));
     assert_eq!(rows("both"), Ok(vec![0, 1, 2]));
@@ -323,11 +323,11 @@ fn samples_are_parts_of_larger_ones() {
     let circuit = Circuit::open(path).expect("a circuit");
     let rows = |count, seed| {
         let sample = Some((count, seed));
-        let chosen = circuit.select(&Selection {
+        let selected = circuit.select(&Selection {
             sample,
             ..Selection::default()
         });
-        chosen
+        selected
             .expect("some")
             .iter()
             .map(|n| n.row)
@@ -339,7 +339,7 @@ fn samples_are_parts_of_larger_ones() {
     assert_eq!(firsts.len(), 2, "the seed decides");
 }
 
-/// A report of two nodes with five elements; each part may be replaced.
+/// A report of two nodes with five compartments; each part may be replaced.
 fn report(folder: &Path, pointers: &[u64], ids: &[u32], time: &[f64], old: bool) -> PathBuf {
     let mut file = FileBuilder::new();
     let data: Vec<f32> = (0..10).map(|i| i as f32).collect();

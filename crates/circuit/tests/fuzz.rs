@@ -1,4 +1,4 @@
-//! Whatever stands in a file, opening it ends with a circuit or an error.
+//! Whatever is in a file, opening it ends with a circuit or an error.
 //!
 //! `PROPTEST_CASES=100000 cargo test -p neurotess-circuit --test fuzz` fuzzes longer.
 
@@ -102,7 +102,7 @@ proptest! {
     fn any_mapping_ends(
         nodes in prop::collection::vec(0u64..9, 0..5),
         pointers in prop::collection::vec(prop_oneof![0u64..12, any::<u64>()], 0..7),
-        elements in prop::collection::vec(any::<u32>(), 0..13),
+        compartment_ids in prop::collection::vec(any::<u32>(), 0..13),
         positions in prop::option::of(prop::collection::vec(any::<f64>(), 0..13)),
         time in prop::collection::vec(any::<f64>(), 0..5),
         frames in 0u64..4,
@@ -115,13 +115,13 @@ proptest! {
         let mut mapping = file.create_group("mapping");
         mapping.create_dataset("gids").with_u64_data(&nodes);
         mapping.create_dataset("index_pointer").with_u64_data(&pointers);
-        mapping.create_dataset("element_id").with_u32_data(&elements);
+        mapping.create_dataset("element_id").with_u32_data(&compartment_ids);
         mapping.create_dataset("time").with_f64_data(&time);
         if let Some(positions) = &positions {
             mapping.create_dataset("element_pos").with_f64_data(positions);
         }
         file.add_group(mapping.finish());
-        let columns = elements.len() as u64;
+        let columns = compartment_ids.len() as u64;
         let data: Vec<f32> = (0..frames * columns).map(|i| i as f32).collect();
         let dataset = file.create_dataset("data");
         dataset.with_f32_data(&data).with_shape(&[frames, columns]);
@@ -133,13 +133,13 @@ proptest! {
         if let Ok(report) = Report::open(&path) {
             let values = &report.populations[0];
             for index in 0..values.nodes.len() {
-                let wanted: Vec<u64> = values.compartment_range(index).rev().collect();
+                let asked_for: Vec<u64> = values.compartment_range(index).rev().collect();
                 let compartments = values.compartments(index).expect("they are there");
-                prop_assert_eq!(compartments.len(), wanted.len());
+                prop_assert_eq!(compartments.len(), asked_for.len());
                 if frames > 0 {
-                    let read = values.values(frame % frames, &wanted).expect("they are there");
+                    let read = values.values(frame % frames, &asked_for).expect("they are there");
                     let expected: Vec<f32> =
-                        wanted.iter().map(|e| (frame % frames * columns + e) as f32).collect();
+                        asked_for.iter().map(|e| (frame % frames * columns + e) as f32).collect();
                     prop_assert_eq!(read, expected);
                 }
             }

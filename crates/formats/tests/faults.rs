@@ -1,4 +1,4 @@
-//! What SWC files are refused, with the line and the words.
+//! What SWC files are refused, with the line and the message.
 
 use neurotess_formats::{ReadOptions, read, swc};
 

@@ -137,7 +137,7 @@ fn reports_and_nodes_are_told_from_morphologies() {
     std::fs::write(&path, file.finish().expect("bytes")).expect("written");
     assert!(h5::is_other(&path));
     assert!(!h5::is_other(declared("straight.h5")));
-    // What is broken is told of by whoever reads it.
+    // A broken member is an error of the call that reads it.
     std::fs::write(&path, "no HDF5").expect("written");
     assert!(!h5::is_other(&path));
 }

@@ -1,12 +1,8 @@
 //! NeuroML: shapes, kinds, faults, and any elements at all.
 
-#[allow(dead_code, reason = "tables are for the tests of references")]
-mod shared;
-
-use neurotess_formats::{ReadOptions, neuroml, read};
+use neurotess_formats::{ReadOptions, neuroml};
 use neurotess_morphology::{Measures, Morphology, SomaKind};
 use proptest::prelude::*;
-use shared::data;
 
 fn cell(inner: &str) -> String {
     format!(
@@ -135,22 +131,6 @@ fn faults_name_line_and_remedy() {
         let said = fault(&inner);
         assert!(said.starts_with(expected), "{said}");
         assert!(said.matches(": ").count() >= 2, "what to do: {said}");
-    }
-}
-
-#[test]
-fn shared_files_are_read() {
-    let Some(data) = data() else { return };
-    for (name, length, ends, soma) in [
-        ("NML2_SimpleMorphology.nml", 21.0, 2, "cylinders"),
-        ("NML2_MultiCompCellNetwork.nml", 40.0, 1, "cylinders"),
-        ("pyr_4_sym.cell.nml", 1610.012, 4, "cylinders"),
-        ("l22_cylsoma.cell.nml", 35.921, 2, "cylinders"),
-    ] {
-        let read = read(data.join("nml").join(name), &ReadOptions::default()).expect(name);
-        let m = Measures::of(&read.morphology);
-        assert!((m.length - length).abs() < 1e-3, "{name}: {}", m.length);
-        assert_eq!((m.n_ends, m.soma.kind), (ends, soma), "{name}");
     }
 }
 

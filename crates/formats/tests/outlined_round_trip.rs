@@ -1,81 +1,12 @@
-//! ASC and H5 written and read back; broken files; any bytes at all.
+//! ASC and HDF5 written and read back; any bytes at all.
 
-#[allow(dead_code, reason = "tables are for the tests of references")]
-mod shared;
+#[path = "reference/both_formats.rs"]
+mod both_formats;
 
-use neurotess_formats::{ReadOptions, Warning, asc, h5, read, swc};
-use neurotess_morphology::{Measures, Morphology};
+use both_formats::{FORMATS, as_asc, as_h5, assert_same_neurites, codes, from_asc, from_h5};
+use neurotess_formats::{ReadOptions, asc, h5, swc};
+use neurotess_morphology::Measures;
 use proptest::prelude::*;
-use shared::data;
-
-type Write = fn(&Morphology, &mut Vec<u8>) -> Vec<Warning>;
-type Read = fn(&[u8]) -> Morphology;
-
-fn as_asc(m: &Morphology, bytes: &mut Vec<u8>) -> Vec<Warning> {
-    asc::write(m, bytes).expect("memory takes it")
-}
-
-fn as_h5(m: &Morphology, bytes: &mut Vec<u8>) -> Vec<Warning> {
-    h5::write(m, bytes).expect("memory takes it")
-}
-
-fn from_asc(bytes: &[u8]) -> Morphology {
-    let read = asc::read_bytes(bytes, "cell.asc", &ReadOptions::default());
-    read.expect("our own file").morphology
-}
-
-fn from_h5(bytes: &[u8]) -> Morphology {
-    let read = h5::read_bytes(bytes.to_vec(), "cell.h5", &ReadOptions::default());
-    read.expect("our own file").morphology
-}
-
-const FORMATS: [(Write, Read); 2] = [(as_asc, from_asc), (as_h5, from_h5)];
-
-fn codes(losses: &[Warning]) -> Vec<&str> {
-    losses.iter().map(|w| w.code).collect()
-}
-
-/// What both formats can say comes back to the bit: positions, radii, sections and their types.
-fn assert_same_neurites(a: &Morphology, b: &Morphology) {
-    assert_eq!(a.points, b.points);
-    let sections = |m: &Morphology| -> Vec<_> {
-        let section = |s: &neurotess_morphology::Section| (s.kind, s.first, s.end, s.parent());
-        m.sections.iter().map(section).collect()
-    };
-    assert_eq!(sections(a), sections(b));
-}
-
-#[test]
-fn shared_files_come_back() {
-    let Some(data) = data() else { return };
-    let mut files = 0;
-    for folder in ["asc", "h5"] {
-        let entries = std::fs::read_dir(data.join(folder)).expect("the folder");
-        for entry in entries.filter_map(Result::ok) {
-            let Ok(cell) = read(entry.path(), &ReadOptions::default()) else {
-                assert_eq!(entry.file_name(), "merged.h5", "refused as a container");
-                continue;
-            };
-            let cell = cell.morphology;
-            for (write, back) in FORMATS {
-                let mut bytes = Vec::new();
-                let losses = write(&cell, &mut bytes);
-                let again = back(&bytes);
-                if !codes(&losses).contains(&"types_changed") {
-                    assert_same_neurites(&cell, &again);
-                }
-                assert_eq!(cell.somata.len(), again.somata.len());
-                for (a, b) in cell.somata.iter().zip(&again.somata) {
-                    let scale = a.radius + a.center.abs().max_element();
-                    assert!((a.radius - b.radius).abs() <= 1e-5 * scale);
-                    assert!(a.center.distance(b.center) <= 1e-5 * scale);
-                }
-                files += 1;
-            }
-        }
-    }
-    assert!(files > 40, "only {files}");
-}
 
 const CELL: &[u8] = b"# made by hand
 1 1 0 0 0 5 -1
@@ -119,52 +50,6 @@ fn types_that_asc_has_not_are_counted() {
 }
 
 #[test]
-fn broken_files_are_refused_with_their_place() {
-    let Some(data) = data() else { return };
-    let said = |name: &str| match read(data.join("malformed").join(name), &ReadOptions::default()) {
-        Ok(_) => "read".to_owned(),
-        Err(e) => e
-            .to_string()
-            .split_once(name)
-            .expect("the name")
-            .1
-            .to_owned(),
-    };
-    for (name, expected) in [
-        ("broken-spine.asc", ":14: a spine (<) is not closed"),
-        (
-            "invalid-incomplete.asc",
-            ":15: a branch goes on after the word that ends it",
-        ),
-        ("unbalanced.asc", ":2: a bracket is not closed"),
-        (
-            "empty.h5",
-            ": the file has no datasets 'points' and 'structure'",
-        ),
-        ("incorrect_point_columns.h5", ": dataset 'points' has shape"),
-        ("monodim.h5", ": dataset 'points' has shape"),
-        (
-            "simple-negative-section-type.h5",
-            ": dataset 'structure', row 6: the type",
-        ),
-        (
-            "reversed_NRN_neurite_order.h5",
-            ": dataset 'structure', row 3: the first point",
-        ),
-        ("truncated.h5", ": "),
-        ("not_hdf5.h5", ": the file cannot be read as HDF5"),
-    ] {
-        let said = said(name);
-        assert!(said.starts_with(expected), "{name}{said}");
-        assert!(said.contains(": "), "what to do: {said}");
-    }
-    // Read, with a warning.
-    for name in ["simple2.asc", "soma_after_dendrite.h5"] {
-        assert_eq!(said(name), "read", "{name}");
-    }
-}
-
-#[test]
 fn forks_may_be_200_000_deep() {
     let depth = 200_000;
     let down: String = (0..depth)
@@ -185,7 +70,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
     #[test]
     fn any_brackets_are_read_or_refused(
-        words in proptest::collection::vec(
+        tokens in proptest::collection::vec(
             prop_oneof![
                 Just("("), Just(")"), Just("|"), Just("<"), Just(">"), Just("(Axon)"),
                 Just("(CellBody)"), Just("\"CellBody\""), Just("(1 2 3 4)"), Just("(4 3 2 1)"),
@@ -195,7 +80,7 @@ proptest! {
             0..60,
         ),
     ) {
-        let text = words.join(" ");
+        let text = tokens.join(" ");
         if let Ok(read) = asc::read_bytes(text.as_bytes(), "any.asc", &ReadOptions::default()) {
             let mut bytes = Vec::new();
             let losses = as_asc(&read.morphology, &mut bytes);

@@ -185,13 +185,13 @@ fn long_path(count: usize) -> Morphology {
 
 /// Seconds of the fastest of three runs: what else the machine does only adds.
 fn cost(morphology: &Morphology) -> f64 {
-    let run = || {
+    let seconds = || {
         let clock = Instant::now();
         let made = generate(morphology, &GenerateOptions::default()).expect("meshed");
         assert!(!made.mesh.patches.is_empty());
         clock.elapsed().as_secs_f64()
     };
-    (0..3).map(|_| run()).fold(f64::INFINITY, f64::min)
+    (0..3).map(|_| seconds()).fold(f64::INFINITY, f64::min)
 }
 
 /// Four times as many must not cost more than this often as much.

@@ -151,8 +151,8 @@ fn beyond_the_first_point_a_ring_follows_the_path() {
     let made = with(&bent, &[(0, 2.0)]);
     assert_sound(&made, "bent");
     // 3 µm along the diagonal.
-    let wanted = DVec3::new(3.0, 8.0 * 2_f64.sqrt() + 3.0, 0.0) / 2_f64.sqrt();
-    assert!(ring(&made, 0).center.distance(wanted) < 1e-4);
+    let expected = DVec3::new(3.0, 8.0 * 2_f64.sqrt() + 3.0, 0.0) / 2_f64.sqrt();
+    assert!(ring(&made, 0).center.distance(expected) < 1e-4);
 }
 
 #[test]

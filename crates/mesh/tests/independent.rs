@@ -2,21 +2,18 @@
 
 mod shapes;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use glam::DVec3;
 use neurotess_mesh::{Format, SurfaceMesh};
+use neurotess_testing::python_with;
 use serde_json::Value;
 use shapes::{torus, written};
 
-/// The interpreter that `NEUROTESS_PYTHON` names, or that of the workspace's environment.
-fn python() -> Option<PathBuf> {
-    if let Some(named) = std::env::var_os("NEUROTESS_PYTHON") {
-        return Some(named.into());
-    }
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/python");
-    own.exists().then_some(own)
+/// The need of this test; its environment has the other readers too.
+fn python() -> Result<(), String> {
+    python_with("trimesh").map(drop)
 }
 
 /// What the readers say of files of a mesh in all formats.
@@ -112,12 +109,9 @@ fn attributes(mesh: &SurfaceMesh, result: &Value, what: &str) {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(python))]
 fn others_read_what_we_write() {
-    let Some(python) = python() else {
-        println!("skipped: no Python environment (.venv), run cargo xtask setup");
-        return;
-    };
+    let python = python_with("trimesh").expect("the test has needs(python)");
     for origin in [DVec3::ZERO, DVec3::new(5000.125, -3000.5, 12000.0625)] {
         let mixed = torus(48, 16, origin);
         let results = judge(&python, "mixed", &mixed);
@@ -133,3 +127,5 @@ fn others_read_what_we_write() {
         compare(&triangles, &results);
     }
 }
+
+neurotess_testing::main!();

@@ -1,35 +1,37 @@
-//! Every tracing at hand gives a closed surface: the repository's samples, and the test data beside
-//! the checkout where it is there.
+//! Every tracing gives a closed surface: the samples, and the reference data beside the workspace.
 
 use std::path::{Path, PathBuf};
 
 use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, SphereKind, generate};
 use neurotess::mesh::{CoarseMesh, SurfaceMesh};
+use neurotess::morphology::Morphology;
 use neurotess::refine::{Lod, LodCriterion, RefineOptions, Refinement};
+use neurotess_testing::{shared, shared_data};
 
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+fn samples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples")
 }
 
-#[expect(clippy::print_stderr, reason = "nothing is skipped in silence")]
-fn tracings(folder: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        eprintln!("skipped: no folder {}", folder.display());
-        return Vec::new();
-    };
-    let files = entries.filter_map(|e| Some(e.ok()?.path()));
+fn reference() -> PathBuf {
+    shared_data().join("swc")
+}
+
+/// The tracings of a folder, each with its name.
+fn tracings(folder: &Path) -> Vec<(String, Morphology)> {
+    let entries = std::fs::read_dir(folder).expect("a folder of tracings");
+    let files = entries.map(|entry| entry.expect("an entry").path());
     let mut files: Vec<_> = files
-        .filter(|f| f.extension().is_some_and(|e| e == "swc"))
+        .filter(|file| file.extension().is_some_and(|e| e == "swc"))
         .collect();
     files.sort();
-    files
-}
-
-fn all() -> Vec<PathBuf> {
-    let mut files = tracings(&workspace().join("samples"));
-    files.extend(tracings(&workspace().join("../shared/data/swc")));
-    files
+    assert!(!files.is_empty(), "no tracing in {}", folder.display());
+    let tracing = |file: &PathBuf| {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let read = read(file, &ReadOptions::default()).expect("a tracing");
+        (name.into_owned(), read.morphology)
+    };
+    files.iter().map(tracing).collect()
 }
 
 fn assert_closed<'l>(mesh: &CoarseMesh, lod: impl Into<Lod<'l>>, what: &str) {
@@ -51,15 +53,8 @@ fn assert_closed<'l>(mesh: &CoarseMesh, lod: impl Into<Lod<'l>>, what: &str) {
     assert_eq!(refined.used_vertices, surface.vertices.len(), "{what}");
 }
 
-#[test]
-fn every_tracing_gives_a_closed_surface_without_folds_in_the_soma() {
-    for file in all() {
-        let name = file
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
+fn assert_closed_without_folds(folder: &Path) {
+    for (name, morphology) in tracings(folder) {
         let generated = generate(&morphology, &GenerateOptions::default()).expect("meshed");
         for warning in &generated.warnings {
             assert!(
@@ -83,15 +78,8 @@ fn every_tracing_gives_a_closed_surface_without_folds_in_the_soma() {
     }
 }
 
-#[test]
-fn the_papers_sphere_serves_every_tracing_too() {
-    for file in all() {
-        let name = file
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
+fn assert_closed_on_the_papers_sphere(folder: &Path) {
+    for (name, morphology) in tracings(folder) {
         if morphology.points.len() > 10_000 {
             continue;
         }
@@ -111,18 +99,15 @@ fn sets(neurites: &[u32], each: bool) -> Vec<Vec<u32>> {
     alone.chain([neurites.to_vec()]).collect()
 }
 
-#[test]
-fn first_rings_anywhere_fold_nothing() {
-    for file in all() {
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let morphology = read(&file, &ReadOptions::default()).unwrap().morphology;
+/// `sample`: each neurite is moved alone too, and none may be limited.
+fn assert_first_rings_fold_nothing(folder: &Path, sample: bool) {
+    for (name, morphology) in tracings(folder) {
         if morphology.points.len() > 50_000 {
             continue;
         }
         let usual = generate(&morphology, &GenerateOptions::default()).expect("meshed");
         let mut neurites: Vec<u32> = usual.rings.iter().map(|r| r.neurite).collect();
         neurites.dedup();
-        let sample = file.parent().is_some_and(|f| f.ends_with("samples"));
         for set in sets(&neurites, sample) {
             for position in [0.0, 0.5, 1.0, 1.5, 2.0] {
                 let what = format!("{name}: {set:?} at {position}");
@@ -146,3 +131,35 @@ fn first_rings_anywhere_fold_nothing() {
         }
     }
 }
+
+#[neurotess_testing::test]
+fn samples_give_closed_surfaces_without_folds_in_the_soma() {
+    assert_closed_without_folds(&samples());
+}
+
+#[neurotess_testing::test(needs(shared))]
+fn reference_data_give_closed_surfaces_without_folds_in_the_soma() {
+    assert_closed_without_folds(&reference());
+}
+
+#[neurotess_testing::test]
+fn the_papers_sphere_serves_samples_too() {
+    assert_closed_on_the_papers_sphere(&samples());
+}
+
+#[neurotess_testing::test(needs(shared))]
+fn the_papers_sphere_serves_reference_data_too() {
+    assert_closed_on_the_papers_sphere(&reference());
+}
+
+#[neurotess_testing::test]
+fn first_rings_anywhere_fold_nothing_of_samples() {
+    assert_first_rings_fold_nothing(&samples(), true);
+}
+
+#[neurotess_testing::test(needs(shared))]
+fn first_rings_anywhere_fold_nothing_of_reference_data() {
+    assert_first_rings_fold_nothing(&reference(), false);
+}
+
+neurotess_testing::main!();

@@ -89,7 +89,7 @@ pub fn fields(module: &Module, name: &str) -> (Vec<(String, usize, usize)>, usiz
 }
 
 /// Asserts that a Rust struct and the WGSL struct of a given name have the same fields at the same
-/// places. Rust fields named `pad…` fill what WGSL leaves empty.
+/// offsets. Rust fields named `pad…` fill what WGSL leaves empty.
 #[macro_export]
 macro_rules! assert_layout {
     ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),+ $(,)?]) => {{

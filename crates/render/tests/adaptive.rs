@@ -1,7 +1,9 @@
 //! Pictures that are refined on the fly: as those of a stored surface, and in awkward cases.
+mod adapter;
 mod common;
 
-use common::{cell, extent, gpu, smooth_cell};
+use adapter::{device, gpu};
+use common::{cell, extent, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
@@ -12,6 +14,7 @@ use neurotess_render::{
     PictureOptions, Placement, Prerefined, PrerefinedSurface, Scene, SceneError, Template,
     TemplateId, Templates, VertexSource, category, paint,
 };
+use neurotess_testing::note;
 
 fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, size: [u32; 2]) -> Image {
     let options = PictureOptions {
@@ -72,9 +75,9 @@ fn before(mesh: &CoarseMesh, distance: f64) -> Camera {
     Camera::new(eye, middle, DVec3::Y, 0.6).expect("a camera")
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_picture_is_that_of_the_stored_surface() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(1);
     let camera = before(&mesh, 2.5);
     let mut stored = Prerefined::new(
@@ -88,11 +91,11 @@ fn a_picture_is_that_of_the_stored_surface() {
         false,
     )
     .expect("stored");
-    let wanted = picture(&gpu, &mut stored, &camera, [320, 240]);
+    let expected = picture(&gpu, &mut stored, &camera, [320, 240]);
     let instance = Instance::new(TemplateId(0));
     let mut source = adaptive(&gpu, &[mesh], &[instance], LodCriterion::Homogeneous(4));
     let found = picture(&gpu, &mut source, &camera, [320, 240]);
-    let differing = wanted
+    let differing = expected
         .pixels
         .chunks(4)
         .zip(found.pixels.chunks(4))
@@ -102,17 +105,18 @@ fn a_picture_is_that_of_the_stored_surface() {
         });
     let (differing, drawn) = (
         differing.count(),
-        wanted.pixels.chunks(4).filter(|p| p[0] < 250).count(),
+        expected.pixels.chunks(4).filter(|p| p[0] < 250).count(),
     );
-    println!("{differing} of {drawn} pixels differ");
+    note!("{differing} of {drawn} pixels differ");
     assert!(drawn > 3000, "{drawn}");
-    // Normals are stored in 32 bits there; diagonals of grids between two sizes differ.
-    assert!(differing * 200 < drawn, "{differing} of {drawn}");
+    // Normals are stored in 32 bits there; diagonals of grids between two sizes differ. Measured on
+    // lavapipe: 4 of 4088.
+    assert!(differing * 500 < drawn, "{differing} of {drawn}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn statistics_are_those_of_the_stored_surface_and_memory_of_the_coarse_one() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = cell(3, 12);
     let camera = before(&mesh, 4.0);
     let mut bytes = Vec::new();
@@ -137,9 +141,9 @@ fn statistics_are_those_of_the_stored_surface_and_memory_of_the_coarse_one() {
     assert_eq!(bytes[0], bytes[2]);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_soma_alone_is_a_disk_and_a_point_alone_a_short_tube() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     for (text, radius) in [
         ("1 1 7 7 7 3 -1\n", 3.0),
         ("1 3 0 0 0 1 -1\n", 1.0),
@@ -174,9 +178,9 @@ fn a_soma_alone_is_a_disk_and_a_point_alone_a_short_tube() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn nothing_at_all_is_a_picture_of_the_background() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = cell(5, 8);
     let camera = before(&mesh, 3.0);
     let hidden = Instance {
@@ -206,9 +210,9 @@ fn nothing_at_all_is_a_picture_of_the_background() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn one_pixel_shows_what_fills_it() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(2);
     let camera = Camera::new(DVec3::Z * 8.0, DVec3::ZERO, DVec3::Y, 0.1).expect("a camera");
     let instance = Instance::new(TemplateId(0));
@@ -217,9 +221,9 @@ fn one_pixel_shows_what_fills_it() {
     assert!(image.at(0, 0)[0] < 200, "{:?}", image.pixels);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn impossible_instances_are_errors() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = cell(5, 8);
     let color_keys = color_keys(&mesh);
     let scene = |instance: Instance| {
@@ -263,9 +267,9 @@ fn impossible_instances_are_errors() {
     ));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn scenes_beyond_a_million_patches_are_drawn_in_rounds() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = cell(6, 24);
     let count = (1 << 20) / mesh.patches.len() + 40;
     // In a row, away from the eye, at the far end of a circuit.
@@ -285,8 +289,10 @@ fn scenes_beyond_a_million_patches_are_drawn_in_rounds() {
     assert!(image.pixels.chunks(4).any(|p| p[0] < 128));
     let stats = source.stats(&gpu).expect("statistics");
     assert!(stats.patches > 1 << 20);
-    // All lie in the cone of sight, all but a few as large as nothing.
+    // All lie in the view, all but a few as large as nothing.
     assert!(stats.patches_drawn > 1 << 20, "{stats:?}");
     let small: u64 = stats.level_histogram[1];
     assert!(small * 10 > 9 * 4 * stats.patches_drawn, "{stats:?}");
 }
+
+neurotess_testing::main!();

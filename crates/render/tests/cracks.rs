@@ -1,9 +1,11 @@
 //! No crack: through a closed surface no back face shows, whatever the levels.
+mod adapter;
 mod common;
 #[path = "common/draw.rs"]
 mod draw;
 
-use common::{Random, extent, gpu, random_values, smooth_cell};
+use adapter::{device, gpu};
+use common::{Random, extent, random_values, smooth_cell};
 use draw::{BACK, BACKGROUND, Drawer, FRONT};
 use neurotess_mesh::CoarseMesh;
 use neurotess_refine::LodCriterion;
@@ -11,6 +13,7 @@ use neurotess_refine::{Caps, Path};
 use neurotess_render::{
     AdaptiveSettings, Camera, Gpu, Instance, Refiner, Scene, Template, Templates,
 };
+use neurotess_testing::note;
 
 fn scene(gpu: &Gpu, mesh: &CoarseMesh, values: &[u8]) -> Scene {
     let mut templates = Templates::new();
@@ -90,18 +93,19 @@ fn count(gpu: &Gpu, source: &dyn Fn(usize) -> String, cells: u64, trials: usize)
     (front, back)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn no_back_face_shows_through_a_closed_surface() {
-    let Some(gpu) = gpu() else { return };
-    let (front, back) = count(&gpu, &Refiner::vertex_text, 3, 8);
-    println!("48 pictures, {front} pixels of front faces, {back} of back faces");
-    assert!(front > 500_000, "{front}");
+    let gpu = device();
+    let (front, back) = count(&gpu, &Refiner::vertex_text, 6, 8);
+    note!("96 pictures, {front} pixels of front faces, {back} of back faces");
+    // Measured on lavapipe: 2,252,368. Enough of each cell is in the pictures.
+    assert!(front > 2_000_000, "{front}");
     assert_eq!(back, 0);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn an_edge_whose_faces_disagree_is_found() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     // Once what draws tubes is wrong about their sides, once what draws all else.
     for (honest, torn, shader) in [
         (
@@ -121,6 +125,10 @@ fn an_edge_whose_faces_disagree_is_found() {
             }
         };
         let (_, back) = count(&gpu, &source, 1, 8);
-        assert!(back > 10, "{honest}: {back}");
+        note!("{back} pixels of back faces");
+        // Measured on lavapipe: 35 of what draws tubes, which makes few sides; 350 of all else.
+        assert!(back > 25, "{honest}: {back}");
     }
 }
+
+neurotess_testing::main!();

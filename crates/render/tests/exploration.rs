@@ -1,11 +1,13 @@
 //! Exploration keeps its budget, spends it where it shows most, and loses nothing on the way.
 
+mod adapter;
 mod common;
 mod pictured;
 
 use std::convert::Infallible;
 
-use common::{Random, cell, extent, gpu, smooth_cell};
+use adapter::{device, gpu};
+use common::{Random, cell, extent, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{
@@ -13,6 +15,7 @@ use neurotess_render::{
     Image, Instance, LodRequest, MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene,
     Template, TemplateId, Templates, Tile, VertexSource, lod_requests, paint,
 };
+use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
 
 fn frame(camera: Camera, width: u32, height: u32) -> Frame {
@@ -30,8 +33,8 @@ fn frame(camera: Camera, width: u32, height: u32) -> Frame {
 }
 
 /// Instances of so many templates in a box of this edge (µm).
-fn places(random: &mut Random, count: usize, templates: usize, edge: f64) -> Vec<Instance> {
-    let place = |random: &mut Random| {
+fn scattered(random: &mut Random, count: usize, templates: usize, edge: f64) -> Vec<Instance> {
+    let instance = |random: &mut Random| {
         let half = edge / 2.0;
         let mut at = || random.real(-half, half);
         let translation = DVec3::new(at(), at(), at());
@@ -45,7 +48,7 @@ fn places(random: &mut Random, count: usize, templates: usize, edge: f64) -> Vec
             ..Instance::new(TemplateId(random.whole(templates as u64) as u32))
         }
     };
-    (0..count).map(|_| place(random)).collect()
+    (0..count).map(|_| instance(random)).collect()
 }
 
 fn explored(gpu: &Gpu, proxies: &[Proxy], instances: Vec<Instance>) -> Exploration {
@@ -63,13 +66,13 @@ fn any_camera(random: &mut Random, reach: f64) -> Camera {
     Camera::new(eye, target, up, random.real(0.1, 1.5)).expect("a camera")
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mut random = Random(5);
     let proxies: Vec<Proxy> = (0..3).map(|i| Proxy::new(&cell(i, 30), &[])).collect();
     for (count, edge) in [(1, 1.0), (7, 100.0), (300, 800.0)] {
-        let instances = places(&mut random, count, proxies.len(), edge);
+        let instances = scattered(&mut random, count, proxies.len(), edge);
         let mut source = explored(&gpu, &proxies, instances);
         for budget in [0, 1, 2, 3, 10, 100, 1000, 12_345, 100_000, MOST_BUDGET] {
             source.set_budget(budget);
@@ -82,10 +85,7 @@ fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
                 assert!(stats.triangles <= u64::from(budget), "{stats:?}");
                 assert_eq!(stats.all_instances, count as u64);
                 if stats.wanted <= u64::from(budget) {
-                    assert_eq!(
-                        stats.triangles, stats.wanted,
-                        "all that is lod_requests for"
-                    );
+                    assert_eq!(stats.triangles, stats.wanted, "all that is wanted");
                 } else if budget >= 10_000 {
                     // What is left of a budget is less than the class that did not fit.
                     assert!(5 * stats.triangles >= 3 * u64::from(budget), "{stats:?}");
@@ -95,12 +95,12 @@ fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_is_drawn_is_what_is_worth_most() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mut random = Random(11);
     let proxies: Vec<Proxy> = (0..2).map(|i| Proxy::new(&cell(i, 40), &[])).collect();
-    let instances = places(&mut random, 40, proxies.len(), 300.0);
+    let instances = scattered(&mut random, 40, proxies.len(), 300.0);
     let mut source = explored(&gpu, &proxies, instances.clone());
     let (mut compared, mut off) = (0, 0);
     for budget in [500, 5000, 60_000, MOST_BUDGET] {
@@ -116,9 +116,9 @@ fn what_is_drawn_is_what_is_worth_most() {
             let (mut least, mut most) = (f64::MAX, f64::MIN);
             for (i, instance) in (0..).zip(&instances) {
                 let proxy = &proxies[instance.template.0 as usize];
-                let runs = lod_requests(proxy, &instance.placement, &frame, 1, i);
-                for (run, steps) in (0..).zip(runs) {
-                    let there = shown.next_if(|&(at, _)| at == (i, run));
+                let chunks = lod_requests(proxy, &instance.placement, &frame, 1, i);
+                for (chunk, steps) in (0..).zip(chunks) {
+                    let there = shown.next_if(|&(at, _)| at == (i, chunk));
                     let quads = there.map_or(0, |(_, quads)| quads);
                     compared += 1;
                     match drawn_steps(&steps, quads) {
@@ -127,7 +127,7 @@ fn what_is_drawn_is_what_is_worth_most() {
                             least = steps[..drawn].iter().map(class).fold(least, f64::min);
                             most = steps[drawn..].iter().map(class).fold(most, f64::max);
                         }
-                        // On an edge between two forms, f32 and f64 may disagree.
+                        // On an edge between two levels of detail, f32 and f64 may disagree.
                         None => off += 1,
                     }
                 }
@@ -139,8 +139,9 @@ fn what_is_drawn_is_what_is_worth_most() {
             }
         }
     }
-    println!("{off} of {compared} runs on an edge");
-    assert!(off * 500 < compared, "{off} of {compared}");
+    note!("{off} of {compared} chunks on an edge");
+    // Measured on lavapipe: none of 12,512. Another driver rounds elsewhere: one in 2000.
+    assert!(off * 2000 < compared, "{off} of {compared}");
 }
 
 /// How many steps make these quads.
@@ -200,38 +201,43 @@ fn both(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Instance]) -> (Adaptive, Expl
     (adaptive, source)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn nothing_vanishes_near_or_far() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(3);
     let (_, table) = by_type(&mesh);
     let mut random = Random(2);
     for (count, edge) in [(1, 1.0), (40, 250.0)] {
-        let instances = places(&mut random, count, 1, edge);
+        let instances = scattered(&mut random, count, 1, edge);
         let (mut adaptive, mut source) = both(&gpu, &mesh, &instances);
         source.set_budget(2_000_000);
         for distance in [60.0, 200.0, 600.0, 2000.0] {
             let eye = DVec3::new(0.3, 0.5, 1.0).normalize_or(DVec3::Z) * (distance + edge);
             let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-            let wanted = ink(&picture(&gpu, &mut adaptive, &camera, &table));
+            let expected = ink(&picture(&gpu, &mut adaptive, &camera, &table));
             let found = ink(&picture(&gpu, &mut source, &camera, &table));
-            let all: f64 = wanted.iter().sum();
+            let all: f64 = expected.iter().sum();
             let change = found.iter().sum::<f64>() / all - 1.0;
-            let off: f64 = wanted.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
-            println!(
+            let off: f64 = expected
+                .iter()
+                .zip(&found)
+                .map(|(a, b)| (a - b).abs())
+                .sum();
+            note!(
                 "{count} at {distance}: {change:+.4} ink, {:.4} off",
                 off / all
             );
-            // As much ink within a twentieth, and where it was: in each 16 × 16 pixels.
-            assert!(change.abs() < 0.05, "{count} at {distance}: {change}");
-            assert!(off / all < 0.08, "{count} at {distance}: {}", off / all);
+            // As much ink, and where it was, in each 16 × 16 pixels. Measured on lavapipe: 0.024 and
+            // 0.047, both at the greatest distance.
+            assert!(change.abs() < 0.03, "{count} at {distance}: {change}");
+            assert!(off / all < 0.06, "{count} at {distance}: {}", off / all);
         }
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn somata_are_seen_from_any_distance() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh("1 1 0 0 0 6 -1\n");
     let (_, table) = by_type(&mesh);
     let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
@@ -245,23 +251,23 @@ fn somata_are_seen_from_any_distance() {
     }
 }
 
-#[test]
-fn the_place_in_the_world_does_not_matter() {
-    let Some(gpu) = gpu() else { return };
+#[neurotess_testing::test(needs(gpu))]
+fn the_position_in_the_world_does_not_matter() {
+    let gpu = device();
     let mesh = mesh(CELL);
     let (_, table) = by_type(&mesh);
     let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
-    let mut at = |place: DVec3| {
+    let mut at = |position: DVec3| {
         let instance = Instance {
             placement: Placement {
-                translation: place,
+                translation: position,
                 ..Placement::default()
             },
             ..Instance::new(TemplateId(0))
         };
         source.set_instances(&gpu, vec![instance]).expect("placed");
-        let eye = place + DVec3::new(3.0, 4.0, 60.0);
-        let camera = Camera::new(eye, place, DVec3::Y, 0.7).expect("a camera");
+        let eye = position + DVec3::new(3.0, 4.0, 60.0);
+        let camera = Camera::new(eye, position, DVec3::Y, 0.7).expect("a camera");
         picture(&gpu, &mut source, &camera, &table)
     };
     let here = at(DVec3::ZERO);
@@ -272,12 +278,12 @@ fn the_place_in_the_world_does_not_matter() {
     assert!(off * 1000 < here.pixels.len(), "{off}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_slow_camera_sees_nothing_pop() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(3);
     let (_, table) = by_type(&mesh);
-    let instances = places(&mut Random(4), 30, 1, 200.0);
+    let instances = scattered(&mut Random(4), 30, 1, 200.0);
     let (mut adaptive, mut source) = both(&gpu, &mesh, &instances);
     let worst = |source: &mut dyn VertexSource| {
         let frames: Vec<Image> = (0..9)
@@ -300,17 +306,18 @@ fn a_slow_camera_sees_nothing_pop() {
     let all = worst(&mut source) / reference;
     source.set_budget(4_000);
     let few = worst(&mut source) / reference;
-    println!("changes: {all:.3} of the refined surface's; within a small budget {few:.3}");
-    assert!(all < 1.15, "{all}");
-    assert!(few < 1.3, "{few}");
+    note!("changes: {all:.3} of the refined surface's; within a small budget {few:.3}");
+    // Measured on lavapipe: 0.970 and 0.983.
+    assert!(all < 1.02, "{all}");
+    assert!(few < 1.05, "{few}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_passes_beside_the_eye_takes_no_budget() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = cell(7, 60);
     let (_, table) = by_type(&mesh);
-    let instances = places(&mut Random(6), 300, 1, 250.0);
+    let instances = scattered(&mut Random(6), 300, 1, 250.0);
     let (_, mut source) = both(&gpu, &mesh, &instances);
     let camera = Camera::new(DVec3::Z * 20.0, DVec3::ZERO, DVec3::Y, 0.9).expect("a camera");
     source.set_budget(MOST_BUDGET);
@@ -322,16 +329,16 @@ fn what_passes_beside_the_eye_takes_no_budget() {
         .iter()
         .sum();
     let stats = source.stats(&gpu).expect("counted");
-    println!("{:.3} of the ink, {stats:?}", found / all);
+    note!("{:.3} of the ink, {stats:?}", found / all);
     assert!(stats.wanted > 10 * stats.budget && found > 0.8 * all);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn instances_hide_and_come_back() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let proxy = Proxy::new(&cell(1, 20), &[]);
     let mut random = Random(8);
-    let instances = places(&mut random, 5, 1, 100.0);
+    let instances = scattered(&mut random, 5, 1, 100.0);
     let mut source = explored(&gpu, &[proxy], instances);
     let camera = Camera::new(DVec3::Z * 500.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
     let seen = |source: &mut Exploration| {
@@ -339,7 +346,7 @@ fn instances_hide_and_come_back() {
             .prepare(&gpu, &frame(camera, 300, 300))
             .expect("prepared");
         let shown = source.shown(&gpu).expect("read back");
-        let mut instances: Vec<u32> = shown.iter().map(|piece| piece.instance).collect();
+        let mut instances: Vec<u32> = shown.iter().map(|chunk| chunk.instance).collect();
         instances.dedup();
         instances
     };
@@ -366,9 +373,9 @@ fn instances_hide_and_come_back() {
     assert_eq!(seen(&mut source), [0]);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn templates_are_recolored_in_place() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     let (color_keys, table) = by_type(&mesh);
     let plain = vec![color_keys[0]; color_keys.len()];
@@ -397,9 +404,9 @@ fn templates_are_recolored_in_place() {
     assert_eq!(before, picture(&gpu, &mut source, &camera, &table));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let camera = Camera::new(DVec3::Z * 50.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
     let table = ColorTable {
         scale: vec![[0; 3]],
@@ -456,9 +463,9 @@ fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
     assert_eq!(source.instances().len(), 1, "those before stay");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     // Eight neurites of 400 points, each a wave that forks once.
     let mut swc = String::from("1 1 0 0 0 8 -1\n");
     for i in 0..3200_u32 {
@@ -478,7 +485,7 @@ fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
     let proxy = Proxy::new(&mesh, &[]);
     let (_, reach) = extent(&mesh);
     let resident = |count: usize| {
-        let instances = places(&mut Random(1), count, 1, 4.0 * reach);
+        let instances = scattered(&mut Random(1), count, 1, 4.0 * reach);
         let mut source = explored(&gpu, std::slice::from_ref(&proxy), instances);
         let camera = Camera::new(DVec3::Z * 9e3, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
         source
@@ -490,10 +497,12 @@ fn a_point_takes_a_few_bytes_and_an_instance_under_128() {
     let (few, per_point) = resident(20_000);
     let (many, _) = resident(40_000);
     let per_instance = (many - few) as f64 / 20_000.0;
-    println!(
+    note!(
         "{per_point:.1} bytes a point of {}, {per_instance:.1} an instance",
         proxy.point_count()
     );
     assert!(per_point < 16.0, "{per_point}");
     assert!(per_instance < 128.0, "{per_instance}");
 }
+
+neurotess_testing::main!();

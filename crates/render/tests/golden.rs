@@ -8,18 +8,20 @@
 //! does: blurred over 3 × 3 pixels, at most 1 of 255 apart in the mean and at most one pixel in 200
 //! more than 16 apart.
 
+mod adapter;
 mod pictured;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use adapter::{device, gpu};
 use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{
     Camera, ColorMap, Image, Legend, Light, Look, Occlusion, Overlay, OverlayOptions,
     PictureOptions, PngWriter, Side, fraction,
 };
-use pictured::{explored, gpu, mesh, picture, picture_of, spheres};
+use pictured::{explored, mesh, picture, picture_of, spheres};
 
 /// Greatest mean difference of blurred channels, of 255.
 const MEAN: f64 = 1.0;
@@ -47,9 +49,9 @@ fn small() -> PictureOptions {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_whole_cell_in_the_colors_of_its_types() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let cell = sample("pyramidal.swc");
     let fit = Camera::fit(Side::Front, 0.35, 150.0 / 200.0, 0.04, &spheres(&cell));
     let options = PictureOptions {
@@ -60,18 +62,18 @@ fn a_whole_cell_in_the_colors_of_its_types() {
     compare("whole", &image);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_soma_from_near() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     compare(
         "near",
         &picture(&gpu, &sample("pyramidal.swc"), &close(), &small()),
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn neurons_within_a_budget() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let (eye, target) = (DVec3::new(90.0, 60.0, 260.0), DVec3::new(30.0, 10.0, 0.0));
     let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("a camera");
     // A third of what half a pixel everywhere takes.
@@ -86,9 +88,9 @@ fn neurons_within_a_budget() {
     compare("explored", &image);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_wireframe_on_black() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let options = PictureOptions {
         background: Some([0; 3]),
         look: Look {
@@ -107,9 +109,9 @@ fn a_wireframe_on_black() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_scale_with_its_legend_on_nothing() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let cell = sample("star.swc");
     let reach = cell
         .tracing
@@ -142,7 +144,7 @@ fn a_scale_with_its_legend_on_nothing() {
     compare("scale", &image);
 }
 
-#[expect(clippy::print_stdout, reason = "a renewed picture is told of")]
+#[expect(clippy::print_stdout, reason = "whoever renews pictures looks at them")]
 fn compare(name: &str, image: &Image) {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
     if std::env::var("NEUROTESS_GOLDEN").is_ok_and(|value| value == "renew") {
@@ -234,7 +236,7 @@ fn read(path: &Path) -> Image {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn a_changed_picture_is_noticed() {
     let image = |shift: usize| {
         let mut image = Image::new(60, 40);
@@ -255,3 +257,5 @@ fn a_changed_picture_is_noticed() {
     assert_eq!(apart(&image(0), &image(0)), 0.0);
     assert!(apart(&image(0), &image(2)) > MEAN);
 }
+
+neurotess_testing::main!();

@@ -1,14 +1,16 @@
 //! Bytes on the device per tracing point, on real cells where they are at hand and on one of LiveMesh's
 //! size.
+mod adapter;
 mod common;
 
-use common::gpu;
+use adapter::{device, gpu};
 use common::trees::{Twig, grow};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_render::{Gpu, Template, Templates};
+use neurotess_testing::{note, shared, shared_data};
 
 /// Bytes per point, and how many points.
 fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
@@ -24,14 +26,10 @@ fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
     (templates.bytes_per_point(), templates.point_count())
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu, shared))]
 fn real_cells_take_24_bytes_a_point() {
-    let Some(gpu) = gpu() else { return };
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/swc");
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        println!("SKIPPED: no tracings in {folder}");
-        return;
-    };
+    let gpu = device();
+    let entries = std::fs::read_dir(shared_data().join("swc")).expect("tracings");
     let mut paths: Vec<_> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
         .collect();
@@ -53,15 +51,15 @@ fn real_cells_take_24_bytes_a_point() {
         let (each, points) = bytes_per_point(&gpu, &mesh);
         if points >= 2000 {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            println!("{each:6.2} bytes a point, {points:6} points: {name}");
+            note!("{each:6.2} bytes a point, {points:6} points: {name}");
             assert!(each <= 24.0, "{name}: {each}");
         }
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_cell_of_live_mesh_s_size_takes_less() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     // 271 sections of 25.6 segments.
     let twigs: Vec<Twig> = (0..271)
         .map(|i| Twig {
@@ -78,7 +76,7 @@ fn a_cell_of_live_mesh_s_size_takes_less() {
         .mesh;
     let (each, points) = bytes_per_point(&gpu, &mesh);
     let whole = each * points as f64;
-    println!("{points} points, {each:.2} bytes each, {whole:.0} in all; LiveMesh: 160400");
+    note!("{points} points, {each:.2} bytes each, {whole:.0} in all; LiveMesh: 160400");
     for level in 1..=6 {
         let stored = Refinement::new(
             &mesh,
@@ -86,9 +84,11 @@ fn a_cell_of_live_mesh_s_size_takes_less() {
             &RefineOptions::default(),
         );
         let bytes = 24 * stored.vertex_count() + 12 * stored.triangle_count();
-        println!("level {level} stored: {bytes} bytes");
+        note!("level {level} stored: {bytes} bytes");
         assert!(bytes as f64 > 4.0 * whole);
     }
     assert!((6500..7400).contains(&points), "{points}");
     assert!(whole < 160_400.0, "{whole}");
 }
+
+neurotess_testing::main!();

@@ -1,11 +1,13 @@
-//! What pictures must hold whatever they look like. Skipped, with a color key, where no adapter is.
+//! What holds of every picture, whatever it shows.
 
+mod adapter;
 mod pictured;
 
+use adapter::{device, gpu};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, SAMPLES};
-use pictured::{CELL, by_type, camera, gpu, mesh, picture};
+use pictured::{CELL, by_type, camera, mesh, picture};
 
 fn small(size: [u32; 2]) -> PictureOptions {
     PictureOptions {
@@ -31,9 +33,9 @@ fn drawn(image: &Image, background: [u8; 3]) -> usize {
 
 const WHITE: [u8; 3] = [255; 3];
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn tiles_fit_together() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     for samples in [1, 4, 16] {
         let lit = PictureOptions {
@@ -66,7 +68,7 @@ fn tiles_fit_together() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn bounds_hold_the_refined_surface() {
     let mesh = mesh(CELL);
     let spheres = neurotess_render::bounds(&mesh);
@@ -82,13 +84,23 @@ fn bounds_hold_the_refined_surface() {
                 .any(|&(center, radius)| p.distance(center) <= radius)
         );
     }
+    // Measured: 11.0 µm in the mean; 4 of 32 wider than 25, the widest 53.9, among them those whose eight
+    // patches end one neurite and begin the next, elsewhere.
     let mean = spheres.iter().map(|&(_, radius)| radius).sum::<f64>() / spheres.len() as f64;
-    assert!(mean < 30.0, "of little use: {mean}");
+    let widest = spheres
+        .iter()
+        .map(|&(_, radius)| radius)
+        .fold(0.0, f64::max);
+    let wide = spheres.iter().filter(|&&(_, radius)| radius > 25.0).count();
+    assert!(
+        mean < 12.0 && wide <= 4 && widest < 55.0,
+        "{mean} {wide} {widest}"
+    );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn every_size_has_its_picture() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     for size in [[1, 1], [1, 300], [7, 5], [16_384, 24]] {
         for samples in [SAMPLES[0], SAMPLES[2]] {
@@ -104,9 +116,9 @@ fn every_size_has_its_picture() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn nothing_and_a_point_are_pictures() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let options = small([64, 48]);
     let nothing = CoarseMesh::default();
     let image = picture(&gpu, &nothing, &camera(&nothing, options.size), &options);
@@ -122,9 +134,9 @@ fn nothing_and_a_point_are_pictures() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn transparent_pictures_have_straight_alpha() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     let options = PictureOptions {
         background: None,
@@ -145,9 +157,9 @@ fn transparent_pictures_have_straight_alpha() {
     assert_eq!(image.at(0, 0), [0; 4]);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn thin_neurites_neither_vanish_nor_shimmer() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     // A tenth of a pixel wide, slightly tilted.
     let mesh = mesh("1 2 0 -50 0 0.05 -1\n2 2 3 0 0 0.05 1\n3 2 0 50 0 0.05 2\n");
     let (_, table) = by_type(&mesh);
@@ -188,9 +200,9 @@ fn thin_neurites_neither_vanish_nor_shimmer() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn light_occlusion_and_wireframe_change_the_picture() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = mesh(CELL);
     let plain = small([200, 160]);
     let (eye, target) = (DVec3::new(10.0, 18.0, 40.0), DVec3::new(0.0, 7.0, 0.0));
@@ -216,9 +228,9 @@ fn light_occlusion_and_wireframe_change_the_picture() {
     assert_eq!(difference(&image, &again), (0, 0));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn occlusion_darkens_what_lies_close_behind() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     // Two tubes that cross, the one along y in front by less than a radius.
     let mesh = mesh(
         "1 2 -20 0 0 2 -1\n2 2 0 0 0 2 1\n3 2 20 0 0 2 2\n\
@@ -240,3 +252,5 @@ fn occlusion_darkens_what_lies_close_behind() {
     let far = (20..40).chain(160..180).map(darker).max();
     assert!(close > Some(12) && far <= Some(3), "{close:?} {far:?}");
 }
+
+neurotess_testing::main!();

@@ -1,18 +1,21 @@
 //! Nothing pops: when the camera moves, the picture changes as that of the finest surface does.
 //!
 //! Levels are whole numbers and jump. What a jump moves on the screen is bounded by the error that was
-//! lod_requests for, half a pixel by default: less than what shows. So there is neither hysteresis nor
+//! asked for, half a pixel by default: less than what shows. So there is neither hysteresis nor
 //! morphing, and a picture depends on its camera alone. Here a camera moves slowly, and what changes
 //! from frame to frame is compared with what changes on the level-64 surface.
+mod adapter;
 mod common;
 
-use common::{gpu, smooth_cell};
+use adapter::{device, gpu};
+use common::smooth_cell;
 use glam::DVec3;
 use neurotess_refine::LodCriterion;
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, ColorTable, Gpu, Image, Instance, Occlusion,
     PictureOptions, Scene, Template, Templates, paint,
 };
+use neurotess_testing::note;
 
 const FRAMES: usize = 10;
 
@@ -54,9 +57,9 @@ fn changes(frames: &[Image]) -> Vec<f64> {
     frames.windows(2).map(change).collect()
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_slow_camera_sees_no_level_change() {
-    let Some(gpu) = gpu() else { return };
+    let gpu = device();
     let mesh = smooth_cell(3);
     let mut templates = Templates::new();
     let template = Template {
@@ -81,14 +84,17 @@ fn a_slow_camera_sees_no_level_change() {
         let ratios = changes
             .iter()
             .zip(&reference)
-            .map(|(found, wanted)| found / wanted);
-        println!("{lod:?}: {changes:.3?}");
+            .map(|(found, expected)| found / expected);
+        note!("{lod:?}: {changes:.3?}");
         ratios.fold(0.0, f64::max)
     };
-    println!("level 32: {reference:.3?}");
+    note!("level 32: {reference:.3?}");
     let [half, coarse] = [0.5, 8.0].map(LodCriterion::PixelError).map(worst);
-    println!("{half} {coarse}");
-    // What changes anyway hides a step of a seventh of it; the measure tells popping where it is.
-    assert!(half < 1.15, "{half}");
-    assert!(coarse > half + 0.05, "{coarse}");
+    note!("{half} {coarse}");
+    // Measured on lavapipe: 1.064, and 1.200 where the error may be eight pixels. That the measure sees
+    // popping is judged against the first: another driver changes both.
+    assert!(half < 1.08, "{half}");
+    assert!(coarse - 1.0 > 2.0 * (half - 1.0), "{coarse} {half}");
 }
+
+neurotess_testing::main!();

@@ -34,7 +34,7 @@ fn direction(state: &mut u64) -> Vec3 {
     vec3(random(state), random(state), random(state)).normalize_or(Vec3::X)
 }
 
-/// Grows a tree as told; `soma`: its radius, or none.
+/// Grows a tree from recipes; `soma`: its radius, or none.
 pub(crate) fn grow(twigs: &[Twig], soma: Option<f32>) -> Morphology {
     let mut m = Morphology {
         name: "random".into(),

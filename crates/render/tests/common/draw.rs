@@ -196,12 +196,12 @@ impl Drawer {
         settings: &AdaptiveSettings,
     ) -> Vec<[u8; 4]> {
         let [width, height] = self.size;
-        let sight = CullView::new(camera, width, height, near);
+        let cull_view = CullView::new(camera, width, height, near);
         let clip = camera.clip_from_relative(f64::from(width) / f64::from(height), near);
         gpu.queue
             .write_buffer(&self.clip, 0, bytemuck::cast_slice(&clip.to_cols_array()));
         let plan = refiner
-            .prepare(gpu, scene, &sight, settings)
+            .prepare(gpu, scene, &cull_view, settings)
             .expect("prepared");
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let (color, depth) = (

@@ -1,4 +1,4 @@
-//! A device, and scenes with every kind of patch.
+//! Cells with every kind of patch.
 #![allow(dead_code)]
 
 #[path = "../../../refine/tests/common/mod.rs"]
@@ -10,20 +10,8 @@ use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 use neurotess_morphology::{
     Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
 };
-use neurotess_render::{Camera, CullView, Gpu};
+use neurotess_render::{Camera, CullView};
 use trees::{Twig, grow};
-
-/// The device, or nothing with a color key about it.
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-pub(crate) fn gpu() -> Option<Gpu> {
-    match Gpu::open(None) {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            println!("SKIPPED: {error}");
-            None
-        }
-    }
-}
 
 /// Splitmix64.
 pub(crate) struct Random(pub(crate) u64);
@@ -179,6 +167,6 @@ pub(crate) fn look(mesh: &CoarseMesh, random: &mut Random, distance: f64) -> Cam
     Camera::new(eye, target, up, 0.7).expect("a camera")
 }
 
-pub(crate) fn sight(camera: &Camera, width: u32, height: u32) -> CullView {
+pub(crate) fn cull_view(camera: &Camera, width: u32, height: u32) -> CullView {
     CullView::new(camera, width, height, 1e-3)
 }

@@ -1,4 +1,4 @@
-//! A device, a cell and its picture.
+//! A cell and its picture.
 #![allow(dead_code)]
 
 use glam::{DQuat, DVec3};
@@ -25,18 +25,6 @@ pub(crate) const CELL: &str = "1 1 0 0 0 5 -1
 10 4 -30 9 20 1 9
 ";
 
-/// The device, or `None` with a color key on why tests are skipped.
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-pub(crate) fn gpu() -> Option<Gpu> {
-    match Gpu::open(None) {
-        Ok(gpu) => Some(gpu),
-        Err(e) => {
-            println!("SKIPPED: {e}");
-            None
-        }
-    }
-}
-
 /// The coarse mesh of a tracing.
 pub(crate) fn mesh(swc_text: &str) -> CoarseMesh {
     let read = swc::read_bytes(swc_text.as_bytes(), "cell.swc", &ReadOptions::default());
@@ -62,7 +50,7 @@ pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
     Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &spheres(mesh)).expect("fits")
 }
 
-/// Words and table by type.
+/// Color keys and table by type.
 pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColorTable) {
     let color_keys = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
     let table = ColorTable {

@@ -1,12 +1,13 @@
 //! Circuits of others against values that h5py and bluepysnap give.
 
-mod shared;
-
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use neurotess_circuit::{Attribute, Circuit, Selection, soma_center};
+use neurotess_testing::shared;
 use serde_json::Value;
+
+use crate::sonata::sonata;
 
 /// Circuits, each with its file of nodes in the reference.
 const CIRCUITS: [(&str, &str, &str); 3] = [
@@ -33,11 +34,9 @@ fn vector(value: &Value) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|axis: usize| value[axis].as_f64().expect("a number")))
 }
 
-#[test]
-fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+#[neurotess_testing::test(needs(shared))]
+fn nodes_have_the_positions_rotations_and_morphologies_of_the_reference() {
+    let sonata = sonata();
     let reference = reference(&sonata);
     for (circuit, file, population) in CIRCUITS {
         let circuit = Circuit::open(sonata.join(circuit)).expect("a circuit");
@@ -50,9 +49,9 @@ fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
             let row = node["index"].as_u64().expect("index") as usize;
             assert_eq!(Some(found.ids[row]), node["node_id"].as_u64());
             match node.get("xyz") {
-                Some(place) => {
-                    let place = vector(place);
-                    assert!(found.position(row).expect("a place").distance(place) < 1e-9);
+                Some(position) => {
+                    let position = vector(position);
+                    assert!(found.position(row).expect("a position").distance(position) < 1e-9);
                 }
                 None => assert_eq!(found.position(row), None, "{file} {row}"),
             }
@@ -70,11 +69,9 @@ fn nodes_have_the_places_rotations_and_morphologies_of_the_reference() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn a_blue_brain_circuit_opens_whole() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let circuit = Circuit::open(sonata.join("bbp/usecase1")).expect("a circuit");
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     assert_eq!((circuit.n_neurons(), circuit.templates.len()), (2, 1));
@@ -103,11 +100,9 @@ fn a_blue_brain_circuit_opens_whole() {
     assert!(placed.distance(nodes.positions[1]) < 1e-9);
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn types_give_what_nodes_do_not_have() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let circuit = Circuit::open(sonata.join("allen/5_cells_iclamp")).expect("a circuit");
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     assert_eq!((circuit.n_neurons(), circuit.templates.len()), (5, 5));
@@ -118,8 +113,8 @@ fn types_give_what_nodes_do_not_have() {
         region: Some((DVec3::splat(-1.0), DVec3::new(1.0, 300.0, 1.0))),
         ..Selection::default()
     };
-    let chosen = circuit.select(&selection).expect("chosen");
-    assert_eq!(chosen.iter().map(|n| n.row).collect::<Vec<_>>(), [0, 3]);
+    let selected = circuit.select(&selection).expect("selected");
+    assert_eq!(selected.iter().map(|n| n.row).collect::<Vec<_>>(), [0, 3]);
     for template in &circuit.templates {
         let read = template.read().expect("a morphology");
         // Their somata are not at the origin: the first step of placing moves them there.
@@ -132,11 +127,9 @@ fn types_give_what_nodes_do_not_have() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn groups_that_lack_what_others_have_are_read() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let circuit = Circuit::open(sonata.join("brion/simple_network.json")).expect("a circuit");
     let nodes = &circuit.populations[0];
     // Rows of group 1 override the type's model.
@@ -166,7 +159,7 @@ fn groups_that_lack_what_others_have_are_read() {
             .iter()
             .any(|w| w.code == "node_id_repeated")
     );
-    // Its edges, node sets and reports are not there, which is told.
+    // Its edges, node sets and reports are not there, and warnings say so.
     assert!(circuit.failures.is_empty(), "{:?}", circuit.failures);
     let missing = |code| circuit.warnings.iter().filter(|w| w.code == code).count();
     let counts = ["edges_missing", "node_sets_missing", "report_missing"].map(missing);

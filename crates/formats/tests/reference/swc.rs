@@ -1,10 +1,10 @@
 //! All shared SWC files against what MorphIO, NeuroM and a plain count over the rows found.
 
-mod shared;
-
 use neurotess_formats::{ReadOptions, read};
 use neurotess_morphology::Measures;
-use shared::{Table, data};
+use neurotess_testing::{note, shared, shared_data};
+
+use crate::table::Table;
 
 /// Relative tolerance; the references store `f32`.
 const TOLERANCE: f64 = 1e-5;
@@ -70,9 +70,9 @@ fn vectors(m: &Measures) -> Vec<(&'static str, [f64; 3])> {
     vectors
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn measures_are_those_of_the_references() {
-    let Some(data) = data() else { return };
+    let data = shared_data();
     let table = Table::read(&data.join("reference.tsv"));
     let (mut files, mut compared, mut wrong) = (0, 0, Vec::new());
     let mut used = [false; DELIBERATE.len()];
@@ -111,7 +111,7 @@ fn measures_are_those_of_the_references() {
             }
         }
     }
-    println!("{files} files, {compared} values");
+    note!("{files} files, {compared} values");
     assert!(files > 30, "only {files} files");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let idle: Vec<_> = DELIBERATE
@@ -122,9 +122,9 @@ fn measures_are_those_of_the_references() {
     assert!(idle.is_empty(), "no longer different: {idle:?}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn every_valid_file_comes_back_equal_after_writing() {
-    let Some(data) = data() else { return };
+    let data = shared_data();
     let manifest = Table::read(&data.join("MANIFEST.tsv"));
     for row in manifest.rows(|file| file.ends_with(".swc")) {
         let file = row("file");
@@ -141,9 +141,9 @@ fn every_valid_file_comes_back_equal_after_writing() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn malformed_files_give_an_error_or_a_warning_that_says_so() {
-    let Some(data) = data() else { return };
+    let data = shared_data();
     let expected = [
         ("Neuron_missing_ids.swc", "sample 8 has parent 7"),
         ("bifurcating_soma.swc", "soma_branches"),
@@ -176,7 +176,7 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
     );
     for (file, says) in expected {
         let path = data.join("malformed").join(file);
-        let told = match read(&path, &ReadOptions::default()) {
+        let message = match read(&path, &ReadOptions::default()) {
             Ok(read) => read
                 .warnings
                 .iter()
@@ -186,8 +186,8 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
             Err(e) => e.to_string(),
         };
         assert!(
-            told.contains(says),
-            "{file}: {told:?} does not say {says:?}"
+            message.contains(says),
+            "{file}: {message:?} does not say {says:?}"
         );
         let strict = read(&path, &ReadOptions { strict: true });
         assert!(strict.is_err(), "{file} passes strictly");

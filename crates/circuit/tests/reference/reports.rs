@@ -1,19 +1,18 @@
 //! Reports of others against values that h5py gives.
 
-mod shared;
-
 use neurotess_circuit::{RecordingFile, Report, ReportKind, Spikes};
+use neurotess_testing::shared;
 use serde_json::Value;
+
+use crate::sonata::sonata;
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn reports_have_the_values_of_the_reference() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+    let sonata = sonata();
     let path = sonata.with_file_name("sonata_reference.json");
     let text = std::fs::read_to_string(path).expect("the reference");
     let reference: Value = serde_json::from_str(&text).expect("JSON");
@@ -72,11 +71,9 @@ fn reports_have_the_values_of_the_reference() {
     }
 }
 
-#[test]
-fn elements_have_their_sections() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+#[neurotess_testing::test(needs(shared))]
+fn compartments_have_their_sections() {
+    let sonata = sonata();
     let report = Report::open(sonata.join("brion/compartment_report.h5")).expect("a report");
     let values = &report.populations[0];
     assert_eq!(values.kind(), ReportKind::Compartment);
@@ -98,11 +95,9 @@ fn elements_have_their_sections() {
     );
 }
 
-#[test]
-fn spikes_of_both_makers_are_read() {
-    let Some(sonata) = shared::sonata() else {
-        return;
-    };
+#[neurotess_testing::test(needs(shared))]
+fn spikes_of_both_simulators_are_read() {
+    let sonata = sonata();
     let bbp = Spikes::open(sonata.join("bbp/usecase1/reporting/spikes.h5")).expect("spikes");
     assert_eq!(
         bbp.populations[0].times,

@@ -1,19 +1,6 @@
-//! The data sets that lie beside the repository, where there are any.
+//! The tables of reference values.
 
-use std::path::{Path, PathBuf};
-
-/// `../shared/data` from the workspace's root; says so if it is absent.
-pub(crate) fn data() -> Option<PathBuf> {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    if data.join("reference.tsv").is_file() {
-        return Some(data);
-    }
-    #[expect(clippy::print_stderr, reason = "nothing is skipped in silence")]
-    {
-        eprintln!("skipped: no shared data beside the workspace");
-    }
-    None
-}
+use std::path::Path;
 
 /// A table with a header, as rows of fields by column.
 pub(crate) struct Table {

@@ -1,13 +1,14 @@
 //! All shared ASC and H5 files against what MorphIO found.
 
-mod shared;
-
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use neurotess_formats::{ReadOptions, read};
 use neurotess_morphology::{Attachment, Measures, Morphology, Point};
-use shared::{Table, data};
+use neurotess_testing::{note, shared, shared_data};
+
+use crate::both_formats::{FORMATS, assert_same_neurites, codes};
+use crate::table::Table;
 
 /// Relative tolerance; the references store `f32`.
 const TOLERANCE: f64 = 1e-5;
@@ -63,9 +64,9 @@ fn with_copies(m: &Morphology, asc: bool) -> (f64, f64) {
     sum
 }
 
-#[test]
+#[neurotess_testing::test(needs(shared))]
 fn measures_are_those_of_morphio() {
-    let Some(data) = data() else { return };
+    let data = shared_data();
     let table = Table::read(&data.join("reference.tsv"));
     let (mut files, mut compared, mut wrong) = (0, 0, Vec::new());
     let mut used = vec![false; DELIBERATE.len()];
@@ -115,8 +116,86 @@ fn measures_are_those_of_morphio() {
             wrong.push(format!("{file}: types {types:?} are not {by_type}"));
         }
     }
-    println!("{files} files, {compared} values");
+    note!("{files} files, {compared} values");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(files > 20, "only {files} files");
     assert!(!used.contains(&false), "listed without need");
+}
+
+#[neurotess_testing::test(needs(shared))]
+fn files_of_others_come_back() {
+    let data = shared_data();
+    let mut files = 0;
+    for folder in ["asc", "h5"] {
+        let entries = std::fs::read_dir(data.join(folder)).expect("the folder");
+        for entry in entries.filter_map(Result::ok) {
+            let Ok(cell) = read(entry.path(), &ReadOptions::default()) else {
+                assert_eq!(entry.file_name(), "merged.h5", "refused as a container");
+                continue;
+            };
+            let cell = cell.morphology;
+            for (write, back) in FORMATS {
+                let mut bytes = Vec::new();
+                let losses = write(&cell, &mut bytes);
+                let again = back(&bytes);
+                if !codes(&losses).contains(&"types_changed") {
+                    assert_same_neurites(&cell, &again);
+                }
+                assert_eq!(cell.somata.len(), again.somata.len());
+                for (a, b) in cell.somata.iter().zip(&again.somata) {
+                    let scale = a.radius + a.center.abs().max_element();
+                    assert!((a.radius - b.radius).abs() <= 1e-5 * scale);
+                    assert!(a.center.distance(b.center) <= 1e-5 * scale);
+                }
+                files += 1;
+            }
+        }
+    }
+    assert!(files > 40, "only {files}");
+}
+
+#[neurotess_testing::test(needs(shared))]
+fn broken_files_are_refused_with_their_place() {
+    let data = shared_data();
+    let said = |name: &str| match read(data.join("malformed").join(name), &ReadOptions::default()) {
+        Ok(_) => "read".to_owned(),
+        Err(e) => e
+            .to_string()
+            .split_once(name)
+            .expect("the name")
+            .1
+            .to_owned(),
+    };
+    for (name, expected) in [
+        ("broken-spine.asc", ":14: a spine (<) is not closed"),
+        (
+            "invalid-incomplete.asc",
+            ":15: a branch goes on after the word that ends it",
+        ),
+        ("unbalanced.asc", ":2: a bracket is not closed"),
+        (
+            "empty.h5",
+            ": the file has no datasets 'points' and 'structure'",
+        ),
+        ("incorrect_point_columns.h5", ": dataset 'points' has shape"),
+        ("monodim.h5", ": dataset 'points' has shape"),
+        (
+            "simple-negative-section-type.h5",
+            ": dataset 'structure', row 6: the type",
+        ),
+        (
+            "reversed_NRN_neurite_order.h5",
+            ": dataset 'structure', row 3: the first point",
+        ),
+        ("truncated.h5", ": "),
+        ("not_hdf5.h5", ": the file cannot be read as HDF5"),
+    ] {
+        let said = said(name);
+        assert!(said.starts_with(expected), "{name}{said}");
+        assert!(said.contains(": "), "what to do: {said}");
+    }
+    // Read, with a warning.
+    for name in ["simple2.asc", "soma_after_dendrite.h5"] {
+        assert_eq!(said(name), "read", "{name}");
+    }
 }

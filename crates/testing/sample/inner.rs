@@ -1,0 +1,4 @@
+//! A module of the sample.
+
+#[neurotess_testing::test]
+fn has_its_modules_name() {}

@@ -1,0 +1,62 @@
+//! Runs the tests of a program: filters, threads and lines are those of libtest.
+
+use std::process::ExitCode;
+
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
+
+use crate::{Need, failure};
+
+/// A test that the attribute registered.
+#[derive(Clone, Copy, Debug)]
+pub struct Test {
+    path: &'static str,
+    run: fn(),
+    needs: &'static [Need],
+}
+
+inventory::collect!(Test);
+
+impl Test {
+    /// `path`: crate, modules and function.
+    pub const fn new(path: &'static str, run: fn(), needs: &'static [Need]) -> Self {
+        Self { path, run, needs }
+    }
+
+    /// As libtest names it: without the crate.
+    fn name(&self) -> &'static str {
+        self.path
+            .split_once("::")
+            .map_or(self.path, |(_, name)| name)
+    }
+
+    fn attempt(&self) -> Result<Completion, Failed> {
+        for need in self.needs {
+            let Some(reason) = need.missing() else {
+                continue;
+            };
+            return match need.requirement() {
+                Some(requirement) => Err(format!("{reason}, and {requirement}").into()),
+                None => Ok(Completion::ignored_with(reason)),
+            };
+        }
+        failure::catch(self.run)?;
+        Ok(Completion::Completed)
+    }
+}
+
+/// Runs the tests of this program that its arguments select.
+pub fn run() -> ExitCode {
+    let mut arguments = Arguments::from_args();
+    let threads = std::env::var("RUST_TEST_THREADS");
+    let threads = threads.ok().and_then(|threads| threads.parse().ok());
+    arguments.test_threads = arguments.test_threads.or(threads);
+    failure::listen(arguments.nocapture);
+    let mut tests: Vec<&Test> = inventory::iter::<Test>.into_iter().collect();
+    // The linker's order is no order.
+    tests.sort_by_key(|test| test.name());
+    let trials = tests.into_iter().map(|test| {
+        let test = *test;
+        Trial::ignorable_test(test.name(), move || test.attempt())
+    });
+    libtest_mimic::run(&arguments, trials.collect()).exit_code()
+}
