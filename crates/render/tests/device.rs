@@ -2,6 +2,12 @@
 mod adapter;
 
 use adapter::{device, gpu};
+use glam::DVec3;
+use neurotess_refine::wgsl::{ShaderParts, WgslFile};
+use neurotess_render::{
+    Camera, ColorTable, DeviceError, Frame, Gpu, PictureError, PictureOptions, SourceKey,
+    VertexSource, paint,
+};
 
 #[neurotess_testing::test(needs(gpu))]
 fn complaints_are_kept_until_asked_for() {
@@ -14,6 +20,60 @@ fn complaints_are_kept_until_asked_for() {
     });
     assert!(gpu.check().is_err());
     assert_eq!(gpu.check(), Ok(()));
+}
+
+/// A source whose shader does not compile.
+struct Broken(wgpu::BindGroupLayout);
+
+impl VertexSource for Broken {
+    fn key(&self) -> SourceKey {
+        SourceKey {
+            name: "broken",
+            variant: 0,
+        }
+    }
+
+    fn shader(&self, _shader: usize) -> ShaderParts {
+        ShaderParts::new(&[WgslFile {
+            name: "broken.wgsl",
+            text: "// Broken.\nfn surface_vertex(v: u32, i: u32) -> SurfaceVertex {\n    return nowhere;\n}\n",
+        }])
+    }
+
+    fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.0
+    }
+
+    fn prepare(&mut self, _gpu: &Gpu, _frame: &Frame) -> Result<usize, DeviceError> {
+        Ok(1)
+    }
+
+    fn draw(&self, _round: usize, _shader: usize, _pass: &mut wgpu::RenderPass<'_>) {}
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn what_the_driver_says_of_a_shader_names_file_and_line() {
+    let gpu = device();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[],
+        });
+    let camera = Camera::new(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.5).expect("a camera");
+    let drawn = paint(
+        &gpu,
+        &mut Broken(layout),
+        &camera,
+        0.1,
+        &ColorTable::default(),
+        &PictureOptions::default(),
+        |_, _| Ok::<(), ()>(()),
+    );
+    let Err(PictureError::Device(DeviceError::Driver(said))) = drawn else {
+        panic!("it does not compile");
+    };
+    assert!(said.contains("broken.wgsl:3:"), "{said}");
 }
 
 neurotess_testing::main!();

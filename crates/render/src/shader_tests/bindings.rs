@@ -4,9 +4,7 @@ use neurotess_refine::testing::{self, naga};
 use neurotess_refine::wgsl::{Shader, WgslFile};
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 
-use crate::gpu::device::Gpu;
-use crate::gpu::error::DeviceError;
-use crate::gpu::shader::{FILES, file, shader};
+use crate::gpu::shader::{FILES, file};
 use crate::output::ids::ids_shader;
 use crate::scene::templates;
 use crate::shading::finish::{self, Last, finish_shader};
@@ -206,23 +204,4 @@ fn every_file_is_used_and_begins_with_what_it_is() {
             "{name} is not used"
         );
     }
-}
-
-#[test]
-fn what_the_driver_says_of_a_shader_names_its_file() {
-    let Ok(gpu) = Gpu::open(None) else {
-        println!("SKIPPED: no adapter here");
-        return;
-    };
-    let mut parts = neurotess_refine::wgsl::ShaderParts::new(&[file("present.wgsl")]);
-    parts.files.push(WgslFile {
-        name: "broken.wgsl",
-        text: "// Broken.\nfn broken() -> u32 {\n    return nowhere;\n}\n",
-    });
-    gpu.shader_module(&shader("broken", &parts));
-    let error = gpu.check().expect_err("it does not compile");
-    assert!(
-        matches!(&error, DeviceError::Driver(said) if said.contains("broken.wgsl:3:")),
-        "{error}"
-    );
 }
