@@ -2,7 +2,7 @@
 
 mod common;
 
-use neurotess::render::{ColorMap, Palette};
+use neurotess::render::color::{ColorMap, Palette};
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Edit;

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use neurotess_circuit::{Attribute, Circuit, NodeRef, color, natural};
-use neurotess_render::{ColorTable, InstanceValues, Legend, Rgb};
+use neurotess_render::color::{ColorTable, InstanceValues, Rgb};
+use neurotess_render::overlay::Legend;
 use thiserror::Error;
 
 use crate::scheme::{Cell, ColorScheme, Coloring, NOTHING};
@@ -228,7 +229,7 @@ pub(super) fn first_values(cells: &[Cell<'_>]) -> Vec<Vec<u32>> {
 mod tests {
     use super::*;
     use neurotess_circuit::Population;
-    use neurotess_render::Palette;
+    use neurotess_render::color::Palette;
 
     /// Thirty nodes with these attributes.
     fn circuit(attributes: Vec<(&str, Attribute)>) -> Circuit {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use neurotess_mesh::{Role, TracingPoint};
 use neurotess_morphology::{Morphology, NeuriteKind, shape};
-use neurotess_render::{ColorTable, Legend, Rgb, category, fraction};
+use neurotess_render::color::{ColorTable, Rgb, category, fraction};
+use neurotess_render::overlay::Legend;
 
 use crate::path_distance::path_distances;
 use crate::scheme::{Cell, ColorScheme, Coloring};
@@ -243,7 +244,7 @@ fn radii(cell: &Cell<'_>) -> Vec<Option<f32>> {
 
 #[cfg(test)]
 mod tests {
-    use neurotess_render::Palette;
+    use neurotess_render::color::Palette;
 
     use super::*;
 

@@ -3,7 +3,7 @@
 use neurotess_circuit::{Compartment, Location, SectionOrder};
 use neurotess_mesh::Role;
 use neurotess_morphology::shape;
-use neurotess_render::category;
+use neurotess_render::color::category;
 
 use crate::path_distance::path_distances;
 use crate::scheme::Cell;

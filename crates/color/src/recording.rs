@@ -14,7 +14,7 @@ use neurotess_circuit::{
     Circuit, CircuitError, Compartment, NodeRef, RecordingFile, Report, ReportPopulation,
     SpikePopulation, Spikes, TimeAxis,
 };
-use neurotess_render::category;
+use neurotess_render::color::category;
 use thiserror::Error;
 
 use crate::by_node::first_values;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use neurotess_circuit::{CircuitError, ReportPopulation};
-use neurotess_render::InstanceValues;
+use neurotess_render::color::InstanceValues;
 
 /// Values of one time.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,7 +2,8 @@
 
 use neurotess_mesh::CoarseMesh;
 use neurotess_morphology::{Morphology, NeuriteKind};
-use neurotess_render::{ColorTable, Legend, Palette, Rgb};
+use neurotess_render::color::{ColorTable, Palette, Rgb};
+use neurotess_render::overlay::Legend;
 
 /// A cell to color.
 #[derive(Clone, Copy, Debug)]

@@ -10,9 +10,11 @@ use neurotess::coloring::{Cell, ColorBy, ColorScheme, coloring};
 use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::refine::{LodCriterion, RefineOptions};
+use neurotess::render::bounds::bounds;
+use neurotess::render::color::{ColorMap, Palette};
 use neurotess::render::{
-    Camera, ColorMap, DEFAULT_FOV, Gpu, Palette, PictureOptions, PngWriter, Prerefined,
-    PrerefinedSurface, Side, bounds, paint,
+    Camera, DEFAULT_FOV, Gpu, PictureOptions, PngWriter, Prerefined, PrerefinedSurface, Side,
+    Viewpoint, render_still,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -51,11 +53,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let near = camera.near(&spheres);
     let mut png = PngWriter::new(BufWriter::new(File::create(out)?), options.size, false)?;
     let take = |_first_row, band| png.write(&band);
-    paint(
+    render_still(
         &gpu,
         &mut source,
-        &camera,
-        near,
+        &Viewpoint { camera, near },
         &colors.table,
         &options,
         take,

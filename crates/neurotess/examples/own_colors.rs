@@ -10,9 +10,11 @@ use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::TracingPoint;
 use neurotess::refine::{LodCriterion, RefineOptions};
+use neurotess::render::bounds::bounds;
+use neurotess::render::color::{ColorTable, fraction};
 use neurotess::render::{
-    Camera, ColorTable, DEFAULT_FOV, Gpu, PictureOptions, PngWriter, Prerefined, PrerefinedSurface,
-    Side, bounds, fraction, paint,
+    Camera, DEFAULT_FOV, Gpu, PictureOptions, PngWriter, Prerefined, PrerefinedSurface, Side,
+    Viewpoint, render_still,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -47,6 +49,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let near = camera.near(&spheres);
     let mut png = PngWriter::new(BufWriter::new(File::create(out)?), options.size, false)?;
     let take = |_first_row, band| png.write(&band);
-    paint(&gpu, &mut source, &camera, near, &table, &options, take)?;
+    render_still(
+        &gpu,
+        &mut source,
+        &Viewpoint { camera, near },
+        &table,
+        &options,
+        take,
+    )?;
     Ok(png.finish()?)
 }

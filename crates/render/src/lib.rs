@@ -3,7 +3,7 @@
 //! A [`Gpu`] is an open device. A **camera** ([`Camera`]) is where one looks from. A **source**
 //! ([`VertexSource`]) makes vertices and decides how many: [`Adaptive`] refines a [`Scene`] as it is
 //! drawn, [`Prerefined`] keeps a refined surface in memory. A **color key** per tracing point says its
-//! color, which a [`ColorTable`] knows. [`paint`] draws a picture of any size, tile by tile, and
+//! color, which a [`ColorTable`] knows. [`render_still`] draws a picture of any size, tile by tile, and
 //! hands it over in **bands**; an [`Overlay`] lays legend and scale bar over them, a [`PngWriter`]
 //! writes them.
 //!
@@ -22,48 +22,87 @@ mod view;
 #[cfg(test)]
 mod shader_tests;
 
-pub use gpu::device::{
-    ADAPTER_VARIABLE, AdapterName, Gpu, adapters, device_descriptor, optional_features,
-    select_adapter,
-};
+/// Which adapter draws: by name, and what we ask of it.
+pub mod adapter {
+    pub use crate::gpu::device::{
+        ADAPTER_VARIABLE, AdapterName, adapters, device_descriptor, optional_features,
+        select_adapter,
+    };
+}
+
+/// Bounding spheres of meshes, and what shows of them.
+pub mod bounds {
+    pub use crate::view::bounds::{any_shows, bounds, merged};
+    pub use crate::view::frustum::shows;
+}
+
+/// Color keys, the tables that they are looked up in, palettes and color maps.
+pub mod color {
+    pub use crate::scene::color::{
+        CATEGORY_BIT, ColorMap, ColorTable, InstanceValues, Palette, Rgb, SCALE_ENTRIES, category,
+        fraction, is_dark, linear,
+    };
+}
+
+/// Outlines in the window.
+pub mod outline {
+    pub use crate::shading::present::{HOVERED, Outlines, PICKED, SELECTED};
+}
+
+/// What lies over a picture: legends and scale bars.
+pub mod overlay {
+    pub use crate::output::legend::{Legend, nice_length, scale_bar};
+    pub use crate::output::overlay::{Overlay, OverlayOptions};
+}
+
+/// What is seen at a pixel.
+pub mod pick {
+    pub use crate::sources::adaptive::resolver::PickResolver;
+    pub use crate::sources::budgeted::{ProxyPickResolver, ProxyPickTargets};
+    pub use crate::sources::pick::{PickHit, PickId, PickIds, PickTarget};
+}
+
+/// States of instances, bits of [`Instance::state`](crate::Instance::state).
+pub mod state {
+    pub use crate::shading::shade::{
+        GHOSTED, HIGHLIGHTED, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA,
+    };
+}
+
+/// What our tests and benchmarks look into: no part of the interface, and free to change.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::output::still::SAMPLES;
+    pub use crate::sources::adaptive::batch::{Batch, FramePlan};
+    pub use crate::sources::adaptive::cull::decide;
+    pub use crate::sources::adaptive::expand::{ExpandedVertex, GridPoint};
+    pub use crate::sources::adaptive::readback::SelectedPatch;
+    pub use crate::sources::adaptive::refiner::Refiner;
+    pub use crate::sources::budgeted::lod_requests::{LodRequest, lod_requests};
+    pub use crate::sources::budgeted::stats::DrawnChunk;
+}
+
+pub use gpu::device::Gpu;
 pub use gpu::error::DeviceError;
 pub use output::image::{Image, PngWriter};
-pub use output::legend::{Legend, nice_length, scale_bar};
 pub use output::meter::{FrameTime, Meter};
-pub use output::overlay::{Overlay, OverlayOptions};
 pub use output::progressive::{ProgressiveRenderer, Steps, ViewParams};
 pub use output::still::{
-    Cost, LARGEST, Occlusion, PictureError, PictureOptions, SAMPLES, StillRenderer, paint,
+    Cost, LARGEST, Occlusion, PictureError, PictureOptions, StillRenderer, Viewpoint, render_still,
 };
 pub use output::watch::Watch;
-pub use scene::color::{
-    CATEGORY_BIT, ColorMap, ColorTable, InstanceValues, Palette, Rgb, SCALE_ENTRIES, category,
-    fraction, is_dark, linear,
-};
 pub use scene::templates::{Template, Templates};
 pub use scene::{Instance, Placement, Scene, SceneError, TemplateId};
-pub use shading::present::{HOVERED, Outlines, PICKED, SELECTED};
-pub use shading::shade::{
-    Clip, GHOSTED, HIGHLIGHTED, Light, Look, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA,
-};
+pub use shading::shade::{Clip, Light, Look};
 pub use sources::adaptive::Adaptive;
-pub use sources::adaptive::batch::{Batch, FramePlan};
-pub use sources::adaptive::cull::decide;
-pub use sources::adaptive::expand::{ExpandedVertex, GridPoint};
-pub use sources::adaptive::readback::{FrameStats, SelectedPatch};
-pub use sources::adaptive::refiner::Refiner;
-pub use sources::adaptive::resolver::PickResolver;
+pub use sources::adaptive::readback::FrameStats;
 pub use sources::adaptive::settings::{AdaptiveSettings, CullView};
 pub use sources::budgeted::{
-    DEFAULT_BUDGET, DrawnChunk, Exploration, ExplorationError, ExplorationStats, LodRequest,
-    MOST_BUDGET, Proxy, ProxyPickResolver, ProxyPickTargets, lod_requests,
+    DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET, Proxy,
 };
-pub use sources::pick::{PickHit, PickId, PickIds, PickTarget};
 pub use sources::prerefined::{Place, Prerefined, PrerefinedSurface, Resident};
 pub use sources::{SourceKey, VertexSource};
-pub use view::bounds::{any_shows, bounds, merged};
-pub use view::camera::Camera;
-pub use view::camera::CameraError;
+pub use view::camera::{Camera, CameraError};
 pub use view::frame::{Frame, Tile};
 pub use view::framing::{DEFAULT_FOV, Side};
-pub use view::frustum::{BoundingSphere, shows};
+pub use view::frustum::BoundingSphere;

@@ -9,10 +9,11 @@ use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
+use neurotess_render::color::{ColorTable, Palette, category};
 use neurotess_render::{
-    Adaptive, AdaptiveSettings, Camera, ColorTable, Gpu, Image, Instance, Occlusion, Palette,
-    PictureOptions, Placement, Prerefined, PrerefinedSurface, Scene, SceneError, Template,
-    TemplateId, Templates, VertexSource, category, paint,
+    Adaptive, AdaptiveSettings, Camera, Gpu, Image, Instance, Occlusion, PictureOptions, Placement,
+    Prerefined, PrerefinedSurface, Scene, SceneError, Template, TemplateId, Templates,
+    VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
 
@@ -28,11 +29,21 @@ fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, size: [u32
         ..ColorTable::default()
     };
     let mut whole = Image::default();
-    paint(gpu, source, camera, 0.1, &table, &options, |_, band| {
-        whole = band;
-        Ok::<(), std::convert::Infallible>(())
-    })
-    .expect("painted");
+    render_still(
+        gpu,
+        source,
+        &Viewpoint {
+            camera: *camera,
+            near: 0.1,
+        },
+        &table,
+        &options,
+        |_, band| {
+            whole = band;
+            Ok::<(), std::convert::Infallible>(())
+        },
+    )
+    .expect("drawn");
     whole
 }
 

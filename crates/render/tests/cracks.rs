@@ -10,9 +10,8 @@ use draw::{BACK, BACKGROUND, Drawer, FRONT};
 use neurotess_mesh::CoarseMesh;
 use neurotess_refine::LodCriterion;
 use neurotess_refine::{Caps, Path};
-use neurotess_render::{
-    AdaptiveSettings, Camera, Gpu, Instance, Refiner, Scene, Template, Templates,
-};
+use neurotess_render::testing::Refiner;
+use neurotess_render::{AdaptiveSettings, Camera, Gpu, Instance, Scene, Template, Templates};
 use neurotess_testing::note;
 
 fn scene(gpu: &Gpu, mesh: &CoarseMesh, values: &[u8]) -> Scene {

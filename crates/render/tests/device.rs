@@ -4,9 +4,10 @@ mod adapter;
 use adapter::{device, gpu};
 use glam::DVec3;
 use neurotess_refine::wgsl::{ShaderParts, WgslFile};
+use neurotess_render::color::ColorTable;
 use neurotess_render::{
-    Camera, ColorTable, DeviceError, Frame, Gpu, PictureError, PictureOptions, SourceKey,
-    VertexSource, paint,
+    Camera, DeviceError, Frame, Gpu, PictureError, PictureOptions, SourceKey, VertexSource,
+    Viewpoint, render_still,
 };
 
 #[neurotess_testing::test(needs(gpu))]
@@ -61,11 +62,10 @@ fn what_the_driver_says_of_a_shader_names_file_and_line() {
             entries: &[],
         });
     let camera = Camera::new(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.5).expect("a camera");
-    let drawn = paint(
+    let drawn = render_still(
         &gpu,
         &mut Broken(layout),
-        &camera,
-        0.1,
+        &Viewpoint { camera, near: 0.1 },
         &ColorTable::default(),
         &PictureOptions::default(),
         |_, _| Ok::<(), ()>(()),

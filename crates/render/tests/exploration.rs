@@ -10,10 +10,12 @@ use adapter::{device, gpu};
 use common::{Random, cell, extent, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_mesh::CoarseMesh;
+use neurotess_render::color::ColorTable;
+use neurotess_render::testing::{LodRequest, lod_requests};
 use neurotess_render::{
-    Adaptive, AdaptiveSettings, Camera, ColorTable, Exploration, ExplorationError, Frame, Gpu,
-    Image, Instance, LodRequest, MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene,
-    Template, TemplateId, Templates, Tile, VertexSource, lod_requests, paint,
+    Adaptive, AdaptiveSettings, Camera, Exploration, ExplorationError, Frame, Gpu, Image, Instance,
+    MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene, Template, TemplateId,
+    Templates, Tile, VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
@@ -167,7 +169,18 @@ fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, table: &Co
         whole = band;
         Ok::<(), Infallible>(())
     };
-    paint(gpu, source, camera, 1.0, table, &options, take).expect("painted");
+    render_still(
+        gpu,
+        source,
+        &Viewpoint {
+            camera: *camera,
+            near: 1.0,
+        },
+        table,
+        &options,
+        take,
+    )
+    .expect("drawn");
     whole
 }
 

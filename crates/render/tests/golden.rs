@@ -17,10 +17,9 @@ use std::path::{Path, PathBuf};
 use adapter::{device, gpu};
 use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
-use neurotess_render::{
-    Camera, ColorMap, Image, Legend, Light, Look, Occlusion, Overlay, OverlayOptions,
-    PictureOptions, PngWriter, Side, fraction,
-};
+use neurotess_render::color::{ColorMap, fraction};
+use neurotess_render::overlay::{Legend, Overlay, OverlayOptions};
+use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, PngWriter, Side};
 use pictured::{explored, mesh, picture, picture_of, spheres};
 
 /// Greatest mean difference of blurred channels, of 255.

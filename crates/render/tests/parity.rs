@@ -8,9 +8,9 @@ use glam::{DQuat, DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, PatchKind};
 use neurotess_refine::LodCriterion;
 use neurotess_refine::{Caps, Lod, Path, Refinement, dequantized, pack};
+use neurotess_render::testing::{ExpandedVertex, GridPoint, Refiner, SelectedPatch, decide};
 use neurotess_render::{
-    AdaptiveSettings, CullView, ExpandedVertex, Gpu, GridPoint, Instance, Placement, Refiner,
-    Scene, SelectedPatch, Template, Templates, decide,
+    AdaptiveSettings, CullView, Gpu, Instance, Placement, Scene, Template, Templates,
 };
 use neurotess_testing::note;
 

@@ -6,10 +6,9 @@ mod renderer;
 use adapter::{device, gpu};
 use glam::{DQuat, DVec3};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
-use neurotess_render::{
-    Clip, Exploration, Instance, PickHit, PickTarget, Placement, Proxy, ProxyPickTargets, Template,
-    WITHOUT_NEURITES, WITHOUT_SOMA,
-};
+use neurotess_render::pick::{PickHit, PickTarget, ProxyPickTargets};
+use neurotess_render::state::{WITHOUT_NEURITES, WITHOUT_SOMA};
+use neurotess_render::{Clip, Exploration, Instance, Placement, Proxy, Template};
 use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
 use renderer::{SIZE, picks, renderer, source, view};

@@ -6,7 +6,8 @@ mod pictured;
 use adapter::{device, gpu};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::CoarseMesh;
-use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, SAMPLES};
+use neurotess_render::testing::SAMPLES;
+use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions};
 use pictured::{CELL, by_type, camera, mesh, picture};
 
 fn small(size: [u32; 2]) -> PictureOptions {
@@ -71,7 +72,7 @@ fn tiles_fit_together() {
 #[neurotess_testing::test]
 fn bounds_hold_the_refined_surface() {
     let mesh = mesh(CELL);
-    let spheres = neurotess_render::bounds(&mesh);
+    let spheres = neurotess_render::bounds::bounds(&mesh);
     let levels = neurotess_refine::LodCriterion::Homogeneous(9);
     let options = neurotess_refine::RefineOptions::default();
     let refined = neurotess_refine::Refinement::new(&mesh, levels, &options);
@@ -148,7 +149,7 @@ fn transparent_pictures_have_straight_alpha() {
         ..small([200, 200])
     };
     let image = picture(&gpu, &mesh, &camera(&mesh, options.size), &options);
-    let axon = neurotess_render::Palette::NeuroM.of_type(2);
+    let axon = neurotess_render::color::Palette::NeuroM.of_type(2);
     let near = |p: &&[u8]| p.iter().zip(axon).all(|(a, b)| a.abs_diff(b) < 6);
     let partly = image.pixels.chunks(4).filter(|p| (1..250).contains(&p[3]));
     // Half covered is the whole color, half opaque: not a darker one.

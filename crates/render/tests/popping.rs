@@ -11,9 +11,10 @@ use adapter::{device, gpu};
 use common::smooth_cell;
 use glam::DVec3;
 use neurotess_refine::LodCriterion;
+use neurotess_render::color::ColorTable;
 use neurotess_render::{
-    Adaptive, AdaptiveSettings, Camera, ColorTable, Gpu, Image, Instance, Occlusion,
-    PictureOptions, Scene, Template, Templates, paint,
+    Adaptive, AdaptiveSettings, Camera, Gpu, Image, Instance, Occlusion, PictureOptions, Scene,
+    Template, Templates, Viewpoint, render_still,
 };
 use neurotess_testing::note;
 
@@ -37,11 +38,18 @@ fn frames(gpu: &Gpu, source: &mut Adaptive) -> Vec<Image> {
         let eye = DVec3::new((0.0005 * t).sin(), 0.3, (0.0005 * t).cos()) * distance;
         let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
         let mut whole = Image::default();
-        paint(gpu, source, &camera, 1.0, &table, &options, |_, band| {
-            whole = band;
-            Ok::<(), std::convert::Infallible>(())
-        })
-        .expect("painted");
+        render_still(
+            gpu,
+            source,
+            &Viewpoint { camera, near: 1.0 },
+            &table,
+            &options,
+            |_, band| {
+                whole = band;
+                Ok::<(), std::convert::Infallible>(())
+            },
+        )
+        .expect("drawn");
         whole
     };
     (0..FRAMES).map(frame).collect()

@@ -6,9 +6,11 @@ mod renderer;
 use adapter::{device, gpu};
 use glam::DVec3;
 use neurotess_refine::LodCriterion;
+use neurotess_render::outline::Outlines;
+use neurotess_render::state::OUTLINED;
 use neurotess_render::{
-    Adaptive, AdaptiveSettings, Camera, Exploration, Image, Instance, OUTLINED, Outlines,
-    PictureOptions, Placement, Proxy, Scene, Steps, Templates, VertexSource, ViewParams, paint,
+    Adaptive, AdaptiveSettings, Camera, Exploration, Image, Instance, PictureOptions, Placement,
+    Proxy, Scene, Steps, Templates, VertexSource, ViewParams, Viewpoint, render_still,
 };
 use pictured::{CELL, by_type, mesh};
 use renderer::{SIZE, difference, picks, picture, pixels, renderer, source, view};
@@ -31,11 +33,13 @@ fn a_picture_at_rest_is_as_a_saved_one() {
         ..PictureOptions::default()
     };
     let table = by_type(&mesh).1;
-    paint(
+    render_still(
         &gpu,
         &mut source,
-        &view.camera,
-        view.near,
+        &Viewpoint {
+            camera: view.camera,
+            near: view.near,
+        },
         &table,
         &options,
         |_, band| {
@@ -43,7 +47,7 @@ fn a_picture_at_rest_is_as_a_saved_one() {
             Ok::<(), std::convert::Infallible>(())
         },
     )
-    .expect("painted");
+    .expect("drawn");
     let empty = Image {
         pixels: vec![255; saved.pixels.len()],
         ..saved.clone()

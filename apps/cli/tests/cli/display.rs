@@ -51,7 +51,7 @@ pub(crate) fn display() -> Option<Display> {
             return None;
         }
     }
-    if neurotess::render::adapters().is_empty() {
+    if neurotess::render::adapter::adapters().is_empty() {
         println!("SKIPPED: no graphics adapter here");
         return None;
     }

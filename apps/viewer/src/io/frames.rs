@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use neurotess::coloring::Recording;
-use neurotess::render::InstanceValues;
+use neurotess::render::color::InstanceValues;
 
 use crate::io::task::caught;
 

@@ -8,7 +8,8 @@ use glam::DVec3;
 use neurotess::generate::Generated;
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::{Measures, Morphology};
-use neurotess::render::{BoundingSphere, bounds, merged};
+use neurotess::render::BoundingSphere;
+use neurotess::render::bounds::{bounds, merged};
 use neurotess::synth::Kind;
 
 use crate::model::document::SomaEdit;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::coloring::{self, Cell, ColorScheme, Coloring, Node, Recording, RecordingError};
 use neurotess::generate::generate;
-use neurotess::render::{ColorMap, Palette, Rgb};
+use neurotess::render::color::{ColorMap, Palette, Rgb};
 use rayon::prelude::*;
 
 use crate::model::circuits::Circuits;

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::coloring::{Coloring, Recording};
+use neurotess::render::color::ColorTable;
+use neurotess::render::overlay::Legend;
+use neurotess::render::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, BoundingSphere, Clip, ColorTable, DeviceError, GHOSTED, Gpu,
-    HIGHLIGHTED, Instance, Legend, Placement, Scene, SceneError, Template, TemplateId, Templates,
-    WITHOUT_NEURITES, WITHOUT_SOMA,
+    Adaptive, AdaptiveSettings, BoundingSphere, Clip, DeviceError, Gpu, Instance, Placement, Scene,
+    SceneError, Template, TemplateId, Templates,
 };
 use thiserror::Error;
 

@@ -5,9 +5,8 @@ use std::sync::Arc;
 
 use eframe::egui;
 use neurotess::generate::Generated;
-use neurotess::render::{
-    DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy, ProxyPickResolver, ProxyPickTargets,
-};
+use neurotess::render::pick::{ProxyPickResolver, ProxyPickTargets};
+use neurotess::render::{DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy};
 
 use crate::io::task::{Progress, Task};
 use crate::model::revision::Revision;

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, PatchKind};
-use neurotess::render::{HOVERED, PICKED, PickHit, PickId, PickTarget, Placement, SELECTED};
+use neurotess::render::Placement;
+use neurotess::render::outline::{HOVERED, PICKED, SELECTED};
+use neurotess::render::pick::{PickHit, PickId, PickTarget};
 
 use crate::model::document::Document;
 use crate::model::sources::SectionFacts;

@@ -7,9 +7,11 @@ use std::sync::atomic::Ordering;
 
 use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
+use neurotess::render::color::ColorTable;
+use neurotess::render::overlay::{Legend, Overlay, OverlayOptions};
 use neurotess::render::{
-    AdaptiveSettings, BoundingSphere, Camera, ColorTable, Gpu, Image, Legend, Occlusion, Overlay,
-    OverlayOptions, PictureError, PictureOptions, PngWriter, StillRenderer, Watch,
+    AdaptiveSettings, BoundingSphere, Camera, Gpu, Image, Occlusion, PictureError, PictureOptions,
+    PngWriter, StillRenderer, Viewpoint, Watch,
 };
 
 use crate::io::save::existing;
@@ -135,11 +137,10 @@ pub(crate) fn pictures(
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
         let to = BufWriter::new(output.file().try_clone().map_err(broken)?);
         let mut png = PngWriter::new(to, options.size, options.transparent).map_err(broken)?;
-        let painted = renderer.paint(
+        let drawn = renderer.render(
             gpu,
             &mut adaptive,
-            &camera,
-            near,
+            &Viewpoint { camera, near },
             &table,
             &picture,
             |top, mut band: Image| {
@@ -147,7 +148,7 @@ pub(crate) fn pictures(
                 png.write(&band)
             },
         );
-        match painted {
+        match drawn {
             Ok(_) => {}
             Err(PictureError::Stopped) => {
                 // The device ends its tile before it goes; nobody waits for that.

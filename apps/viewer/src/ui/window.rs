@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use eframe::egui::{self, ViewportBuilder};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use neurotess::render::{DeviceError, device_descriptor, select_adapter};
+use neurotess::render::DeviceError;
+use neurotess::render::adapter::{device_descriptor, select_adapter};
 use thiserror::Error;
 
 use crate::model::command::{Command, Edit};

@@ -14,7 +14,7 @@ use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
 use egui_wgpu::RendererOptions;
-use neurotess::render::adapters;
+use neurotess::render::adapter::adapters;
 use neurotess::synth::Kind;
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::state::State;

@@ -148,20 +148,20 @@ impl ProgressiveRenderer {
         self.tables += 1;
     }
 
-    /// States of instances from the next picture on, in the scene's order: [`HIGHLIGHTED`](crate::HIGHLIGHTED) and
+    /// States of instances from the next picture on, in the scene's order: [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and
     /// so on; 0 beyond the end.
     pub fn set_states(&mut self, states: Vec<u32>) {
         self.states = states;
     }
 
-    /// Outlines from the next [`ProgressiveRenderer::show`] on: bytes of [`SELECTED`](crate::SELECTED) and
-    /// [`HOVERED`](crate::HOVERED) by pixel of a picture of this size.
+    /// Outlines from the next [`ProgressiveRenderer::show`] on: bytes of [`SELECTED`](crate::outline::SELECTED) and
+    /// [`HOVERED`](crate::outline::HOVERED) by pixel of a picture of this size.
     pub fn set_outlines(&mut self, gpu: &Gpu, outlines: Outlines, mask: Option<([u32; 2], &[u8])>) {
         self.outlines = outlines;
         self.presenter.set_mask(gpu, mask);
     }
 
-    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::OUTLINED) have an outline in the
+    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::state::OUTLINED) have an outline in the
     /// color of what is selected, as wide as told by [`ProgressiveRenderer::set_outlines`].
     ///
     /// # Errors

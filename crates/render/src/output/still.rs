@@ -94,10 +94,10 @@ pub enum PictureError<E> {
     /// The GPU's side.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// Whoever takes the bands.
+    /// What takes the bands.
     #[error("{0}")]
     Sink(E),
-    /// Whoever watches wants it no more.
+    /// A [`Watch`] has stopped it.
     #[error("stopped")]
     Stopped,
 }
@@ -180,20 +180,28 @@ pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
     }
 }
 
-/// Makes one picture: see [`StillRenderer::paint`].
+/// Draws one picture: see [`StillRenderer::render`].
 ///
 /// # Errors
-/// What the device cannot do, and what the taker of bands says.
-pub fn paint<E>(
+/// What the device cannot do, and what `take` returns.
+pub fn render_still<E>(
     gpu: &Gpu,
     source: &mut dyn VertexSource,
-    camera: &Camera,
-    near: f64,
+    view: &Viewpoint,
     table: &ColorTable,
     options: &PictureOptions,
     take: impl FnMut(u32, Image) -> Result<(), E>,
 ) -> Result<Cost, PictureError<E>> {
-    StillRenderer::new().paint(gpu, source, camera, near, table, options, take)
+    StillRenderer::new().render(gpu, source, view, table, options, take)
+}
+
+/// From where a picture is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// The camera.
+    pub camera: Camera,
+    /// Depth (µm) of the near plane: [`Camera::near`].
+    pub near: f64,
 }
 
 /// What pictures share: pipelines, by the kind of source and the samples, and targets. For series of
@@ -211,7 +219,7 @@ impl StillRenderer {
         Self::default()
     }
 
-    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::HIGHLIGHTED) and so on; 0 beyond the end.
+    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and so on; 0 beyond the end.
     pub fn set_states(&mut self, states: &[u32]) {
         self.states = states.to_vec();
     }
@@ -239,23 +247,22 @@ impl StillRenderer {
         Ok(renderer)
     }
 
-    /// Makes a picture and hands it over in bands from the top: the first row of each, and its pixels.
+    /// Draws a picture and hands it over in bands from the top: the first row of each, and its pixels.
     ///
     /// # Errors
-    /// What the device cannot do, and what the taker of bands says.
-    #[expect(clippy::too_many_arguments, reason = "a picture has so many sides")]
-    pub fn paint<E>(
+    /// What the device cannot do, and what `take` returns.
+    pub fn render<E>(
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,
-        camera: &Camera,
-        near: f64,
+        view: &Viewpoint,
         table: &ColorTable,
         options: &PictureOptions,
         mut take: impl FnMut(u32, Image) -> Result<(), E>,
     ) -> Result<Cost, PictureError<E>> {
         let clock = Instant::now();
-        let parting = options.parting(gpu, camera);
+        let Viewpoint { camera, near } = *view;
+        let parting = options.parting(gpu, &camera);
         let Parting {
             scale,
             margin,
@@ -287,7 +294,7 @@ impl StillRenderer {
             for left in (0..width).step_by(step[0] as usize) {
                 let place = |n: u32| (n * scale) as i32 - margin as i32;
                 let frame = Frame {
-                    camera: *camera,
+                    camera,
                     near,
                     size: [width * scale, height * scale],
                     tile: Tile {
@@ -302,7 +309,7 @@ impl StillRenderer {
                     return Err(PictureError::Stopped);
                 }
                 let look = &options.look;
-                let pixels = renderer.paint(gpu, source, &frame, look, &finishing, watch)?;
+                let pixels = renderer.render(gpu, source, &frame, look, &finishing, watch)?;
                 let Some(pixels) = pixels else {
                     return Err(PictureError::Stopped);
                 };

@@ -150,7 +150,7 @@ impl TileRenderer {
 
     /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB; nothing if it is not
     /// wanted any more.
-    pub(crate) fn paint(
+    pub(crate) fn render(
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,

@@ -3,7 +3,7 @@
 //! A source draws a [`PickId`] for each pixel; its resolver, taken when the frame was drawn, says later
 //! which instance and which part of its mesh that is.
 
-/// What is drawn at a pixel, as a [`PickResolver`](crate::PickResolver) reads it; zeros where nothing is.
+/// What is drawn at a pixel, as a [`PickResolver`](crate::pick::PickResolver) reads it; zeros where nothing is.
 pub type PickId = [u32; 2];
 /// Width and height (pixels), and the ids of all pixels by row.
 pub type PickIds = ([u32; 2], Vec<PickId>);

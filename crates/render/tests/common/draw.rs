@@ -1,6 +1,7 @@
 //! Draws a scene with the least shading there is: front faces in one color, back faces in another.
 
-use neurotess_render::{AdaptiveSettings, Camera, CullView, Gpu, Refiner, Scene};
+use neurotess_render::testing::Refiner;
+use neurotess_render::{AdaptiveSettings, Camera, CullView, Gpu, Scene};
 
 pub(crate) const FRONT: [u8; 4] = [0, 255, 0, 255];
 pub(crate) const BACK: [u8; 4] = [255, 0, 0, 255];

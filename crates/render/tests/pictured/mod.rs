@@ -6,10 +6,10 @@ use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::CoarseMesh;
 use neurotess_refine::{LodCriterion, RefineOptions};
+use neurotess_render::color::{ColorTable, Palette, Rgb, category};
 use neurotess_render::{
-    BoundingSphere, Camera, ColorTable, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Palette,
-    PictureOptions, Placement, Prerefined, PrerefinedSurface, Proxy, Rgb, Side, VertexSource,
-    category, paint,
+    BoundingSphere, Camera, DEFAULT_FOV, Exploration, Gpu, Image, Instance, PictureOptions,
+    Placement, Prerefined, PrerefinedSurface, Proxy, Side, VertexSource, Viewpoint, render_still,
 };
 
 /// A soma, an axon, and a dendrite that forks.
@@ -131,7 +131,18 @@ fn whole(
         whole.lay(0, i64::from(top), &band);
         Ok::<(), std::convert::Infallible>(())
     };
-    paint(gpu, source, camera, near, table, options, taken).expect("painted");
+    render_still(
+        gpu,
+        source,
+        &Viewpoint {
+            camera: *camera,
+            near,
+        },
+        table,
+        options,
+        taken,
+    )
+    .expect("drawn");
     whole
 }
 

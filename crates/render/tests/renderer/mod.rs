@@ -2,8 +2,9 @@
 #![allow(dead_code, reason = "each test program uses some of it")]
 
 use neurotess_mesh::CoarseMesh;
+use neurotess_render::pick::PickHit;
 use neurotess_render::{
-    Adaptive, AdaptiveSettings, Gpu, Image, Instance, Look, Occlusion, PickHit, Placement,
+    Adaptive, AdaptiveSettings, Gpu, Image, Instance, Look, Occlusion, Placement,
     ProgressiveRenderer, Scene, Steps, Template, Templates, ViewParams,
 };
 

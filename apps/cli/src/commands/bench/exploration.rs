@@ -1,8 +1,9 @@
 //! Frames of exploration and of adaptive refinement, while the camera turns.
 
 use neurotess::refine::LodCriterion;
+use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    AdaptiveSettings, ColorTable, Exploration, Frame, FrameTime, Gpu, Meter, Proxy, VertexSource,
+    AdaptiveSettings, Exploration, Frame, FrameTime, Gpu, Meter, Proxy, VertexSource,
 };
 use rayon::prelude::*;
 use serde::Serialize;

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, Surface};
 use neurotess::refine::{Lod, LodCriterion, RefineOptions, Refinement};
+use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, ColorTable, FrameTime, Gpu, Instance, Meter, Place, Placement,
-    Prerefined, PrerefinedSurface, Scene, Template, TemplateId, Templates, VertexSource,
+    Adaptive, AdaptiveSettings, FrameTime, Gpu, Instance, Meter, Place, Placement, Prerefined,
+    PrerefinedSurface, Scene, Template, TemplateId, Templates, VertexSource,
 };
 use serde::Serialize;
 

@@ -3,9 +3,9 @@
 use glam::DVec3;
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
-use neurotess::render::{
-    BoundingSphere, Camera, ColorTable, Frame, Palette, Side, Tile, bounds, category,
-};
+use neurotess::render::bounds::bounds;
+use neurotess::render::color::{ColorTable, Palette, category};
+use neurotess::render::{BoundingSphere, Camera, Frame, Side, Tile};
 use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use neurotess::render::{ColorMap, MOST_BUDGET, Palette};
+use neurotess::render::MOST_BUDGET;
+use neurotess::render::color::{ColorMap, Palette};
 
 use super::times::{MOST, Time, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};

@@ -1,7 +1,8 @@
 //! Bounding spheres of all that is shown.
 
 use neurotess::mesh::TracingPoint;
-use neurotess::render::{BoundingSphere, Placement, bounds, merged};
+use neurotess::render::bounds::{bounds, merged};
+use neurotess::render::{BoundingSphere, Placement};
 use rayon::prelude::*;
 
 use super::cells::MeshedCell;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use neurotess::coloring::{self, Cell, ColorScheme, Coloring, DECAY, Recording, by_attribute};
-use neurotess::render::{ColorTable, Legend};
+use neurotess::render::color::ColorTable;
+use neurotess::render::overlay::Legend;
 
 use super::args::{ColorBy, RenderArgs};
 use super::cells::MeshedCell;

@@ -3,9 +3,10 @@
 use std::io::BufWriter;
 use std::path::Path;
 
+use neurotess::render::overlay::{Overlay, OverlayOptions};
 use neurotess::render::{
-    BoundingSphere, Camera, Cost, Gpu, Image, Look, Occlusion, Overlay, OverlayOptions,
-    PictureOptions, PngWriter, StillRenderer,
+    BoundingSphere, Camera, Cost, Gpu, Image, Look, Occlusion, PictureOptions, PngWriter,
+    StillRenderer, Viewpoint,
 };
 
 use super::args::RenderArgs;
@@ -87,11 +88,13 @@ pub(super) fn draw(
                 take(&band)
             };
             renderer
-                .paint(
+                .render(
                     gpu,
                     source.as_vertex_source(),
-                    camera,
-                    near,
+                    &Viewpoint {
+                        camera: *camera,
+                        near,
+                    },
                     &table,
                     &options,
                     lay,

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use neurotess::render::{BoundingSphere, Camera, Overlay, Placement};
+use neurotess::render::overlay::Overlay;
+use neurotess::render::{BoundingSphere, Camera, Placement};
 
 use super::args::RenderArgs;
 use super::cells::MeshedCell;

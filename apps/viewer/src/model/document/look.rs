@@ -1,7 +1,8 @@
 //! Colors, light, what is shown of cells.
 
 use neurotess::coloring;
-use neurotess::render::{ColorMap, Light, Palette, Rgb};
+use neurotess::render::Light;
+use neurotess::render::color::{ColorMap, Palette, Rgb};
 use serde::{Deserialize, Serialize};
 
 /// Background unless another one is chosen: a light gray, before which neither pale lines nor dark somata
@@ -238,8 +239,8 @@ macro_rules! by_name {
     };
 }
 
-by_name!(palette, neurotess::render::Palette);
-by_name!(color_map, neurotess::render::ColorMap);
+by_name!(palette, neurotess::render::color::Palette);
+by_name!(color_map, neurotess::render::color::ColorMap);
 
 #[cfg(test)]
 mod tests {

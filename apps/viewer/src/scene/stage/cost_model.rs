@@ -1,7 +1,8 @@
 //! What a full picture may cost. Where refining everything would hold the window up, exploration draws the
 //! picture at rest too, with as many triangles as there is time for.
 
-use neurotess::render::{ViewParams, any_shows};
+use neurotess::render::ViewParams;
+use neurotess::render::bounds::any_shows;
 
 use super::{Stage, whole};
 use crate::model::state::{Lowered, State};

@@ -3,8 +3,10 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui;
+use neurotess::render::outline::Outlines;
+use neurotess::render::state::OUTLINED;
 use neurotess::render::{
-    AdaptiveSettings, Camera, Clip, DeviceError, OUTLINED, Occlusion, Outlines, Scene, ViewParams,
+    AdaptiveSettings, Camera, Clip, DeviceError, Occlusion, Scene, ViewParams,
 };
 
 use super::cost_model::explorable;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::ColorTable;
+use neurotess::render::color::ColorTable;
 
 use super::Stage;
 use crate::io::frames::{FrameReader, ValueInputs};

@@ -15,9 +15,11 @@ use std::time::Instant;
 use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::coloring::{ColorBy, coloring};
+use neurotess::render::color::InstanceValues;
+use neurotess::render::overlay::Legend;
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Frame, Gpu, InstanceValues, Legend,
-    ProgressiveRenderer, Scene, Tile, ViewParams,
+    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Frame, Gpu, ProgressiveRenderer, Scene,
+    Tile, ViewParams,
 };
 
 use crate::io::frames::FrameReader;

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{
-    DeviceError, Outlines, PickHit, PickId, PickResolver, ProxyPickResolver, ViewParams,
-};
+use neurotess::render::outline::Outlines;
+use neurotess::render::pick::{PickHit, PickId, PickResolver, ProxyPickResolver};
+use neurotess::render::{DeviceError, ViewParams};
 
 use super::Stage;
 use crate::model::revision::Revision;

@@ -1,7 +1,8 @@
 //! Colors, light, what is shown of cells.
 
 use eframe::egui::{self, ComboBox, Ui};
-use neurotess::render::{ColorMap, Legend, Palette};
+use neurotess::render::color::{ColorMap, Palette};
+use neurotess::render::overlay::Legend;
 
 use super::heading;
 use super::number::{field, slider};

@@ -5,7 +5,8 @@ use eframe::egui::{
     Role, Sense, Stroke, TextureOptions, Ui, WidgetInfo, vec2,
 };
 use glam::DVec3;
-use neurotess::render::{Legend, is_dark, nice_length};
+use neurotess::render::color::is_dark;
+use neurotess::render::overlay::{Legend, nice_length};
 
 use super::{Screen, marks, plate, tip};
 use crate::model::command::{Command, Edit};

@@ -43,9 +43,9 @@ pub struct ExpandedVertex {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct GridPoint {
-    /// See [`SelectedPatch::slot`](crate::SelectedPatch::slot).
+    /// See [`SelectedPatch::slot`](crate::testing::SelectedPatch::slot).
     pub slot: u32,
-    /// See [`SelectedPatch::slot`](crate::SelectedPatch::slot).
+    /// See [`SelectedPatch::slot`](crate::testing::SelectedPatch::slot).
     pub decided: u32,
     /// Column.
     pub i: u32,

@@ -17,7 +17,7 @@ use crate::sources::adaptive::settings::{
 /// A patch that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SelectedPatch {
-    /// Its place in the batch, and what was decided: for [`GridPoint`](crate::GridPoint).
+    /// Its place in the batch, and what was decided: for [`GridPoint`](crate::testing::GridPoint).
     pub slot: u32,
     /// See [`SelectedPatch::slot`].
     pub decided: u32,

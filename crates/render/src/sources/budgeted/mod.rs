@@ -25,7 +25,7 @@
 
 mod build;
 pub(crate) mod layout;
-mod lod_requests;
+pub(crate) mod lod_requests;
 mod nested;
 pub(crate) mod passes;
 mod paths;
@@ -34,7 +34,7 @@ mod proxy;
 mod quantized;
 mod residents;
 mod somata;
-mod stats;
+pub(crate) mod stats;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -54,11 +54,10 @@ use layout::{CELL, CLUSTER, Eye, GpuInstance};
 use passes::{Groups, Passes, Resident, Size, Work, vertex_shader};
 use residents::Known;
 
-pub use lod_requests::{LodRequest, lod_requests};
 pub use pick::{ProxyPickResolver, ProxyPickTargets};
 pub use proxy::Proxy;
 pub use residents::ExplorationError;
-pub use stats::{DrawnChunk, ExplorationStats};
+pub use stats::ExplorationStats;
 
 /// Triangles of a frame by default: what a laptop draws fluently.
 pub const DEFAULT_BUDGET: u32 = 100_000;

@@ -31,7 +31,7 @@ const CHUNK: usize = 128 * RUN;
 const STRIDE: u64 = 256;
 
 /// A coarse mesh with one color key per tracing point that says its color: see
-/// [`ColorTable`](crate::ColorTable).
+/// [`ColorTable`](crate::color::ColorTable).
 #[derive(Clone, Copy, Debug)]
 pub struct PrerefinedSurface<'m> {
     /// The mesh.
