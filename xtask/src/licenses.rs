@@ -46,8 +46,6 @@ const DUPLICATES: &[(&str, &str)] = &[
         "winit's Wayland loop is a release behind the clipboard's",
     ),
     ("calloop-wayland-source", "the same"),
-    ("equator", "faer and its kernels are a release apart"),
-    ("equator-macro", "the same"),
     ("foldhash", "the old hashbrown's"),
     (
         "getrandom",
@@ -89,11 +87,11 @@ const DUPLICATES: &[(&str, &str)] = &[
     ),
     (
         "syn",
-        "runs at build time only; faer's macros are older than serde's",
+        "runs at build time only; the macros of Windows' bindings are older than serde's",
     ),
     (
         "thiserror",
-        "gemm asks for the cache's size on macOS through sysctl, which has the old one",
+        "winit's Wayland loop and Android's bindings have the old one",
     ),
     ("thiserror-impl", "the same"),
     (

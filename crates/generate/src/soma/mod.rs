@@ -10,6 +10,7 @@
 //!
 //! A soma is accepted if it is star-shaped about its center (every quad faces outwards), which excludes folds and self-intersections alike.
 
+mod cholesky;
 pub(crate) mod elasticity;
 pub(crate) mod insertion_quads;
 mod profile;

@@ -10,10 +10,9 @@
 //!
 //! Why not a Laplacian relaxation with fixed corners: it folds where a insertion_quad is far off its neurite.
 
-use faer::Mat;
-use faer::Side;
-use faer::linalg::solvers::Solve;
 use glam::{DMat3, DQuat, DVec3};
+
+use super::cholesky::Columns;
 
 /// The flow, ready to be applied to any direction.
 pub(crate) struct Warp {
@@ -36,13 +35,15 @@ impl Warp {
                 .zip(to)
                 .map(|(&a, &b)| great_circle(a, b, t))
                 .collect();
-            let gram = Mat::from_fn(n, n, |i, j| {
+            let gram = Columns::from_fn(n, |i, j| {
                 kernel(here[i].distance_squared(here[j]), width) + if i == j { 1e-9 } else { 0.0 }
             });
-            let velocity = Mat::from_fn(n, 3, |i, axis| (next[i] - here[i])[axis]);
-            let weights = gram.llt(Side::Lower).ok()?.solve(&velocity);
-            let weights =
-                (0..n).map(|i| DVec3::new(weights[(i, 0)], weights[(i, 1)], weights[(i, 2)]));
+            let velocities = next.iter().zip(&here).map(|(&next, &here)| next - here);
+            let mut weights: Vec<[f64; 3]> = velocities.map(|v| v.to_array()).collect();
+            let factor = gram.factor()?;
+            factor.forward(&mut weights);
+            factor.backward(&mut weights);
+            let weights = weights.into_iter().map(DVec3::from_array);
             steps.push((std::mem::replace(&mut here, next), weights.collect()));
         }
         Some(Self { steps, width })
