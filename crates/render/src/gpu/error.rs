@@ -20,7 +20,7 @@ pub enum DeviceError {
         there: Vec<String>,
     },
     /// The driver did not open the adapter.
-    #[error("{adapter} cannot be opened ({reason}): choose another one with --adapter")]
+    #[error("{adapter} cannot be opened ({reason}): choose another adapter")]
     Refused {
         /// Its name.
         adapter: String,
@@ -38,10 +38,10 @@ pub enum DeviceError {
         most: u64,
     },
     /// The adapter's memory is used up.
-    #[error("the adapter's memory is used up: lower --level, --size or --samples")]
+    #[error("the adapter's memory is used up: lower the level, the size or the samples")]
     OutOfMemory,
     /// The device is gone.
-    #[error("the graphics device was lost ({0}): try again, or another one with --adapter")]
+    #[error("the graphics device was lost ({0}): try again, or choose another adapter")]
     Lost(String),
     /// The driver or wgpu objects to what we do: a bug of ours or theirs.
     #[error("the graphics driver objects ({0}): please report this as a bug")]

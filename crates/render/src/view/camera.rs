@@ -19,14 +19,14 @@ pub enum CameraError {
     /// A coordinate or angle is no number, or is infinite.
     #[error("the camera's {0} is not a finite number: correct it")]
     NotFinite(&'static str),
-    /// There is no direction of sight.
+    /// There is no viewing direction.
     #[error("the camera's eye and target coincide: move one of them")]
     NoDirection,
     /// The picture could be turned any way.
-    #[error("the camera's up points along its sight: give another --up")]
+    #[error("the camera's up points along its viewing direction: give another direction")]
     NoUp,
     /// The angle of view is not usable.
-    #[error("a field of view of {0}° is not between 0.01° and 170°: correct --fov")]
+    #[error("a field of view of {0}° is not between 0.01° and 170°: choose one in between")]
     FieldOfView(f64),
 }
 
