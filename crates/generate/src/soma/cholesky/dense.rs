@@ -150,18 +150,17 @@ impl Columns {
         let (own, below) = x[first..].split_at_mut(K);
         let own: &mut [[f64; W]; K] = own.try_into().expect("K rows");
         for k in 0..K {
-            for w in 0..W {
-                let known: f64 = (0..k).map(|j| columns[j][k] * own[j][w]).sum();
-                own[k][w] = (own[k][w] - known) / columns[k][k];
+            for j in 0..k {
+                let solved = own[j];
+                subtract(&mut own[k], columns[j][k], &solved);
             }
+            own[k].iter_mut().for_each(|x| *x /= columns[k][k]);
         }
         let own = *own;
         let columns = columns.map(|column| &column[K..][..below.len()]);
         for (row, x) in below.iter_mut().enumerate() {
             for k in 0..K {
-                for w in 0..W {
-                    x[w] -= columns[k][row] * own[k][w];
-                }
+                subtract(x, columns[k][row], &own[k]);
             }
         }
     }
@@ -184,17 +183,24 @@ impl Columns {
         let lower = columns.map(|column| &column[K..][..below.len()]);
         for (row, x) in below.iter().enumerate() {
             for k in 0..K {
-                for w in 0..W {
-                    sums[k][w] += lower[k][row] * x[w];
-                }
+                subtract(&mut sums[k], lower[k][row], x);
             }
         }
         for k in (0..K).rev() {
-            for w in 0..W {
-                let known: f64 = (k + 1..K).map(|j| columns[k][j] * own[j][w]).sum();
-                own[k][w] = (own[k][w] - sums[k][w] - known) / columns[k][k];
+            for j in k + 1..K {
+                let solved = own[j];
+                subtract(&mut sums[k], columns[k][j], &solved);
+            }
+            for (x, sum) in own[k].iter_mut().zip(sums[k]) {
+                *x = (*x + sum) / columns[k][k];
             }
         }
+    }
+}
+
+fn subtract<const W: usize>(from: &mut [f64; W], factor: f64, values: &[f64; W]) {
+    for (from, value) in from.iter_mut().zip(values) {
+        *from -= factor * value;
     }
 }
 

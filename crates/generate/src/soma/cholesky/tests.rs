@@ -66,18 +66,18 @@ fn dense(nodes: usize, blocks: &[Block]) -> Vec<Vec<f64>> {
 /// Gauss's elimination, as in a textbook.
 fn eliminate(mut matrix: Vec<Vec<f64>>, mut x: Vec<f64>) -> Vec<f64> {
     for k in 0..x.len() {
+        let pivot = matrix[k].clone();
         for row in k + 1..x.len() {
-            let factor = matrix[row][k] / matrix[k][k];
-            for column in k..x.len() {
-                matrix[row][column] -= factor * matrix[k][column];
+            let factor = matrix[row][k] / pivot[k];
+            for (value, p) in matrix[row].iter_mut().zip(&pivot).skip(k) {
+                *value -= factor * p;
             }
             x[row] -= factor * x[k];
         }
     }
     for k in (0..x.len()).rev() {
-        let known: f64 = (k + 1..x.len())
-            .map(|column| matrix[k][column] * x[column])
-            .sum();
+        let after = matrix[k].iter().zip(&x).skip(k + 1);
+        let known: f64 = after.map(|(value, x)| value * x).sum();
         x[k] = (x[k] - known) / matrix[k][k];
     }
     x
@@ -106,17 +106,14 @@ fn sparse_factor_solves_as_dense_elimination_does() {
 fn dense_factor_of_any_size_solves_as_elimination_does() {
     let mut number = numbers(3);
     for size in (1..20).chain([63, 64, 131, 300]) {
-        let mut matrix = vec![vec![0.0; size]; size];
-        for i in 0..size {
-            for j in 0..i {
-                matrix[i][j] = number();
-                matrix[j][i] = matrix[i][j];
-            }
-            matrix[i][i] = size as f64;
-        }
-        let factor = Columns::from_fn(size, |i, j| matrix[i][j])
-            .factor()
-            .unwrap();
+        let numbers: Vec<f64> = (0..size * size).map(|_| number()).collect();
+        let element = |row: usize, column: usize| match row == column {
+            true => size as f64,
+            false => numbers[row.max(column) * size + row.min(column)],
+        };
+        let rows = (0..size).map(|i| (0..size).map(|j| element(i, j)).collect());
+        let matrix: Vec<Vec<f64>> = rows.collect();
+        let factor = Columns::from_fn(size, element).factor().unwrap();
         let mut x: Vec<[f64; 1]> = (0..size).map(|_| [number()]).collect();
         let expected = eliminate(matrix, x.iter().map(|x| x[0]).collect());
         factor.forward(&mut x);
