@@ -1,8 +1,8 @@
 //! Puts somata, joints and rings together into one closed coarse mesh.
 //!
 //! Every ring is four vertices, counter-clockwise about the path's direction. Two consecutive rings
-//! are joined by four lateral patches. Who owns a ring's vertices: a soma those of its insertions,
-//! a joint its poles and crotches, the path everything else.
+//! are joined by four lateral patches. A soma makes the vertices of its insertions' rings, a joint its
+//! poles and crotches, a path all others.
 
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
@@ -10,6 +10,7 @@ use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
 use crate::fork;
 use crate::frame;
 use crate::joint::Joint;
+use crate::normals::average_normals;
 use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::soma::SomaSurface;
 
@@ -26,19 +27,19 @@ pub(crate) struct Assembly<'a> {
     /// Ring of each insertion node.
     insertion_rings: Vec<(u32, Ring)>,
     /// Per node: its joint, if it is a fork.
-    joints: Vec<Option<Box<PlacedJoint>>>,
+    joints: Vec<Option<Box<MeshJoint>>>,
 }
 
-/// A joint with its place in the mesh.
-struct PlacedJoint {
-    joint: Joint,
+/// A joint with its vertices in the mesh.
+struct MeshJoint {
+    shape: Joint,
     /// Neighbor nodes as the joint numbers them.
     neighbors: Vec<u32>,
     poles: [u32; 2],
     crotches: Vec<u32>,
 }
 
-impl PlacedJoint {
+impl MeshJoint {
     /// Ring towards a neighbor, counter-clockwise about the direction away from the joint.
     fn ring(&self, neighbor: u32) -> Ring {
         let k = self.crotches.len();
@@ -46,15 +47,10 @@ impl PlacedJoint {
             .neighbors
             .iter()
             .position(|&n| n == neighbor)
-            .unwrap_or(0);
-        let place = self
-            .joint
-            .order
-            .iter()
-            .position(|&n| n == number)
-            .unwrap_or(0);
-        let before = self.crotches[(place + k - 1) % k];
-        [self.poles[0], before, self.poles[1], self.crotches[place]]
+            .expect("a path leads to its joint from one of the joint's neighbors");
+        let slot = self.shape.slot(number);
+        let before = self.crotches[(slot + k - 1) % k];
+        [self.poles[0], before, self.poles[1], self.crotches[slot]]
     }
 }
 
@@ -128,7 +124,7 @@ impl<'a> Assembly<'a> {
     pub(crate) fn finish(mut self) -> CoarseMesh {
         for node in 0..self.skeleton.nodes().len() as u32 {
             if self.children.of(node).len() > 1 {
-                self.place_joint(node);
+                self.add_joint(node);
             }
         }
         self.insertion_rings.sort_unstable_by_key(|&(node, _)| node);
@@ -145,7 +141,7 @@ impl<'a> Assembly<'a> {
         self.mesh
     }
 
-    fn place_joint(&mut self, fork: u32) {
+    fn add_joint(&mut self, fork: u32) {
         let node = *self.skeleton.node(fork);
         let neighbors = fork::neighbors(self.children, self.skeleton, fork);
         let tubes = fork::tubes(self.skeleton, self.children, fork, &neighbors);
@@ -157,8 +153,8 @@ impl<'a> Assembly<'a> {
             .iter()
             .map(|&c| self.vertex(node.center, c, tracing))
             .collect();
-        self.joints[fork as usize] = Some(Box::new(PlacedJoint {
-            joint,
+        self.joints[fork as usize] = Some(Box::new(MeshJoint {
+            shape: joint,
             neighbors,
             poles,
             crotches,
@@ -206,11 +202,11 @@ impl<'a> Assembly<'a> {
         let mut ring = self.start_ring(&nodes, &tangents, &frames);
         for i in 1..nodes.len() {
             let next = match &self.joints[nodes[i] as usize] {
-                Some(placed) => {
+                Some(joint) => {
                     // Seen from the path the joint's ring runs the other way round.
-                    let [up, before, down, after] = placed.ring(nodes[i - 1]);
+                    let [up, before, down, after] = joint.ring(nodes[i - 1]);
                     let along = [up, after, down, before];
-                    let goal = frame::across(placed.joint.normal, tangents[i]);
+                    let goal = frame::across(joint.shape.normal, tangents[i]);
                     let (quarter, _) = frame::quarters(frames[i], goal, tangents[i]);
                     [0, 1, 2, 3].map(|k: i32| along[(k - quarter).rem_euclid(4) as usize])
                 }
@@ -273,7 +269,7 @@ impl<'a> Assembly<'a> {
             &self.joints[nodes[0] as usize],
             self.insertion_ring(nodes[0]),
         ) {
-            (Some(placed), _) => frame::across(placed.joint.normal, tangents[0]),
+            (Some(joint), _) => frame::across(joint.shape.normal, tangents[0]),
             (None, Some(ring)) => {
                 let corner = self.mesh.vertices[ring[0] as usize].position.as_dvec3();
                 frame::across(corner - center(0), tangents[0])
@@ -293,8 +289,8 @@ impl<'a> Assembly<'a> {
             lengths.push(lengths[i - 1] + way.length());
         }
         let last = nodes.len() - 1;
-        if let Some(placed) = &self.joints[nodes[last] as usize] {
-            let goal = frame::across(placed.joint.normal, tangents[last]);
+        if let Some(joint) = &self.joints[nodes[last] as usize] {
+            let goal = frame::across(joint.shape.normal, tangents[last]);
             let (_, rest) = frame::quarters(frames[last], goal, tangents[last]);
             let total = lengths[last].max(f64::MIN_POSITIVE);
             for i in 1..=last {
@@ -313,8 +309,8 @@ impl<'a> Assembly<'a> {
     }
 
     fn start_ring(&mut self, nodes: &[u32], tangents: &[DVec3], frames: &[DVec3]) -> Ring {
-        if let Some(placed) = &self.joints[nodes[0] as usize] {
-            return placed.ring(nodes[1]);
+        if let Some(joint) = &self.joints[nodes[0] as usize] {
+            return joint.ring(nodes[1]);
         }
         if let Some(ring) = self.insertion_ring(nodes[0]) {
             return ring;
@@ -361,38 +357,6 @@ impl<'a> Assembly<'a> {
         let (before, after) = (self.skeleton.node(here.parent), self.skeleton.node(*child));
         let length = here.center.distance(before.center) + after.center.distance(here.center);
         ((after.radius - before.radius) / length.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
-    }
-}
-
-/// Normals of joints' and somata's vertices: the mean of their faces', by area.
-fn average_normals(mesh: &mut CoarseMesh) {
-    let averaged = |vertex: &Vertex| {
-        let role = mesh.tracing[vertex.tracing as usize].role;
-        matches!(role, Role::Joint | Role::Soma | Role::Insertion)
-    };
-    let averaged: Vec<bool> = mesh.vertices.iter().map(averaged).collect();
-    let mut sums = vec![Vec3::ZERO; mesh.vertices.len()];
-    for patch in &mesh.patches {
-        if !patch.corners.iter().any(|&v| averaged[v as usize]) {
-            continue; // nearly all
-        }
-        let [a, b, c, d] = patch.corners.map(|v| mesh.vertices[v as usize].position);
-        let normal = (c - a).cross(d - b);
-        for v in patch.corners {
-            sums[v as usize] += normal;
-        }
-    }
-    for (v, &sum) in sums.iter().enumerate() {
-        if averaged[v] {
-            let vertex = &mut mesh.vertices[v];
-            let center = mesh.tracing[vertex.tracing as usize].center;
-            let outwards = (vertex.position - center).normalize_or(Vec3::Y);
-            vertex.normal = sum.normalize_or(outwards);
-            let tracing = &mut mesh.tracing[vertex.tracing as usize];
-            if tracing.role == Role::Soma {
-                tracing.tangent = vertex.normal;
-            }
-        }
     }
 }
 

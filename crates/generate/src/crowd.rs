@@ -1,5 +1,5 @@
-//! Crowded forks, of which one joint cannot tell the branches apart, split over several forks that a
-//! short segment joins.
+//! Crowded forks, whose branches are too close for one joint, split over several forks that short
+//! segments join.
 //!
 //! Up to [`MOST_PAIRED`] neighbors the nearest pair moves to a new fork, again and again. Beyond, the
 //! children are halved by direction, so that thousands of them take n log n steps.
@@ -19,7 +19,7 @@ const MOST_NEIGHBORS: usize = 6;
 /// More neighbors than this are halved: pairing takes the cube of them.
 const MOST_PAIRED: usize = 24;
 
-/// Splits forks of four and more neighbors until a joint can tell these apart. Each split takes
+/// Splits forks of four and more neighbors until their branches are far enough apart for a joint. Each split takes
 /// neighbors from a fork and makes one of three, which is never split, so that this ends.
 pub(crate) fn split_crowded_forks(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
@@ -51,7 +51,7 @@ pub(crate) fn split_crowded_forks(skeleton: &mut Skeleton, warnings: &mut Warnin
 /// Nodes with the lists of their children, which change together and here alone.
 struct Tree {
     nodes: Vec<SkeletonNode>,
-    /// Of the nodes that there were, as long as nothing in `changed` stands for it.
+    /// Children of the nodes as they were, but for those in `changed`.
     before: Children,
     changed: HashMap<u32, Vec<u32>>,
 }
@@ -167,7 +167,7 @@ impl Tree {
         let left = self.children_mut(fork);
         left.retain(|child| !moved_set.contains(child));
         if between {
-            // The new fork stands between the parent and the old one.
+            // The new fork lies between the parent and the old one.
             self.nodes[fork as usize].parent = new;
             let siblings = self.children_mut(at.parent);
             siblings.retain(|&child| child != fork);
@@ -206,5 +206,5 @@ fn widest_axis(directions: &[DVec3]) -> usize {
     let extent = high - low;
     let axes = [0, 1, 2].into_iter();
     axes.max_by(|&a, &b| extent[a].total_cmp(&extent[b]))
-        .unwrap_or(0)
+        .expect("there are three axes")
 }

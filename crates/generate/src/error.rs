@@ -61,7 +61,7 @@ const COARSE: f64 = 1e-3;
 /// Judges coordinates and radii, after mending.
 ///
 /// # Errors
-/// If the surface of some point could not be told from noise.
+/// If the surface of some point would be lost in rounding.
 pub(crate) fn check_coordinates(
     morphology: &Morphology,
     skeleton: &Skeleton,

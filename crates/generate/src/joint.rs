@@ -90,13 +90,20 @@ impl Joint {
         }
     }
 
+    /// Where a neighbor is in the order.
+    ///
+    /// # Panics
+    /// If the joint has no neighbor of this number.
+    pub(crate) fn slot(&self, neighbor: usize) -> usize {
+        let slot = self.order.iter().position(|&n| n == neighbor);
+        slot.expect("the order has each neighbor once")
+    }
+
     /// How far the joint reaches along a neighbor's direction (µm).
     pub(crate) fn reach(&self, neighbor: usize, direction: DVec3) -> f64 {
         let k = self.order.len();
-        let Some(place) = self.order.iter().position(|&n| n == neighbor) else {
-            return 0.0;
-        };
-        let beside = [self.crotches[place], self.crotches[(place + k - 1) % k]];
+        let slot = self.slot(neighbor);
+        let beside = [self.crotches[slot], self.crotches[(slot + k - 1) % k]];
         beside
             .into_iter()
             .chain(self.poles)
@@ -174,7 +181,7 @@ fn spread(angles: &mut [f64]) {
     }
 }
 
-/// Normal about which the directions are best told apart, and the least angle between two
+/// Normal about which the directions are farthest apart, and the least angle between two
 /// consecutive ones about it.
 ///
 /// Candidates are the normals of the planes through any three tips (for three directions the plane

@@ -7,6 +7,7 @@ mod error;
 mod fork;
 mod frame;
 mod joint;
+mod normals;
 mod options;
 mod prepare;
 mod rings;
@@ -15,6 +16,7 @@ mod soma;
 mod somata;
 mod stems;
 mod thin;
+mod trials;
 mod uncross;
 mod warning;
 
@@ -116,9 +118,9 @@ pub fn generate(
     let orientations = uncross::uncross_rings(&mut skeleton, &soma_spheres, &mut warnings);
 
     let mut assembly = Assembly::new(&skeleton, &orientations);
-    let insertion_quads = somata::ring_nodes(&skeleton, morphology.somata.len());
+    let ring_nodes = somata::ring_nodes(&skeleton, morphology.somata.len());
     let mut somata = Vec::new();
-    for (index, (soma, nodes)) in built.somata.iter().zip(insertion_quads).enumerate() {
+    for (index, (soma, nodes)) in built.somata.iter().zip(ring_nodes).enumerate() {
         if let (Some(soma), Some(soma_sphere)) = (soma, soma_spheres[index]) {
             let sample = morphology.somata[index]
                 .samples

@@ -1,4 +1,4 @@
-//! What the generation can be told.
+//! Options of the generation.
 
 use std::collections::BTreeMap;
 

@@ -93,20 +93,20 @@ pub(crate) fn merge_coincident(skeleton: &mut Skeleton, warnings: &mut Warnings)
     let count = skeleton.nodes().len();
     let (mut shapes, children) = skeleton.shapes();
     let mut keep = vec![true; count];
-    let mut stands_for: Vec<u32> = (0..count as u32).collect();
+    let mut merged_into: Vec<u32> = (0..count as u32).collect();
     for i in 0..count {
         let node = *shapes.node(i as u32);
         if node.parent == NONE {
             continue;
         }
-        let parent = stands_for[node.parent as usize];
+        let parent = merged_into[node.parent as usize];
         let before = *shapes.node(parent);
         let larger = before.radius.max(node.radius);
         if node.center.distance(before.center) >= COINCIDENT * larger {
             continue;
         }
         keep[i] = false;
-        stands_for[i] = parent;
+        merged_into[i] = parent;
         if children.of(node.parent).len() == 1 {
             shapes.set_radius(parent, larger);
         }

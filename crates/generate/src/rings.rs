@@ -5,8 +5,8 @@
 //! beyond the first point as that is from the sphere, at least [`LEAST_BEYOND`] radii. What the ring
 //! has passed becomes a part of the soma.
 //!
-//! A position that is not asked for is the first point where that is near and plain, else a point of
-//! our own on the ray to it at the soma's reach.
+//! A neurite without a request has its ring at its first point, where that is near and unbranched, else
+//! at a new point on the ray to it at the soma's reach.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,13 +26,13 @@ const LEAST_WAY: f64 = 1.5;
 /// A path that turns back towards the soma ends a ring's way: least cosine to the ray.
 const LEAST_OUTWARDS: f64 = 0.5;
 
-/// Where first rings are asked to be.
+/// Requested positions of first rings.
 pub(crate) struct RingRequests<'a> {
     /// Number of each section's neurite.
     neurites: Vec<u32>,
     positions: &'a BTreeMap<u32, f64>,
-    /// Whether the method has a choice.
-    heard: bool,
+    /// Whether the soma's method can follow requests.
+    supported: bool,
 }
 
 impl<'a> RingRequests<'a> {
@@ -40,7 +40,7 @@ impl<'a> RingRequests<'a> {
         Self {
             neurites: shape::neurites(morphology),
             positions: &options.rings,
-            heard: matches!(options.soma, SomaMethod::Fem | SomaMethod::Profile),
+            supported: matches!(options.soma, SomaMethod::Fem | SomaMethod::Profile),
         }
     }
 
@@ -51,48 +51,49 @@ impl<'a> RingRequests<'a> {
 
     fn of(&self, node: &SkeletonNode) -> Option<f64> {
         let request = self.positions.get(&self.neurite(node));
-        let request = request.filter(|request| self.heard && request.is_finite());
+        let request = request.filter(|request| self.supported && request.is_finite());
         request.map(|request| request.clamp(0.0, 2.0))
     }
 
-    /// Number of requests that no ring has heard.
-    pub(crate) fn unused(&self, given: &[Given]) -> usize {
-        let heard = given.iter().filter(|g| g.asked.is_some());
-        let heard: BTreeSet<u32> = heard.map(|g| g.neurite).collect();
-        self.positions.keys().filter(|n| !heard.contains(n)).count()
+    /// Number of requests for neurites that have no first ring.
+    pub(crate) fn unused(&self, rings: &[PlacedRing]) -> usize {
+        let used = rings.iter().filter(|ring| ring.requested.is_some());
+        let used: BTreeSet<u32> = used.map(|ring| ring.neurite).collect();
+        self.positions.keys().filter(|n| !used.contains(n)).count()
     }
 }
 
-/// A ring that a neurite was given.
+/// The first ring of a neurite, at a node of the skeleton.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Given {
+pub(crate) struct PlacedRing {
     pub(crate) neurite: u32,
     pub(crate) soma: u32,
     pub(crate) node: u32,
     pub(crate) position: f64,
-    pub(crate) asked: Option<f64>,
-    /// Asked to be farther out than it would be if nobody asked.
+    pub(crate) requested: Option<f64>,
+    /// Requested farther out than where it would be without a request.
     pub(crate) farther: bool,
     /// Distance from the soma's center in radii of the soma.
     pub(crate) reach: f64,
 }
 
-impl Given {
-    /// Not as far out as asked for.
+impl PlacedRing {
+    /// Whether it is not as far out as requested.
     pub(crate) fn limited(&self) -> bool {
-        self.asked.is_some_and(|asked| self.position < asked - 1e-3)
+        self.requested
+            .is_some_and(|requested| self.position < requested - 1e-3)
     }
 }
 
-/// Gives every neurite of a soma its first ring: the skeleton with them. `farthest`, by soma: radii from
-/// its center beyond which no request is heard.
+/// The skeleton with a first ring for every neurite of a soma. `farthest`, by soma: radii from
+/// its center beyond which requests are limited.
 pub(crate) fn insert(
     skeleton: &Skeleton,
     soma_spheres: &[Option<SomaSphere>],
     requests: &RingRequests<'_>,
     farthest: &[f64],
     warnings: &mut Warnings,
-) -> (Skeleton, Vec<Given>) {
+) -> (Skeleton, Vec<PlacedRing>) {
     let children = skeleton.children();
     let mut sites: BTreeMap<u32, Site> = BTreeMap::new();
     let mut passed = vec![false; skeleton.nodes().len()];
@@ -115,19 +116,19 @@ pub(crate) fn insert(
         }
         sites.insert(site.next, Site { soma, ..site });
     }
-    place(skeleton, soma_spheres, requests, &sites, &passed, warnings)
+    insert_at(skeleton, soma_spheres, requests, &sites, &passed, warnings)
 }
 
-/// Where a ring goes.
+/// Where a ring goes on its neurite.
 #[derive(Clone, Copy, Debug)]
 struct Site {
     soma: u32,
     /// The first node that stays: the ring itself, or what follows it.
     next: u32,
-    /// Center and radius of a ring of its own; none: the node is the ring.
-    own: Option<(DVec3, f64)>,
+    /// Center and radius of a node to be added for the ring; none: `next` is the ring.
+    added: Option<(DVec3, f64)>,
     position: f64,
-    asked: Option<f64>,
+    requested: Option<f64>,
     farther: bool,
 }
 
@@ -177,25 +178,25 @@ impl<'a> Stem<'a> {
         }
     }
 
-    /// `farthest`: distance (µm) from the soma's center beyond which no request is heard.
-    fn site(&self, asked: Option<f64>, farthest: f64) -> Site {
+    /// `farthest`: distance (µm) from the soma's center beyond which requests are limited.
+    fn site(&self, requested: Option<f64>, farthest: f64) -> Site {
         let usual = self.usual();
-        let Some(asked) = asked else {
+        let Some(requested) = requested else {
             return usual;
         };
-        let farther = asked > usual.position + 1e-6;
-        let at = self.soma_sphere.radius + asked.min(1.0) * self.gap();
+        let farther = requested > usual.position + 1e-6;
+        let at = self.soma_sphere.radius + requested.min(1.0) * self.gap();
         let site = if farther && farthest <= self.soma_sphere.radius + usual.position * self.gap() {
             usual
         } else if farther && farthest < at {
             self.on_ray(self.before_fork(farthest))
-        } else if asked >= 1.0 && self.branches == 1 {
-            self.on_path(asked, farthest)
+        } else if requested >= 1.0 && self.branches == 1 {
+            self.on_path(requested, farthest)
         } else {
             self.on_ray(self.before_fork(at))
         };
         Site {
-            asked: Some(asked),
+            requested: Some(requested),
             farther,
             ..site
         }
@@ -205,9 +206,9 @@ impl<'a> Stem<'a> {
         Site {
             soma: 0,
             next,
-            own: None,
+            added: None,
             position,
-            asked: None,
+            requested: None,
             farther: false,
         }
     }
@@ -215,7 +216,7 @@ impl<'a> Stem<'a> {
     fn on_ray(&self, at: f64) -> Site {
         let center = self.soma_sphere.center + self.direction * at;
         Site {
-            own: Some((center, self.skeleton.node(self.root).radius)),
+            added: Some((center, self.skeleton.node(self.root).radius)),
             ..self.at_node(self.root, (at - self.soma_sphere.radius) / self.gap())
         }
     }
@@ -232,8 +233,8 @@ impl<'a> Stem<'a> {
     /// Beyond the first point, but not up to the next fork or end, nor where the path turns back.
     fn on_path(&self, position: f64, farthest: f64) -> Site {
         let unit = self.gap().max(LEAST_BEYOND * self.soma_sphere.radius);
-        let wanted = (position - 1.0) * unit;
-        let mut left = wanted.min(self.free_way(wanted, farthest));
+        let most = (position - 1.0) * unit;
+        let mut left = most.min(self.free_way(most, farthest));
         let reached = 1.0 + left / unit;
         let mut here = self.root;
         while let [next] = *self.children.of(here) {
@@ -246,7 +247,7 @@ impl<'a> Stem<'a> {
                 let t = left / length;
                 let radius = a.radius + t * (b.radius - a.radius);
                 return Site {
-                    own: Some((a.center.lerp(b.center, t), radius)),
+                    added: Some((a.center.lerp(b.center, t), radius)),
                     ..self.at_node(next, reached)
                 };
             }
@@ -256,8 +257,8 @@ impl<'a> Stem<'a> {
         self.at_node(here, reached)
     }
 
-    /// Way (µm) from the first point that a ring may go, as far as `wanted` asks.
-    fn free_way(&self, wanted: f64, farthest: f64) -> f64 {
+    /// Way (µm) from the first point that a ring may go, up to `most`.
+    fn free_way(&self, most: f64, farthest: f64) -> f64 {
         let (mut here, mut way, mut thickest) = (self.root, 0.0, 0.0_f64);
         loop {
             let node = self.skeleton.node(here);
@@ -265,7 +266,7 @@ impl<'a> Stem<'a> {
             let [next] = *self.children.of(here) else {
                 return (way - LEAST_WAY * thickest).max(0.5 * way);
             };
-            if way > wanted + LEAST_WAY * thickest {
+            if way > most + LEAST_WAY * thickest {
                 return way;
             }
             let from = node.center - self.soma_sphere.center;
@@ -291,18 +292,18 @@ fn until(from: DVec3, step: DVec3, far: f64) -> f64 {
     (lack + along * along).max(0.0).sqrt() - along
 }
 
-fn place(
+fn insert_at(
     skeleton: &Skeleton,
     soma_spheres: &[Option<SomaSphere>],
     requests: &RingRequests<'_>,
     sites: &BTreeMap<u32, Site>,
     passed: &[bool],
     warnings: &mut Warnings,
-) -> (Skeleton, Vec<Given>) {
+) -> (Skeleton, Vec<PlacedRing>) {
     let children = skeleton.children();
     let mut nodes: Vec<SkeletonNode> = Vec::with_capacity(skeleton.nodes().len() + sites.len());
     let mut new_index = vec![NONE; skeleton.nodes().len()];
-    let mut given = Vec::with_capacity(sites.len());
+    let mut rings = Vec::with_capacity(sites.len());
     for (i, node) in skeleton.nodes().iter().enumerate() {
         if passed[i] {
             continue;
@@ -313,19 +314,19 @@ fn place(
         }
         node.root = Root::Free;
         if let Some(site) = sites.get(&(i as u32)) {
-            given.push(Given {
+            rings.push(PlacedRing {
                 neurite: requests.neurite(&node),
                 soma: site.soma,
                 node: nodes.len() as u32,
                 position: site.position,
-                asked: site.asked,
+                requested: site.requested,
                 farther: site.farther,
                 reach: soma_spheres[site.soma as usize].map_or(0.0, |soma_sphere| {
-                    let ring = site.own.map_or(node.center, |(center, _)| center);
+                    let ring = site.added.map_or(node.center, |(center, _)| center);
                     ring.distance(soma_sphere.center) / soma_sphere.radius
                 }),
             });
-            match site.own {
+            match site.added {
                 None => node.root = Root::Insertion(site.soma),
                 Some((center, radius)) => {
                     let parent = nodes.len() as u32;
@@ -352,10 +353,10 @@ fn place(
         new_index[i] = nodes.len() as u32;
         nodes.push(node);
     }
-    (Skeleton::from_nodes(nodes), given)
+    (Skeleton::from_nodes(nodes), rings)
 }
 
-/// The way from a ring of our own to the first traced point.
+/// Joins an added ring to the first traced point.
 fn bridge(
     node: &mut SkeletonNode,
     ring: DVec3,

@@ -1,6 +1,6 @@
 //! The tracing as a forest of nodes that the following steps mend.
 //!
-//! Parents stand before their children at all times, so that every step is a sweep over an array
+//! Parents come before their children at all times, so that every step is a sweep over an array
 //! and no tree is too deep.
 
 use std::cell::OnceCell;
@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 use glam::DVec3;
 use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
 
-/// No node.
+/// Stands for "no node" where an index of one is stored.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A point on its way to become a tracing point. µm, relative to the morphology's origin.
@@ -39,7 +39,7 @@ pub(crate) enum Root {
     Insertion(u32),
 }
 
-/// All nodes.
+/// The forest of nodes.
 ///
 /// Lists of children are borrowed from the skeleton, and whatever changes nodes borrows all of it: the
 /// compiler refuses a list that is used after what it lists has changed. What changes no link, a center
@@ -47,7 +47,7 @@ pub(crate) enum Root {
 #[derive(Debug, Default)]
 pub(crate) struct Skeleton {
     nodes: Vec<SkeletonNode>,
-    /// Made when first asked for.
+    /// Listed at first use.
     children: OnceCell<Children>,
 }
 
@@ -109,7 +109,7 @@ impl Shapes<'_> {
 }
 
 impl Skeleton {
-    /// Nodes of the kinds asked for. A tree whose parent is of another kind becomes free.
+    /// Nodes of sections of these kinds (`None`: all). A tree whose parent is of another kind becomes free.
     pub(crate) fn new(morphology: &Morphology, kinds: Option<&[NeuriteKind]>) -> Self {
         let kept = |kind: NeuriteKind| kinds.is_none_or(|kinds| kinds.contains(&kind));
         let mut new_index = vec![NONE; morphology.points.len()];
@@ -144,7 +144,7 @@ impl Skeleton {
         Self::from_nodes(nodes)
     }
 
-    /// A skeleton of nodes whose parents stand before them.
+    /// A skeleton of nodes whose parents come before them.
     pub(crate) fn from_nodes(nodes: Vec<SkeletonNode>) -> Self {
         Self {
             nodes,
@@ -171,13 +171,13 @@ impl Skeleton {
         (Shapes(&mut self.nodes), children)
     }
 
-    /// Nodes to add to and to link anew; lists of children are made again afterwards.
+    /// Nodes to add to and to link anew; children are listed anew afterwards.
     pub(crate) fn links(&mut self) -> &mut Vec<SkeletonNode> {
         self.children.take();
         &mut self.nodes
     }
 
-    /// Nodes and lists of children, for whoever changes both together.
+    /// Nodes and lists of children, for a step that changes both together.
     pub(crate) fn take_apart(&mut self) -> (Vec<SkeletonNode>, Children) {
         let nodes = std::mem::take(&mut self.nodes);
         let children = self.children.take();

@@ -6,10 +6,11 @@ use glam::DVec3;
 use neurotess_morphology::{Morphology, Soma};
 
 use crate::prepare::SomaSphere;
-use crate::rings::{self, Given, RingRequests};
+use crate::rings::{self, PlacedRing, RingRequests};
 use crate::skeleton::{Root, Skeleton, SkeletonNode};
 use crate::soma::insertion_quads::Insertion;
 use crate::soma::{self, SomaRequest, SomaSurface};
+use crate::trials::Trial;
 use crate::warning::Warnings;
 use crate::{FirstRing, GenerateOptions, SomaMethod, SomaReport};
 
@@ -91,33 +92,13 @@ pub(crate) struct BuiltSoma {
     pub(crate) report: SomaReport,
 }
 
-/// Shares of the way from the sphere to the farthest first ring that are tried in turn until the
-/// surface has no fold: close neurites that pull far out would make spikes through one another.
-const REACHES: [f64; 5] = [1.0, 0.6, 0.35, 0.15, 0.03];
-/// Radii of the soma beyond which no ring goes by request where the surface does not stand what is asked
-/// for. The same for all requests, so that a ring that is asked farther and farther out comes to a stop.
-const FARTHEST: [f64; 14] = [
-    1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.2, 2.4, 2.7, 3.0, 3.5, 4.0, 5.0,
-];
-
-/// What is tried for a soma.
-#[derive(Clone, Copy, Debug)]
-struct Trial {
-    /// Farthest rings by request (radii of the soma).
-    farthest: f64,
-    /// Of [`FARTHEST`], those that may serve, while one is looked for.
-    search: Option<(usize, usize)>,
-    /// Of [`REACHES`].
-    reach: usize,
-}
-
 /// The somata and their rings.
 pub(crate) struct Built {
     pub(crate) somata: Vec<Option<BuiltSoma>>,
     pub(crate) rings: Vec<FirstRing>,
 }
 
-/// Gives every neurite of a soma its first ring and rebuilds the somata.
+/// Inserts the first ring of every neurite of a soma and rebuilds the somata.
 pub(crate) fn build(
     skeleton: &mut Skeleton,
     soma_spheres: &mut [Option<SomaSphere>],
@@ -127,20 +108,25 @@ pub(crate) fn build(
 ) -> Built {
     let farthest: Vec<f64> = soma_spheres
         .iter()
-        .map(|b| b.map_or(1.0, |b| b.reach))
+        .map(|sphere| sphere.map_or(1.0, |sphere| sphere.reach))
         .collect();
     let mut trials = vec![Trial::new(); soma_spheres.len()];
     loop {
-        let mut said = warnings.clone();
+        let mut trial_warnings = warnings.clone();
         let limits: Vec<f64> = trials.iter().map(|t| t.farthest).collect();
-        let (mut tried, given) =
-            rings::insert(skeleton, soma_spheres, requests, &limits, &mut said);
-        let nodes = ring_nodes(&tried, soma_spheres.len());
-        let wished = farthest_requests(&given, soma_spheres.len());
+        let (mut trial_skeleton, placed) = rings::insert(
+            skeleton,
+            soma_spheres,
+            requests,
+            &limits,
+            &mut trial_warnings,
+        );
+        let nodes = ring_nodes(&trial_skeleton, soma_spheres.len());
+        let requested = farthest_requests(&placed, soma_spheres.len());
         let somata: Vec<Option<BuiltSoma>> = (soma_spheres.iter().zip(nodes).zip(&trials))
             .map(|((soma_sphere, nodes), trial)| {
                 Some(build_one(
-                    &mut tried,
+                    &mut trial_skeleton,
                     (*soma_sphere)?,
                     &nodes,
                     options,
@@ -153,97 +139,46 @@ pub(crate) fn build(
             let (Some(soma_sphere), Some(soma)) = (&mut soma_spheres[index], soma) else {
                 continue;
             };
-            if trials[index].go_on(soma.surface.sound(), wished[index], farthest[index]) {
-                soma_sphere.reach = 1.0 + (farthest[index] - 1.0) * REACHES[trials[index].reach];
+            if trials[index].advance(soma.surface.sound(), requested[index], farthest[index]) {
+                soma_sphere.reach = 1.0 + (farthest[index] - 1.0) * trials[index].share();
                 again = true;
             }
         }
         if again {
             continue;
         }
-        (somata.iter().flatten()).for_each(|soma| warn(&soma.surface, &mut said));
-        warn_of_rings(&given, &trials, requests, &mut said);
-        let rings = given
+        (somata.iter().flatten()).for_each(|soma| warn(&soma.surface, &mut trial_warnings));
+        warn_of_rings(&placed, &trials, requests, &mut trial_warnings);
+        let rings = placed
             .iter()
-            .filter_map(|g| first_ring(&tried, g, soma_spheres));
+            .filter_map(|ring| first_ring(&trial_skeleton, ring, soma_spheres));
         let rings = rings.collect();
-        (*skeleton, *warnings) = (tried, said);
+        (*skeleton, *warnings) = (trial_skeleton, trial_warnings);
         return Built { somata, rings };
     }
 }
 
-/// Per soma: radii of the farthest ring that is there by request alone.
-fn farthest_requests(given: &[Given], somata: usize) -> Vec<Option<f64>> {
+/// Per soma: distance (radii) of the ring that a request took farthest out.
+fn farthest_requests(rings: &[PlacedRing], somata: usize) -> Vec<Option<f64>> {
     let mut farthest: Vec<Option<f64>> = vec![None; somata];
-    for ring in given.iter().filter(|g| g.farther) {
+    for ring in rings.iter().filter(|ring| ring.farther) {
         let most = &mut farthest[ring.soma as usize];
         *most = Some(most.map_or(ring.reach, |most| most.max(ring.reach)));
     }
     farthest
 }
 
-impl Trial {
-    fn new() -> Self {
-        Self {
-            farthest: f64::INFINITY,
-            search: None,
-            reach: 0,
-        }
-    }
-
-    /// Whether there is something else to try. `wished`: radii of the farthest ring that is there by
-    /// request alone. `most`: farthest of those that nobody asked for.
-    fn go_on(&mut self, sound: bool, wished: Option<f64>, most: f64) -> bool {
-        match self.search {
-            None if sound => return false,
-            None => {
-                let Some(wished) = wished.filter(|_| self.farthest == f64::INFINITY) else {
-                    return self.go_nearer(most);
-                };
-                let below = FARTHEST.partition_point(|&f| f < wished - 1e-9);
-                self.search = Some((0, below));
-            }
-            Some((low, high)) => {
-                let middle = usize::midpoint(low, high);
-                self.search = Some(if sound {
-                    (middle + 1, high)
-                } else {
-                    (low, middle)
-                });
-            }
-        }
-        // Those before `low` serve, those from `high` on do not.
-        let (low, high) = self.search.unwrap_or_default();
-        if low < high {
-            self.farthest = FARTHEST[usize::midpoint(low, high)];
-            return true;
-        }
-        self.search = None;
-        // Without any request that is too far, the rings that nobody asked for have their turn.
-        let best = low.checked_sub(1).map_or(0.0, |best| FARTHEST[best]);
-        let known = sound && self.farthest == best;
-        self.farthest = best;
-        !known
-    }
-
-    fn go_nearer(&mut self, most: f64) -> bool {
-        let nearer = self.reach + 1 < REACHES.len() && most > 1.0;
-        self.reach += usize::from(nearer);
-        nearer
-    }
-}
-
-/// A ring where it is in the end; none: its neurite found no insertion_quad.
+/// A ring where it is in the end; none: its neurite found no insertion quad.
 fn first_ring(
     skeleton: &Skeleton,
-    given: &Given,
+    ring: &PlacedRing,
     soma_spheres: &[Option<SomaSphere>],
 ) -> Option<FirstRing> {
-    let node = skeleton.node(given.node);
-    let soma_sphere = soma_spheres[given.soma as usize]?;
-    (node.root == Root::Insertion(given.soma)).then(|| FirstRing {
-        neurite: given.neurite,
-        position: given.position,
+    let node = skeleton.node(ring.node);
+    let soma_sphere = soma_spheres[ring.soma as usize]?;
+    (node.root == Root::Insertion(ring.soma)).then(|| FirstRing {
+        neurite: ring.neurite,
+        position: ring.position,
         center: node.center,
         outwards: (node.center - soma_sphere.center).normalize_or(DVec3::Y),
         radius: node.radius,
@@ -251,25 +186,25 @@ fn first_ring(
 }
 
 fn warn_of_rings(
-    given: &[Given],
+    rings: &[PlacedRing],
     trials: &[Trial],
     requests: &RingRequests<'_>,
     warnings: &mut Warnings,
 ) {
     warnings.add_many(
         "ring_nearer",
-        trials.iter().filter(|t| t.reach > 0).count(),
+        trials.iter().filter(|t| t.is_nearer()).count(),
         "neurites crowd on the soma: it was pulled out less towards them",
     );
     warnings.add_many(
         "ring_limited",
-        given.iter().filter(|g| g.limited()).count(),
+        rings.iter().filter(|ring| ring.limited()).count(),
         "first ring cannot be as far out as asked for (a fork, an end, a turn of the path, or the \
          soma would fold): it is nearer",
     );
     warnings.add_many(
         "ring_unused",
-        requests.unused(given),
+        requests.unused(rings),
         "no neurite of this number has a first ring: its position is not used",
     );
 }
@@ -303,15 +238,15 @@ fn build_one(
         poisson: options.poisson,
         kind: options.sphere,
         level: options.sphere_level,
-        at_any_price: trial.reach + 1 == REACHES.len(),
-        // What is only tried need not be tried by all means.
-        attempts: match trial.search {
-            Some(_) => soma::ATTEMPTS - 1,
-            None => soma::ATTEMPTS,
+        may_leave_out: trial.is_nearest(),
+        // While a limit is searched for, the last remedy (smaller rings) is not used.
+        attempts: match trial.searches() {
+            true => soma::ATTEMPTS - 1,
+            false => soma::ATTEMPTS,
         },
     };
     let mut surface = soma::rebuild(&request, &insertions);
-    keep_seated(skeleton, &mut surface, nodes, &soma_sphere);
+    move_rings(skeleton, &mut surface, nodes, &soma_sphere);
     let report = measure(&surface, soma_sphere.radius);
     BuiltSoma { surface, report }
 }
@@ -325,8 +260,8 @@ fn insertion(node: &SkeletonNode, soma_sphere: &SomaSphere) -> Insertion {
     }
 }
 
-/// Puts the rings' nodes where the soma has them. Neurites without a insertion_quad become free.
-fn keep_seated(
+/// Puts the rings' nodes where the soma has them. Neurites without an insertion quad become free.
+fn move_rings(
     skeleton: &mut Skeleton,
     surface: &mut SomaSurface,
     nodes: &[u32],

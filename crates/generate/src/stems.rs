@@ -13,7 +13,7 @@ use crate::prepare::SomaSphere;
 use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
-/// Stems that a soma is given without gathering any.
+/// Stems that a soma may have before any are gathered.
 const MOST_STEMS: usize = 40;
 /// Least angle between two trunks (radians): at most 58 disks of this angle fit on a sphere.
 const APART: f64 = 0.5;

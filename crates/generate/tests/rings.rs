@@ -100,7 +100,7 @@ fn assert_sound(generated: &Generated, what: &str) {
 }
 
 #[test]
-fn rings_are_where_they_are_asked_to_be() {
+fn rings_are_where_they_are_requested() {
     let star = star();
     // The first point is 3 µm from the sphere, so 2 is 3 µm beyond it.
     for (position, at) in [(0.0, 5.0), (0.5, 6.5), (1.0, 8.0), (1.5, 9.5), (2.0, 11.0)] {
@@ -204,7 +204,7 @@ fn a_ring_that_goes_too_far_comes_to_a_stop() {
 }
 
 #[test]
-fn requests_that_nobody_hears_are_told() {
+fn requests_that_cannot_be_followed_are_reported() {
     let star = star();
     assert_eq!(
         count(&with(&star, &[(9, 1.0), (1, f64::NAN)]), "ring_unused"),

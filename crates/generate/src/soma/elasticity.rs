@@ -9,7 +9,7 @@
 //! **Practice.** K depends on the sphere and ν alone, so it is factored once. A soma prescribes the
 //! displacements g of a few surface nodes c. With G = K⁻¹ the forces f that do so solve
 //! `G_cc f = g`, and the displacements of all nodes are `K⁻¹ f`: one small dense solve and one pair
-//! of triangular sweeps. Columns of G are made when first asked for and kept.
+//! of triangular sweeps. Columns of G are solved for at their first use and kept.
 
 use std::sync::Mutex;
 

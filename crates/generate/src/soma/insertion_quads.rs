@@ -1,4 +1,4 @@
-//! InsertionQuads: which quad of the sphere each neurite takes, and room for all of them.
+//! Insertion quads: which quad of the sphere each neurite takes, and room for all of them.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::sphere::Sphere;
 
-/// Where a neurite wants to leave the soma.
+/// Where a neurite leaves the soma.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Insertion {
     /// Unit direction from the soma's center.
@@ -34,10 +34,10 @@ pub(crate) const LEAST_GAP: f64 = 0.05;
 const SMALLEST: f64 = 0.55;
 
 /// Makes rings small enough, and moves their directions apart, until none touch. Returns how many
-/// were made smaller and how many turned by more than a degree. `gap`: free angle between two rings
+/// became smaller and how many turned by more than a degree. `gap`: free angle between two rings
 /// besides their own share (radians).
 pub(crate) fn make_room(insertions: &mut [Insertion], gap: f64) -> (usize, usize) {
-    let wanted = insertions.to_vec();
+    let traced = insertions.to_vec();
     for insertion in insertions.iter_mut() {
         insertion.radius = insertion.radius.min(insertion.distance * WIDEST.tan());
     }
@@ -50,9 +50,9 @@ pub(crate) fn make_room(insertions: &mut [Insertion], gap: f64) -> (usize, usize
     shrink_to_total(insertions);
     let smaller = insertions
         .iter()
-        .zip(&wanted)
+        .zip(&traced)
         .filter(|(a, b)| a.radius < 0.999 * b.radius);
-    let turned = insertions.iter().zip(&wanted);
+    let turned = insertions.iter().zip(&traced);
     let turned = turned.filter(|(a, b)| a.direction.dot(b.direction) < 1_f64.to_radians().cos());
     (smaller.count(), turned.count())
 }
@@ -150,7 +150,7 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Insert
         .collect();
     let mut order: Vec<usize> = (0..insertions.len()).collect();
     order.sort_by(|&a, &b| insertions[b].angle().total_cmp(&insertions[a].angle()));
-    let seatable: Vec<bool> = sphere
+    let usable: Vec<bool> = sphere
         .quads
         .iter()
         .map(|q| square_enough(sphere, *q))
@@ -163,7 +163,7 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Insert
             .iter()
             .map(|i| rotation.transpose() * i.direction)
             .collect();
-        let Some(mut quads) = greedy(sphere, &centers, &seatable, &order, &local) else {
+        let Some(mut quads) = greedy(sphere, &centers, &usable, &order, &local) else {
             continue;
         };
         exchange(&centers, &local, &mut quads);
@@ -187,7 +187,7 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Insert
 fn greedy(
     sphere: &Sphere,
     centers: &[DVec3],
-    seatable: &[bool],
+    usable: &[bool],
     order: &[usize],
     directions: &[DVec3],
 ) -> Option<Vec<usize>> {
@@ -197,9 +197,7 @@ fn greedy(
         let mut nearest = (f64::NEG_INFINITY, usize::MAX);
         for (q, center) in centers.iter().enumerate() {
             let near = center.dot(directions[k]);
-            if near > nearest.0
-                && seatable[q]
-                && sphere.quads[q].iter().all(|&v| !taken[v as usize])
+            if near > nearest.0 && usable[q] && sphere.quads[q].iter().all(|&v| !taken[v as usize])
             {
                 nearest = (near, q);
             }

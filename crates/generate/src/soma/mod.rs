@@ -3,12 +3,13 @@
 //! **Theory.** García-Cantero et al. 2017: every neurite takes a quad of a tetrahedral sphere; the
 //! quad's corners move to the neurite's first ring and the rest follows by static linear
 //! elasticity. Where we depart from it: the pull is solved on the canonical sphere, along the
-//! radius only, so that one factorisation serves all cells; turning and widening the quads is a
+//! radius only, so that one factorization serves all cells; turning and widening the quads is a
 //! warp of directions applied to the result ([`warp`]), which cannot fold.
 //!
 //! **Practice.** [`Reference`] is made once per (sphere, level, ν) and kept; [`rebuild`] per soma.
 //!
-//! A soma is accepted if it is star-shaped about its center (every quad faces outwards), which excludes folds and self-intersections alike.
+//! A soma is accepted if it is star-shaped about its center (every quad faces outwards), which excludes
+//! folds and self-intersections alike.
 
 mod cholesky;
 pub(crate) mod elasticity;
@@ -48,11 +49,11 @@ pub(crate) struct SomaSurface {
     pub(crate) inverted: usize,
     /// Quads that face inwards; zero unless every remedy failed.
     pub(crate) folded: usize,
-    /// Neurites that found no insertion_quad at all.
+    /// Neurites that found no insertion quad.
     pub(crate) dropped: Vec<usize>,
 }
 
-/// What is asked of a soma.
+/// The sphere that a soma is made from, and how.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SomaRequest {
     pub(crate) center: DVec3,
@@ -62,12 +63,12 @@ pub(crate) struct SomaRequest {
     pub(crate) kind: SphereKind,
     pub(crate) level: Option<u32>,
     /// Whether neurites may be left unattached to avoid folds.
-    pub(crate) at_any_price: bool,
+    pub(crate) may_leave_out: bool,
     /// Number of remedies against folds that are tried, up to [`ATTEMPTS`].
     pub(crate) attempts: u32,
 }
 
-/// A sphere with its factored stiffness, which is made when first asked for.
+/// A sphere with its factored stiffness, which is made at its first use.
 struct Reference {
     sphere: Sphere,
     poisson: f64,
@@ -81,33 +82,33 @@ impl Reference {
     }
 }
 
-/// Rebuilds a soma: rings of the neurites at the given insertions, joined by a smooth surface.
+/// Rebuilds a soma: rings of the neurites at their traced insertions, joined by a smooth surface.
 ///
 /// Remedies against folds, in turn: a finer sphere with the rings farther apart, smaller rings. A
 /// nearer ring is the caller's to try.
-pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurface {
-    if wanted.is_empty() {
+pub(crate) fn rebuild(request: &SomaRequest, traced: &[Insertion]) -> SomaSurface {
+    if traced.is_empty() {
         return lone(request);
     }
     let finest = finest_fitting(request.kind);
     let mut level = request
         .level
-        .unwrap_or_else(|| fitting_level(request.kind, wanted));
+        .unwrap_or_else(|| fitting_level(request.kind, traced));
     for attempt in 0..request.attempts {
-        let mut insertions = wanted.to_vec();
+        let mut insertions = traced.to_vec();
         let smaller = attempt + 1 == ATTEMPTS;
         if smaller {
             insertions.iter_mut().for_each(|i| i.radius *= 0.7);
         }
         let gap = insertion_quads::LEAST_GAP * f64::from(2_u32.pow(attempt));
         let (shrunk, turned) = insertion_quads::make_room(&mut insertions, gap);
-        let shrunk = if smaller { wanted.len() } else { shrunk };
+        let shrunk = if smaller { traced.len() } else { shrunk };
         let reference = reference(request.kind, level, request.poisson);
         if let Some(insertion_quads) = insertion_quads::assign(&reference.sphere, &insertions) {
             let mut surface = deform(request, &reference, &insertion_quads, &insertions);
             (surface.shrunk, surface.turned) = (shrunk, turned);
             let last = attempt + 1 == request.attempts;
-            let enough = !request.at_any_price || surface.folded == 0;
+            let enough = !request.may_leave_out || surface.folded == 0;
             if surface.sound() || (last && enough) {
                 return surface;
             }
@@ -116,7 +117,7 @@ pub(crate) fn rebuild(request: &SomaRequest, wanted: &[Insertion]) -> SomaSurfac
             level = (level + finer(request.kind)).min(finest);
         }
     }
-    without_thinnest(request, wanted)
+    without_thinnest(request, traced)
 }
 
 /// A soma that no neurite leaves: the sphere itself.
@@ -187,7 +188,7 @@ fn without_thinnest(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurf
     surface
 }
 
-/// Finest sphere that is tried without being asked for: beyond, a first soma takes seconds.
+/// Finest sphere that is tried unless a level is set: beyond, a first soma takes seconds.
 fn finest_fitting(kind: SphereKind) -> u32 {
     match kind {
         SphereKind::Octahedron => 4,
@@ -311,8 +312,8 @@ fn folded(nodes: &[DVec3], quad: [u32; 4]) -> bool {
     !first && !second
 }
 
-/// The elastic answer, on the canonical sphere of radius 1, to pulling each insertion_quad's corners out to
-/// where its ring's corners are.
+/// The elastic answer, on the canonical sphere of radius 1, to pulling each insertion quad's corners out
+/// to where its ring's corners are.
 fn pull(
     request: &SomaRequest,
     reference: &Reference,

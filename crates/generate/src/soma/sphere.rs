@@ -189,7 +189,7 @@ fn cube(level: u32) -> Sphere {
 
     let mut tetrahedra = Vec::new();
     for quad in &quads {
-        let lowest = (0..4).min_by_key(|&i| quad[i]).unwrap_or(0);
+        let lowest = (0..4).min_by_key(|&i| quad[i]).expect("a quad has corners");
         let q = |i: usize| quad[(lowest + i) % 4];
         for triangle in [[q(0), q(1), q(2)], [q(0), q(2), q(3)]] {
             for layer in 0..CUBE_SHELLS.len() - 1 {
@@ -231,7 +231,7 @@ fn positive(nodes: &[DVec3], [a, b, c, d]: [u32; 4]) -> [u32; 4] {
     }
 }
 
-/// Six times the signed volume is divided away: the volume of one tetrahedron.
+/// Signed volume of a tetrahedron.
 pub(crate) fn volume(nodes: &[DVec3], corners: [u32; 4]) -> f64 {
     let [a, b, c, d] = corners.map(|i| nodes[i as usize]);
     (b - a).dot((c - a).cross(d - a)) / 6.0

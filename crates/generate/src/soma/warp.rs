@@ -1,14 +1,14 @@
-//! A smooth warp of the sphere's directions that turns every insertion_quad onto its neurite and widens or
-//! narrows it to the angle that the neurite takes.
+//! A smooth warp of the sphere's directions that turns every insertion quad onto its neurite and widens
+//! or narrows it to the angle that the neurite takes.
 //!
-//! **Theory.** Landmarks (the insertion_quads' corners) travel along great circles from where the sphere has
-//! them to where the rings need them. At every instant a tangent velocity field that interpolates
+//! **Theory.** Landmarks (the insertion quads' corners) travel along great circles from where the sphere
+//! has them to where the rings need them. At every instant a tangent velocity field that interpolates
 //! their velocities, a sum of bell-shaped kernels, carries all other directions along. The flow of
 //! a smooth field cannot fold, whatever the landmarks' paths are as long as they do not collide
 //! (Joshi & Miller, Landmark matching via large deformation diffeomorphisms, 2000; ours skips the
 //! optimal control: the paths are given).
 //!
-//! Why not a Laplacian relaxation with fixed corners: it folds where a insertion_quad is far off its neurite.
+//! Why not a Laplacian relaxation with fixed corners: it folds where an insertion quad is far off its neurite.
 
 use glam::{DMat3, DQuat, DVec3};
 

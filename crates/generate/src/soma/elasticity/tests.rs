@@ -60,7 +60,7 @@ fn linear_field_passes_the_patch_test() {
 }
 
 #[test]
-fn prescribed_nodes_go_where_they_are_told() {
+fn prescribed_nodes_reach_their_goals() {
     let sphere = Sphere::new(SphereKind::Octahedron, 3);
     let elasticity = Elasticity::new(&sphere, 0.3).unwrap();
     let prescribed: Vec<(u32, DVec3)> = sphere.quads[17]
