@@ -24,8 +24,6 @@ pub use error::GenerateError;
 pub use options::{GenerateOptions, SomaMethod, SphereKind};
 pub use warning::Warning;
 
-use std::time::Instant;
-
 use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Vertex};
 use neurotess_morphology::Morphology;
@@ -46,7 +44,7 @@ pub struct Generated {
     pub rings: Vec<FirstRing>,
     /// What was mended, counted by cause.
     pub warnings: Vec<Warning>,
-    /// Seconds spent in somata (solve and insertion_quads).
+    /// Seconds that somata took, by the clock of [`generate_timed`]; 0 without one.
     pub soma_seconds: f64,
 }
 
@@ -89,6 +87,19 @@ pub fn generate(
     morphology: &Morphology,
     options: &GenerateOptions,
 ) -> Result<Generated, GenerateError> {
+    generate_timed(morphology, options, || 0.0)
+}
+
+/// [`generate`], which reports what share of the time somata take: `clock` tells the seconds since any
+/// moment. Nothing but [`Generated::soma_seconds`] depends on it.
+///
+/// # Errors
+/// As [`generate`].
+pub fn generate_timed(
+    morphology: &Morphology,
+    options: &GenerateOptions,
+    clock: impl Fn() -> f64,
+) -> Result<Generated, GenerateError> {
     let mut warnings = Warnings::default();
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
     prepare::mend_radii(&mut skeleton, &mut warnings);
@@ -97,7 +108,7 @@ pub fn generate(
     let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
-    let clock = Instant::now();
+    let start = clock();
     let requests = RingRequests::new(morphology, options);
     let built = somata::build(
         &mut skeleton,
@@ -106,7 +117,7 @@ pub fn generate(
         options,
         &mut warnings,
     );
-    let soma_seconds = clock.elapsed().as_secs_f64();
+    let soma_seconds = clock() - start;
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
     thin::merge_close_forks(&mut skeleton, &mut warnings);

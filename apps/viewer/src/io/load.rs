@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 use neurotess::formats::{self, ReadOptions};
-use neurotess::generate::generate;
+use neurotess::generate::generate_timed;
 use neurotess::morphology::{Measures, Morphology, shape};
 use neurotess::synth::{self, Kind};
 
@@ -63,7 +63,10 @@ fn source(
     mut warnings: Vec<Remark>,
     written: Option<SystemTime>,
 ) -> Result<Source, String> {
-    let generated = generate(&morphology, &soma.options()).map_err(|e| e.to_string())?;
+    let clock = Instant::now();
+    let seconds = || clock.elapsed().as_secs_f64();
+    let generated =
+        generate_timed(&morphology, &soma.options(), seconds).map_err(|e| e.to_string())?;
     let made = generated.warnings.iter();
     warnings.extend(made.map(|w| Remark::new(w.code, w.to_string())));
     let (all, few_spheres) = spheres(&generated.mesh);

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
-use neurotess::generate::{Generated, generate};
+use neurotess::generate::{Generated, generate_timed};
 use neurotess::morphology::Morphology;
 
 use crate::io::find::{self, Found, OpenRequest};
@@ -205,7 +205,9 @@ impl Worker {
     pub(crate) fn remesh(&mut self, id: SourceId, morphology: Arc<Morphology>, edit: SomaEdit) {
         let options = edit.options();
         let task = self.start(Progress::new("meshing", "cells", 1), move |_| {
-            generate(&morphology, &options).map_err(|e| e.to_string())
+            let clock = Instant::now();
+            let seconds = || clock.elapsed().as_secs_f64();
+            generate_timed(&morphology, &options, seconds).map_err(|e| e.to_string())
         });
         self.remeshing = Some((id, edit, task));
     }

@@ -124,8 +124,10 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let generated = generate::generate(&read.morphology, &options.generate)
-        .map_err(|e| Failure(format!("{file}: {e}")))?;
+    let generated = generate::generate_timed(&read.morphology, &options.generate, || {
+        clock.elapsed().as_secs_f64()
+    })
+    .map_err(|e| Failure(format!("{file}: {e}")))?;
     seconds.soma = generated.soma_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
     if generated.mesh.patches.is_empty() {
