@@ -3,7 +3,7 @@
 use crate::work::{SMALL, Work};
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn devices_and_pipes_are_refused_at_once() {
     use std::os::unix::fs::symlink;
     let work = Work::new();
@@ -36,7 +36,7 @@ fn devices_and_pipes_are_refused_at_once() {
 }
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn force_replaces_files_and_nothing_else() {
     use std::os::unix::fs::symlink;
     let work = Work::new();
@@ -59,7 +59,7 @@ fn force_replaces_files_and_nothing_else() {
     assert!(work.path("null.ply").is_symlink());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
     let work = Work::new();
     work.run("synth circuit -o circuit --neurons 5 --morphologies 2")
@@ -82,7 +82,7 @@ fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
 }
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn names_give_no_orders_to_a_terminal() {
     let work = Work::new();
     work.file("\x1b[31mred\x1b[0m.swc", SMALL);
@@ -93,7 +93,7 @@ fn names_give_no_orders_to_a_terminal() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn a_missing_input_is_told_before_its_output() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -109,7 +109,7 @@ fn a_missing_input_is_told_before_its_output() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn odd_options_are_told_for_what_they_are() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

@@ -16,7 +16,7 @@ const TETRAHEDRON: &str = "OFF
 3 2 0 3
 ";
 
-#[test]
+#[neurotess_testing::test]
 fn has_the_keys_of_the_contract() {
     let work = Work::new();
     work.file("mesh.off", TETRAHEDRON);
@@ -26,7 +26,7 @@ fn has_the_keys_of_the_contract() {
     insta::assert_snapshot!("check_text", text);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn open_meshes_are_judged_and_broken_files_fail() {
     let work = Work::new();
     work.file(
@@ -52,7 +52,7 @@ fn open_meshes_are_judged_and_broken_files_fail() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn merging_closes_a_stl() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

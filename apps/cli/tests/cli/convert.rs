@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::work::{BROKEN, SMALL, Work};
 
-#[test]
+#[neurotess_testing::test]
 fn swc_becomes_equal_swc() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -19,7 +19,7 @@ fn swc_becomes_equal_swc() {
     work.run("convert cell.swc -o copy.swc --force").exits(0);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn folders_are_converted_and_failures_told() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -29,7 +29,7 @@ fn folders_are_converted_and_failures_told() {
     assert_eq!(work.names("out"), ["a.swc"]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn formats_turn_into_one_another_and_losses_are_told() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -64,7 +64,7 @@ fn formats_turn_into_one_another_and_losses_are_told() {
     assert_eq!(work.names("folder"), ["cell.h5"]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn other_formats_are_refused_with_what_can_be_written() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

@@ -32,7 +32,7 @@ fn send(signal: &str, child: &Child) {
     assert!(status.expect("kill runs").success());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn interrupted_runs_leave_nothing_and_exit_with_130() {
     let work = Work::new();
     work.file("cell.swc", &long_cell(3000));
@@ -47,7 +47,7 @@ fn interrupted_runs_leave_nothing_and_exit_with_130() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn an_interrupted_run_says_so_in_its_document() {
     let work = Work::new();
     work.file("cell.swc", &long_cell(3000));
@@ -63,7 +63,7 @@ fn an_interrupted_run_says_so_in_its_document() {
     assert!(error.starts_with("interrupted"), "{document}");
 }
 
-#[test]
+#[neurotess_testing::test]
 fn killed_and_started_again_gives_the_same_files() {
     let work = Work::new();
     for i in 0..12 {

@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
+use crate::gpu;
 use crate::work::{BROKEN, Run, SMALL, Work};
 
 fn fed(mut command: Command, input: &[u8]) -> Run {
@@ -19,7 +20,7 @@ fn fed(mut command: Command, input: &[u8]) -> Run {
     Run(child.wait_with_output().expect("it ends"))
 }
 
-#[test]
+#[neurotess_testing::test]
 fn minus_is_standard_input_and_output() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -76,7 +77,7 @@ fn minus_is_standard_input_and_output() {
 }
 
 #[cfg(target_os = "linux")]
-#[test]
+#[neurotess_testing::test]
 fn a_full_disk_behind_standard_output_is_told() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -107,7 +108,7 @@ fn a_full_disk_behind_standard_output_is_told() {
 }
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn a_reader_that_has_gone_is_no_error() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -121,7 +122,7 @@ fn a_reader_that_has_gone_is_no_error() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn whatever_fails_json_is_one_document() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -165,7 +166,7 @@ fn whatever_fails_json_is_one_document() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn places_are_written_one_way() {
     let work = Work::new();
     work.file("broken.swc", BROKEN);
@@ -188,7 +189,7 @@ fn places_are_written_one_way() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn pages_of_the_manual_are_roff() {
     let work = Work::new();
     for (command, title) in [("man", "neurotess"), ("man mesh", "neurotess-mesh")] {
@@ -198,7 +199,7 @@ fn pages_of_the_manual_are_roff() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn shells_complete_palettes_and_color_maps() {
     let work = Work::new();
     let script = work.run("completions bash").exits(0).stdout();
@@ -207,7 +208,7 @@ fn shells_complete_palettes_and_color_maps() {
 
 /// Mesa's layer that selects devices says an error where there is no display and nothing keeps it away.
 #[cfg(target_os = "linux")]
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn pictures_without_a_window_ask_for_no_display() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

@@ -8,12 +8,13 @@ use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::display::{display, ends, start, wait_for};
+use crate::display::{Display, display, ends, start, wait_for};
+use crate::gpu;
 use crate::work::{SMALL, Work};
 
-#[test]
+#[neurotess_testing::test(needs(gpu, display))]
 fn a_window_opens_a_file_is_driven_and_closes() {
-    let Some(display) = display() else { return };
+    let display = Display::open();
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let mut child = start(&display, &work, "view cell.swc");
@@ -50,9 +51,9 @@ fn a_window_opens_a_file_is_driven_and_closes() {
     assert!(remembered.contains("cell.swc"), "{remembered}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu, display))]
 fn a_window_that_is_asked_to_end_remembers_its_settings() {
-    let Some(display) = display() else { return };
+    let display = Display::open();
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let mut child = start(&display, &work, "view cell.swc -v");
@@ -84,9 +85,9 @@ fn a_window_that_is_asked_to_end_remembers_its_settings() {
     assert!(remembered.contains("y_down = true"), "{remembered}");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu, display))]
 fn a_lost_device_ends_the_window_with_a_word_and_a_session() {
-    let Some(display) = display() else { return };
+    let display = Display::open();
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let mut command = work.command("view cell.swc --ring 1=0.5");
@@ -115,7 +116,7 @@ fn a_lost_device_ends_the_window_with_a_word_and_a_session() {
     assert!(rescued.contains("cell.swc") && rescued.contains("position = 0.5"));
 }
 
-#[test]
+#[neurotess_testing::test]
 fn without_a_display_there_is_a_word_and_a_way_out() {
     let work = Work::new();
     let mut command = work.command("view");
@@ -129,9 +130,9 @@ fn without_a_display_there_is_a_word_and_a_way_out() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu, display))]
 fn without_such_an_adapter_there_is_a_word_and_a_way_out() {
-    let Some(display) = display() else { return };
+    let display = Display::open();
     let work = Work::new();
     let mut command = work.command("view --adapter nonesuch");
     command

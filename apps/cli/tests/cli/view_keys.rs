@@ -10,7 +10,8 @@ use std::time::Duration;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Ask, Listed, Toggles, listed};
 
-use crate::display::{display, ends, start, wait_for};
+use crate::display::{Display, display, ends, start, wait_for};
+use crate::gpu;
 use crate::work::{SMALL, Work};
 
 /// Lines of what the program says, as they come.
@@ -70,9 +71,9 @@ fn opens_a_dialog(command: &Command) -> bool {
     )
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu, display))]
 fn every_shortcut_of_a_real_window_runs_its_command() {
-    let Some(display) = display() else { return };
+    let display = Display::open();
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let mut child = start(&display, &work, "view cell.swc -v");
