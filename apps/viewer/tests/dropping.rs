@@ -56,7 +56,7 @@ fn names(window: &mut Window) -> Vec<String> {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn tracings_and_folders_are_opened_and_broken_ones_told() {
+fn tracings_and_folders_are_opened_and_broken_ones_reported() {
     let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
@@ -109,7 +109,7 @@ fn a_circuit_and_its_report_are_dropped_together() {
     assert_eq!(state(&mut window).document.look.color_by, ColorBy::Value);
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert_eq!((facts.title.as_str(), facts.without), ("voltage", [0, 4]));
-    // Another one takes its place; several are too many.
+    // Another one replaces it; several are too many.
     let spikes = folder.path().join("spikes.h5");
     drop_on(&mut window, &[&spikes]);
     assert!(

@@ -60,8 +60,8 @@ fn typed(text: &str) -> impl Iterator<Item = Event> {
 fn heard(window: &mut Window) -> Rc<RefCell<Vec<Command>>> {
     let list: Rc<RefCell<Vec<Command>>> = Rc::default();
     let ours = Rc::clone(&list);
-    let place = window.state_mut();
-    *place = place.take().map(|viewer| {
+    let slot = window.state_mut();
+    *slot = slot.take().map(|viewer| {
         viewer.with_hearing(Box::new(move |command| {
             ours.borrow_mut().push(command.clone());
         }))

@@ -104,12 +104,12 @@ fn what_is_hidden_is_not_marked() {
 fn a_resized_window_keeps_the_cells_in_view() {
     let mut window = many(3);
     let ends = |window: &mut Window| {
-        let places = [
+        let ends = [
             glam::DVec3::new(-5.0, 0.0, 0.0),
             glam::DVec3::new(185.0, 0.0, 0.0),
         ];
         let rect = picture(window);
-        places.map(|place| (hit_at(window, place).x - rect.left()) / rect.width())
+        ends.map(|end| (hit_at(window, end).x - rect.left()) / rect.width())
     };
     let within = |[left, right]: [f32; 2]| left > 0.0 && right < 1.0 && right - left > 0.6;
     assert!(within(ends(&mut window)), "{:?}", ends(&mut window));
@@ -164,7 +164,7 @@ fn the_legend_is_that_of_the_picture() {
         ..state(&mut window).document.look.clone()
     };
     state(&mut window).run(Edit::SetLook(Box::new(look)));
-    // Drafts that are too dear wait until the explorer has made its own; the old picture stays meanwhile.
+    // Drafts that are too expensive wait until exploration mode has made its own; the old picture stays meanwhile.
     viewer(&mut window).stage.limit_patches(Some(0));
     for _ in 0..2000 {
         window.step();
@@ -180,7 +180,7 @@ fn the_legend_is_that_of_the_picture() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn memory_is_told_whatever_was_opened() {
+fn memory_is_shown_whatever_was_opened() {
     let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mine.neurotess");

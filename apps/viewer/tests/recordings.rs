@@ -186,7 +186,7 @@ fn a_report_is_played_stepped_and_saved() {
         assert_eq!(state(&mut window).playback.pace.time, time);
     }
     window.get_by_label("Play");
-    // The session keeps file, moment and which node each neuron is.
+    // The session keeps file, time and which node each neuron is.
     let pace = Pace {
         time: 6.5,
         speed: 2.0,
@@ -222,15 +222,15 @@ fn a_report_is_played_stepped_and_saved() {
 fn assert_same(width: u32, a: &[u8], b: &[u8]) {
     let pairs = a.chunks(4).zip(b.chunks(4)).enumerate();
     let differ = pairs.filter(|(_, (a, b))| a != b);
-    let places: Vec<(usize, usize)> = differ
+    let pixels: Vec<(usize, usize)> = differ
         .map(|(i, _)| (i % width as usize, i / width as usize))
         .collect();
-    let columns = || places.iter().map(|p| p.0);
-    let rows = || places.iter().map(|p| p.1);
+    let columns = || pixels.iter().map(|p| p.0);
+    let rows = || pixels.iter().map(|p| p.1);
     assert!(
-        places.is_empty(),
+        pixels.is_empty(),
         "{} pixels differ, columns {:?} to {:?}, rows {:?} to {:?}",
-        places.len(),
+        pixels.len(),
         columns().min(),
         columns().max(),
         rows().min(),
@@ -285,7 +285,7 @@ fn spikes_flash() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn reports_that_do_not_fit_are_told_while_the_rest_shows() {
+fn reports_that_do_not_fit_are_reported_while_the_rest_shows() {
     let (mut window, folder) = with_circuit();
     let other = folder.path().join("other");
     write_circuit(&other, 20, 2, 20);

@@ -316,8 +316,8 @@ fn nothing_is_drawn_when_nothing_changes() {
 fn a_lost_device_costs_no_work() {
     let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
-    let place = window.state_mut();
-    *place = place
+    let slot = window.state_mut();
+    *slot = slot
         .take()
         .map(|viewer| viewer.with_rescue(folder.path().to_path_buf()));
     run(&mut window, Edit::Select(vec![0], false));
@@ -333,7 +333,7 @@ fn a_lost_device_costs_no_work() {
         window.step();
         std::thread::sleep(Duration::from_millis(3));
     }
-    let said = viewer(&mut window).fatal.clone().expect("told");
+    let said = viewer(&mut window).fatal.clone().expect("an error");
     let file = folder.path().join("rescued.neurotess");
     assert!(said.contains("lost") && said.contains(&file.display().to_string()));
     let rescued = neurotess_viewer::session::Session::read(&file).expect("rescued");
@@ -554,7 +554,7 @@ fn mouse_and_keys_move_the_camera() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn what_is_too_dear_is_explored_says_so_and_comes_back() {
+fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     let mut window = with_samples(&[Kind::Pyramidal]);
     run(&mut window, Command::Show(Tab::Detail));
     let one = state(&mut window).counters.patches[1];
@@ -569,11 +569,11 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     state_of.document.grid = true;
     run(&mut window, Command::Home);
     assert!(viewer(&mut window).stage.is_sharp(), "no draft");
-    let Some(Lowered::Triangles(Some([drawn, wanted]))) = state(&mut window).counters.lowered
+    let Some(Lowered::Triangles(Some([drawn, needed]))) = state(&mut window).counters.lowered
     else {
         panic!("explored: {:?}", state(&mut window).counters.lowered);
     };
-    assert!(drawn > 0 && drawn <= wanted);
+    assert!(drawn > 0 && drawn <= needed);
     window.get_by_label_contains("reduced: ");
     // What is seen is known there too: somata, and a section by its number.
     let parts = seen_parts(&mut window);
@@ -582,7 +582,7 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
         .iter()
         .filter(|(_, p)| matches!(p, CellPart::Section(_)));
     assert!(neurites.count() > 10, "{parts:?}");
-    // With wires the explorer cannot: coarser, and said.
+    // Exploration mode draws no wireframe: the picture is coarser, and the window says so.
     let mut look = state(&mut window).document.look.clone();
     look.wireframe = true;
     run(&mut window, Edit::SetLook(Box::new(look.clone())));
@@ -592,7 +592,7 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     ));
     look.wireframe = false;
     run(&mut window, Edit::SetLook(Box::new(look)));
-    // Alone, it is whole again, and so are the words.
+    // Alone, it is whole again, and the window no longer says so.
     run(&mut window, Edit::Select(vec![1], false));
     run(&mut window, Edit::Isolate);
     assert_eq!(state(&mut window).counters.lowered, None);

@@ -77,7 +77,7 @@ fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
         "{}",
         run.stderr()
     );
-    // PickHit itself, such a file is a failure.
+    // Named itself, such a file is a failure.
     work.run("info cells/nodes.h5").exits(1);
 }
 
@@ -94,7 +94,7 @@ fn names_give_no_orders_to_a_terminal() {
 }
 
 #[neurotess_testing::test]
-fn a_missing_input_is_told_before_its_output() {
+fn a_missing_input_is_reported_before_its_output() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     work.file("out.ply", "old");
@@ -110,7 +110,7 @@ fn a_missing_input_is_told_before_its_output() {
 }
 
 #[neurotess_testing::test]
-fn odd_options_are_told_for_what_they_are() {
+fn odd_options_are_refused_or_warned_of() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let run = work.run("mesh cell.swc -o a.ply --level -1").exits(2);
@@ -129,7 +129,7 @@ fn odd_options_are_told_for_what_they_are() {
     );
     let run = work.run("--threads 20000 info cell.swc").exits(0);
     assert!(run.stderr().contains("--threads 20000"), "{}", run.stderr());
-    // Quiet or not, what was asked for is told.
+    // Quiet or not, the answer itself is printed.
     assert!(
         work.run("info cell.swc -q")
             .exits(0)

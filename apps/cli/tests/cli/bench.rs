@@ -50,7 +50,7 @@ fn refinement_gives_tables_json_and_a_plot() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn what_memory_does_not_allow_is_left_out_and_told() {
+fn what_memory_does_not_allow_is_left_out_with_a_warning() {
     let work = Work::new();
     let run = work.run(&format!("{SMALL} --memory 0 --json")).exits(0);
     assert!(run.stderr().contains("left out"), "{}", run.stderr());

@@ -27,7 +27,7 @@ fn has_the_keys_of_the_contract() {
 }
 
 #[neurotess_testing::test]
-fn open_meshes_are_judged_and_broken_files_fail() {
+fn open_meshes_are_found_and_broken_files_fail() {
     let work = Work::new();
     work.file(
         "m/a.off",
@@ -43,11 +43,11 @@ fn open_meshes_are_judged_and_broken_files_fail() {
         (&json[0]["closed"], &json[2]["closed"]),
         (&false.into(), &true.into())
     );
-    let place = Path::new("m").join("b.off");
+    let file = Path::new("m").join("b.off");
     let errors = run.errors();
     assert_eq!(errors.len(), 1, "{}", run.stderr());
     assert!(
-        errors[0].starts_with(&format!("error: {}:", place.display())),
+        errors[0].starts_with(&format!("error: {}:", file.display())),
         "{errors:?}"
     );
 }

@@ -57,10 +57,10 @@ fn libsonata_reads_the_same_circuit() {
     let nodes = &circuit.populations[0];
     assert_eq!(theirs["n"], nodes.len());
     let axes = ["x", "y", "z"].map(|axis| numbers(&theirs[axis]));
-    for (row, place) in nodes.positions.iter().enumerate() {
-        let theirs_place = DVec3::new(axes[0][row], axes[1][row], axes[2][row]);
+    for (row, position) in nodes.positions.iter().enumerate() {
+        let their_position = DVec3::new(axes[0][row], axes[1][row], axes[2][row]);
         // Not equal: reading JSON rounds.
-        assert!(place.distance(theirs_place) < 1e-9);
+        assert!(position.distance(their_position) < 1e-9);
         let q = numbers(&theirs["quaternion"][row]);
         let own = nodes.rotations[row];
         let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
@@ -77,8 +77,8 @@ fn libsonata_reads_the_same_circuit() {
             node_set: Some(name.clone()),
             ..Selection::default()
         };
-        let chosen = circuit.select(&selection).expect("a set");
-        let own: Vec<f64> = chosen.iter().map(|n| f64::from(n.row)).collect();
+        let selected = circuit.select(&selection).expect("a set");
+        let own: Vec<f64> = selected.iter().map(|n| f64::from(n.row)).collect();
         assert_eq!(numbers(ids), own, "{name}");
     }
 
@@ -117,8 +117,8 @@ fn bluepysnap_reads_the_same_circuit() {
         node_set: Some("Upper pyramidal".into()),
         ..Selection::default()
     };
-    let chosen = circuit.select(&selection).expect("a set");
-    let own: Vec<f64> = chosen.iter().map(|n| f64::from(n.row)).collect();
+    let selected = circuit.select(&selection).expect("a set");
+    let own: Vec<f64> = selected.iter().map(|n| f64::from(n.row)).collect();
     assert!(!own.is_empty());
     assert_eq!(numbers(&theirs["upper"]), own);
     assert!(theirs["n_spikes"].as_u64().is_some_and(|n| n > 0));
@@ -182,7 +182,7 @@ fn info_tells_populations_bounds_and_reports() {
 }
 
 #[neurotess_testing::test]
-fn morphologies_and_circuits_are_told_in_one_list() {
+fn morphologies_and_circuits_are_in_one_list() {
     let (work, _) = made();
     let json = work.run("info c/morphologies c --json").exits(0).json();
     assert_eq!(json.as_array().map(Vec::len), Some(5));
@@ -190,7 +190,7 @@ fn morphologies_and_circuits_are_told_in_one_list() {
 }
 
 #[neurotess_testing::test]
-fn cells_are_meshed_where_they_stand() {
+fn cells_are_meshed_at_their_positions() {
     let (work, folder) = made();
     let json = work
         .run("mesh c -o out --sample 3 --level 1 --json --soma sphere")
@@ -202,18 +202,18 @@ fn cells_are_meshed_where_they_stand() {
     for cell in cells {
         assert_eq!(cell["closed"], true);
         let id = cell["node_id"].as_u64().expect("an id") as usize;
-        let place = circuit.populations[0].positions[id];
+        let position = circuit.populations[0].positions[id];
         let out = cell["out"].as_str().expect("a file");
         assert!(out.ends_with(&format!("cortex_{id}.ply")), "{out}");
         let mesh = neurotess::mesh::read(&work.path(out)).expect("a mesh");
-        // The soma is around the node's place.
+        // The soma is around the node's position.
         let soma = mesh.vertices.iter().filter(|v| v.section == 0);
         let (sum, count) = soma.fold((DVec3::ZERO, 0.0), |(sum, count), v| {
             (sum + mesh.origin + v.position.as_dvec3(), count + 1.0)
         });
         assert!(
-            (sum / count).distance(place) < 3.0,
-            "{} {place}",
+            (sum / count).distance(position) < 3.0,
+            "{} {position}",
             sum / count
         );
     }
@@ -278,10 +278,10 @@ fn a_circuit_is_one_file_whose_nodes_share_morphologies() {
 }
 
 #[neurotess_testing::test]
-fn cells_are_chosen() {
+fn cells_are_selected() {
     let (work, _) = made();
-    let ids = |chosen: &str, out: &str| {
-        let json = work.run(&format!("mesh c -o {out} --level 0 --json {chosen}"));
+    let ids = |options: &str, out: &str| {
+        let json = work.run(&format!("mesh c -o {out} --level 0 --json {options}"));
         let json = json.exits(0).json();
         let cells = json.as_array().expect("cells").iter();
         cells

@@ -20,7 +20,7 @@ fn swc_becomes_equal_swc() {
 }
 
 #[neurotess_testing::test]
-fn folders_are_converted_and_failures_told() {
+fn folders_are_converted_and_failures_reported() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
     work.file("cells/sub/b.swc", BROKEN);
@@ -30,7 +30,7 @@ fn folders_are_converted_and_failures_told() {
 }
 
 #[neurotess_testing::test]
-fn formats_turn_into_one_another_and_losses_are_told() {
+fn formats_turn_into_one_another_and_losses_are_reported() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     for (from, to) in [

@@ -59,8 +59,8 @@ fn failures_are_lines_and_the_others_are_done() {
     assert!(json[1]["error"].is_string() && json[2]["error"].is_string());
     let errors = run.errors();
     assert_eq!(errors.len(), 2, "{}", run.stderr());
-    let place = Path::new("cells").join("b.swc");
-    assert!(errors[0].starts_with(&format!("error: {}:2: 6 columns", place.display())));
+    let file = Path::new("cells").join("b.swc");
+    assert!(errors[0].starts_with(&format!("error: {}:2: 6 columns", file.display())));
 }
 
 #[neurotess_testing::test]

@@ -65,7 +65,7 @@ fn outputs_repeat_the_structure() {
 }
 
 #[neurotess_testing::test]
-fn colliding_outputs_are_told_before_anything_is_done() {
+fn colliding_outputs_are_refused_before_anything_is_done() {
     let work = cells();
     let run = work.run("mesh cells/a.swc cells/sub/a.swc -o out").exits(2);
     assert!(

@@ -75,7 +75,7 @@ fn killed_and_started_again_gives_the_same_files() {
         work.file(&format!("cells/{i}.swc"), &text);
     }
     work.run("mesh cells -o whole --level 8").exits(0);
-    // At several moments: while the first files are written, and a little later.
+    // At several times: while the first files are written, and a little later.
     for pause in [0, 15, 60] {
         let mut child = start(
             &work,
@@ -90,7 +90,7 @@ fn killed_and_started_again_gives_the_same_files() {
     work.run("mesh cells -o again --level 8 --resume --log log.jsonl")
         .exits(0);
     assert_eq!(work.names("whole"), work.names("again"));
-    // Whatever the moment, no output lacks its line.
+    // Whenever it ends, no output lacks its line.
     let log = std::fs::read_to_string(work.path("log.jsonl")).expect("a log");
     for name in work.names("again") {
         assert!(log.contains(&format!("\"again/{name}\"")), "{name}");

@@ -121,9 +121,9 @@ fn every_option_of_the_contract_draws() {
         assert!(other.pixels != plain, "{arguments}");
         assert!(other.hues().len() > 3, "{arguments}: {:?}", other.hues());
     }
-    let asked =
+    let explicit =
         picture("--view front --samples 16 --palette neurom --light soft --ao --pixels 0.25");
-    assert!(asked.pixels == plain, "defaults are what help says");
+    assert!(explicit.pixels == plain, "defaults are what help says");
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -214,7 +214,7 @@ fn turntables_are_numbered_and_turn() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn several_cells_stand_in_one_picture_and_a_broken_one_is_told() {
+fn several_cells_are_in_one_picture_and_a_broken_one_is_reported() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
     work.file("cells/b.swc", BROKEN);
@@ -339,7 +339,7 @@ fn wrong_usage_of_render_exits_with_2() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn circuits_are_drawn_cell_by_cell_where_they_stand() {
+fn circuits_are_drawn_cell_by_cell_at_their_positions() {
     let work = Work::new();
     work.run("synth circuit -o circuit --neurons 6 --morphologies 2 --seed 5")
         .exits(0);

@@ -6,7 +6,6 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use crate::gpu;
 use crate::work::{BROKEN, Run, SMALL, Work};
 
 fn fed(mut command: Command, input: &[u8]) -> Run {
@@ -78,7 +77,7 @@ fn minus_is_standard_input_and_output() {
 
 #[cfg(target_os = "linux")]
 #[neurotess_testing::test]
-fn a_full_disk_behind_standard_output_is_told() {
+fn a_full_disk_behind_standard_output_is_an_error() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     for command in [
@@ -167,14 +166,14 @@ fn whatever_fails_json_is_one_document() {
 }
 
 #[neurotess_testing::test]
-fn places_are_written_one_way() {
+fn errors_name_file_and_line_one_way() {
     let work = Work::new();
     work.file("broken.swc", BROKEN);
     work.file("broken.neurotess", "version = ");
     work.file("circuit.json", "{\n\"networks\": 3,}");
     work.file("cells.scene.toml", "cells = []\nx");
     work.file("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0\n");
-    for (command, place) in [
+    for (command, file_and_line) in [
         ("info broken.swc", "error: broken.swc:2: "),
         (
             "render broken.neurotess -o a.png",
@@ -185,7 +184,7 @@ fn places_are_written_one_way() {
         ("check mesh.off", "error: mesh.off:4: "),
     ] {
         let said = work.run(command).exits(1).stderr();
-        assert!(said.starts_with(place), "{command}: {said}");
+        assert!(said.starts_with(file_and_line), "{command}: {said}");
     }
 }
 
@@ -208,7 +207,7 @@ fn shells_complete_palettes_and_color_maps() {
 
 /// Mesa's layer that selects devices says an error where there is no display and nothing keeps it away.
 #[cfg(target_os = "linux")]
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(crate::gpu))]
 fn pictures_without_a_window_ask_for_no_display() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

@@ -64,7 +64,7 @@ fn a_series_runs_through_time_in_one_start() {
     }
     let [a, b] = [files[0], files[1]].map(|name| Picture::read(&work, name).pixels);
     assert!(a != b);
-    // The camera may go around meanwhile, and a number of pictures may stand for the step.
+    // The camera may go around meanwhile, and a number of pictures may replace the step.
     work.run(&format!(
         "render c -o g.png {look} {report} --time 0:3 --frames 2 --turntable"
     ))

@@ -52,7 +52,7 @@ fn a_window_opens_a_file_is_driven_and_closes() {
 }
 
 #[neurotess_testing::test(needs(gpu, display))]
-fn a_window_that_is_asked_to_end_remembers_its_settings() {
+fn a_window_that_is_terminated_remembers_its_settings() {
     let display = Display::open();
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -68,7 +68,7 @@ fn a_window_that_is_asked_to_end_remembers_its_settings() {
         line.clear();
         assert!(errors.read_line(&mut line).expect("text") > 0, "it goes on");
     }
-    // The command is told before it runs.
+    // The command is printed before it runs.
     sleep(Duration::from_millis(500));
     let id = child.id().to_string();
     let mut kill = std::process::Command::new("kill");
@@ -86,7 +86,7 @@ fn a_window_that_is_asked_to_end_remembers_its_settings() {
 }
 
 #[neurotess_testing::test(needs(gpu, display))]
-fn a_lost_device_ends_the_window_with_a_word_and_a_session() {
+fn a_lost_device_ends_the_window_with_an_error_and_a_session() {
     let display = Display::open();
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -117,7 +117,7 @@ fn a_lost_device_ends_the_window_with_a_word_and_a_session() {
 }
 
 #[neurotess_testing::test]
-fn without_a_display_there_is_a_word_and_a_way_out() {
+fn without_a_display_the_error_names_a_way_out() {
     let work = Work::new();
     let mut command = work.command("view");
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
@@ -131,7 +131,7 @@ fn without_a_display_there_is_a_word_and_a_way_out() {
 }
 
 #[neurotess_testing::test(needs(gpu, display))]
-fn without_such_an_adapter_there_is_a_word_and_a_way_out() {
+fn an_unknown_adapter_is_an_error() {
     let display = Display::open();
     let work = Work::new();
     let mut command = work.command("view --adapter nonesuch");

@@ -93,16 +93,16 @@ fn every_shortcut_of_a_real_window_runs_its_command() {
             assert_eq!(commands(&lines, false), [""; 0], "Escape after {name}");
         }
     }
-    // Typed as fast as it goes, into a dialog that has just been asked for.
+    // Typed as fast as it goes, into a dialog that is just opening.
     let path = work.path("cell.swc");
     display.xdotool("key ctrl+o");
     display.xdotool(&format!("type --delay 1 {}", path.display()));
     display.xdotool("key Return");
     let open = format!("{:?}", Command::Open(vec![path]));
     let ran = commands(&lines, true);
-    let asked = format!("{:?}", Command::AskFiles(Ask::Open));
+    let dialog = format!("{:?}", Command::AskFiles(Ask::Open));
     assert!(
-        ran == [asked.clone(), open.clone()] || ran == [asked],
+        ran == [dialog.clone(), open.clone()] || ran == [dialog],
         "{ran:?}"
     );
     if ran.len() == 1 {

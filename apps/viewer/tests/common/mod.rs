@@ -121,7 +121,7 @@ pub(crate) fn snapshot(window: &mut Window, name: &str) {
     image_snapshot_options(&image, name, &options);
 }
 
-/// Where the window tells times that it has measured: the soma's, and below their heading those of drawing.
+/// Where the window shows times that it has measured: the soma's, and below their heading those of drawing.
 fn changing(window: &Window) -> Vec<Rect> {
     let mut masks = Vec::new();
     let heading = window.query_all_by_label("Drawing times").next();
@@ -148,11 +148,11 @@ pub(crate) fn picture(window: &Window) -> Rect {
     window.get_by_role(Role::Canvas).rect()
 }
 
-/// Where a place of the world is seen.
-pub(crate) fn hit_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
+/// Where the picture shows a position of the world.
+pub(crate) fn hit_at(window: &mut Window, position: glam::DVec3) -> Pos2 {
     let rect = picture(window);
     let size = [rect.width(), rect.height()].map(|n| n as u32);
-    let pixel = state(window).view.camera().pixel_of(place, size);
+    let pixel = state(window).view.camera().pixel_of(position, size);
     let [x, y] = pixel.expect("in front");
     rect.min + Vec2::new(x as f32, y as f32)
 }
