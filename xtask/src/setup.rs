@@ -42,7 +42,7 @@ fn display() -> String {
     if !cfg!(target_os = "linux") {
         return "the window's test runs on Linux only".into();
     }
-    let programs = ["Xvfb", "xdotool", "openbox"];
+    let programs = ["Xvfb", "xdotool", "openbox", "import"];
     let is_there = || programs.into_iter().all(is_installed);
     if is_there() {
         return "a virtual display is there".into();

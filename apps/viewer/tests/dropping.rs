@@ -13,7 +13,7 @@ use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::ColorBy;
 
 use common::circuit::write_circuit;
-use common::{Window, run, settle, snapshot, state, window, with_samples};
+use common::{Window, gpu, run, settle, snapshot, state, window, with_samples};
 
 const CELL: &str = "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n";
 
@@ -55,9 +55,9 @@ fn names(window: &mut Window) -> Vec<String> {
     neurons.iter().map(|n| n.name.clone()).collect()
 }
 
-#[test]
-fn tracings_and_folders_are_opened_and_broken_ones_told() {
-    let Some(mut window) = window() else { return };
+#[neurotess_testing::test(needs(gpu))]
+fn tracings_and_folders_are_opened_and_broken_ones_reported() {
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
@@ -80,9 +80,9 @@ fn tracings_and_folders_are_opened_and_broken_ones_told() {
     assert_eq!(names(&mut window).len(), 3, "what was open stays");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_is_dropped_while_others_are_read_comes_after_them() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
@@ -97,9 +97,9 @@ fn what_is_dropped_while_others_are_read_comes_after_them() {
     assert_eq!(state(&mut window).problems, []);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_circuit_and_its_report_are_dropped_together() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     write_circuit(folder.path(), 4, 2, 4);
@@ -109,7 +109,7 @@ fn a_circuit_and_its_report_are_dropped_together() {
     assert_eq!(state(&mut window).document.look.color_by, ColorBy::Value);
     let facts = state(&mut window).playback.facts.clone().expect("open");
     assert_eq!((facts.title.as_str(), facts.without), ("voltage", [0, 4]));
-    // Another one takes its place; several are too many.
+    // Another one replaces it; several are too many.
     let spikes = folder.path().join("spikes.h5");
     drop_on(&mut window, &[&spikes]);
     assert!(
@@ -124,18 +124,14 @@ fn a_circuit_and_its_report_are_dropped_together() {
     assert_eq!(state(&mut window).document.report, Some(report));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_session_is_dropped() {
-    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star, Kind::Granule]);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mine.neurotess");
     run(&mut window, Edit::SetHidden(0, true));
     run(&mut window, Command::SaveSession(file.clone()));
-    let Some(mut other) = self::window() else {
-        return;
-    };
+    let mut other = self::window();
     other.step();
     drop_on(&mut other, &[&file]);
     assert_eq!(names(&mut other), ["star", "granule"]);
@@ -146,12 +142,12 @@ fn a_session_is_dropped() {
     assert_eq!(names(&mut other).len(), 2, "nothing is lost");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn files_held_over_the_window_are_announced() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     window.input_mut().hovered_files = vec![HoveredFile::default(); 3];
     window.run_steps(2);
     snapshot(&mut window, "held");
 }
+
+neurotess_testing::main!();

@@ -13,7 +13,7 @@ use neurotess_viewer::Command;
 use neurotess_viewer::command::{Tab, Toggles, listed};
 use neurotess_viewer::state::Over;
 
-use common::{Window, run, settle, state, with_samples};
+use common::{Window, gpu, run, settle, state, with_samples};
 
 /// One frame that brings all of these, and those after it, each of half a second.
 fn slow_frame(window: &mut Window, events: Vec<Event>) {
@@ -60,8 +60,8 @@ fn typed(text: &str) -> impl Iterator<Item = Event> {
 fn heard(window: &mut Window) -> Rc<RefCell<Vec<Command>>> {
     let list: Rc<RefCell<Vec<Command>>> = Rc::default();
     let ours = Rc::clone(&list);
-    let place = window.state_mut();
-    *place = place.take().map(|viewer| {
+    let slot = window.state_mut();
+    *slot = slot.take().map(|viewer| {
         viewer.with_hearing(Box::new(move |command| {
             ours.borrow_mut().push(command.clone());
         }))
@@ -69,11 +69,9 @@ fn heard(window: &mut Window) -> Rc<RefCell<Vec<Command>>> {
     list
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn every_shortcut_runs_its_command_and_nothing_else() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let list = heard(&mut window);
     for (_, items) in listed(&Toggles::default()) {
         for item in items {
@@ -98,11 +96,9 @@ fn every_shortcut_runs_its_command_and_nothing_else() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn tab_hides_the_panels_and_the_keys_after_it_are_heard() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let list = heard(&mut window);
     let keys = [Key::Tab, Key::Num2, Key::Tab, Key::G];
     let events = keys.into_iter().flat_map(|k| key(k, Modifiers::NONE));
@@ -112,11 +108,9 @@ fn tab_hides_the_panels_and_the_keys_after_it_are_heard() {
     assert_eq!(window.ctx.memory(eframe::egui::Memory::focused), None);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_is_typed_after_a_dialogs_keys_goes_to_the_dialog() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let list = heard(&mut window);
     let before = state(&mut window).document.clone();
     let folder = tempfile::tempdir().expect("a folder");
@@ -144,11 +138,9 @@ fn what_is_typed_after_a_dialogs_keys_goes_to_the_dialog() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn drags_and_clicks_count_however_slow_the_frame() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let at = Pos2::new(500.0, 350.0);
     let to = at + Vec2::new(80.0, 30.0);
     // Slowly: a frame for each event.
@@ -215,3 +207,5 @@ fn soma_at(window: &mut Window) -> Pos2 {
     let [x, y] = pixel.expect("in front");
     rect.min + Vec2::new(x as f32, y as f32)
 }
+
+neurotess_testing::main!();

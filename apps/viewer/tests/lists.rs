@@ -14,12 +14,12 @@ use neurotess_viewer::document::{ColorBy, Look};
 use neurotess_viewer::state::{CellPart, Picked};
 
 use common::{
-    SIZE, Window, click, hit_at, picture, run, settle, state, viewer, window, with_samples,
+    SIZE, Window, click, gpu, hit_at, picture, run, settle, state, viewer, window, with_samples,
 };
 
 /// A window with so many cells of three neurites, `cell_00` and so on.
-fn many(count: usize) -> Option<Window> {
-    let mut window = window()?;
+fn many(count: usize) -> Window {
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     for i in 0..count {
@@ -35,12 +35,12 @@ fn many(count: usize) -> Option<Window> {
         Command::Open(vec![folder.path().to_path_buf()]),
     );
     assert_eq!(state(&mut window).document.neurons.len(), count);
-    Some(window)
+    window
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_list_counts_what_it_shows() {
-    let Some(mut window) = many(12) else { return };
+    let mut window = many(12);
     window.get_by_label("12 neurons");
     state(&mut window).search = "_1".into();
     window.run_steps(2);
@@ -48,9 +48,9 @@ fn the_list_counts_what_it_shows() {
     assert!(window.query_by_label("cell_03").is_none());
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_pick_scrolls_both_lists_to_its_line() {
-    let Some(mut window) = many(40) else { return };
+    let mut window = many(40);
     let inside = |window: &Window, label: &str| {
         let panel = Rect::from_min_max(Pos2::ZERO, Pos2::new(picture(window).left(), SIZE.y));
         let mut lines = window.query_all_by_label(label).map(|node| node.rect());
@@ -63,9 +63,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     assert_eq!(picked.neuron, 37);
     assert!(inside(&window, "cell_37"));
     // A section of a cell with many.
-    let Some(mut window) = with_samples(&[Kind::Purkinje]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Purkinje]);
     let source = state(&mut window).source_of(0).expect("there").clone();
     let last = source.sections.len() - 1;
     let label = {
@@ -88,9 +86,9 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     assert_eq!(state(&mut window).reveal, None, "and then the list is free");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn what_is_hidden_is_not_marked() {
-    let Some(mut window) = many(2) else { return };
+    let mut window = many(2);
     let row = window.get_by_label("cell_01").rect().center();
     window.event(Event::PointerMoved(row));
     window.run_steps(3);
@@ -102,16 +100,16 @@ fn what_is_hidden_is_not_marked() {
     assert_eq!(hovered(&mut window), None);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_resized_window_keeps_the_cells_in_view() {
-    let Some(mut window) = many(3) else { return };
+    let mut window = many(3);
     let ends = |window: &mut Window| {
-        let places = [
+        let ends = [
             glam::DVec3::new(-5.0, 0.0, 0.0),
             glam::DVec3::new(185.0, 0.0, 0.0),
         ];
         let rect = picture(window);
-        places.map(|place| (hit_at(window, place).x - rect.left()) / rect.width())
+        ends.map(|end| (hit_at(window, end).x - rect.left()) / rect.width())
     };
     let within = |[left, right]: [f32; 2]| left > 0.0 && right < 1.0 && right - left > 0.6;
     assert!(within(ends(&mut window)), "{:?}", ends(&mut window));
@@ -136,9 +134,9 @@ fn a_resized_window_keeps_the_cells_in_view() {
     assert_ne!(state(&mut window).view, moved);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn panels_leave_the_picture_free_in_a_small_window() {
-    let Some(mut window) = many(12) else { return };
+    let mut window = many(12);
     for size in [Vec2::new(480.0, 320.0), Vec2::new(600.0, 400.0), SIZE] {
         window.set_size(size);
         for (tab, name) in Tab::ALL {
@@ -157,16 +155,16 @@ fn panels_leave_the_picture_free_in_a_small_window() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_legend_is_that_of_the_picture() {
-    let Some(mut window) = many(3) else { return };
+    let mut window = many(3);
     let before = viewer(&mut window).stage.legend().clone();
     let look = Look {
         color_by: ColorBy::PathDistance,
         ..state(&mut window).document.look.clone()
     };
     state(&mut window).run(Edit::SetLook(Box::new(look)));
-    // Drafts that are too dear wait until the explorer has made its own; the old picture stays meanwhile.
+    // Drafts that are too expensive wait until exploration mode has made its own; the old picture stays meanwhile.
     viewer(&mut window).stage.limit_patches(Some(0));
     for _ in 0..2000 {
         window.step();
@@ -181,11 +179,9 @@ fn the_legend_is_that_of_the_picture() {
     panic!("it never changed");
 }
 
-#[test]
-fn memory_is_told_whatever_was_opened() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+#[neurotess_testing::test(needs(gpu))]
+fn memory_is_shown_whatever_was_opened() {
+    let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mine.neurotess");
     run(&mut window, Command::SaveSession(file.clone()));
@@ -205,9 +201,9 @@ fn memory_is_told_whatever_was_opened() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
-    let Some(mut window) = many(1) else { return };
+    let mut window = many(1);
     let folder = tempfile::tempdir().expect("a folder");
     fs::create_dir(folder.path().join("reconstructions")).expect("made");
     for name in ["purkinje_1.swc", "purkinje_2.swc"] {
@@ -247,3 +243,5 @@ fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
     window.run_steps(3);
     window.get_by_label("No folder and no session here yet");
 }
+
+neurotess_testing::main!();

@@ -13,7 +13,7 @@ use neurotess_viewer::document::{
     ColorBy, Cut, Detail, Document, Lighting, LodKind, Look, SomaEdit, SourceId,
 };
 
-use common::{Window, run, settle, state, window, with_samples};
+use common::{Window, gpu, run, settle, state, window, with_samples};
 
 /// A soma whose neurites leave it anywhere but at round places.
 const UNEVEN: &str = "1 1 0 0 0 5.123 -1\n2 3 0.37 9.11 0.2 1 1\n3 3 1 30 0 1 2\n\
@@ -70,12 +70,10 @@ fn uneven(document: &Document) -> (Look, Detail, SomaEdit) {
     (look, detail, soma)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn looking_at_panels_changes_nothing() {
     for kind in Kind::ALL {
-        let Some(mut window) = with_samples(&[kind]) else {
-            return;
-        };
+        let mut window = with_samples(&[kind]);
         look_at_all_panels(&mut window, kind.name());
         run(&mut window, Edit::Select(vec![0], false));
         look_at_all_panels(&mut window, kind.name());
@@ -83,9 +81,9 @@ fn looking_at_panels_changes_nothing() {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn looking_at_numbers_that_are_not_round_changes_nothing() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("uneven.swc");
@@ -133,3 +131,5 @@ fn looking_at_numbers_that_are_not_round_changes_nothing() {
     run(&mut window, Command::Look(Side::Front));
     window.get_by_label("Save session…");
 }
+
+neurotess_testing::main!();

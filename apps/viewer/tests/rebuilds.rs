@@ -9,13 +9,13 @@ use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::{ColorBy, Look, Neuron, SourceId};
 use neurotess_viewer::state::Rebuilds;
 
-use common::{Window, run, settle, state, with_samples};
+use common::{Window, gpu, run, settle, state, with_samples};
 
 const NEURONS: usize = 2000;
 
 /// A window with thousands of instances of one tracing.
-fn many() -> Option<Window> {
-    let mut window = with_samples(&[Kind::Granule])?;
+fn many() -> Window {
+    let mut window = with_samples(&[Kind::Granule]);
     let neurons = &mut state(&mut window).document.neurons;
     for i in 1..NEURONS {
         let mut neuron = Neuron::new(SourceId(0), format!("n{i}"));
@@ -25,7 +25,7 @@ fn many() -> Option<Window> {
     }
     run(&mut window, Command::Home);
     settle(&mut window);
-    Some(window)
+    window
 }
 
 fn rebuilds(window: &mut Window) -> Rebuilds {
@@ -38,9 +38,9 @@ fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
     run(window, Edit::SetLook(Box::new(look)));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn only_what_a_change_concerns_is_made_again() {
-    let Some(mut window) = many() else { return };
+    let mut window = many();
     let before = rebuilds(&mut window);
     assert!(
         before.instances > 0 && before.templates > 0 && before.proxies > 0,
@@ -90,3 +90,5 @@ fn only_what_a_change_concerns_is_made_again() {
     window.run_steps(20);
     assert_eq!(rebuilds(&mut window), last, "nothing changes any more");
 }
+
+neurotess_testing::main!();

@@ -16,11 +16,11 @@ use neurotess_viewer::playback::Pace;
 use neurotess_viewer::save::{FilmOptions, PictureFile};
 
 use common::circuit::{make_sticks, write_circuit};
-use common::{Window, run, settle, snapshot, state, viewer, window};
+use common::{Window, gpu, run, settle, snapshot, state, viewer, window};
 
 /// A window with a circuit of nine cells, of which seven are in the report.
-fn with_circuit() -> Option<(Window, tempfile::TempDir)> {
-    let mut window = window()?;
+fn with_circuit() -> (Window, tempfile::TempDir) {
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     write_circuit(folder.path(), 9, 3, 7);
@@ -30,7 +30,7 @@ fn with_circuit() -> Option<(Window, tempfile::TempDir)> {
     );
     let count = state(&mut window).document.neurons.len();
     assert_eq!(count, 9, "{:?}", state(&mut window).problems);
-    Some((window, folder))
+    (window, folder)
 }
 
 fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
@@ -51,11 +51,19 @@ fn hues(window: &mut Window) -> usize {
     colored.collect::<std::collections::BTreeSet<_>>().len()
 }
 
-#[test]
+/// The need of tests of videos.
+fn ffmpeg() -> Result<(), String> {
+    let started = std::process::Command::new("ffmpeg")
+        .arg("-version")
+        .output();
+    started
+        .map(drop)
+        .map_err(|error| format!("ffmpeg does not start: {error}"))
+}
+
+#[neurotess_testing::test(needs(gpu))]
 fn neurons_of_one_tracing_have_their_own_colors() {
-    let Some((mut window, _folder)) = with_circuit() else {
-        return;
-    };
+    let (mut window, _folder) = with_circuit();
     let plain = |look: &mut Look| {
         look.legend = false;
         look.axes = false;
@@ -95,11 +103,9 @@ fn neurons_of_one_tracing_have_their_own_colors() {
 }
 
 /// Issue 9, 2.8: values had the resolution of traced points, and this dendrite has two.
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_stick_of_two_points_shows_all_its_compartments() {
-    let Some(mut window) = window() else {
-        return;
-    };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     write_circuit(folder.path(), 3, 1, 1);
@@ -149,11 +155,9 @@ fn bands(window: &mut Window) -> usize {
     (250..870).map(column).max().unwrap_or(0)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_report_is_played_stepped_and_saved() {
-    let Some((mut window, folder)) = with_circuit() else {
-        return;
-    };
+    let (mut window, folder) = with_circuit();
     let report = folder.path().join("voltage.h5");
     run(&mut window, Edit::SetReport(Some(report.clone())));
     let facts = state(&mut window).playback.facts.clone().expect("open");
@@ -182,7 +186,7 @@ fn a_report_is_played_stepped_and_saved() {
         assert_eq!(state(&mut window).playback.pace.time, time);
     }
     window.get_by_label("Play");
-    // The session keeps file, moment and which node each neuron is.
+    // The session keeps file, time and which node each neuron is.
     let pace = Pace {
         time: 6.5,
         speed: 2.0,
@@ -195,9 +199,7 @@ fn a_report_is_played_stepped_and_saved() {
     let text = std::fs::read_to_string(&session).expect("written");
     assert!(text.contains("report = \"voltage.h5\""), "{text}");
     let before = window.render().expect("a picture");
-    let Some(mut other) = self::window() else {
-        return;
-    };
+    let mut other = self::window();
     other.step();
     run(&mut other, Command::Open(vec![session]));
     assert_eq!(state(&mut other).playback.pace, pace);
@@ -220,15 +222,15 @@ fn a_report_is_played_stepped_and_saved() {
 fn assert_same(width: u32, a: &[u8], b: &[u8]) {
     let pairs = a.chunks(4).zip(b.chunks(4)).enumerate();
     let differ = pairs.filter(|(_, (a, b))| a != b);
-    let places: Vec<(usize, usize)> = differ
+    let pixels: Vec<(usize, usize)> = differ
         .map(|(i, _)| (i % width as usize, i / width as usize))
         .collect();
-    let columns = || places.iter().map(|p| p.0);
-    let rows = || places.iter().map(|p| p.1);
+    let columns = || pixels.iter().map(|p| p.0);
+    let rows = || pixels.iter().map(|p| p.1);
     assert!(
-        places.is_empty(),
+        pixels.is_empty(),
         "{} pixels differ, columns {:?} to {:?}, rows {:?} to {:?}",
-        places.len(),
+        pixels.len(),
         columns().min(),
         columns().max(),
         rows().min(),
@@ -236,11 +238,9 @@ fn assert_same(width: u32, a: &[u8], b: &[u8]) {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_frame_changes_values_and_nothing_else() {
-    let Some((mut window, folder)) = with_circuit() else {
-        return;
-    };
+    let (mut window, folder) = with_circuit();
     let report = folder.path().join("voltage.h5");
     run(&mut window, Edit::SetReport(Some(report)));
     let first = window.render().expect("a picture");
@@ -266,11 +266,9 @@ fn a_frame_changes_values_and_nothing_else() {
     assert!(state(&mut window).playback.facts.is_some());
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn spikes_flash() {
-    let Some((mut window, folder)) = with_circuit() else {
-        return;
-    };
+    let (mut window, folder) = with_circuit();
     let spikes = folder.path().join("spikes.h5");
     run(&mut window, Edit::SetReport(Some(spikes)));
     let facts = state(&mut window).playback.facts.clone().expect("open");
@@ -286,11 +284,9 @@ fn spikes_flash() {
     assert_ne!(slow.as_raw(), fast.as_raw());
 }
 
-#[test]
-fn reports_that_do_not_fit_are_told_while_the_rest_shows() {
-    let Some((mut window, folder)) = with_circuit() else {
-        return;
-    };
+#[neurotess_testing::test(needs(gpu))]
+fn reports_that_do_not_fit_are_reported_while_the_rest_shows() {
+    let (mut window, folder) = with_circuit();
     let other = folder.path().join("other");
     write_circuit(&other, 20, 2, 20);
     let nodes = folder.path().join("nodes.h5");
@@ -309,9 +305,9 @@ fn reports_that_do_not_fit_are_told_while_the_rest_shows() {
     assert_eq!(state(&mut window).document.look.color_by, ColorBy::Type);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_report_without_a_circuit_waits_for_it() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     write_circuit(folder.path(), 4, 2, 4);
@@ -337,11 +333,9 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_film_runs_through_the_time_of_a_report() {
-    let Some((mut window, folder)) = with_circuit() else {
-        return;
-    };
+    let (mut window, folder) = with_circuit();
     let report = folder.path().join("voltage.h5");
     run(&mut window, Edit::SetReport(Some(report)));
     let out = folder.path().join("film");
@@ -372,13 +366,11 @@ fn a_film_runs_through_the_time_of_a_report() {
     along.frames = 2;
     along.video = true;
     run(&mut window, Command::SaveFilm(along));
-    // Where ffmpeg is not installed the pictures are there, and a word about it.
+    // Where ffmpeg is not installed the pictures are there, and a problem names it.
     let problems = std::mem::take(&mut state(&mut window).problems);
-    if problems.is_empty() {
-        let video = std::fs::read(out.join("g.mp4")).expect("a video");
-        assert_eq!(&video[4..8], b"ftyp");
-    } else {
-        assert!(problems[0].why.contains("ffmpeg"), "{problems:?}");
+    assert_eq!(out.join("g.mp4").exists(), problems.is_empty());
+    if let Some(problem) = problems.first() {
+        assert!(problem.why.contains("ffmpeg"), "{problems:?}");
     }
     let pictures = names(&out).into_iter().filter(|n| n.ends_with(".png"));
     assert_eq!(pictures.count(), 5 + 3);
@@ -397,11 +389,34 @@ fn a_film_runs_through_the_time_of_a_report() {
     );
 }
 
-#[test]
-fn a_film_that_is_stopped_leaves_whole_pictures() {
-    let Some((mut window, folder)) = with_circuit() else {
-        return;
+#[neurotess_testing::test(needs(gpu, ffmpeg))]
+fn ffmpeg_makes_a_video_of_a_film() {
+    let (mut window, folder) = with_circuit();
+    for side in [Side::Front, Side::Iso] {
+        run(&mut window, Command::Look(side));
+        run(&mut window, Command::AddKeyView);
+    }
+    let film = FilmOptions {
+        picture: PictureFile {
+            out: folder.path().join("f.png"),
+            size: [200, 160],
+            samples: 4,
+            transparent: false,
+            replace: false,
+        },
+        frames: 2,
+        time: None,
+        video: true,
     };
+    run(&mut window, Command::SaveFilm(film));
+    assert_eq!(state(&mut window).problems, []);
+    let video = std::fs::read(folder.path().join("f.mp4")).expect("a video");
+    assert_eq!(&video[4..8], b"ftyp");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn a_film_that_is_stopped_leaves_whole_pictures() {
+    let (mut window, folder) = with_circuit();
     for side in [Side::Front, Side::Iso] {
         run(&mut window, Command::Look(side));
         run(&mut window, Command::AddKeyView);
@@ -449,3 +464,5 @@ fn wait(window: &mut Window, until: impl Fn(&mut Window) -> bool) {
         std::thread::sleep(Duration::from_millis(5));
     }
 }
+
+neurotess_testing::main!();

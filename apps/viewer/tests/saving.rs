@@ -11,7 +11,7 @@ use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::save::PictureFile;
 
-use common::{Window, run, settle, state, viewer, with_samples};
+use common::{Window, gpu, run, settle, state, viewer, with_samples};
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder").flatten();
@@ -41,11 +41,9 @@ fn wait(window: &mut Window, what: &str, until: impl Fn(&mut Window) -> bool) {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
     let picture = PictureFile {
         out: folder.path().join("large.png"),
@@ -95,3 +93,5 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     run(&mut window, Command::SavePicture(small));
     assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
 }
+
+neurotess_testing::main!();

@@ -24,7 +24,7 @@ use neurotess_viewer::state::{CellPart, Lowered, State};
 use neurotess_viewer::view::View;
 
 use common::{
-    SIZE, Window, click, hit_at, run, settle, snapshot, state, viewer, window, with_samples,
+    SIZE, Window, click, gpu, hit_at, run, settle, snapshot, state, viewer, window, with_samples,
 };
 
 /// Middle of the picture, where the soma of a single sample is: it is the target's.
@@ -32,9 +32,9 @@ fn middle(window: &mut Window) -> Pos2 {
     hit_at(window, glam::DVec3::ZERO)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn an_empty_window_says_how_to_begin() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.run_steps(3);
     snapshot(&mut window, "empty");
     window.get_by_label("star").click();
@@ -44,11 +44,9 @@ fn an_empty_window_says_how_to_begin() {
     assert_eq!(state(&mut window).document.neurons[0].name, "star");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_cell_is_drawn_picked_and_inspected() {
-    let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Pyramidal]);
     snapshot(&mut window, "cell");
     let at = middle(&mut window);
     window.event(Event::PointerMoved(at));
@@ -69,11 +67,9 @@ fn a_cell_is_drawn_picked_and_inspected() {
     assert_eq!(state(&mut window).document.selected().count(), 0);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn tabs_show_their_panels() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     for (tab, name) in [
         (Tab::Soma, "soma"),
         (Tab::Look, "look"),
@@ -103,11 +99,9 @@ fn slider(window: &mut Window, n: usize) -> egui::Rect {
     rects[n]
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
-    let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Pyramidal]);
     run(&mut window, Edit::Select(vec![0], false));
     run(&mut window, Command::Show(Tab::Soma));
     let close = state(&mut window).view.focused((glam::DVec3::ZERO, 16.0));
@@ -166,12 +160,10 @@ fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
     assert!(state(&mut window).touched.is_none());
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn several_neurons_are_laid_out_selected_and_hidden() {
     let kinds = [Kind::Star, Kind::Granule, Kind::Motor];
-    let Some(mut window) = with_samples(&kinds) else {
-        return;
-    };
+    let mut window = with_samples(&kinds);
     run(&mut window, Edit::SetGrid(true));
     run(&mut window, Command::Home);
     run(&mut window, Edit::Select(vec![1], false));
@@ -189,11 +181,9 @@ fn several_neurons_are_laid_out_selected_and_hidden() {
     assert!(!state(&mut window).document.neurons[1].hidden);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn every_edit_can_be_undone_and_done_again() {
-    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star, Kind::Granule]);
     run(&mut window, Edit::Select(vec![0], false));
     let look = Look {
         cut: Some(Cut {
@@ -249,11 +239,9 @@ fn every_edit_can_be_undone_and_done_again() {
     assert!(viewer(&mut window).fatal.is_none() && state(&mut window).problems.is_empty());
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn the_surface_follows_the_soma_editor() {
-    let Some(mut window) = with_samples(&[Kind::Motor]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Motor]);
     let volume = |window: &mut Window| {
         let source = state(window).source_of(0).expect("a source").clone();
         source.generated.somata[0].volume
@@ -294,11 +282,9 @@ fn the_surface_follows_the_soma_editor() {
     assert_eq!(volume(&mut window), usual);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn nothing_is_drawn_when_nothing_changes() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     window.run_steps(40);
     let output = window
         .output()
@@ -326,14 +312,12 @@ fn nothing_is_drawn_when_nothing_changes() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_lost_device_costs_no_work() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
-    let place = window.state_mut();
-    *place = place
+    let slot = window.state_mut();
+    *slot = slot
         .take()
         .map(|viewer| viewer.with_rescue(folder.path().to_path_buf()));
     run(&mut window, Edit::Select(vec![0], false));
@@ -349,7 +333,7 @@ fn a_lost_device_costs_no_work() {
         window.step();
         std::thread::sleep(Duration::from_millis(3));
     }
-    let said = viewer(&mut window).fatal.clone().expect("told");
+    let said = viewer(&mut window).fatal.clone().expect("an error");
     let file = folder.path().join("rescued.neurotess");
     assert!(said.contains("lost") && said.contains(&file.display().to_string()));
     let rescued = neurotess_viewer::session::Session::read(&file).expect("rescued");
@@ -360,11 +344,9 @@ fn a_lost_device_costs_no_work() {
     assert_eq!(rescued.view, turned);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_session_comes_back_as_it_was() {
-    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star, Kind::Granule]);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mine.neurotess");
     let soma = SomaEdit {
@@ -378,9 +360,7 @@ fn a_session_comes_back_as_it_was() {
     run(&mut window, Command::AddKeyView);
     run(&mut window, Command::SaveSession(file.clone()));
     let (document, view) = (state(&mut window).document.clone(), state(&mut window).view);
-    let Some(mut other) = self::window() else {
-        return;
-    };
+    let mut other = self::window();
     other.step();
     run(&mut other, Command::Open(vec![file.clone()]));
     assert_eq!(state(&mut other).document, document);
@@ -397,9 +377,9 @@ fn a_session_comes_back_as_it_was() {
 
 const CELL: &str = "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n";
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn failures_are_listed_while_the_rest_shows() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("good.swc"), CELL).expect("written");
@@ -420,9 +400,9 @@ fn failures_are_listed_while_the_rest_shows() {
     window.get_by_label("What went wrong");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_changed_file_is_offered_and_read_again() {
-    let Some(mut window) = window() else { return };
+    let mut window = window();
     window.step();
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("a.swc");
@@ -464,11 +444,9 @@ fn wait(window: &mut Window, until: impl Fn(&State) -> bool) {
     }
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn meshes_and_pictures_are_saved() {
-    let Some(mut window) = with_samples(&[Kind::Star, Kind::Granule]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star, Kind::Granule]);
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let meshes = MeshOptions {
@@ -504,11 +482,9 @@ fn is_png(path: &Path) -> bool {
     fs::read(path).is_ok_and(|bytes| bytes.starts_with(b"\x89PNG") && bytes.len() > 200)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_window_of_no_size_loses_nothing() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     for size in [
         Vec2::new(1.0, 1.0),
         Vec2::new(300.0, 20.0),
@@ -523,11 +499,9 @@ fn a_window_of_no_size_loses_nothing() {
     assert!(viewer(&mut window).fatal.is_none());
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn mouse_and_keys_move_the_camera() {
-    let Some(mut window) = with_samples(&[Kind::Star]) else {
-        return;
-    };
+    let mut window = with_samples(&[Kind::Star]);
     let view = |window: &mut Window| -> View { state(window).view };
     let at = Pos2::new(500.0, 350.0);
     let first = view(&mut window);
@@ -579,11 +553,9 @@ fn mouse_and_keys_move_the_camera() {
     }
 }
 
-#[test]
-fn what_is_too_dear_is_explored_says_so_and_comes_back() {
-    let Some(mut window) = with_samples(&[Kind::Pyramidal]) else {
-        return;
-    };
+#[neurotess_testing::test(needs(gpu))]
+fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
+    let mut window = with_samples(&[Kind::Pyramidal]);
     run(&mut window, Command::Show(Tab::Detail));
     let one = state(&mut window).counters.patches[1];
     assert!(one > 0, "counted");
@@ -597,11 +569,11 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     state_of.document.grid = true;
     run(&mut window, Command::Home);
     assert!(viewer(&mut window).stage.is_sharp(), "no draft");
-    let Some(Lowered::Triangles(Some([drawn, wanted]))) = state(&mut window).counters.lowered
+    let Some(Lowered::Triangles(Some([drawn, needed]))) = state(&mut window).counters.lowered
     else {
         panic!("explored: {:?}", state(&mut window).counters.lowered);
     };
-    assert!(drawn > 0 && drawn <= wanted);
+    assert!(drawn > 0 && drawn <= needed);
     window.get_by_label_contains("reduced: ");
     // What is seen is known there too: somata, and a section by its number.
     let parts = seen_parts(&mut window);
@@ -610,7 +582,7 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
         .iter()
         .filter(|(_, p)| matches!(p, CellPart::Section(_)));
     assert!(neurites.count() > 10, "{parts:?}");
-    // With wires the explorer cannot: coarser, and said.
+    // Exploration mode draws no wireframe: the picture is coarser, and the window says so.
     let mut look = state(&mut window).document.look.clone();
     look.wireframe = true;
     run(&mut window, Edit::SetLook(Box::new(look.clone())));
@@ -620,7 +592,7 @@ fn what_is_too_dear_is_explored_says_so_and_comes_back() {
     ));
     look.wireframe = false;
     run(&mut window, Edit::SetLook(Box::new(look)));
-    // Alone, it is whole again, and so are the words.
+    // Alone, it is whole again, and the window no longer says so.
     run(&mut window, Edit::Select(vec![1], false));
     run(&mut window, Edit::Isolate);
     assert_eq!(state(&mut window).counters.lowered, None);
@@ -640,3 +612,5 @@ fn seen_parts(window: &mut Window) -> std::collections::HashSet<(usize, CellPart
     seen.map(|seen| (seen.picked.neuron, seen.picked.part))
         .collect()
 }
+
+neurotess_testing::main!();

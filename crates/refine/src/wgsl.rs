@@ -203,12 +203,14 @@ impl Shader {
             let digits = part
                 .find(|c: char| !c.is_ascii_digit())
                 .unwrap_or(part.len());
+            // `other.wgsl:3` has been explained already.
+            let named = explained.ends_with(|c: char| c.is_alphanumeric() || c == '.');
             match part[..digits].parse() {
-                Ok(line) => {
+                Ok(line) if !named => {
                     let (file, line) = self.origin(line);
                     let _ = write!(explained, "{file}:{line}{}", &part[digits..]);
                 }
-                Err(_) => {
+                _ => {
                     let _ = write!(explained, "wgsl:{part}");
                 }
             }
@@ -254,7 +256,9 @@ mod tests {
         assert_eq!(shader.origin(line("fn z() {}")), ("a.wgsl", 8));
         assert_eq!(shader.origin(1), ("constants", 1));
         let said = format!("oh: wgsl:{}:4 and wgsl:x", line("fn z() {}"));
-        assert_eq!(shader.explain(&said), "oh: a.wgsl:8:4 and wgsl:x");
+        let explained = shader.explain(&said);
+        assert_eq!(explained, "oh: a.wgsl:8:4 and wgsl:x");
+        assert_eq!(shader.explain(&explained), explained, "once is enough");
     }
 
     #[test]

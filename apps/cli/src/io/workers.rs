@@ -32,7 +32,7 @@ pub(crate) fn run<I: Sync, T: Send>(
     let inner = threads.div_ceil(workers);
     let next = AtomicUsize::new(0);
     let results: Vec<_> = items.iter().map(|_| Mutex::new(None)).collect();
-    let labour = || {
+    let work_off = || {
         while let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             let done = guarded(|| work(&items[index]));
             *results[index]
@@ -46,7 +46,7 @@ pub(crate) fn run<I: Sync, T: Send>(
                 .num_threads(inner)
                 .stack_size(STACK)
                 .build()?;
-            std::thread::Builder::new().spawn_scoped(scope, move || pool.install(labour))?;
+            std::thread::Builder::new().spawn_scoped(scope, move || pool.install(work_off))?;
             anyhow::Ok(())
         };
         (0..workers).try_for_each(spawn)

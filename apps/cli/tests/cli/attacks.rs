@@ -3,7 +3,7 @@
 use crate::work::{SMALL, Work};
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn devices_and_pipes_are_refused_at_once() {
     use std::os::unix::fs::symlink;
     let work = Work::new();
@@ -36,7 +36,7 @@ fn devices_and_pipes_are_refused_at_once() {
 }
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn force_replaces_files_and_nothing_else() {
     use std::os::unix::fs::symlink;
     let work = Work::new();
@@ -59,7 +59,7 @@ fn force_replaces_files_and_nothing_else() {
     assert!(work.path("null.ply").is_symlink());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
     let work = Work::new();
     work.run("synth circuit -o circuit --neurons 5 --morphologies 2")
@@ -77,12 +77,12 @@ fn other_hdf5_files_of_a_folder_are_skipped_and_counted() {
         "{}",
         run.stderr()
     );
-    // PickHit itself, such a file is a failure.
+    // Named itself, such a file is a failure.
     work.run("info cells/nodes.h5").exits(1);
 }
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn names_give_no_orders_to_a_terminal() {
     let work = Work::new();
     work.file("\x1b[31mred\x1b[0m.swc", SMALL);
@@ -93,8 +93,8 @@ fn names_give_no_orders_to_a_terminal() {
     }
 }
 
-#[test]
-fn a_missing_input_is_told_before_its_output() {
+#[neurotess_testing::test]
+fn a_missing_input_is_reported_before_its_output() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     work.file("out.ply", "old");
@@ -109,8 +109,8 @@ fn a_missing_input_is_told_before_its_output() {
     }
 }
 
-#[test]
-fn odd_options_are_told_for_what_they_are() {
+#[neurotess_testing::test]
+fn odd_options_are_refused_or_warned_of() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let run = work.run("mesh cell.swc -o a.ply --level -1").exits(2);
@@ -129,7 +129,7 @@ fn odd_options_are_told_for_what_they_are() {
     );
     let run = work.run("--threads 20000 info cell.swc").exits(0);
     assert!(run.stderr().contains("--threads 20000"), "{}", run.stderr());
-    // Quiet or not, what was asked for is told.
+    // Quiet or not, the answer itself is printed.
     assert!(
         work.run("info cell.swc -q")
             .exits(0)

@@ -2,17 +2,14 @@
 
 use std::fs;
 
-use crate::render::can_draw;
+use crate::gpu;
 use crate::work::Work;
 
 const SMALL: &str = "bench refinement --neurons 1,3 --levels 1,2 --grow 4 --distinct 2 --points 60 \
                      --frames 1 --size 48x48";
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn refinement_gives_tables_json_and_a_plot() {
-    if !can_draw() {
-        return;
-    }
     let work = Work::new();
     let json = work
         .run(&format!("{SMALL} --json -o figures"))
@@ -52,11 +49,8 @@ fn refinement_gives_tables_json_and_a_plot() {
     );
 }
 
-#[test]
-fn what_memory_does_not_allow_is_left_out_and_told() {
-    if !can_draw() {
-        return;
-    }
+#[neurotess_testing::test(needs(gpu))]
+fn what_memory_does_not_allow_is_left_out_with_a_warning() {
     let work = Work::new();
     let run = work.run(&format!("{SMALL} --memory 0 --json")).exits(0);
     assert!(run.stderr().contains("left out"), "{}", run.stderr());
@@ -65,11 +59,8 @@ fn what_memory_does_not_allow_is_left_out_and_told() {
     assert!(rows.iter().all(|row| row["method"] != "prerefined"));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn exploration_is_timed_beside_adaptive_refinement() {
-    if !can_draw() {
-        return;
-    }
     let work = Work::new();
     let small = "bench exploration --neurons 1,6 --compare 1 --distinct 2 --points 60 --frames 1 \
                  --size 64x48 --budget 300";

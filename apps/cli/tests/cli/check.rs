@@ -16,7 +16,7 @@ const TETRAHEDRON: &str = "OFF
 3 2 0 3
 ";
 
-#[test]
+#[neurotess_testing::test]
 fn has_the_keys_of_the_contract() {
     let work = Work::new();
     work.file("mesh.off", TETRAHEDRON);
@@ -26,8 +26,8 @@ fn has_the_keys_of_the_contract() {
     insta::assert_snapshot!("check_text", text);
 }
 
-#[test]
-fn open_meshes_are_judged_and_broken_files_fail() {
+#[neurotess_testing::test]
+fn open_meshes_are_found_and_broken_files_fail() {
     let work = Work::new();
     work.file(
         "m/a.off",
@@ -43,16 +43,16 @@ fn open_meshes_are_judged_and_broken_files_fail() {
         (&json[0]["closed"], &json[2]["closed"]),
         (&false.into(), &true.into())
     );
-    let place = Path::new("m").join("b.off");
+    let file = Path::new("m").join("b.off");
     let errors = run.errors();
     assert_eq!(errors.len(), 1, "{}", run.stderr());
     assert!(
-        errors[0].starts_with(&format!("error: {}:", place.display())),
+        errors[0].starts_with(&format!("error: {}:", file.display())),
         "{errors:?}"
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn merging_closes_a_stl() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

@@ -5,27 +5,24 @@ use std::process::Command;
 
 use glam::{DMat3, DVec3};
 use neurotess::circuit::{Circuit, Report, Selection};
+use neurotess_testing::python_with;
 use serde_json::Value;
 
 use crate::work::Work;
 
-/// What another reader finds in a circuit; `None`, which is told, where it is not installed.
-fn judge(folder: &Path, reader: &str) -> Option<Value> {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/python");
-    let named = std::env::var_os("NEUROTESS_PYTHON").map(PathBuf::from);
-    let python = named.or_else(|| own.exists().then_some(own));
-    let has = |python: &PathBuf| {
-        let import = format!("import {reader}");
-        let output = Command::new(python).args(["-c", &import]).output();
-        output.is_ok_and(|output| output.status.success())
-    };
-    let Some(python) = python.filter(has) else {
-        #[expect(clippy::print_stderr, reason = "nothing is skipped in silence")]
-        {
-            eprintln!("skipped: no Python environment with {reader}");
-        }
-        return None;
-    };
+/// The need of tests that compare with libsonata.
+fn libsonata() -> Result<(), String> {
+    python_with("libsonata").map(drop)
+}
+
+/// The need of tests that compare with bluepysnap.
+fn bluepysnap() -> Result<(), String> {
+    python_with("bluepysnap").map(drop)
+}
+
+/// What another reader finds in a circuit.
+fn read_with(reader: &str, folder: &Path) -> Value {
+    let python = python_with(reader).expect("the test needs the reader");
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/read_circuit.py");
     let output = Command::new(python)
         .arg(script)
@@ -35,7 +32,7 @@ fn judge(folder: &Path, reader: &str) -> Option<Value> {
     let output = output.expect("Python runs");
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{errors}");
-    Some(serde_json::from_slice(&output.stdout).expect("JSON"))
+    serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
 fn made() -> (Work, PathBuf) {
@@ -51,21 +48,19 @@ fn numbers(value: &Value) -> Vec<f64> {
     list.iter().map(|v| v.as_f64().expect("a number")).collect()
 }
 
-#[test]
+#[neurotess_testing::test(needs(libsonata))]
 fn libsonata_reads_the_same_circuit() {
     let (_work, folder) = made();
-    let Some(theirs) = judge(&folder, "libsonata") else {
-        return;
-    };
+    let theirs = read_with("libsonata", &folder);
     let circuit = Circuit::open(&folder).expect("a circuit");
     assert!(circuit.failures.is_empty() && circuit.warnings.is_empty());
     let nodes = &circuit.populations[0];
     assert_eq!(theirs["n"], nodes.len());
     let axes = ["x", "y", "z"].map(|axis| numbers(&theirs[axis]));
-    for (row, place) in nodes.positions.iter().enumerate() {
-        let theirs_place = DVec3::new(axes[0][row], axes[1][row], axes[2][row]);
+    for (row, position) in nodes.positions.iter().enumerate() {
+        let their_position = DVec3::new(axes[0][row], axes[1][row], axes[2][row]);
         // Not equal: reading JSON rounds.
-        assert!(place.distance(theirs_place) < 1e-9);
+        assert!(position.distance(their_position) < 1e-9);
         let q = numbers(&theirs["quaternion"][row]);
         let own = nodes.rotations[row];
         let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
@@ -82,8 +77,8 @@ fn libsonata_reads_the_same_circuit() {
             node_set: Some(name.clone()),
             ..Selection::default()
         };
-        let chosen = circuit.select(&selection).expect("a set");
-        let own: Vec<f64> = chosen.iter().map(|n| f64::from(n.row)).collect();
+        let selected = circuit.select(&selection).expect("a set");
+        let own: Vec<f64> = selected.iter().map(|n| f64::from(n.row)).collect();
         assert_eq!(numbers(ids), own, "{name}");
     }
 
@@ -105,12 +100,10 @@ fn libsonata_reads_the_same_circuit() {
     assert!(!theirs["spikes"].as_array().expect("spikes").is_empty());
 }
 
-#[test]
+#[neurotess_testing::test(needs(bluepysnap))]
 fn bluepysnap_reads_the_same_circuit() {
     let (_work, folder) = made();
-    let Some(theirs) = judge(&folder, "bluepysnap") else {
-        return;
-    };
+    let theirs = read_with("bluepysnap", &folder);
     let circuit = Circuit::open(&folder).expect("a circuit");
     let nodes = &circuit.populations[0];
     assert_eq!(theirs["n"], nodes.len());
@@ -124,14 +117,14 @@ fn bluepysnap_reads_the_same_circuit() {
         node_set: Some("Upper pyramidal".into()),
         ..Selection::default()
     };
-    let chosen = circuit.select(&selection).expect("a set");
-    let own: Vec<f64> = chosen.iter().map(|n| f64::from(n.row)).collect();
+    let selected = circuit.select(&selection).expect("a set");
+    let own: Vec<f64> = selected.iter().map(|n| f64::from(n.row)).collect();
     assert!(!own.is_empty());
     assert_eq!(numbers(&theirs["upper"]), own);
     assert!(theirs["n_spikes"].as_u64().is_some_and(|n| n > 0));
 }
 
-#[test]
+#[neurotess_testing::test]
 fn the_seed_decides_every_file() {
     let (work, _) = made();
     for (folder, seed) in [("same", 9), ("other", 10)] {
@@ -151,7 +144,7 @@ fn the_seed_decides_every_file() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn info_tells_populations_bounds_and_reports() {
     let (work, _) = made();
     for input in ["c", "c/circuit_config.json", "c/simulation_config.json"] {
@@ -188,16 +181,16 @@ fn info_tells_populations_bounds_and_reports() {
     );
 }
 
-#[test]
-fn morphologies_and_circuits_are_told_in_one_list() {
+#[neurotess_testing::test]
+fn morphologies_and_circuits_are_in_one_list() {
     let (work, _) = made();
     let json = work.run("info c/morphologies c --json").exits(0).json();
     assert_eq!(json.as_array().map(Vec::len), Some(5));
     assert_eq!(json[4]["format"], "sonata");
 }
 
-#[test]
-fn cells_are_meshed_where_they_stand() {
+#[neurotess_testing::test]
+fn cells_are_meshed_at_their_positions() {
     let (work, folder) = made();
     let json = work
         .run("mesh c -o out --sample 3 --level 1 --json --soma sphere")
@@ -209,18 +202,18 @@ fn cells_are_meshed_where_they_stand() {
     for cell in cells {
         assert_eq!(cell["closed"], true);
         let id = cell["node_id"].as_u64().expect("an id") as usize;
-        let place = circuit.populations[0].positions[id];
+        let position = circuit.populations[0].positions[id];
         let out = cell["out"].as_str().expect("a file");
         assert!(out.ends_with(&format!("cortex_{id}.ply")), "{out}");
         let mesh = neurotess::mesh::read(&work.path(out)).expect("a mesh");
-        // The soma is around the node's place.
+        // The soma is around the node's position.
         let soma = mesh.vertices.iter().filter(|v| v.section == 0);
         let (sum, count) = soma.fold((DVec3::ZERO, 0.0), |(sum, count), v| {
             (sum + mesh.origin + v.position.as_dvec3(), count + 1.0)
         });
         assert!(
-            (sum / count).distance(place) < 3.0,
-            "{} {place}",
+            (sum / count).distance(position) < 3.0,
+            "{} {position}",
             sum / count
         );
     }
@@ -235,7 +228,7 @@ fn cells_are_meshed_where_they_stand() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn a_circuit_is_one_file_whose_nodes_share_morphologies() {
     let (work, folder) = made();
     let json = work
@@ -284,11 +277,11 @@ fn a_circuit_is_one_file_whose_nodes_share_morphologies() {
     }
 }
 
-#[test]
-fn cells_are_chosen() {
+#[neurotess_testing::test]
+fn cells_are_selected() {
     let (work, _) = made();
-    let ids = |chosen: &str, out: &str| {
-        let json = work.run(&format!("mesh c -o {out} --level 0 --json {chosen}"));
+    let ids = |options: &str, out: &str| {
+        let json = work.run(&format!("mesh c -o {out} --level 0 --json {options}"));
         let json = json.exits(0).json();
         let cells = json.as_array().expect("cells").iter();
         cells
@@ -310,7 +303,7 @@ fn cells_are_chosen() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn a_scene_of_files_is_a_circuit() {
     let work = Work::new();
     work.file("cell.swc", crate::work::SMALL);

@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::work::{BROKEN, SMALL, Work};
 
-#[test]
+#[neurotess_testing::test]
 fn swc_becomes_equal_swc() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -19,8 +19,8 @@ fn swc_becomes_equal_swc() {
     work.run("convert cell.swc -o copy.swc --force").exits(0);
 }
 
-#[test]
-fn folders_are_converted_and_failures_told() {
+#[neurotess_testing::test]
+fn folders_are_converted_and_failures_reported() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
     work.file("cells/sub/b.swc", BROKEN);
@@ -29,8 +29,8 @@ fn folders_are_converted_and_failures_told() {
     assert_eq!(work.names("out"), ["a.swc"]);
 }
 
-#[test]
-fn formats_turn_into_one_another_and_losses_are_told() {
+#[neurotess_testing::test]
+fn formats_turn_into_one_another_and_losses_are_reported() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     for (from, to) in [
@@ -64,7 +64,7 @@ fn formats_turn_into_one_another_and_losses_are_told() {
     assert_eq!(work.names("folder"), ["cell.h5"]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn other_formats_are_refused_with_what_can_be_written() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

@@ -35,62 +35,62 @@ fn is_there(program: &str, argument: &str) -> bool {
     command.status().is_ok()
 }
 
-/// The display, or nothing with a word about it.
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-pub(crate) fn display() -> Option<Display> {
-    let needed = [
+/// The need of tests on a display.
+pub(crate) fn display() -> Result<(), String> {
+    for (program, argument) in [
         ("Xvfb", "-help"),
         ("xdotool", "version"),
         ("openbox", "--version"),
-    ];
-    for (program, argument) in needed {
+        ("import", "-version"),
+    ] {
         if !is_there(program, argument) {
-            println!(
-                "SKIPPED: {program} is not installed: cargo xtask setup installs it on Debian"
-            );
-            return None;
+            return Err(format!(
+                "{program} is not installed: cargo xtask setup installs it on Debian"
+            ));
         }
     }
-    if neurotess::render::adapter::adapters().is_empty() {
-        println!("SKIPPED: no graphics adapter here");
-        return None;
-    }
-    // The server chooses a free number and says it on its standard output.
-    let mut server = Command::new("Xvfb")
-        .args([
-            "-displayfd",
-            "1",
-            "-screen",
-            "0",
-            "1280x860x24",
-            "-nolisten",
-            "tcp",
-            // A server that is left by its first client begins anew, and drops those that come meanwhile.
-            "-noreset",
-        ])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("Xvfb starts");
-    let mut line = String::new();
-    let out = server.stdout.take().expect("its output");
-    std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut line).expect("a number");
-    let name = format!(":{}", line.trim());
-    // Without one nobody has the keyboard.
-    let manager = Command::new("openbox")
-        .env("DISPLAY", &name)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("openbox starts");
-    Some(Display {
-        server,
-        manager,
-        name,
-    })
+    Ok(())
 }
 
 impl Display {
+    /// Starts both, on a free number.
+    pub(crate) fn open() -> Self {
+        // The server chooses a free number and says it on its standard output.
+        let mut server = Command::new("Xvfb")
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1280x860x24",
+                "-nolisten",
+                "tcp",
+                // A server that is left by its first client begins anew, and drops those that come meanwhile.
+                "-noreset",
+            ])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb starts");
+        let mut line = String::new();
+        let out = server.stdout.take().expect("its output");
+        std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut line)
+            .expect("a number");
+        let name = format!(":{}", line.trim());
+        // Without one nobody has the keyboard.
+        let manager = Command::new("openbox")
+            .env("DISPLAY", &name)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("openbox starts");
+        Self {
+            server,
+            manager,
+            name,
+        }
+    }
+
     pub(crate) fn xdotool(&self, arguments: &str) -> String {
         let mut command = Command::new("xdotool");
         command
@@ -112,9 +112,6 @@ impl Display {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("view-test");
         fs::create_dir_all(&folder).expect("made");
         let file = folder.join(format!("{name}.png"));
-        if !is_there("import", "-version") {
-            return usize::MAX;
-        }
         let mut command = Command::new("import");
         command
             .args(["-window", "root"])

@@ -2,7 +2,7 @@
 
 use crate::work::{BROKEN, SMALL, Work};
 
-#[test]
+#[neurotess_testing::test]
 fn help_is_as_agreed() {
     let work = Work::new();
     for command in [
@@ -24,7 +24,7 @@ fn help_is_as_agreed() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn wrong_usage_exits_with_2() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -63,7 +63,7 @@ fn wrong_usage_exits_with_2() {
     assert_eq!(work.names("."), ["cell.swc"]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn version_tells_features_on_request() {
     let work = Work::new();
     let short = work.run("--version").exits(0).stdout();
@@ -76,7 +76,7 @@ fn version_tells_features_on_request() {
     assert!(work.run("--version --json").exits(0).json()["version"].is_string());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn completions_of_all_shells() {
     let work = Work::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
@@ -85,7 +85,7 @@ fn completions_of_all_shells() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn quiet_says_nothing_but_errors() {
     let work = Work::new();
     work.file("cells/good.swc", SMALL);
@@ -97,7 +97,7 @@ fn quiet_says_nothing_but_errors() {
     assert_eq!(run.stderr().lines().count(), 1, "{}", run.stderr());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn color_is_asked_for_or_not() {
     let work = Work::new();
     let plain = work.run("info missing.swc").exits(1).stderr();

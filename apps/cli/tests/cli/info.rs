@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::work::{BROKEN, SMALL, Work};
 
-#[test]
+#[neurotess_testing::test]
 fn has_the_keys_of_the_contract() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -13,7 +13,7 @@ fn has_the_keys_of_the_contract() {
     insta::assert_json_snapshot!(run.json());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn samples_are_as_recorded() {
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples");
     let mut paths: Vec<_> = fs::read_dir(&samples)
@@ -36,7 +36,7 @@ fn samples_are_as_recorded() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn people_get_a_table() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -47,7 +47,7 @@ fn people_get_a_table() {
     insta::assert_snapshot!("table_of_two", two.stdout());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn failures_are_lines_and_the_others_are_done() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -59,11 +59,11 @@ fn failures_are_lines_and_the_others_are_done() {
     assert!(json[1]["error"].is_string() && json[2]["error"].is_string());
     let errors = run.errors();
     assert_eq!(errors.len(), 2, "{}", run.stderr());
-    let place = Path::new("cells").join("b.swc");
-    assert!(errors[0].starts_with(&format!("error: {}:2: 6 columns", place.display())));
+    let file = Path::new("cells").join("b.swc");
+    assert!(errors[0].starts_with(&format!("error: {}:2: 6 columns", file.display())));
 }
 
-#[test]
+#[neurotess_testing::test]
 fn strict_turns_warnings_into_errors() {
     let work = Work::new();
     work.file("free.swc", "1 3 0 0 0 1 -1\n2 3 0 9 0 1 1\n");

@@ -26,7 +26,7 @@ fn list(work: &Work, arguments: &str) -> Vec<String> {
     entries.iter().filter_map(name).collect()
 }
 
-#[test]
+#[neurotess_testing::test]
 fn folders_are_searched_and_globs_expand() {
     let work = cells();
     let all = [
@@ -42,7 +42,7 @@ fn folders_are_searched_and_globs_expand() {
     assert_eq!(list(&work, "cells/b.swc cells/a.swc"), [all[1], all[0]]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn nothing_that_matches_is_an_error() {
     let work = cells();
     std::fs::create_dir(work.path("empty")).expect("made");
@@ -53,7 +53,7 @@ fn nothing_that_matches_is_an_error() {
     work.run("info empty cells/a.swc").exits(1);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn outputs_repeat_the_structure() {
     let work = cells();
     work.run("mesh cells -o out --level 1 --format off")
@@ -64,8 +64,8 @@ fn outputs_repeat_the_structure() {
     assert_eq!(names, expected);
 }
 
-#[test]
-fn colliding_outputs_are_told_before_anything_is_done() {
+#[neurotess_testing::test]
+fn colliding_outputs_are_refused_before_anything_is_done() {
     let work = cells();
     let run = work.run("mesh cells/a.swc cells/sub/a.swc -o out").exits(2);
     assert!(
@@ -76,7 +76,7 @@ fn colliding_outputs_are_told_before_anything_is_done() {
     assert!(work.files("out").is_empty());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn one_file_goes_to_a_file_or_into_a_folder() {
     let work = cells();
     work.run("mesh cells/a.swc -o x/y.stl --level 1").exits(0);
@@ -87,7 +87,7 @@ fn one_file_goes_to_a_file_or_into_a_folder() {
     assert_eq!(work.names("there"), ["a.obj"]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn links_in_circles_end() {
     #[cfg(unix)]
     {

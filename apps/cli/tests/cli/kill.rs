@@ -32,7 +32,7 @@ fn send(signal: &str, child: &Child) {
     assert!(status.expect("kill runs").success());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn interrupted_runs_leave_nothing_and_exit_with_130() {
     let work = Work::new();
     work.file("cell.swc", &long_cell(3000));
@@ -47,7 +47,7 @@ fn interrupted_runs_leave_nothing_and_exit_with_130() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn an_interrupted_run_says_so_in_its_document() {
     let work = Work::new();
     work.file("cell.swc", &long_cell(3000));
@@ -63,7 +63,7 @@ fn an_interrupted_run_says_so_in_its_document() {
     assert!(error.starts_with("interrupted"), "{document}");
 }
 
-#[test]
+#[neurotess_testing::test]
 fn killed_and_started_again_gives_the_same_files() {
     let work = Work::new();
     for i in 0..12 {
@@ -75,7 +75,7 @@ fn killed_and_started_again_gives_the_same_files() {
         work.file(&format!("cells/{i}.swc"), &text);
     }
     work.run("mesh cells -o whole --level 8").exits(0);
-    // At several moments: while the first files are written, and a little later.
+    // At several times: while the first files are written, and a little later.
     for pause in [0, 15, 60] {
         let mut child = start(
             &work,
@@ -90,7 +90,7 @@ fn killed_and_started_again_gives_the_same_files() {
     work.run("mesh cells -o again --level 8 --resume --log log.jsonl")
         .exits(0);
     assert_eq!(work.names("whole"), work.names("again"));
-    // Whatever the moment, no output lacks its line.
+    // Whenever it ends, no output lacks its line.
     let log = std::fs::read_to_string(work.path("log.jsonl")).expect("a log");
     for name in work.names("again") {
         assert!(log.contains(&format!("\"again/{name}\"")), "{name}");

@@ -19,3 +19,12 @@ mod values;
 mod view;
 mod view_keys;
 mod work;
+
+/// The need of tests that draw.
+pub(crate) fn gpu() -> Result<(), String> {
+    let missing = || "no graphics adapter was found".to_owned();
+    let adapters = neurotess::render::adapter::adapters();
+    adapters.first().map(drop).ok_or_else(missing)
+}
+
+neurotess_testing::main!();

@@ -27,7 +27,7 @@ fn checked(work: &Work, arguments: &str) -> Value {
         .clone()
 }
 
-#[test]
+#[neurotess_testing::test]
 fn report_has_the_keys_and_agrees_with_check() {
     let (work, mesh) = meshed("-o cell.ply");
     let check = checked(&work, "cell.ply");
@@ -61,7 +61,7 @@ fn report_has_the_keys_and_agrees_with_check() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn every_format_is_written_and_closed() {
     for format in ["ply", "obj", "stl", "glb", "off", "vtu"] {
         let (work, mesh) = meshed(&format!("-o cell.{format} --level 2"));
@@ -72,7 +72,7 @@ fn every_format_is_written_and_closed() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn format_decides_before_the_extension() {
     let (work, _) = meshed("-o cell.data --format off --level 1");
     assert!(
@@ -82,7 +82,7 @@ fn format_decides_before_the_extension() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn levels_and_errors_set_the_number_of_faces() {
     let faces = |arguments: &str| {
         let (_, mesh) = meshed(arguments);
@@ -104,7 +104,7 @@ fn levels_and_errors_set_the_number_of_faces() {
     assert!(quads > 10 * coarse);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn options_change_the_shape() {
     let volume = |arguments: &str| {
         let (_, mesh) = meshed(&format!("-o cell.ply {arguments}"));
@@ -134,7 +134,7 @@ fn options_change_the_shape() {
     assert!(near(volume("--types axon,basal,apical_dendrite")));
 }
 
-#[test]
+#[neurotess_testing::test]
 fn free_neurites_are_components() {
     let (_, mesh) = meshed("-o cell.ply --soma none");
     assert_eq!(mesh["components"], 2);
@@ -142,7 +142,7 @@ fn free_neurites_are_components() {
     assert_eq!(mesh["soma_volume"], 0.0);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn nothing_left_is_a_failure() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -157,7 +157,7 @@ fn nothing_left_is_a_failure() {
     assert_eq!(work.names("."), ["cell.swc"]);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn existing_files_stay_without_force() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -173,7 +173,7 @@ fn existing_files_stay_without_force() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn a_broken_cell_does_not_stop_the_others() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -195,7 +195,7 @@ fn a_broken_cell_does_not_stop_the_others() {
     assert_eq!(lines.iter().filter(|l| l["volume"].is_f64()).count(), 2);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn strict_refuses_warnings() {
     let work = Work::new();
     work.file("cell.swc", "1 3 0 0 0 1 -1\n2 3 0 9 0 1 1\n");
@@ -203,7 +203,7 @@ fn strict_refuses_warnings() {
     work.run("mesh cell.swc -o cell.ply").exits(0);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn shards_partition_the_inputs() {
     let work = Work::new();
     for i in 0..5 {
@@ -225,7 +225,7 @@ fn shards_partition_the_inputs() {
     assert!(bytes("whole") == bytes("parts"));
 }
 
-#[test]
+#[neurotess_testing::test]
 fn resume_does_only_what_is_missing() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -253,7 +253,7 @@ fn resume_does_only_what_is_missing() {
         .exits(0);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn threads_do_not_change_the_files() {
     let work = Work::new();
     work.file("cell.swc", &crate::work::long_cell(300));

@@ -1,26 +1,12 @@
-//! `neurotess render`. Where no adapter is, what it does without one is all that is tested.
+//! `neurotess render`, with an adapter and without one.
 
 use std::collections::BTreeSet;
 use std::fs;
 
 use serde_json::Value;
 
+use crate::gpu;
 use crate::work::{BROKEN, Run, SMALL, Work};
-
-/// Whether pictures can be drawn here; says so where not.
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-pub(crate) fn can_draw() -> bool {
-    let work = Work::new();
-    work.file("cell.swc", SMALL);
-    let run = work.run("render cell.swc -o cell.png --size 8x8");
-    if run.code() == 0 {
-        return true;
-    }
-    assert_eq!(run.code(), 1, "{}", run.stderr());
-    assert!(run.errors()[0].contains("install"), "{}", run.stderr());
-    println!("SKIPPED: {}", run.errors()[0]);
-    false
-}
 
 /// A picture: width, height, samples of a pixel, bytes.
 pub(crate) struct Picture {
@@ -82,11 +68,8 @@ fn picture(arguments: &str) -> Picture {
     Picture::read(&drawn(arguments).0, "cell.png")
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_cell_becomes_a_picture_in_the_colors_of_its_types() {
-    if !can_draw() {
-        return;
-    }
     let picture = picture("");
     assert_eq!((picture.size, picture.channels), ((120, 90), 3));
     assert_eq!(picture.pixels[..3], [255; 3], "white behind");
@@ -96,11 +79,8 @@ fn a_cell_becomes_a_picture_in_the_colors_of_its_types() {
     assert!(other.count(2) < picture.count(2) && other.pixels != picture.pixels);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn every_option_of_the_contract_draws() {
-    if !can_draw() {
-        return;
-    }
     let plain = picture("").pixels;
     for arguments in [
         "--level 1",
@@ -141,16 +121,13 @@ fn every_option_of_the_contract_draws() {
         assert!(other.pixels != plain, "{arguments}");
         assert!(other.hues().len() > 3, "{arguments}: {:?}", other.hues());
     }
-    let asked =
+    let explicit =
         picture("--view front --samples 16 --palette neurom --light soft --ao --pixels 0.25");
-    assert!(asked.pixels == plain, "defaults are what help says");
+    assert!(explicit.pixels == plain, "defaults are what help says");
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
-    if !can_draw() {
-        return;
-    }
     let drawn = |arguments: &str| {
         let (work, _) = drawn(&format!("--stats stats.json {arguments}"));
         let stats = fs::read_to_string(work.path("stats.json")).expect("stats");
@@ -177,22 +154,16 @@ fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn transparent_pictures_have_alpha() {
-    if !can_draw() {
-        return;
-    }
     let picture = picture("--transparent --no-legend");
     assert_eq!(picture.channels, 4);
     let alphas: BTreeSet<u8> = picture.pixels.chunks(4).map(|p| p[3]).collect();
     assert!(alphas.contains(&0) && alphas.contains(&255) && alphas.len() > 6);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn stats_have_the_keys_of_the_contract() {
-    if !can_draw() {
-        return;
-    }
     let (work, run) = drawn("--stats stats.json --json");
     let text = fs::read_to_string(work.path("stats.json")).expect("stats");
     let stats: Value = serde_json::from_str(&text).expect("JSON");
@@ -220,11 +191,8 @@ fn stats_have_the_keys_of_the_contract() {
     assert_eq!(json["triangles"], stats["triangles"]);
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn turntables_are_numbered_and_turn() {
-    if !can_draw() {
-        return;
-    }
     let (work, _) = {
         let work = Work::new();
         work.file("cell.swc", SMALL);
@@ -245,11 +213,8 @@ fn turntables_are_numbered_and_turn() {
     assert!(a != b);
 }
 
-#[test]
-fn several_cells_stand_in_one_picture_and_a_broken_one_is_told() {
-    if !can_draw() {
-        return;
-    }
+#[neurotess_testing::test(needs(gpu))]
+fn several_cells_are_in_one_picture_and_a_broken_one_is_reported() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
     work.file("cells/b.swc", BROKEN);
@@ -265,11 +230,8 @@ fn several_cells_stand_in_one_picture_and_a_broken_one_is_told() {
     assert_eq!(Picture::read(&work, "all.png").size, (90, 60));
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn nothing_to_draw_is_a_picture_of_nothing() {
-    if !can_draw() {
-        return;
-    }
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let run = work
@@ -288,7 +250,7 @@ fn nothing_to_draw_is_a_picture_of_nothing() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn files_stay_without_force_and_nothing_is_left_half_written() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -312,7 +274,7 @@ fn files_stay_without_force_and_nothing_is_left_half_written() {
 
 /// Drivers are hidden by the variables of the loaders that Linux has.
 #[cfg(target_os = "linux")]
-#[test]
+#[neurotess_testing::test]
 fn without_an_adapter_it_says_what_to_install() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -336,7 +298,7 @@ fn without_an_adapter_it_says_what_to_install() {
     assert!(version.contains("adapter: none"), "{version}");
 }
 
-#[test]
+#[neurotess_testing::test]
 fn wrong_usage_of_render_exits_with_2() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -376,11 +338,8 @@ fn wrong_usage_of_render_exits_with_2() {
     assert_eq!(work.names("."), ["cell.swc"]);
 }
 
-#[test]
-fn circuits_are_drawn_cell_by_cell_where_they_stand() {
-    if !can_draw() {
-        return;
-    }
+#[neurotess_testing::test(needs(gpu))]
+fn circuits_are_drawn_cell_by_cell_at_their_positions() {
     let work = Work::new();
     work.run("synth circuit -o circuit --neurons 6 --morphologies 2 --seed 5")
         .exits(0);

@@ -13,7 +13,7 @@ fn vertices(json: &Value) -> Vec<&Value> {
     entries.iter().map(|entry| &entry["vertices"]).collect()
 }
 
-#[test]
+#[neurotess_testing::test]
 fn outputs_of_other_options_are_made_again() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -62,7 +62,7 @@ fn outputs_of_other_options_are_made_again() {
     );
 }
 
-#[test]
+#[neurotess_testing::test]
 fn what_nothing_is_known_of_stays_and_that_is_said() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -84,7 +84,7 @@ fn what_nothing_is_known_of_stays_and_that_is_said() {
     assert!(forced[0]["vertices"].is_u64());
 }
 
-#[test]
+#[neurotess_testing::test]
 fn several_runs_share_a_folder() {
     let work = Work::new();
     for i in 0..8 {
@@ -118,7 +118,7 @@ fn several_runs_share_a_folder() {
     assert!(bytes("out") == bytes("alone"));
 }
 
-#[test]
+#[neurotess_testing::test]
 fn a_log_that_lacks_lines_gets_them() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);

@@ -19,7 +19,7 @@ fn fed(mut command: Command, input: &[u8]) -> Run {
     Run(child.wait_with_output().expect("it ends"))
 }
 
-#[test]
+#[neurotess_testing::test]
 fn minus_is_standard_input_and_output() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -76,8 +76,8 @@ fn minus_is_standard_input_and_output() {
 }
 
 #[cfg(target_os = "linux")]
-#[test]
-fn a_full_disk_behind_standard_output_is_told() {
+#[neurotess_testing::test]
+fn a_full_disk_behind_standard_output_is_an_error() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     for command in [
@@ -107,7 +107,7 @@ fn a_full_disk_behind_standard_output_is_told() {
 }
 
 #[cfg(unix)]
-#[test]
+#[neurotess_testing::test]
 fn a_reader_that_has_gone_is_no_error() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -121,7 +121,7 @@ fn a_reader_that_has_gone_is_no_error() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn whatever_fails_json_is_one_document() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -165,15 +165,15 @@ fn whatever_fails_json_is_one_document() {
     }
 }
 
-#[test]
-fn places_are_written_one_way() {
+#[neurotess_testing::test]
+fn errors_name_file_and_line_one_way() {
     let work = Work::new();
     work.file("broken.swc", BROKEN);
     work.file("broken.neurotess", "version = ");
     work.file("circuit.json", "{\n\"networks\": 3,}");
     work.file("cells.scene.toml", "cells = []\nx");
     work.file("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0\n");
-    for (command, place) in [
+    for (command, file_and_line) in [
         ("info broken.swc", "error: broken.swc:2: "),
         (
             "render broken.neurotess -o a.png",
@@ -184,11 +184,11 @@ fn places_are_written_one_way() {
         ("check mesh.off", "error: mesh.off:4: "),
     ] {
         let said = work.run(command).exits(1).stderr();
-        assert!(said.starts_with(place), "{command}: {said}");
+        assert!(said.starts_with(file_and_line), "{command}: {said}");
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn pages_of_the_manual_are_roff() {
     let work = Work::new();
     for (command, title) in [("man", "neurotess"), ("man mesh", "neurotess-mesh")] {
@@ -198,7 +198,7 @@ fn pages_of_the_manual_are_roff() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn shells_complete_palettes_and_color_maps() {
     let work = Work::new();
     let script = work.run("completions bash").exits(0).stdout();
@@ -207,7 +207,7 @@ fn shells_complete_palettes_and_color_maps() {
 
 /// Mesa's layer that selects devices says an error where there is no display and nothing keeps it away.
 #[cfg(target_os = "linux")]
-#[test]
+#[neurotess_testing::test(needs(crate::gpu))]
 fn pictures_without_a_window_ask_for_no_display() {
     let work = Work::new();
     work.file("cell.swc", SMALL);

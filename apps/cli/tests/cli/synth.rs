@@ -2,7 +2,7 @@
 
 use crate::work::Work;
 
-#[test]
+#[neurotess_testing::test]
 fn the_seed_decides() {
     let work = Work::new();
     let json = work
@@ -20,7 +20,7 @@ fn the_seed_decides() {
     work.run("synth star -o a.swc").exits(1);
 }
 
-#[test]
+#[neurotess_testing::test]
 fn many_cells_are_distinct_and_mesh() {
     let work = Work::new();
     work.run("synth pyramidal -o cells --count 4 --points 200")
@@ -42,7 +42,7 @@ fn many_cells_are_distinct_and_mesh() {
     }
 }
 
-#[test]
+#[neurotess_testing::test]
 fn every_kind_grows() {
     let work = Work::new();
     for kind in [

@@ -1,6 +1,7 @@
 //! `neurotess render --report`: values of a simulation on the membrane.
 
-use crate::render::{Picture, can_draw};
+use crate::gpu;
+use crate::render::Picture;
 use crate::work::Work;
 
 const CIRCUIT: &str = "synth circuit -o c --neurons 12 --morphologies 3 --seed 4";
@@ -17,11 +18,8 @@ fn brightest(work: &Work, options: &str) -> u32 {
     picture.pixels().map(sum).max().unwrap_or(0)
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn an_action_potential_is_seen_when_it_comes() {
-    if !can_draw() {
-        return;
-    }
     let work = Work::new();
     work.run(CIRCUIT).exits(0);
     // The only cell to fire in the first 20 ms does so at 14.2 ms: its soma is the brightest thing.
@@ -42,11 +40,8 @@ fn an_action_potential_is_seen_when_it_comes() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn a_series_runs_through_time_in_one_start() {
-    if !can_draw() {
-        return;
-    }
     let work = Work::new();
     work.run(CIRCUIT).exits(0);
     let look = "--size 160x200 --samples 4 --no-legend --background black --light flat --ao 0";
@@ -69,7 +64,7 @@ fn a_series_runs_through_time_in_one_start() {
     }
     let [a, b] = [files[0], files[1]].map(|name| Picture::read(&work, name).pixels);
     assert!(a != b);
-    // The camera may go around meanwhile, and a number of pictures may stand for the step.
+    // The camera may go around meanwhile, and a number of pictures may replace the step.
     work.run(&format!(
         "render c -o g.png {look} {report} --time 0:3 --frames 2 --turntable"
     ))
@@ -100,11 +95,8 @@ fn a_series_runs_through_time_in_one_start() {
     );
 }
 
-#[test]
+#[neurotess_testing::test(needs(gpu))]
 fn cells_have_colors_as_a_whole() {
-    if !can_draw() {
-        return;
-    }
     let work = Work::new();
     work.run(CIRCUIT).exits(0);
     let hues = |options: &str| {
@@ -137,12 +129,10 @@ fn cells_have_colors_as_a_whole() {
     assert!(unknown.stderr().contains("layer, "), "{}", unknown.stderr());
 }
 
-#[test]
-fn reports_that_do_not_fit_are_told() {
+#[neurotess_testing::test]
+fn options_of_reports_that_do_not_fit_are_wrong_usage() {
     let work = Work::new();
     work.run(CIRCUIT).exits(0);
-    work.run("synth circuit -o other --neurons 20 --morphologies 2 --seed 5")
-        .exits(0);
     work.run("synth pyramidal -o cell.swc").exits(0);
     for (line, code, said) in [
         (
@@ -166,9 +156,14 @@ fn reports_that_do_not_fit_are_told() {
         let run = work.run(line).exits(code);
         assert!(run.stderr().contains(said), "{line}: {}", run.stderr());
     }
-    if !can_draw() {
-        return;
-    }
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn reports_of_other_circuits_are_refused() {
+    let work = Work::new();
+    work.run(CIRCUIT).exits(0);
+    work.run("synth circuit -o other --neurons 20 --morphologies 2 --seed 5")
+        .exits(0);
     for (line, said) in [
         (
             "--report c/reports/voltage.h5 --time 400",

@@ -24,14 +24,17 @@ pub(crate) const SIZE: Vec2 = Vec2::new(1180.0, 740.0);
 
 pub(crate) type Window = Harness<'static, Option<Viewer>>;
 
-#[expect(clippy::print_stdout, reason = "a test says what it skips")]
-/// The window on a software adapter if there is one, or nothing with a word about it.
-pub(crate) fn window() -> Option<Window> {
+/// The need of tests that open a window.
+pub(crate) fn gpu() -> Result<(), String> {
+    let missing = || "no graphics adapter was found".to_owned();
+    adapters().first().map(drop).ok_or_else(missing)
+}
+
+/// The window, on a software adapter where there is one, so that snapshots are drawn as they were.
+pub(crate) fn window() -> Window {
     let found = adapters();
-    let Some(adapter) = found.iter().find(|a| a.software).or(found.first()) else {
-        println!("SKIPPED: no graphics adapter here");
-        return None;
-    };
+    let adapter = found.iter().find(|a| a.software).or(found.first());
+    let adapter = adapter.expect("the test has needs(gpu)");
     let setup = wgpu_setup(Some(adapter.name.clone()), Arc::default());
     let render = create_render_state(setup, RendererOptions::PREDICTABLE);
     let ours = render.clone();
@@ -39,7 +42,7 @@ pub(crate) fn window() -> Option<Window> {
         folder: PathBuf::from("/"),
         ..Settings::default()
     };
-    let harness = Harness::builder()
+    Harness::builder()
         .with_size(SIZE)
         .renderer(WgpuTestRenderer::from_render_state(render))
         .build_ui_state(
@@ -51,8 +54,7 @@ pub(crate) fn window() -> Option<Window> {
                 viewer.ui(ui);
             },
             None,
-        );
-    Some(harness)
+        )
 }
 
 pub(crate) fn viewer(window: &mut Window) -> &mut Viewer {
@@ -84,13 +86,13 @@ pub(crate) fn run(window: &mut Window, command: impl Into<Command>) {
     settle(window);
 }
 
-pub(crate) fn with_samples(kinds: &[Kind]) -> Option<Window> {
-    let mut window = window()?;
+pub(crate) fn with_samples(kinds: &[Kind]) -> Window {
+    let mut window = window();
     window.step();
     for &kind in kinds {
         run(&mut window, Command::OpenSample(kind));
     }
-    Some(window)
+    window
 }
 
 /// Pixels that may differ from the picture that is kept: single ones.
@@ -119,7 +121,7 @@ pub(crate) fn snapshot(window: &mut Window, name: &str) {
     image_snapshot_options(&image, name, &options);
 }
 
-/// Where the window tells times that it has measured: the soma's, and below their heading those of drawing.
+/// Where the window shows times that it has measured: the soma's, and below their heading those of drawing.
 fn changing(window: &Window) -> Vec<Rect> {
     let mut masks = Vec::new();
     let heading = window.query_all_by_label("Drawing times").next();
@@ -146,11 +148,11 @@ pub(crate) fn picture(window: &Window) -> Rect {
     window.get_by_role(Role::Canvas).rect()
 }
 
-/// Where a place of the world is seen.
-pub(crate) fn hit_at(window: &mut Window, place: glam::DVec3) -> Pos2 {
+/// Where the picture shows a position of the world.
+pub(crate) fn hit_at(window: &mut Window, position: glam::DVec3) -> Pos2 {
     let rect = picture(window);
     let size = [rect.width(), rect.height()].map(|n| n as u32);
-    let pixel = state(window).view.camera().pixel_of(place, size);
+    let pixel = state(window).view.camera().pixel_of(position, size);
     let [x, y] = pixel.expect("in front");
     rect.min + Vec2::new(x as f32, y as f32)
 }
