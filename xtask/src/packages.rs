@@ -37,7 +37,8 @@ pub(crate) fn features() -> anyhow::Result<String> {
 
 /// Packs every crate that is for others. What a package would build is not built again.
 pub(crate) fn package() -> anyhow::Result<String> {
-    let pack = "package --workspace --exclude xtask --no-verify --allow-dirty --locked \
+    let pack = "package --workspace --exclude xtask --exclude neurotess-testing \
+                --exclude neurotess-testing-macros --no-verify --allow-dirty --locked \
                 --target-dir target/features";
     run(&mut cargo(pack)).map(|()| "every crate packs".into())
 }
