@@ -49,7 +49,7 @@ impl Finishing {
 
 /// What is drawn in one pass over the targets.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct MeshPart {
+pub(crate) struct TilePass {
     pub(crate) round: usize,
     /// Which of the source's shaders draw.
     pub(crate) shaders: Range<usize>,
@@ -61,7 +61,7 @@ pub(crate) struct MeshPart {
     pub(crate) within: Option<[u32; 4]>,
 }
 
-impl MeshPart {
+impl TilePass {
     fn round(round: usize, rounds: usize) -> Self {
         Self {
             round,
@@ -197,7 +197,7 @@ impl TileRenderer {
         for round in 0..rounds {
             let timestamps = self.timer.compute(Pass::Choose);
             source.choose(round, &mut encoder, timestamps);
-            let part = MeshPart::round(round, rounds);
+            let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }
         let over = |n: u32| n.div_ceil(8);
@@ -250,7 +250,7 @@ impl TileRenderer {
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
             source.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
-            let part = MeshPart::round(round, rounds);
+            let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }
         // Passes that do nothing: their times are read with the others'.
@@ -320,7 +320,7 @@ impl TileRenderer {
     pub(crate) fn draw(
         &self,
         source: &dyn VertexSource,
-        part: &MeshPart,
+        part: &TilePass,
         targets: &Targets,
         group: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,

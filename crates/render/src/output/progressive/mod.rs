@@ -3,7 +3,7 @@
 //! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
 //! camera moves a **draft** is drawn at once: four samples, no occlusion. At rest the picture is made in
 //! **steps** of one sub-pixel each, moved so that they add up to the samples of a saved picture
-//! (`picture.rs`), and each step in **slices**, so that each ends soon whatever the
+//! (`still.rs`), and each step in **slices**, so that each ends soon whatever the
 //! scene: a window can show what there is, and stop.
 //!
 //! ```text
@@ -11,54 +11,31 @@
 //!      └─▶ ids: which patch is at which pixel
 //! ```
 
+mod canvas;
+mod clock;
+mod step;
+
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use std::sync::atomic::Ordering;
 
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::output::ids::Identifier;
 use crate::output::still::{Occlusion, samples_in_sub_pixel};
-use crate::output::tiles::{MeshPart, TileRenderer};
-use crate::scene::color::{ColorTable, InstanceValues, Rgb, linear};
+use crate::output::tiles::{TilePass, TileRenderer};
+use crate::scene::color::{ColorTable, InstanceValues};
 use crate::shading::finish::{Finish, Finisher, Last};
-use crate::shading::present::{Outlines, Presenter, Screen};
-use crate::shading::shade::{Look, PipelineKey, Shade};
-use crate::shading::targets::Targets;
+use crate::shading::present::{Outlines, Presenter};
+use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
 use crate::sources::pick::PickIds;
-use crate::view::camera::Camera;
-use crate::view::frame::{Frame, Tile};
 
-/// What is to be seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewParams {
-    /// From where.
-    pub camera: Camera,
-    /// Depth (µm) of the near plane.
-    pub near: f64,
-    /// Width and height (pixels), from 1 on.
-    pub size: [u32; 2],
-    /// Light, wireframe, cut.
-    pub look: Look,
-    /// How far corners darken one another.
-    pub occlusion: Occlusion,
-    /// Color behind everything.
-    pub background: Rgb,
-    /// Another camera and near plane, for which levels are chosen and things are left out.
-    pub frozen: Option<(Camera, f64)>,
-}
+use canvas::Canvas;
+use clock::Clock;
+use step::{finish_uniform, offset, selected, shade, whole};
 
-/// How a picture gets better.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Steps {
-    /// Number of steps: 1, 4 or 16.
-    pub steps: u32,
-    /// Slices that a step is drawn in: at most by the source's shaders, or bands of rows where there are
-    /// so many things that they are chosen in turn.
-    pub slices: u32,
-}
+pub use step::{Steps, ViewParams};
 
 /// A picture on the device.
 pub struct ProgressiveRenderer {
@@ -79,16 +56,6 @@ pub struct ProgressiveRenderer {
     clock: Arc<Clock>,
 }
 
-/// Textures and buffers of one size.
-struct Canvas {
-    size: [u32; 2],
-    samples: u32,
-    targets: Targets,
-    /// Of several steps; of one there is none.
-    sums: wgpu::Buffer,
-    screen: Screen,
-}
-
 /// How far a picture has come.
 #[derive(Clone, Copy, Debug)]
 struct UnderWay {
@@ -99,15 +66,6 @@ struct UnderWay {
     slice: u32,
     /// Slices are bands of rows, each chosen for itself.
     banded: bool,
-}
-
-/// Tells when submitted work is done.
-#[derive(Debug, Default)]
-struct Clock {
-    submitted: AtomicU64,
-    done: AtomicU64,
-    /// Microseconds that the last work took.
-    took: AtomicU64,
 }
 
 impl ProgressiveRenderer {
@@ -232,7 +190,7 @@ impl ProgressiveRenderer {
             return Ok(false);
         };
         if (way.step, way.slice) == (0, 0) {
-            let rounds = source.prepare(gpu, &chosen(&way.params, None))?;
+            let rounds = source.prepare(gpu, &selected(&way.params, None))?;
             lay_out(&mut way, rounds, source);
         }
         let samples = samples_in_sub_pixel(gpu, 4);
@@ -307,7 +265,7 @@ impl ProgressiveRenderer {
             gpu,
             renderer,
             source,
-            &chosen(params, None),
+            &selected(params, None),
             shade,
             params.size,
         )?;
@@ -429,10 +387,10 @@ impl ProgressiveRenderer {
         let group = renderer.shade_group(gpu);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let band = way.banded.then_some((rows.start, rows.end));
-        let rounds = source.prepare(gpu, &chosen(params, band))?.max(1);
+        let rounds = source.prepare(gpu, &selected(params, band))?.max(1);
         for round in 0..rounds {
             source.choose(round, &mut encoder, None);
-            let part = MeshPart {
+            let part = TilePass {
                 round,
                 shaders: shaders.clone(),
                 first: way.slice == 0 && round == 0,
@@ -466,9 +424,9 @@ impl ProgressiveRenderer {
             return;
         };
         let frame = whole(params.camera, params.near, params.size);
-        let color_keys = finish_color_keys(params, &frame, *step, steps.steps);
+        let uniform = finish_uniform(params, &frame, *step, steps.steps);
         gpu.queue
-            .write_buffer(&self.finish, 0, bytemuck::bytes_of(&color_keys));
+            .write_buffer(&self.finish, 0, bytemuck::bytes_of(&uniform));
         let group = canvas.group(gpu, finisher, &self.finish);
         let over = params.size.map(|n| n.div_ceil(8));
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -477,7 +435,7 @@ impl ProgressiveRenderer {
         });
         pass.set_bind_group(0, &group, &[]);
         // A quarter of a pixel beside, corners are as dark: one look serves all steps.
-        if color_keys.radius > 0.0 && *step == 0 {
+        if uniform.radius > 0.0 && *step == 0 {
             for pipeline in [&finisher.occlude, &finisher.blur] {
                 pass.set_pipeline(pipeline);
                 pass.dispatch_workgroups(over[0], over[1], 1);
@@ -501,137 +459,5 @@ fn lay_out(way: &mut UnderWay, rounds: usize, source: &dyn VertexSource) {
     } else if way.params.frozen.is_some() {
         // Levels for another camera know no bands of this one.
         (way.banded, way.steps.slices) = (false, 1);
-    }
-}
-
-impl Clock {
-    fn start(self: &Arc<Self>, gpu: &Gpu) {
-        let number = self.submitted.fetch_add(1, Ordering::AcqRel) + 1;
-        let (clock, begun) = (Arc::clone(self), Instant::now());
-        gpu.queue.on_submitted_work_done(move || {
-            let took = begun.elapsed().as_micros() as u64;
-            clock.took.store(took, Ordering::Release);
-            clock.done.fetch_max(number, Ordering::AcqRel);
-        });
-    }
-}
-
-impl Canvas {
-    fn new(gpu: &Gpu, size: [u32; 2], samples: u32, draft: bool) -> Self {
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let sums = if draft { 0 } else { 16 * pixels };
-        Self {
-            size,
-            samples,
-            targets: Targets::new(gpu, size, samples),
-            sums: make(gpu, "sums", sums, wgpu::BufferUsages::STORAGE),
-            screen: Screen::new(gpu, size, draft),
-        }
-    }
-
-    fn group(&self, gpu: &Gpu, finisher: &Finisher, finish: &wgpu::Buffer) -> wgpu::BindGroup {
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let view = wgpu::BindingResource::TextureView;
-        let targets = &self.targets;
-        let resolved = targets.resolved.as_ref().unwrap_or(&targets.color);
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("finish"),
-            layout: &finisher.layout,
-            entries: &[
-                entry(0, finish.as_entire_binding()),
-                entry(1, view(resolved)),
-                entry(2, view(&targets.normal)),
-                entry(3, view(&targets.distance)),
-                entry(4, targets.raw.as_entire_binding()),
-                entry(5, targets.blurred.as_entire_binding()),
-                entry(6, targets.pixels.as_entire_binding()),
-                entry(7, self.sums.as_entire_binding()),
-            ],
-        })
-    }
-}
-
-/// Pixels by which a step is moved, and by how many its dither is turned: the places of sub-pixels.
-fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
-    let side = f64::from(steps).sqrt() as u32;
-    if side <= 1 {
-        return ([0.0; 2], [0.0; 2]);
-    }
-    let place = [step % side, step / side].map(|k| k as f32);
-    (place.map(|k| (k + 0.5) / side as f32 - 0.5), place)
-}
-
-fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
-    Frame {
-        camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
-    }
-}
-
-/// Rows above and below a band whose things may reach into it: steps are moved by half a pixel.
-const SPARE_ROWS: u32 = 2;
-
-/// What the source selects for: a band of rows, or all; levels for the frozen camera if there is one.
-fn chosen(params: &ViewParams, band: Option<(u32, u32)>) -> Frame {
-    let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
-    let mut frame = whole(camera, near, params.size);
-    let (top, bottom) = band.unwrap_or((0, params.size[1]));
-    frame.tile.x -= SPARE_ROWS as i32;
-    frame.tile.width += 2 * SPARE_ROWS;
-    frame.tile.y = top as i32 - SPARE_ROWS as i32;
-    frame.tile.height = bottom - top + 2 * SPARE_ROWS;
-    frame
-}
-
-fn shade(renderer: &TileRenderer, params: &ViewParams) -> Shade {
-    let frame = whole(params.camera, params.near, params.size);
-    let mut shade = Shade::new(&frame, &params.look, 1, &renderer.sizes);
-    if let Some((frozen, _)) = params.frozen {
-        shade.shift = (frozen.eye() - params.camera.eye()).as_vec3().to_array();
-    }
-    shade
-}
-
-fn finish_color_keys(params: &ViewParams, frame: &Frame, step: u32, steps: u32) -> Finish {
-    let (radius, most) = params
-        .occlusion
-        .reach(&params.camera, params.size[1])
-        .unwrap_or_default();
-    let [r, g, b] = linear(params.background);
-    let [red, green, blue] = params.background;
-    Finish {
-        radius,
-        most,
-        scale: 1,
-        kept: params.size,
-        spare: step,
-        clear: u32::from(steps == 1),
-        empty: u32::from_le_bytes([red, green, blue, 255]),
-        background: [r, g, b, 1.0],
-        ..Finish::of(frame)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_are_spread_over_the_pixel() {
-        for steps in [1, 4, 16] {
-            let all: Vec<_> = (0..steps).map(|step| offset(step, steps).0).collect();
-            for axis in 0..2 {
-                let sum: f32 = all.iter().map(|place| place[axis]).sum();
-                assert!(sum.abs() < 1e-6 && all.iter().all(|p| p[axis].abs() < 0.5));
-            }
-        }
-        assert_eq!(offset(3, 4), ([0.25, 0.25], [1.0, 1.0]));
     }
 }

@@ -1,0 +1,123 @@
+//! What a picture is asked for, and what one step of it draws.
+
+use crate::output::still::Occlusion;
+use crate::output::tiles::TileRenderer;
+use crate::scene::color::{Rgb, linear};
+use crate::shading::finish::Finish;
+use crate::shading::shade::{Look, Shade};
+use crate::view::camera::Camera;
+use crate::view::frame::{Frame, Tile};
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewParams {
+    /// From where.
+    pub camera: Camera,
+    /// Depth (µm) of the near plane.
+    pub near: f64,
+    /// Width and height (pixels), from 1 on.
+    pub size: [u32; 2],
+    /// Light, wireframe, cut.
+    pub look: Look,
+    /// How far corners darken one another.
+    pub occlusion: Occlusion,
+    /// Color behind everything.
+    pub background: Rgb,
+    /// Another camera and near plane, for which levels are chosen and things are left out.
+    pub frozen: Option<(Camera, f64)>,
+}
+
+/// How a picture gets better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// Number of steps: 1, 4 or 16.
+    pub steps: u32,
+    /// Slices that a step is drawn in: at most by the source's shaders, or bands of rows where there are
+    /// so many things that they are chosen in turn.
+    pub slices: u32,
+}
+
+/// Pixels by which a step is moved, and by how many its dither is turned: the places of sub-pixels.
+pub(super) fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
+    let side = f64::from(steps).sqrt() as u32;
+    if side <= 1 {
+        return ([0.0; 2], [0.0; 2]);
+    }
+    let place = [step % side, step / side].map(|k| k as f32);
+    (place.map(|k| (k + 0.5) / side as f32 - 0.5), place)
+}
+
+pub(super) fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
+    Frame {
+        camera,
+        near,
+        size,
+        tile: Tile {
+            x: 0,
+            y: 0,
+            width: size[0],
+            height: size[1],
+        },
+    }
+}
+
+/// Rows above and below a band whose things may reach into it: steps are moved by half a pixel.
+const SPARE_ROWS: u32 = 2;
+
+/// What the source selects for: a band of rows, or all; levels for the frozen camera if there is one.
+pub(super) fn selected(params: &ViewParams, band: Option<(u32, u32)>) -> Frame {
+    let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
+    let mut frame = whole(camera, near, params.size);
+    let (top, bottom) = band.unwrap_or((0, params.size[1]));
+    frame.tile.x -= SPARE_ROWS as i32;
+    frame.tile.width += 2 * SPARE_ROWS;
+    frame.tile.y = top as i32 - SPARE_ROWS as i32;
+    frame.tile.height = bottom - top + 2 * SPARE_ROWS;
+    frame
+}
+
+pub(super) fn shade(renderer: &TileRenderer, params: &ViewParams) -> Shade {
+    let frame = whole(params.camera, params.near, params.size);
+    let mut shade = Shade::new(&frame, &params.look, 1, &renderer.sizes);
+    if let Some((frozen, _)) = params.frozen {
+        shade.shift = (frozen.eye() - params.camera.eye()).as_vec3().to_array();
+    }
+    shade
+}
+
+pub(super) fn finish_uniform(params: &ViewParams, frame: &Frame, step: u32, steps: u32) -> Finish {
+    let (radius, most) = params
+        .occlusion
+        .reach(&params.camera, params.size[1])
+        .unwrap_or_default();
+    let [r, g, b] = linear(params.background);
+    let [red, green, blue] = params.background;
+    Finish {
+        radius,
+        most,
+        scale: 1,
+        kept: params.size,
+        spare: step,
+        clear: u32::from(steps == 1),
+        empty: u32::from_le_bytes([red, green, blue, 255]),
+        background: [r, g, b, 1.0],
+        ..Finish::of(frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_spread_over_the_pixel() {
+        for steps in [1, 4, 16] {
+            let all: Vec<_> = (0..steps).map(|step| offset(step, steps).0).collect();
+            for axis in 0..2 {
+                let sum: f32 = all.iter().map(|place| place[axis]).sum();
+                assert!(sum.abs() < 1e-6 && all.iter().all(|p| p[axis].abs() < 0.5));
+            }
+        }
+        assert_eq!(offset(3, 4), ([0.25, 0.25], [1.0, 1.0]));
+    }
+}
