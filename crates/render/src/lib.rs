@@ -3,8 +3,8 @@
 //! A [`Gpu`] is an open device. A **camera** ([`Camera`]) is where one looks from. A **source**
 //! ([`VertexSource`]) makes vertices and decides how many: [`Adaptive`] refines a [`Scene`] as it is
 //! drawn, [`Prerefined`] keeps a refined surface in memory. A **color key** per tracing point says its
-//! color, which a [`ColorTable`] knows. [`render_still`] draws a picture of any size, tile by tile, and
-//! hands it over in **bands**; an [`Overlay`] lays legend and scale bar over them, a [`PngWriter`]
+//! color, which a [`ColorTable`](color::ColorTable) knows. [`render_still`] draws a picture of any size, tile by tile, and
+//! hands it over in **bands**; an [`Overlay`](overlay::Overlay) lays legend and scale bar over them, a [`PngWriter`]
 //! writes them.
 //!
 //! ```text

@@ -71,7 +71,7 @@ pub struct Template<'t> {
     pub mesh: &'t CoarseMesh,
     /// One color key per tracing point that its color is looked up by. Missing ones are 0.
     pub color_keys: &'t [u32],
-    /// One level per tracing point, for [`LodCriterion::PerPoint`](crate::LodCriterion::PerPoint). Missing ones
+    /// One level per tracing point, for [`LodCriterion::PerPoint`](neurotess_refine::LodCriterion::PerPoint). Missing ones
     /// are 1.
     pub values: &'t [u8],
 }

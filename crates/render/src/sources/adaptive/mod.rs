@@ -81,7 +81,7 @@ impl Adaptive {
     }
 
     /// Bounding spheres that hold all that the scene shows (µm, in the world): tiles of a picture without any are
-    /// left out. [`bounds`](crate::view::bounds) makes them from a mesh.
+    /// left out. [`bounds`](crate::bounds::bounds) makes them from a mesh.
     pub fn set_bounds(&mut self, spheres: Vec<BoundingSphere>) {
         self.bounds = Some(spheres);
     }
