@@ -69,7 +69,8 @@ pub(crate) fn clear_the_way(skeleton: &mut Skeleton, warnings: &mut Warnings) {
             let joint = Joint::new(skeleton.node(fork).radius, &free);
             for (i, &n) in around.iter().enumerate() {
                 let node = skeleton.node(n);
-                let plain = node.parent != NONE && children.of(n).len() == 1;
+                let passing = node.parent != NONE && children.of(n).len() == 1;
+                let plain = passing && !node.marks.of_zone();
                 let needed = joint.reach(i, tubes[i].direction) + FREE_WAY * node.radius;
                 let moves = if plain {
                     skeleton.sideways(children, n)

@@ -5,7 +5,9 @@ mod assemble;
 mod crowd;
 mod error;
 mod fork;
+mod forks;
 mod frame;
+mod inset;
 mod joint;
 mod normals;
 mod options;
@@ -28,7 +30,7 @@ use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Vertex};
 use neurotess_morphology::Morphology;
 
-use assemble::Assembly;
+use assemble::Somata;
 use rings::RingRequests;
 use skeleton::Skeleton;
 use warning::Warnings;
@@ -124,33 +126,22 @@ pub fn generate_timed(
     skeleton.start_free_trees_at_an_end();
     prepare::lengthen_single_points(&mut skeleton, &mut warnings);
     thin::space_points(&mut skeleton, &mut warnings);
-    crowd::split_crowded_forks(&mut skeleton, &mut warnings);
-    fork::clear_the_way(&mut skeleton, &mut warnings);
-    let orientations = uncross::uncross_rings(&mut skeleton, &soma_spheres, &mut warnings);
-
-    let mut assembly = Assembly::new(&skeleton, &orientations);
-    let ring_nodes = somata::ring_nodes(&skeleton, morphology.somata.len());
-    let mut somata = Vec::new();
-    for (index, (soma, nodes)) in built.somata.iter().zip(ring_nodes).enumerate() {
-        if let (Some(soma), Some(soma_sphere)) = (soma, soma_spheres[index]) {
-            let sample = morphology.somata[index]
-                .samples
-                .first()
-                .map_or(-1, |s| s.id);
-            assembly.soma(&soma.surface, soma_sphere.center, sample, &nodes);
-            somata.push(soma.report);
-        }
-    }
-    let mut mesh = assembly.finish();
+    let somata = Somata {
+        morphology,
+        soma_spheres: &soma_spheres,
+        surfaces: &built.somata,
+    };
+    let mut mesh = forks::mesh(&skeleton, &somata, &mut warnings);
     mesh.origin = morphology.origin;
     let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
     if let Some(vertex) = mesh.vertices.iter().find(lost) {
         let sample = i64::from(mesh.tracing[vertex.tracing as usize].sample);
         return Err(GenerateError::NotFinite { sample });
     }
+    let reports = built.somata.iter().flatten().map(|soma| soma.report);
     Ok(Generated {
         mesh,
-        somata,
+        somata: reports.collect(),
         rings: built.rings,
         warnings: warnings.into_vec(),
         soma_seconds,

@@ -26,6 +26,36 @@ pub(crate) struct SkeletonNode {
     pub(crate) kind: i32,
     /// Section of the morphology plus one.
     pub(crate) section: i32,
+    /// What insets and joints need to find again.
+    pub(crate) marks: Marks,
+}
+
+/// What a node stands for besides a point of the tracing; each [`NONE`] where it does not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Marks {
+    /// Zone whose first ring it is.
+    pub(crate) zone_begins: u32,
+    /// Zone whose second ring it is.
+    pub(crate) zone_ends: u32,
+    /// Node of this joint's fork in the skeleton that was laid out.
+    pub(crate) fork: u32,
+}
+
+impl Default for Marks {
+    fn default() -> Self {
+        Self {
+            zone_begins: NONE,
+            zone_ends: NONE,
+            fork: NONE,
+        }
+    }
+}
+
+impl Marks {
+    /// Whether it is a ring of a zone, which must stay.
+    pub(crate) fn of_zone(&self) -> bool {
+        self.zone_begins != NONE || self.zone_ends != NONE
+    }
 }
 
 /// What a root hangs on.
@@ -37,6 +67,8 @@ pub(crate) enum Root {
     Soma(u32),
     /// A soma; the node is the neurite's first ring on it.
     Insertion(u32),
+    /// A trunk, through an inset of this number.
+    Inset(u32),
 }
 
 /// The forest of nodes.
@@ -137,6 +169,7 @@ impl Skeleton {
                     sample: morphology.sample_ids.get(point).copied().unwrap_or(-1),
                     kind: section.kind.0,
                     section: id as i32 + 1,
+                    marks: Marks::default(),
                 });
                 parent = new_index[point];
             }

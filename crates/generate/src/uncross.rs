@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use crate::inset::{Inset, Layout};
 use crate::prepare::SomaSphere;
 use crate::skeleton::{Children, NONE, Root, Skeleton};
 use crate::warning::Warnings;
@@ -21,12 +22,15 @@ const MOST_MOVED: f64 = 2.0;
 /// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
 /// of every node that is left, along the path.
 pub(crate) fn uncross_rings(
-    skeleton: &mut Skeleton,
+    layout: &mut Layout,
     soma_spheres: &[Option<SomaSphere>],
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
+    let Layout {
+        skeleton, insets, ..
+    } = layout;
     let children = skeleton.children();
-    let mut work = Work::new(skeleton, children, soma_spheres);
+    let mut work = Work::new(skeleton, children, soma_spheres, insets);
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -83,6 +87,7 @@ struct Work<'a> {
     skeleton: &'a Skeleton,
     children: &'a Children,
     soma_spheres: &'a [Option<SomaSphere>],
+    insets: &'a [Inset],
     keep: Vec<bool>,
     parent: Vec<u32>,
     /// The only child, or [`NONE`] at forks and ends.
@@ -96,6 +101,7 @@ impl<'a> Work<'a> {
         skeleton: &'a Skeleton,
         children: &'a Children,
         soma_spheres: &'a [Option<SomaSphere>],
+        insets: &'a [Inset],
     ) -> Self {
         let count = skeleton.nodes().len();
         let only = |i: u32| match children.of(i) {
@@ -106,6 +112,7 @@ impl<'a> Work<'a> {
             skeleton,
             children,
             soma_spheres,
+            insets,
             keep: vec![true; count],
             parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
             child: (0..count as u32).map(only).collect(),
@@ -121,7 +128,9 @@ impl<'a> Work<'a> {
     }
 
     /// Paper's orientation: the sum of the unit directions in and out; at an end the one there is;
-    /// at a fork the sum of the children's directions; at a soma's ring that away from the soma.
+    /// at a fork the sum of the children's directions; at a soma's ring that away from the soma, at an
+    /// inset's that of the branch. The rings of a zone lean towards the zone, twice as much as to the
+    /// other side, so that its quads stay straight.
     fn orientation(&self, i: u32) -> DVec3 {
         let node = self.skeleton.node(i);
         if let Root::Insertion(soma) = node.root
@@ -129,6 +138,9 @@ impl<'a> Work<'a> {
             && let Some(outwards) = (node.center - soma_sphere.center).try_normalize()
         {
             return outwards;
+        }
+        if let Root::Inset(inset) = node.root {
+            return self.insets[inset as usize].direction;
         }
         let parent = Some(self.parent[i as usize]).filter(|&p| p != NONE);
         let incoming = parent.and_then(|p| self.direction(p, i));
@@ -141,7 +153,9 @@ impl<'a> Work<'a> {
                 .sum(),
             child => {
                 let outgoing = self.direction(i, child).unwrap_or(DVec3::ZERO);
-                outgoing + incoming.unwrap_or(DVec3::ZERO)
+                let weight = |zone: u32| if zone == NONE { 1.0 } else { 2.0 };
+                outgoing * weight(node.marks.zone_begins)
+                    + incoming.unwrap_or(DVec3::ZERO) * weight(node.marks.zone_ends)
             }
         };
         let sum: DVec3 = sum;
@@ -195,7 +209,7 @@ impl<'a> Work<'a> {
     /// How far the path moves if a node is left out (µm); infinite for those that may not be.
     fn cost(&self, n: u32) -> f64 {
         let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
-        if parent == NONE || child == NONE {
+        if parent == NONE || child == NONE || self.skeleton.node(n).marks.of_zone() {
             return f64::INFINITY;
         }
         let center = |n: u32| self.skeleton.node(n).center;

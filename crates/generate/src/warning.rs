@@ -58,6 +58,16 @@ impl Warnings {
         }
     }
 
+    /// Adds another step's warnings.
+    pub(crate) fn extend(&mut self, other: Self) {
+        for warning in other.0 {
+            match self.0.iter_mut().find(|w| w.code == warning.code) {
+                Some(known) => known.count += warning.count,
+                None => self.0.push(warning),
+            }
+        }
+    }
+
     /// The warnings in order of their first occurrence.
     pub(crate) fn into_vec(self) -> Vec<Warning> {
         self.0

@@ -50,6 +50,9 @@ pub enum Role {
     Soma,
     /// The ring where a neurite leaves the soma.
     Insertion,
+    /// The ring where a branch leaves a quad of its trunk or of the soma, lifted off it: `center` is
+    /// the mean of its corners. The patches around it end along `tangent`.
+    Inset,
 }
 
 /// A traced center with what the surface needs of it.
@@ -63,6 +66,9 @@ pub struct TracingPoint {
     pub tangent: Vec3,
     /// What it is for the surface.
     pub role: Role,
+    /// Of an inset: how long (µm) the patches around it run along its tangent before they turn towards
+    /// the trunk, as the last leg of their cubics; 0 for all others.
+    pub collar: f32,
     /// SWC type of the section.
     pub kind: i32,
     /// The file's own number of the sample.
@@ -81,6 +87,9 @@ pub enum PatchKind {
     Cap,
     /// Part of a soma.
     Soma,
+    /// Between a side of a trunk's or soma's quad (corners 0 and 1) and a side of the inset within it
+    /// (corners 3 and 2): at each x a cubic from the one to the other.
+    Loft,
 }
 
 /// A quad, counter-clockwise seen from outside.

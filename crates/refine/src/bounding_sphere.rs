@@ -6,12 +6,12 @@ use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
 /// Farthest that a tube reaches from its center's chord, in its larger ring's size: the rings
 /// themselves, the sway of the center line (0.24), and what a quarter ellipse bulges.
 pub(crate) const TUBE_REACH: f32 = 1.5;
-/// Farthest that a soma's patch reaches from its middle, in the distance of its farthest corner.
+/// Farthest that a soma's patch, or one around an inset, reaches from its middle, in the distance of its farthest corner.
 pub(crate) const SOMA_REACH: f32 = 1.5;
 
 /// Bounding sphere around a patch at any level: center and radius (µm).
 pub fn patch_sphere(mesh: &CoarseMesh, patch: &Patch) -> (Vec3, f32) {
-    let soma = patch.kind == PatchKind::Soma;
+    let soma = matches!(patch.kind, PatchKind::Soma | PatchKind::Loft);
     let corners = patch.corners.map(|v| {
         let vertex = &mesh.vertices[v as usize];
         (

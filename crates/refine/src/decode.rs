@@ -5,7 +5,7 @@
 //! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), color key (10), kind and run (3) |
 //! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
-//! | anchor | 32 | center, reach, radius, tangent, role, color key |
+//! | anchor | 32 | center, reach, radius, tangent, role and collar, color key |
 //! | patch of a soma | 6 | four explicit vertices |
 //! | explicit patch | 8 | four explicit vertices, kind |
 //! | cap | 4 | its ring |
@@ -116,6 +116,15 @@ pub(crate) fn to_radius(radius: f32) -> Option<u32> {
 
 pub(crate) fn radius(code: u32) -> f32 {
     f32::from_bits((code + RADIUS_BASE) << 12)
+}
+
+/// A collar's length as 16 bits: as a radius, 0 for none or for one shorter than any.
+pub(crate) fn to_collar(length: f32) -> u32 {
+    to_radius(length).unwrap_or(0)
+}
+
+pub(crate) fn collar(code: u32) -> f32 {
+    if code == 0 { 0.0 } else { radius(code) }
 }
 
 /// Taper as 4 bits and a sign: fine where it is small.

@@ -11,6 +11,10 @@
 //! at different distances. Somata are bilinearly blended Coons patches over four cubics made from
 //! the corners' positions and normals (Vlachos et al., Curved PN triangles, 2001, for the cubics).
 //!
+//! Around an inset, where a branch leaves a quad of its trunk, lie four lofts: at each x a cubic that
+//! leaves the trunk's side within the trunk's tangent plane and arrives at the inset's side along the
+//! branch. So the branch meets its trunk in a fillet, whatever the angle between them.
+//!
 //! **Conformity.** A point of an edge depends on the edge alone: two corners and their tracing
 //! points, always taken in the edge's own direction. So faces that share an edge agree to the bit.
 
@@ -28,6 +32,8 @@ pub(crate) enum EdgeKind {
     Along,
     /// Over a soma.
     Soma,
+    /// From a corner of a trunk's or soma's quad to one of the inset within it.
+    Loft,
 }
 
 /// A point of a curve or surface with its derivative.
@@ -46,12 +52,14 @@ pub(crate) struct Corner {
     pub(crate) center: Vec3,
     /// From the center to the corner.
     pub(crate) offset: Vec3,
-    /// Unit direction of the offset.
+    /// Unit direction of the offset; of an inset's corner, across the tangent.
     pub(crate) radial: Vec3,
     pub(crate) tangent: Vec3,
     /// Radius of its tracing point.
     pub(crate) radius: f32,
     pub(crate) role: Role,
+    /// Of an inset's corner: length of a loft's last leg along the tangent.
+    pub(crate) collar: f32,
 }
 
 impl Corner {
@@ -59,21 +67,27 @@ impl Corner {
         let vertex = &mesh.vertices[vertex as usize];
         let tracing = &mesh.tracing[vertex.tracing as usize];
         let offset = vertex.position - tracing.center;
+        // An inset follows the trunk's surface, so its corners' offsets lean; its tube must not.
+        let radial = match tracing.role {
+            Role::Inset => vertex.normal,
+            _ => offset.normalize_or(vertex.normal),
+        };
         Self {
             position: vertex.position,
             normal: vertex.normal,
             center: tracing.center,
             offset,
-            radial: offset.normalize_or(vertex.normal),
+            radial,
             tangent: tracing.tangent,
             radius: tracing.radius,
             role: tracing.role,
+            collar: tracing.collar,
         }
     }
 
-    /// Normal that the soma's cubics leave the corner across: at a ring that of the tube, so that
-    /// the soma runs smoothly into the neurite.
-    fn soma_normal(&self) -> Vec3 {
+    /// Normal that the cubics of somata and lofts leave the corner across: at a ring that of the tube,
+    /// so that the soma runs smoothly into the neurite.
+    fn cubic_normal(&self) -> Vec3 {
         if self.role == Role::Soma {
             self.normal
         } else {
@@ -179,6 +193,7 @@ pub(crate) fn edge(kind: EdgeKind, a: &Corner, b: &Corner, path: Path, t: f32) -
             }
         }
         EdgeKind::Soma => cubic(soma_controls(a, b), t),
+        EdgeKind::Loft => cubic(loft_controls(a, b), t),
     }
 }
 
@@ -188,8 +203,20 @@ pub(crate) fn soma_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
     let leave = |normal: Vec3| (way - normal * way.dot(normal)) / 3.0;
     [
         a.position,
-        a.position + leave(a.soma_normal()),
-        b.position - leave(b.soma_normal()),
+        a.position + leave(a.cubic_normal()),
+        b.position - leave(b.cubic_normal()),
+        b.position,
+    ]
+}
+
+/// Control points of a loft's edge, from the trunk's corner `a` to the inset's corner `b`.
+pub(crate) fn loft_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
+    let way = b.position - a.position;
+    let normal = a.cubic_normal();
+    [
+        a.position,
+        a.position + (way - normal * way.dot(normal)) / 3.0,
+        b.position - b.tangent * b.collar.min(way.length() / 3.0),
         b.position,
     ]
 }
@@ -233,6 +260,7 @@ impl PatchShape {
         match self.kind {
             PatchKind::Lateral => self.lateral(options.path, x, y),
             PatchKind::Soma => self.coons(x, y),
+            PatchKind::Loft => self.loft(options.path, x, y),
             PatchKind::Cap => self.cap(options.caps, x, y),
         }
     }
@@ -263,28 +291,77 @@ impl PatchShape {
         (center.position + around.position, normal)
     }
 
-    fn side(&self, side: usize, t: f32) -> Jet {
+    fn side(&self, side: usize, path: Path, t: f32) -> Jet {
         let (from, to) = SIDES[side];
         let (a, b) = (&self.corners[from], &self.corners[to]);
         let (kind, reversed) = self.sides[side];
         if reversed {
-            let jet = edge(kind, b, a, Path::Hermite, 1.0 - t);
+            let jet = edge(kind, b, a, path, 1.0 - t);
             Jet {
                 derivative: -jet.derivative,
                 ..jet
             }
         } else {
-            edge(kind, a, b, Path::Hermite, t)
+            edge(kind, a, b, path, t)
         }
+    }
+
+    /// At each x a cubic from the trunk's side to the inset's: [`loft_controls`] between points of the
+    /// two sides, with its derivatives.
+    fn loft(&self, path: Path, x: f32, y: f32) -> (Vec3, Vec3) {
+        let [a, b, c, _] = &self.corners;
+        let (near, far) = (self.side(0, path, x), self.side(2, path, x));
+        let way = far.position - near.position;
+        let way_x = far.derivative - near.derivative;
+        let mixed = mix(a.cubic_normal(), b.cubic_normal(), x);
+        let mixed_x = b.cubic_normal() - a.cubic_normal();
+        let normal = over_length(mixed, mixed_x, mixed, mixed_x);
+        let rise = way.dot(normal.position);
+        let rise_x = way_x.dot(normal.position) + way.dot(normal.derivative);
+        let leave = (way - normal.position * rise) / 3.0;
+        let leave_x = (way_x - normal.derivative * rise - normal.position * rise_x) / 3.0;
+        let third = way.length() / 3.0;
+        let arrive = c.tangent * c.collar.min(third);
+        let third_x = way.dot(way_x) / (9.0 * third).max(f32::MIN_POSITIVE);
+        let arrive_x = if third < c.collar {
+            c.tangent * third_x
+        } else {
+            Vec3::ZERO
+        };
+        let across = cubic(
+            [
+                near.position,
+                near.position + leave,
+                far.position - arrive,
+                far.position,
+            ],
+            y,
+        );
+        let by_x = cubic(
+            [
+                near.derivative,
+                near.derivative + leave_x,
+                far.derivative - arrive_x,
+                far.derivative,
+            ],
+            y,
+        );
+        let normal = by_x.position.cross(across.derivative);
+        (across.position, normal.normalize_or(self.mean_normal()))
+    }
+
+    fn mean_normal(&self) -> Vec3 {
+        let sum: Vec3 = self.corners.iter().map(|k| k.normal).sum();
+        sum.normalize_or(Vec3::Y)
     }
 
     /// Bilinearly blended Coons patch.
     fn coons(&self, x: f32, y: f32) -> (Vec3, Vec3) {
         let [near, right, far, left] = [
-            self.side(0, x),
-            self.side(1, y),
-            self.side(2, x),
-            self.side(3, y),
+            self.side(0, Path::Hermite, x),
+            self.side(1, Path::Hermite, y),
+            self.side(2, Path::Hermite, x),
+            self.side(3, Path::Hermite, y),
         ];
         let [a, b, c, d] = self.corners.map(|k| k.position);
         let position = mix(near.position, far.position, y) + mix(left.position, right.position, x)
@@ -295,13 +372,10 @@ impl PatchShape {
         let by_y = mix(left.derivative, right.derivative, x) + far.position
             - near.position
             - mix(d - a, c - b, x);
-        let mean = self
-            .corners
-            .iter()
-            .map(|k| k.normal)
-            .sum::<Vec3>()
-            .normalize_or(Vec3::Y);
-        (position, by_x.cross(by_y).normalize_or(mean))
+        (
+            position,
+            by_x.cross(by_y).normalize_or(self.mean_normal()),
+        )
     }
 
     /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the

@@ -17,6 +17,8 @@ struct Corner {
     tangent: vec3<f32>,
     radius: f32,
     role: u32,
+    // Of an inset's corner: length of a loft's last leg along the tangent.
+    collar: f32,
 }
 
 fn normalize_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
@@ -27,7 +29,8 @@ fn normalize_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
     return otherwise;
 }
 
-fn soma_normal(corner: Corner) -> vec3<f32> {
+// Normal that the cubics of somata and lofts leave a corner across.
+fn cubic_normal(corner: Corner) -> vec3<f32> {
     if (corner.role == ROLE_SOMA) {
         return corner.normal;
     }
@@ -119,6 +122,9 @@ fn edge(kind: u32, a: Corner, b: Corner, path: u32, t: f32) -> Jet {
     if (kind == EDGE_SOMA) {
         return cubic(soma_controls(a, b), t);
     }
+    if (kind == EDGE_LOFT) {
+        return cubic(loft_controls(a, b), t);
+    }
     if (kind == EDGE_RING) {
         let point = tube_point(a, b, b, a, path, t, 0.0);
         return Jet(point.position, point.by_x);
@@ -130,12 +136,24 @@ fn edge(kind: u32, a: Corner, b: Corner, path: u32, t: f32) -> Jet {
 // Control points of a soma edge.
 fn soma_controls(a: Corner, b: Corner) -> array<vec3<f32>, 4> {
     let way = b.position - a.position;
-    let na = soma_normal(a);
-    let nb = soma_normal(b);
+    let na = cubic_normal(a);
+    let nb = cubic_normal(b);
     return array<vec3<f32>, 4>(
         a.position,
         a.position + (way - na * dot(way, na)) / 3.0,
         b.position - (way - nb * dot(way, nb)) / 3.0,
+        b.position,
+    );
+}
+
+// Control points of a loft's edge, from the trunk's corner a to the inset's corner b.
+fn loft_controls(a: Corner, b: Corner) -> array<vec3<f32>, 4> {
+    let way = b.position - a.position;
+    let normal = cubic_normal(a);
+    return array<vec3<f32>, 4>(
+        a.position,
+        a.position + (way - normal * dot(way, normal)) / 3.0,
+        b.position - b.tangent * min(b.collar, length(way) / 3.0),
         b.position,
     );
 }
@@ -179,6 +197,9 @@ fn interior(shape: PatchShape, path: u32, caps: u32, x: f32, y: f32) -> Inside {
     if (shape.kind == PATCH_LATERAL) {
         return lateral(shape, path, x, y);
     }
+    if (shape.kind == PATCH_LOFT) {
+        return loft(shape, path, x, y);
+    }
     let flat = coons(shape, x, y);
     if (shape.kind == PATCH_SOMA) {
         return flat;
@@ -203,21 +224,21 @@ fn tube_normal(point: TubePoint, otherwise: vec3<f32>) -> vec3<f32> {
 }
 
 // A side from corner `from` to corner `to` in the patch's coordinate.
-fn side(shape: u32, from_corner: Corner, to_corner: Corner, t: f32) -> Jet {
+fn side(shape: u32, from_corner: Corner, to_corner: Corner, path: u32, t: f32) -> Jet {
     let kind = shape & SIDE_KIND;
     if ((shape & SIDE_REVERSED) != 0u) {
-        let jet = edge(kind, to_corner, from_corner, PATH_HERMITE, 1.0 - t);
+        let jet = edge(kind, to_corner, from_corner, path, 1.0 - t);
         return Jet(jet.position, -jet.derivative);
     }
-    return edge(kind, from_corner, to_corner, PATH_HERMITE, t);
+    return edge(kind, from_corner, to_corner, path, t);
 }
 
 // Bilinearly blended Coons patch.
 fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
-    let near = side(shape.sides.x, shape.a, shape.b, x);
-    let right = side(shape.sides.y, shape.b, shape.c, y);
-    let far = side(shape.sides.z, shape.d, shape.c, x);
-    let left = side(shape.sides.w, shape.a, shape.d, y);
+    let near = side(shape.sides.x, shape.a, shape.b, PATH_HERMITE, x);
+    let right = side(shape.sides.y, shape.b, shape.c, PATH_HERMITE, y);
+    let far = side(shape.sides.z, shape.d, shape.c, PATH_HERMITE, x);
+    let left = side(shape.sides.w, shape.a, shape.d, PATH_HERMITE, y);
     let a = shape.a.position;
     let b = shape.b.position;
     let c = shape.c.position;
@@ -230,11 +251,55 @@ fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
     let by_y = blend(left.derivative, right.derivative, x) + far.position
         - near.position
         - blend(d - a, c - b, x);
-    let mean = normalize_or(
+    return Inside(position, normalize_or(cross(by_x, by_y), mean_normal(shape)));
+}
+
+fn mean_normal(shape: PatchShape) -> vec3<f32> {
+    return normalize_or(
         shape.a.normal + shape.b.normal + shape.c.normal + shape.d.normal,
         vec3<f32>(0.0, 1.0, 0.0),
     );
-    return Inside(position, normalize_or(cross(by_x, by_y), mean));
+}
+
+// At each x a cubic from the trunk's side to the inset's: loft_controls between points of the two sides,
+// with its derivatives.
+fn loft(shape: PatchShape, path: u32, x: f32, y: f32) -> Inside {
+    let near = side(shape.sides.x, shape.a, shape.b, path, x);
+    let far = side(shape.sides.z, shape.d, shape.c, path, x);
+    let way = far.position - near.position;
+    let way_x = far.derivative - near.derivative;
+    let normal_a = cubic_normal(shape.a);
+    let normal_b = cubic_normal(shape.b);
+    let mixed = blend(normal_a, normal_b, x);
+    let normal = over_length(mixed, normal_b - normal_a, mixed, normal_b - normal_a);
+    let rise = dot(way, normal.position);
+    let rise_x = dot(way_x, normal.position) + dot(way, normal.derivative);
+    let leave = (way - normal.position * rise) / 3.0;
+    let leave_x = (way_x - normal.derivative * rise - normal.position * rise_x) / 3.0;
+    let third = length(way) / 3.0;
+    let arrive = shape.c.tangent * min(shape.c.collar, third);
+    let third_x = dot(way, way_x) / max(9.0 * third, 1e-37);
+    let arrive_x = shape.c.tangent * select(0.0, third_x, third < shape.c.collar);
+    let across = cubic(
+        array<vec3<f32>, 4>(
+            near.position,
+            near.position + leave,
+            far.position - arrive,
+            far.position,
+        ),
+        y,
+    );
+    let by_x = cubic(
+        array<vec3<f32>, 4>(
+            near.derivative,
+            near.derivative + leave_x,
+            far.derivative - arrive_x,
+            far.derivative,
+        ),
+        y,
+    );
+    let facing = cross(by_x.position, across.derivative);
+    return Inside(across.position, normalize_or(facing, mean_normal(shape)));
 }
 
 // The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the distance

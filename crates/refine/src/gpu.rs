@@ -45,6 +45,7 @@ pub const FILES: [WgslFile; 5] = [EVALUATE, LEVEL, TEMPLATE, PLAN, CORNER_SOURCE
 const EDGE_RING: u32 = 0;
 const EDGE_ALONG: u32 = 1;
 const EDGE_SOMA: u32 = 2;
+const EDGE_LOFT: u32 = 3;
 const SIDE_KIND: u32 = 3;
 const SIDE_REVERSED: u32 = 4;
 const LEVELS_HOMOGENEOUS: u32 = 0;
@@ -64,6 +65,8 @@ pub fn constants() -> Constants {
     whole("PATCH_LATERAL", PatchKind::Lateral as u32);
     whole("PATCH_CAP", PatchKind::Cap as u32);
     whole("PATCH_SOMA", PatchKind::Soma as u32);
+    whole("PATCH_LOFT", PatchKind::Loft as u32);
+    whole("ROLE_INSET", Role::Inset as u32);
     whole("EXPLICIT", EXPLICIT);
     whole("POINT_KIND_SHIFT", POINT_KIND_SHIFT);
     whole("POINT_END", POINT_END);
@@ -83,6 +86,7 @@ pub fn constants() -> Constants {
     whole("EDGE_RING", EDGE_RING);
     whole("EDGE_ALONG", EDGE_ALONG);
     whole("EDGE_SOMA", EDGE_SOMA);
+    whole("EDGE_LOFT", EDGE_LOFT);
     whole("SIDE_KIND", SIDE_KIND);
     whole("SIDE_REVERSED", SIDE_REVERSED);
     whole("LEVELS_PER_POINT", LEVELS_PER_POINT);

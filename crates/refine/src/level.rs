@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 
-use crate::evaluate::{Corner, EdgeKind, hermite_tangents, soma_controls};
+use crate::evaluate::{Corner, EdgeKind, hermite_tangents, loft_controls, soma_controls};
 use crate::{Lod, LodCriterion, LodView, Path};
 
 /// Highest level.
@@ -69,12 +69,14 @@ pub(crate) fn bend(path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
     match kind {
         EdgeKind::Ring => turning(a, b),
         EdgeKind::Along => center_bend(a, b, path) + turning(a, b),
-        EdgeKind::Soma => {
-            let [p0, p1, p2, p3] = soma_controls(a, b);
-            let second = |p: Vec3, q: Vec3, r: Vec3| (p - q * 2.0 + r).length() * 6.0;
-            second(p0, p1, p2).max(second(p1, p2, p3))
-        }
+        EdgeKind::Soma => cubic_bend(soma_controls(a, b)),
+        EdgeKind::Loft => cubic_bend(loft_controls(a, b)),
     }
+}
+
+fn cubic_bend([p0, p1, p2, p3]: [Vec3; 4]) -> f32 {
+    let second = |p: Vec3, q: Vec3, r: Vec3| (p - q * 2.0 + r).length() * 6.0;
+    second(p0, p1, p2).max(second(p1, p2, p3))
 }
 
 /// The paper's importance, from the mean of the two ends.

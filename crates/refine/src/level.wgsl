@@ -123,7 +123,10 @@ fn by_error(error: f32, path: u32, kind: u32, a: Corner, b: Corner) -> u32 {
     } else if (kind == EDGE_ALONG) {
         bend = center_bend(a, b, path) + turning(a, b);
     } else {
-        let p = soma_controls(a, b);
+        var p = soma_controls(a, b);
+        if (kind == EDGE_LOFT) {
+            p = loft_controls(a, b);
+        }
         bend = max(second(p[0], p[1], p[2]), second(p[1], p[2], p[3]));
     }
     return round_up(sqrt(bend / (8.0 * error)));

@@ -55,9 +55,8 @@ pub fn dequantized(mesh: &CoarseMesh, parts: &[MeshPart]) -> CoarseMesh {
             let vertex = &mut rounded.vertices[vertex as usize];
             (vertex.position, vertex.normal) = (position, normal);
         }
-        for &(point, center, radius, tangent) in &part.tracing {
-            let point = &mut rounded.tracing[point as usize];
-            (point.center, point.radius, point.tangent) = (center, radius, tangent);
+        for &(index, point) in &part.tracing {
+            rounded.tracing[index as usize] = point;
         }
     }
     rounded

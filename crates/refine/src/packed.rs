@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use neurotess_mesh::Role;
+use neurotess_mesh::{Role, TracingPoint};
 
 use crate::bounding_sphere::{patch_sphere, sphere_around};
 use crate::decode::{
     ImplicitRing, POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS,
-    POINT_ORDINARY, POINTS_OF_SPHERE, from_sphere, octahedral, radius, signed16, to_octahedral,
-    to_signed16, to_sphere,
+    POINT_ORDINARY, POINTS_OF_SPHERE, collar, from_sphere, octahedral, radius, signed16, to_collar,
+    to_octahedral, to_signed16, to_sphere,
 };
 use crate::packer::{Contents, Packer, Slot, cap_ring, widened};
 use crate::part::{MOST_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
@@ -172,8 +172,15 @@ impl Packer<'_> {
             part.vertices.push((first + k, position, normal));
         }
         let radius = radius(implicit.radius);
-        part.tracing
-            .push((implicit.tracing, center, radius, implicit.tangent()));
+        part.tracing.push((
+            implicit.tracing,
+            TracingPoint {
+                center,
+                radius,
+                tangent: implicit.tangent(),
+                ..*point
+            },
+        ));
         let [x, y, z] = place;
         let kind = if implicit.role == Role::End {
             POINT_END
@@ -288,7 +295,7 @@ impl Anchors {
         &self,
         packer: &Packer<'_>,
         packed: &mut Vec<u32>,
-        read: &mut Vec<(u32, Vec3, f32, Vec3)>,
+        read: &mut Vec<(u32, TracingPoint)>,
     ) {
         for &(_, tracing, reach) in self.all.values() {
             let point = &packer.mesh.tracing[tracing as usize];
@@ -297,12 +304,18 @@ impl Anchors {
             packed.extend([
                 point.radius.to_bits(),
                 x | (y << 16),
-                point.role as u32,
+                point.role as u32 | (to_collar(point.collar) << 16),
                 packer.color_key(tracing),
             ]);
             if point.role != Role::Soma {
-                let tangent = octahedral(x, y, 65535.0);
-                read.push((tracing, point.center, point.radius, tangent));
+                read.push((
+                    tracing,
+                    TracingPoint {
+                        tangent: octahedral(x, y, 65535.0),
+                        collar: collar(to_collar(point.collar)),
+                        ..*point
+                    },
+                ));
             }
         }
     }

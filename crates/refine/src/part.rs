@@ -1,6 +1,7 @@
 //! A part of a packed mesh: what is resident, and where what lies in it.
 
 use glam::Vec3;
+use neurotess_mesh::TracingPoint;
 
 use crate::decode::POINTS_OF_SPHERE;
 
@@ -51,8 +52,8 @@ pub struct MeshPart {
     pub spheres: Vec<(Vec3, f32)>,
     /// By vertex of the mesh that is in this part: position and normal as shaders read them.
     pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
-    /// By tracing point: center, radius and tangent as shaders read them.
-    pub(crate) tracing: Vec<(u32, Vec3, f32, Vec3)>,
+    /// Tracing points as shaders read them.
+    pub(crate) tracing: Vec<(u32, TracingPoint)>,
 }
 
 impl MeshPart {

@@ -285,17 +285,22 @@ fn describe(mesh: &CoarseMesh, patch: usize, side: usize) -> Edge {
     let Patch { corners, kind } = mesh.patches[patch];
     let (a, b) = (corners[SIDES[side].0], corners[SIDES[side].1]);
     let tracing = |v: u32| mesh.vertices[v as usize].tracing;
-    let around = tracing(a) == tracing(b) && mesh.tracing[tracing(a) as usize].role != Role::Soma;
-    let kind = match kind {
+    let role = |v: u32| mesh.tracing[tracing(v) as usize].role;
+    let around = tracing(a) == tracing(b) && role(a) != Role::Soma;
+    let edge_kind = match kind {
         _ if around => EdgeKind::Ring,
         PatchKind::Soma => EdgeKind::Soma,
-        PatchKind::Lateral | PatchKind::Cap => EdgeKind::Along,
+        PatchKind::Loft if side % 2 == 1 => EdgeKind::Loft,
+        // The side of a trunk's quad is as in the tube beside it, that of a soma's as in the soma.
+        PatchKind::Loft if role(a) != Role::Ordinary || role(b) != Role::Ordinary => EdgeKind::Soma,
+        PatchKind::Lateral | PatchKind::Cap | PatchKind::Loft => EdgeKind::Along,
     };
-    let (from, to) = if kind == EdgeKind::Along {
-        (a, b)
-    } else {
-        (a.min(b), a.max(b))
+    // A path's rings are numbered along it, so a loft's side finds the direction of the tube beside it.
+    let (from, to) = match (edge_kind, kind) {
+        (EdgeKind::Loft, _) | (EdgeKind::Along, PatchKind::Lateral | PatchKind::Cap) => (a, b),
+        _ => (a.min(b), a.max(b)),
     };
+    let kind = edge_kind;
     Edge {
         from,
         to,

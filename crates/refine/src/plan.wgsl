@@ -46,11 +46,18 @@ fn patch_side(base: Base, p: Patch, index: u32) -> Side {
     if (p.kind == PATCH_LATERAL && (index & 1u) == 1u) {
         return Side(start, end, EDGE_ALONG, false);
     }
+    if (p.kind == PATCH_LOFT && (index & 1u) == 1u) {
+        return Side(start, end, EDGE_LOFT, false);
+    }
     var kind = EDGE_RING;
-    if (p.kind == PATCH_SOMA) {
+    if (p.kind == PATCH_SOMA || p.kind == PATCH_LOFT) {
         let around = tracing_of(base, start) == tracing_of(base, end);
-        if (!around || role_of(base, start) == ROLE_SOMA) {
-            kind = EDGE_SOMA;
+        let role = role_of(base, start);
+        if (!around || role == ROLE_SOMA) {
+            // The side of a trunk's quad is as in the tube beside it.
+            let tube = p.kind == PATCH_LOFT && role == ROLE_ORDINARY
+                && role_of(base, end) == ROLE_ORDINARY;
+            kind = select(EDGE_SOMA, EDGE_ALONG, tube);
         }
     }
     if (start < end) {
@@ -164,6 +171,11 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
         }
         return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest);
     }
+    if (s.kind == EDGE_LOFT) {
+        let ends = vec2<f32>(1.0 - t, t);
+        let axis = axis_of(a) * ends.x + axis_of(b) * ends.y;
+        return SurfacePoint(jet.position, normal, axis, dot(vec2(width_of(a), width_of(b)), ends), nearest);
+    }
     let radius = a.radius * (1.0 - t) + b.radius * t;
     if (s.kind == EDGE_RING) {
         return SurfacePoint(jet.position, normal, a.center, radius, nearest);
@@ -172,12 +184,18 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     return SurfacePoint(jet.position, normal, axis, radius, nearest);
 }
 
+// Point of the center line at a corner, and the radius there: somata have none.
+fn axis_of(k: Corner) -> vec3<f32> {
+    return select(k.center, k.position, k.role == ROLE_SOMA);
+}
+
+fn width_of(k: Corner) -> f32 {
+    return select(k.radius, 0.0, k.role == ROLE_SOMA);
+}
+
 fn coarse_vertex(source: CornerSource, vertex: u32) -> SurfacePoint {
     let k = corner_of(source, vertex);
-    if (k.role == ROLE_SOMA) {
-        return SurfacePoint(k.position, k.normal, k.position, 0.0, vertex);
-    }
-    return SurfacePoint(k.position, k.normal, k.center, k.radius, vertex);
+    return SurfacePoint(k.position, k.normal, axis_of(k), width_of(k), vertex);
 }
 
 fn inner_vertex(
@@ -204,9 +222,13 @@ fn inner_vertex(
         nearest = first_of_soma(shape, p, nearest);
         return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest);
     }
-    let radius = (shape.a.radius * (1.0 - x) + shape.b.radius * x) * (1.0 - y)
+    let radius = (width_of(shape.a) * (1.0 - x) + width_of(shape.b) * x) * (1.0 - y)
         + (shape.d.radius * (1.0 - x) + shape.c.radius * x) * y;
     var axis = shape.a.center;
+    if (p.kind == PATCH_LOFT) {
+        let near = blend(axis_of(shape.a), axis_of(shape.b), x);
+        axis = blend(near, shape.c.center, y);
+    }
     if (p.kind == PATCH_LATERAL) {
         axis = center_line(shape.a, shape.d, options.path, y).position;
     }

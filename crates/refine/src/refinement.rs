@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Faces, Role, Surface, SurfaceVertex, TracingPoint};
+use neurotess_mesh::{CoarseMesh, Faces, PatchKind, Role, Surface, SurfaceVertex, TracingPoint};
 use rayon::prelude::*;
 
 use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
@@ -232,7 +232,10 @@ impl<'m> Refinement<'m> {
         let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
         let (position, normal) = shape.interior(&self.options, x, y);
         let tracing = self.mesh.patches[patch].corners.map(|v| self.tracing(v));
-        let soma = tracing.into_iter().find(|t| t.role == Role::Soma);
+        let of_soma = self.mesh.patches[patch].kind == PatchKind::Soma;
+        let soma = tracing
+            .into_iter()
+            .find(|t| of_soma && t.role == Role::Soma);
         let nearest = tracing[usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5))];
         let radii = tracing.map(|t| t.radius);
         let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)

@@ -215,6 +215,7 @@ fn ring_corner(ring: ImplicitRing, k: u32) -> Corner {
         ring.tangent,
         ring.radius,
         ring.role,
+        0.0,
     );
 }
 
@@ -249,16 +250,36 @@ fn explicit_corner(base: Base, vertex: u32) -> Corner {
     let normal = octahedral(z & 0xfffu, (z >> 12u) & 0xfffu, 4095.0);
     let direction = packed[anchor + 5u];
     let tangent = octahedral(direction & 0xffffu, direction >> 16u, 65535.0);
+    let role = packed[anchor + 6u];
     return Corner(
         position,
         normal,
         center,
         offset,
-        normalize_or(offset, normal),
+        radial_of(role_of_bits(role), offset, normal),
         tangent,
         bitcast<f32>(packed[anchor + 4u]),
-        packed[anchor + 6u],
+        role_of_bits(role),
+        collar_of_bits(role),
     );
+}
+
+// An anchor's role and collar: 16 bits each, the collar as radii are, 0 for none.
+fn role_of_bits(bits: u32) -> u32 {
+    return bits & 0xffffu;
+}
+
+fn collar_of_bits(bits: u32) -> f32 {
+    let code = bits >> 16u;
+    return select(0.0, bitcast<f32>((code + RADIUS_BASE) << 12u), code != 0u);
+}
+
+// An inset follows the trunk's surface, so its corners' offsets lean; its tube must not.
+fn radial_of(role: u32, offset: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    if (role == ROLE_INSET) {
+        return normal;
+    }
+    return normalize_or(offset, normal);
 }
 
 fn corner(base: Base, vertex: u32) -> Corner {
@@ -278,7 +299,7 @@ fn tracing_of(base: Base, vertex: u32) -> u32 {
 
 fn role_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
-        return packed[anchor_of(base, vertex) + 6u];
+        return role_of_bits(packed[anchor_of(base, vertex) + 6u]);
     }
     let kind = packed[base.points + 4u * (vertex >> 2u) + 1u] >> POINT_KIND_SHIFT;
     return select(ROLE_ORDINARY, ROLE_END, kind == POINT_END);

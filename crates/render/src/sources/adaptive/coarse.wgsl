@@ -71,7 +71,7 @@ fn make_explicit(@builtin(global_invocation_id) id: vec3<u32>) {
     );
     let center = relative(part, v.center);
     coarse[coarse_index(at) + 1u] =
-        CoarsePoint(center.x, center.y, center.z, 0.0, v.role, 0u, 0u, part.instance);
+        CoarsePoint(center.x, center.y, center.z, v.collar * part.scale, v.role, 0u, 0u, part.instance);
 }
 
 // The placed part that an explicit vertex belongs to.

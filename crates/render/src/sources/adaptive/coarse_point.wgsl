@@ -13,6 +13,7 @@ struct CoarsePoint {
     x: f32,
     y: f32,
     z: f32,
+    // In an explicit vertex's second entry: its collar.
     radius: f32,
     // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its role.
     low: u32,
@@ -140,6 +141,7 @@ fn corner_of_ring(ring: DrawnRing, k: u32) -> Corner {
         ring.turn.tangent,
         ring.radius,
         ROLE_ORDINARY,
+        0.0,
     );
 }
 
@@ -153,9 +155,10 @@ fn corner_of_explicit(vertex: CoarsePoint, more: CoarsePoint) -> Corner {
         normal,
         center,
         offset,
-        normalize_or(offset, normal),
+        radial_of(more.low, offset, normal),
         unpack_direction(vertex.high),
         vertex.radius,
         more.low,
+        more.radius,
     );
 }

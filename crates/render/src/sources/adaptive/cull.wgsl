@@ -199,13 +199,14 @@ struct BoundingSphere {
 }
 
 fn patch_sphere(base: Base, p: Patch) -> BoundingSphere {
+    let by_corners = p.kind == PATCH_SOMA || p.kind == PATCH_LOFT;
     var points: array<vec3<f32>, 4>;
     var reaches: vec4<f32>;
     for (var k = 0u; k < 4u; k += 1u) {
         let c = corner(base, p.corners[k]);
         points[k] = c.center;
         reaches[k] = length(c.offset) * TUBE_REACH;
-        if (p.kind == PATCH_SOMA) {
+        if (by_corners) {
             points[k] = c.position;
             reaches[k] = 0.0;
         }
@@ -214,7 +215,7 @@ fn patch_sphere(base: Base, p: Patch) -> BoundingSphere {
     var radius = 0.0;
     for (var k = 0u; k < 4u; k += 1u) {
         var reach = length(points[k] - center) + reaches[k];
-        if (p.kind == PATCH_SOMA) {
+        if (by_corners) {
             reach *= SOMA_REACH;
         }
         radius = max(radius, reach);

@@ -72,7 +72,7 @@ fn decided_levels(decided: u32) -> vec4<u32> {
 }
 
 fn decided_kind(decided: u32) -> u32 {
-    return (decided >> DECISION_KIND_SHIFT) & 3u;
+    return (decided >> DECISION_KIND_SHIFT) & 7u;
 }
 
 // Whether a patch is drawn as the coarse quad that it is.

@@ -130,6 +130,7 @@ impl Refiner {
                             kind: match kind {
                                 0 | DECIDED_TUBE => PatchKind::Lateral,
                                 1 => PatchKind::Cap,
+                                3 => PatchKind::Loft,
                                 _ => PatchKind::Soma,
                             },
                         }

@@ -28,7 +28,7 @@ pub(crate) const QUEUE_SHOWN: u32 = 2;
 pub(crate) const QUEUE_SECTIONS: u32 = 0;
 pub(crate) const QUEUE_RINGS: u32 = 1;
 /// Kind of a lateral patch between two points with rings of their own, in a decision.
-pub(crate) const DECIDED_TUBE: u32 = 3;
+pub(crate) const DECIDED_TUBE: u32 = 4;
 
 /// A camera and a picture's size, as culling and levels see them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,7 +204,7 @@ pub(crate) fn decision(kind: u32, levels: [u32; 4]) -> u32 {
 /// Kind and levels of a decision that is not 0.
 pub(crate) fn decided(bits: u32) -> (u32, [u32; 4]) {
     let levels = [0, 7, 14, 21].map(|shift| (bits >> shift) & 0x7f);
-    ((bits >> DECISION_KIND_SHIFT) & 3, levels)
+    ((bits >> DECISION_KIND_SHIFT) & 7, levels)
 }
 
 /// What the shaders of a frame need of Rust.
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn decisions_keep_their_levels_and_kind() {
         for levels in [[1, 2, 3, 4], [64, 64, 64, 64], [1, 64, 17, 33]] {
-            for kind in 0..4 {
+            for kind in 0..=DECIDED_TUBE {
                 assert_eq!(decided(decision(kind, levels)), (kind, levels));
             }
         }

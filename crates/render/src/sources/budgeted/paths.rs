@@ -42,7 +42,7 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
     while let Some((fork, first)) = starts.pop() {
         let mut path = TubePath {
             fork: (fork != NONE).then_some(fork),
-            starts_free: fork == NONE && mesh.tracing[first as usize].role != Role::Insertion,
+            starts_free: fork == NONE && !leaves_soma(mesh, first),
             ..TubePath::default()
         };
         if fork != NONE {
@@ -52,7 +52,7 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
                 ..point(mesh, first)
             });
         }
-        if mesh.tracing[first as usize].role == Role::Insertion {
+        if fork == NONE && leaves_soma(mesh, first) {
             // From within the soma, so that no gap shows however the neurite bends away.
             let mut inside = point(mesh, first);
             inside.center -= mesh.tracing[first as usize].tangent * inside.radius;
@@ -81,6 +81,10 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
     paths
 }
 
+fn leaves_soma(mesh: &CoarseMesh, point: u32) -> bool {
+    matches!(mesh.tracing[point as usize].role, Role::Insertion | Role::Inset)
+}
+
 fn point(mesh: &CoarseMesh, tracing: u32) -> PathPoint {
     let of_mesh = &mesh.tracing[tracing as usize];
     let radius = of_mesh.radius.max(0.0);
@@ -100,14 +104,20 @@ struct Tree {
 }
 
 impl Tree {
-    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2).
+    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2), lofts
+    /// from a trunk's to an inset.
     fn new(mesh: &CoarseMesh) -> Self {
         let count = mesh.tracing.len();
         let mut parents = vec![NONE; count];
         let of = |corner: u32| mesh.vertices[corner as usize].tracing;
         for patch in &mesh.patches {
             let [near, _, _, far] = patch.corners.map(of);
-            let tube = patch.kind == PatchKind::Lateral && near != far;
+            let leads = match patch.kind {
+                PatchKind::Lateral => true,
+                PatchKind::Loft => mesh.tracing[near as usize].role != Role::Soma,
+                PatchKind::Cap | PatchKind::Soma => false,
+            };
+            let tube = leads && near != far;
             if tube && parents[far as usize] == NONE && !leads_to(&parents, near, far) {
                 parents[far as usize] = near;
             }

@@ -118,7 +118,7 @@ fn station(chunk: Chunk, level: u32, segment: u32, t: f32) -> Station {
 // A point of a path, as evaluate.wgsl takes it.
 fn on_path(p: Stored, tangent: vec3<f32>) -> Corner {
     let none = vec3<f32>(0.0);
-    return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY);
+    return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY, 0.0);
 }
 
 // How far (radians) beyond the half that faces the eye a tube is drawn on each side.
@@ -235,7 +235,7 @@ fn soma_corner(chunk: Chunk, vertex: u32) -> Corner {
     let bytes = vec2<i32>(i32(high << 8u) >> 24u, i32(high) >> 24u);
     let normal = from_octahedral(vec2<f32>(bytes) / 127.0);
     let position = stored_position(chunk, low, high);
-    return Corner(position, normal, position, normal, normal, normal, 0.0, ROLE_SOMA);
+    return Corner(position, normal, position, normal, normal, normal, 0.0, ROLE_SOMA, 0.0);
 }
 
 // A soma's own quads, or 4, 16 or 64 in place of each.

@@ -4,15 +4,24 @@
 //! are joined by four lateral patches. A soma makes the vertices of its insertions' rings, a joint its
 //! poles and crotches, a path all others.
 
+mod facing;
+mod path;
+mod twist;
+
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
+use neurotess_morphology::Morphology;
 
 use crate::fork;
-use crate::frame;
 use crate::joint::Joint;
 use crate::normals::average_normals;
+use crate::inset::Layout;
 use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
+use crate::prepare::SomaSphere;
 use crate::soma::SomaSurface;
+use crate::somata::{self, BuiltSoma};
 
 /// Four vertices, counter-clockwise about the path's direction.
 type Ring = [u32; 4];
@@ -28,6 +37,27 @@ pub(crate) struct Assembly<'a> {
     insertion_rings: Vec<(u32, Ring)>,
     /// Per node: its joint, if it is a fork.
     joints: Vec<Option<Box<MeshJoint>>>,
+    layout: &'a Layout,
+    /// Per inset: the node that its branch begins with.
+    inset_roots: Vec<u32>,
+    /// Per inset, once its trunk is made.
+    placed: Vec<Option<PlacedInset>>,
+    /// Patches near a fork, by the fork's node in the skeleton that was laid out.
+    fork_patches: Vec<(u32, Range<u32>)>,
+}
+
+/// The somata of a cell, as many as the morphology has.
+pub(crate) struct Somata<'a> {
+    pub(crate) morphology: &'a Morphology,
+    pub(crate) soma_spheres: &'a [Option<SomaSphere>],
+    pub(crate) surfaces: &'a [Option<BuiltSoma>],
+}
+
+/// An inset in the mesh.
+struct PlacedInset {
+    ring: Ring,
+    center: DVec3,
+    direction: DVec3,
 }
 
 /// A joint with its vertices in the mesh.
@@ -55,7 +85,8 @@ impl MeshJoint {
 }
 
 impl<'a> Assembly<'a> {
-    pub(crate) fn new(skeleton: &'a Skeleton, orientations: &'a [DVec3]) -> Self {
+    pub(crate) fn new(layout: &'a Layout, orientations: &'a [DVec3]) -> Self {
+        let skeleton = &layout.skeleton;
         // A ring and four patches a node, and something for somata.
         let (nodes, soma) = (skeleton.nodes().len(), 1024);
         let mesh = CoarseMesh {
@@ -71,11 +102,27 @@ impl<'a> Assembly<'a> {
             mesh,
             insertion_rings: Vec::new(),
             joints: (0..skeleton.nodes().len()).map(|_| None).collect(),
+            layout,
+            inset_roots: inset_roots(layout),
+            placed: layout.insets.iter().map(|_| None).collect(),
+            fork_patches: Vec::new(),
+        }
+    }
+
+    /// Adds all somata.
+    pub(crate) fn somata(&mut self, somata: &Somata<'_>) {
+        let ring_nodes = somata::ring_nodes(self.skeleton, somata.surfaces.len());
+        for (index, (soma, nodes)) in somata.surfaces.iter().zip(ring_nodes).enumerate() {
+            if let (Some(soma), Some(soma_sphere)) = (soma, somata.soma_spheres[index]) {
+                let samples = &somata.morphology.somata[index].samples;
+                let sample = samples.first().map_or(-1, |s| s.id);
+                self.soma(&soma.surface, soma_sphere.center, sample, &nodes);
+            }
         }
     }
 
     /// Adds a soma; `insertions` are the nodes of its rings, in order.
-    pub(crate) fn soma(
+    fn soma(
         &mut self,
         surface: &SomaSurface,
         center: DVec3,
@@ -95,6 +142,7 @@ impl<'a> Assembly<'a> {
                     radius: position.distance(center) as f32,
                     tangent: Vec3::ZERO,
                     role: Role::Soma,
+                    collar: 0.0,
                     kind: 1,
                     sample: clamp_id(sample),
                     section: 0,
@@ -120,25 +168,30 @@ impl<'a> Assembly<'a> {
             .extend(rings.map(|(&node, &ring)| (node, shift(ring))));
     }
 
-    /// Adds joints and paths, and returns the mesh.
-    pub(crate) fn finish(mut self) -> CoarseMesh {
+    /// Adds joints and paths, and returns the mesh, and which patches are near which fork.
+    pub(crate) fn finish(mut self) -> (CoarseMesh, Vec<(u32, Range<u32>)>) {
         for node in 0..self.skeleton.nodes().len() as u32 {
             if self.children.of(node).len() > 1 {
                 self.add_joint(node);
             }
         }
         self.insertion_rings.sort_unstable_by_key(|&(node, _)| node);
+        let mut starts = Vec::new();
         for node in 0..self.skeleton.nodes().len() as u32 {
-            let starts =
-                self.skeleton.node(node).parent == NONE || self.joints[node as usize].is_some();
-            if starts {
+            let at = self.skeleton.node(node);
+            let joint = self.joints[node as usize].is_some();
+            // A branch waits until its trunk is made.
+            if joint || at.parent == NONE && !matches!(at.root, Root::Inset(_)) {
                 for child in 0..self.children.of(node).len() {
-                    self.path(node, self.children.of(node)[child]);
+                    self.path(node, self.children.of(node)[child], &mut starts);
                 }
+            }
+            while let Some(root) = starts.pop() {
+                self.path(root, self.children.of(root)[0], &mut starts);
             }
         }
         average_normals(&mut self.mesh);
-        self.mesh
+        (self.mesh, self.fork_patches)
     }
 
     fn add_joint(&mut self, fork: u32) {
@@ -175,6 +228,7 @@ impl<'a> Assembly<'a> {
             radius: radius as f32,
             tangent: self.orientations[node as usize].as_vec3(),
             role,
+            collar: 0.0,
             kind,
             sample: clamp_id(sample),
             section,
@@ -193,145 +247,23 @@ impl<'a> Assembly<'a> {
         self.mesh.vertices.len() as u32 - 1
     }
 
-    /// Builds the tubes from a fork or root down to the next fork or end.
-    fn path(&mut self, start: u32, second: u32) {
-        let nodes = self.run(start, second);
-        let tangents = self.tangents(&nodes);
-        let frames = self.frames(&nodes, &tangents);
-        let last = nodes.len() - 1;
-        let mut ring = self.start_ring(&nodes, &tangents, &frames);
-        for i in 1..nodes.len() {
-            let next = match &self.joints[nodes[i] as usize] {
-                Some(joint) => {
-                    // Seen from the path the joint's ring runs the other way round.
-                    let [up, before, down, after] = joint.ring(nodes[i - 1]);
-                    let along = [up, after, down, before];
-                    let goal = frame::across(joint.shape.normal, tangents[i]);
-                    let (quarter, _) = frame::quarters(frames[i], goal, tangents[i]);
-                    [0, 1, 2, 3].map(|k: i32| along[(k - quarter).rem_euclid(4) as usize])
-                }
-                None => {
-                    let role = if i == last { Role::End } else { Role::Ordinary };
-                    self.own_ring(nodes[i], role, tangents[i], frames[i])
-                }
-            };
-            for k in 0..4 {
-                let corners = [ring[k], ring[(k + 1) % 4], next[(k + 1) % 4], next[k]];
-                self.mesh.patches.push(Patch {
-                    corners,
-                    kind: PatchKind::Lateral,
-                });
-            }
-            ring = next;
-        }
-        if self.joints[nodes[last] as usize].is_none() {
-            self.mesh.patches.push(Patch {
-                corners: ring,
-                kind: PatchKind::Cap,
-            });
-        }
-    }
-
-    /// Nodes from a fork or root to the next fork or end, both included.
-    fn run(&self, start: u32, second: u32) -> Vec<u32> {
-        let mut nodes = vec![start, second];
-        let mut here = second;
-        while let [only] = self.children.of(here) {
-            nodes.push(*only);
-            here = *only;
-        }
-        nodes
-    }
-
-    /// Direction of the path at each node; at joints that of the segment.
-    fn tangents(&self, nodes: &[u32]) -> Vec<DVec3> {
-        let center = |i: usize| self.skeleton.node(nodes[i]).center;
-        let last = nodes.len() - 1;
-        (0..nodes.len())
-            .map(|i| {
-                let own = self.orientations[nodes[i] as usize];
-                if self.joints[nodes[i] as usize].is_none() {
-                    own
-                } else if i == last {
-                    (center(i) - center(i - 1)).try_normalize().unwrap_or(own)
-                } else {
-                    (center(i + 1) - center(i)).try_normalize().unwrap_or(own)
-                }
-            })
-            .collect()
-    }
-
-    /// Frames along a run: rotation-minimizing from the start, with the angle that remains at a
-    /// joint at its end spread in proportion to the length of the path.
-    fn frames(&self, nodes: &[u32], tangents: &[DVec3]) -> Vec<DVec3> {
-        let center = |i: usize| self.skeleton.node(nodes[i]).center;
-        let first = match (
-            &self.joints[nodes[0] as usize],
-            self.insertion_ring(nodes[0]),
-        ) {
-            (Some(joint), _) => frame::across(joint.shape.normal, tangents[0]),
-            (None, Some(ring)) => {
-                let corner = self.mesh.vertices[ring[0] as usize].position.as_dvec3();
-                frame::across(corner - center(0), tangents[0])
-            }
-            (None, None) => tangents[0].any_orthonormal_vector(),
-        };
-        let mut frames = vec![first];
-        let mut lengths = vec![0.0];
-        for i in 1..nodes.len() {
-            let way = center(i) - center(i - 1);
-            frames.push(frame::transport(
-                way,
-                frames[i - 1],
-                tangents[i - 1],
-                tangents[i],
-            ));
-            lengths.push(lengths[i - 1] + way.length());
-        }
-        let last = nodes.len() - 1;
-        if let Some(joint) = &self.joints[nodes[last] as usize] {
-            let goal = frame::across(joint.shape.normal, tangents[last]);
-            let (_, rest) = frame::quarters(frames[last], goal, tangents[last]);
-            let total = lengths[last].max(f64::MIN_POSITIVE);
-            for i in 1..=last {
-                frames[i] = frame::turn(frames[i], tangents[i], rest * lengths[i] / total);
-            }
-        }
-        frames
-    }
-
-    fn insertion_ring(&self, node: u32) -> Option<Ring> {
-        let found = self
-            .insertion_rings
-            .binary_search_by_key(&node, |&(node, _)| node)
-            .ok()?;
-        Some(self.insertion_rings[found].1)
-    }
-
-    fn start_ring(&mut self, nodes: &[u32], tangents: &[DVec3], frames: &[DVec3]) -> Ring {
-        if let Some(joint) = &self.joints[nodes[0] as usize] {
-            return joint.ring(nodes[1]);
-        }
-        if let Some(ring) = self.insertion_ring(nodes[0]) {
-            return ring;
-        }
-        debug_assert_eq!(self.skeleton.node(nodes[0]).root, Root::Free);
-        let ring = self.own_ring(nodes[0], Role::End, tangents[0], frames[0]);
-        let [a, b, c, d] = ring;
-        self.mesh.patches.push(Patch {
-            corners: [d, c, b, a],
-            kind: PatchKind::Cap,
-        });
-        ring
-    }
-
-    fn own_ring(&mut self, node: u32, role: Role, tangent: DVec3, frame: DVec3) -> Ring {
+    /// A ring of four new vertices at these angles from the frame.
+    fn own_ring(
+        &mut self,
+        node: u32,
+        role: Role,
+        tangent: DVec3,
+        frame: DVec3,
+        angles: &[f64; 4],
+    ) -> Ring {
         let SkeletonNode { center, radius, .. } = *self.skeleton.node(node);
         let tracing = self.tracing(node, role);
         self.mesh.tracing[tracing as usize].tangent = tangent.as_vec3();
         let side = tangent.cross(frame);
-        let ring = [frame, side, -frame, -side]
-            .map(|direction| self.vertex(center, direction * radius, tracing));
+        let ring = angles.map(|angle| {
+            let direction = frame * angle.cos() + side * angle.sin();
+            self.vertex(center, direction * radius, tracing)
+        });
         let slope = if role == Role::Ordinary {
             self.taper(node)
         } else {
@@ -358,6 +290,16 @@ impl<'a> Assembly<'a> {
         let length = here.center.distance(before.center) + after.center.distance(here.center);
         ((after.radius - before.radius) / length.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
     }
+}
+
+fn inset_roots(layout: &Layout) -> Vec<u32> {
+    let mut roots = vec![NONE; layout.insets.len()];
+    for (index, node) in (0..).zip(layout.skeleton.nodes()) {
+        if let Root::Inset(inset) = node.root {
+            roots[inset as usize] = index;
+        }
+    }
+    roots
 }
 
 /// Sample numbers beyond 32 bits cannot be exported: they saturate.

@@ -1,0 +1,382 @@
+//! Tubes along a path, from a root, a joint or an inset to an end or a joint.
+
+use glam::DVec3;
+use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint};
+
+use super::facing::{self, Facing};
+use super::twist::{FIXED, Target, relax};
+use super::{Assembly, PlacedInset, Ring};
+use crate::frame;
+use crate::inset::{Inset, InsetSite, RoundCone};
+use crate::skeleton::{NONE, Root};
+
+/// Segments of the trunk to either side that an inset stands over.
+const TRUNK_SEGMENTS: usize = 3;
+
+/// A path as it becomes rings.
+pub(super) struct PathRings {
+    pub(super) nodes: Vec<u32>,
+    pub(super) centers: Vec<DVec3>,
+    pub(super) radii: Vec<f64>,
+    pub(super) tangents: Vec<DVec3>,
+    pub(super) frames: Vec<DVec3>,
+}
+
+impl PathRings {
+    /// Angle of a direction about a ring, from its frame on.
+    pub(super) fn angle(&self, ring: usize, direction: DVec3) -> f64 {
+        let side = self.tangents[ring].cross(self.frames[ring]);
+        f64::atan2(direction.dot(side), direction.dot(self.frames[ring]))
+    }
+
+    /// Unit direction to the next ring.
+    pub(super) fn chord(&self, ring: usize) -> DVec3 {
+        let way = self.centers[ring + 1] - self.centers[ring];
+        way.try_normalize().unwrap_or(self.tangents[ring])
+    }
+
+    /// Cones of the segments around one of them.
+    fn cones(&self, segment: usize) -> Vec<RoundCone> {
+        let first = segment.saturating_sub(TRUNK_SEGMENTS);
+        let end = (segment + TRUNK_SEGMENTS + 1).min(self.centers.len() - 1);
+        (first..end)
+            .map(|i| RoundCone {
+                a: self.centers[i],
+                b: self.centers[i + 1],
+                radius_a: self.radii[i],
+                radius_b: self.radii[i + 1],
+            })
+            .collect()
+    }
+}
+
+impl Assembly<'_> {
+    /// Builds the tubes from a fork, root or inset down to the next fork or end; what leaves through
+    /// insets on the way goes to `starts`.
+    pub(super) fn path(&mut self, start: u32, second: u32, starts: &mut Vec<u32>) {
+        let mut path = self.path_rings(start, second);
+        let zones = self.zones_of(&path.nodes);
+        self.turn_rings(&mut path, &zones);
+        let mut facing: Vec<Facing> = Vec::new();
+        for (ring, insets) in &zones {
+            facing.extend(facing::assign(&path, *ring, insets));
+        }
+        let angles = corner_angles(&path, &facing);
+        let rings = self.rings(&path, &angles);
+        let first_patches = self.tubes(&path, &rings, &facing);
+        for mut facing in facing {
+            let ring = facing.ring;
+            let corners = [angles[ring], angles[ring + 1]];
+            facing::settle(&mut facing, &path, corners, &path.cones(ring));
+            let root = self.inset(&path, &rings, &facing);
+            starts.push(root);
+        }
+        self.note_forks(&path, &zones, &first_patches);
+    }
+
+    fn path_rings(&self, start: u32, second: u32) -> PathRings {
+        let nodes = self.run(start, second);
+        let mut centers: Vec<DVec3> = Vec::with_capacity(nodes.len());
+        centers.extend(nodes.iter().map(|&n| self.skeleton.node(n).center));
+        if let Some(inset) = self.placed(nodes[0]) {
+            centers[0] = inset.center;
+        }
+        let radii = nodes.iter().map(|&n| self.skeleton.node(n).radius).collect();
+        let tangents = self.tangents(&nodes, &centers);
+        let frames = self.frames(&nodes, &centers, &tangents);
+        PathRings {
+            nodes,
+            centers,
+            radii,
+            tangents,
+            frames,
+        }
+    }
+
+    /// Nodes from a fork or root to the next fork or end, both included.
+    fn run(&self, start: u32, second: u32) -> Vec<u32> {
+        let mut nodes = vec![start, second];
+        let mut here = second;
+        while let [only] = self.children.of(here) {
+            nodes.push(*only);
+            here = *only;
+        }
+        nodes
+    }
+
+    fn placed(&self, node: u32) -> Option<&PlacedInset> {
+        match self.skeleton.node(node).root {
+            Root::Inset(inset) => self.placed[inset as usize].as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Zones by their first ring.
+    fn zones_of(&self, nodes: &[u32]) -> Vec<(usize, Vec<(u32, Inset)>)> {
+        let zones = nodes.iter().enumerate().filter_map(|(ring, &node)| {
+            let zone = self.skeleton.node(node).marks.zone_begins;
+            (zone != NONE).then_some((ring, zone))
+        });
+        zones
+            .map(|(ring, zone)| {
+                let insets = self.layout.zones[zone as usize].iter();
+                let insets = insets.map(|&i| (i, self.layout.insets[i as usize]));
+                (ring, insets.collect())
+            })
+            .collect()
+    }
+
+    /// Direction of the path at each node; at joints that of the segment.
+    fn tangents(&self, nodes: &[u32], centers: &[DVec3]) -> Vec<DVec3> {
+        let last = nodes.len() - 1;
+        (0..nodes.len())
+            .map(|i| {
+                let own = self.orientations[nodes[i] as usize];
+                if let Some(inset) = self.placed(nodes[i]) {
+                    inset.direction
+                } else if self.joints[nodes[i] as usize].is_none() {
+                    own
+                } else if i == last {
+                    (centers[i] - centers[i - 1]).try_normalize().unwrap_or(own)
+                } else {
+                    (centers[i + 1] - centers[i]).try_normalize().unwrap_or(own)
+                }
+            })
+            .collect()
+    }
+
+    /// Rotation-minimizing frames from the start on.
+    fn frames(&self, nodes: &[u32], centers: &[DVec3], tangents: &[DVec3]) -> Vec<DVec3> {
+        let first = match (&self.joints[nodes[0] as usize], self.first_ring(nodes[0])) {
+            (Some(joint), _) => frame::across(joint.shape.normal, tangents[0]),
+            (None, Some(ring)) => {
+                let corner = self.mesh.vertices[ring[0] as usize].position.as_dvec3();
+                frame::across(corner - centers[0], tangents[0])
+            }
+            (None, None) => tangents[0].any_orthonormal_vector(),
+        };
+        let mut frames = Vec::with_capacity(nodes.len());
+        frames.push(first);
+        for i in 1..nodes.len() {
+            let way = centers[i] - centers[i - 1];
+            frames.push(frame::transport(
+                way,
+                frames[i - 1],
+                tangents[i - 1],
+                tangents[i],
+            ));
+        }
+        frames
+    }
+
+    /// Ring of an insertion or of an inset.
+    fn first_ring(&self, node: u32) -> Option<Ring> {
+        if let Some(inset) = self.placed(node) {
+            return Some(inset.ring);
+        }
+        let found = self
+            .insertion_rings
+            .binary_search_by_key(&node, |&(node, _)| node)
+            .ok()?;
+        Some(self.insertion_rings[found].1)
+    }
+
+    /// Turns frames as little as possible between the rings that there are, so that quads face the
+    /// branches that leave.
+    fn turn_rings(&self, path: &mut PathRings, zones: &[(usize, Vec<(u32, Inset)>)]) {
+        let last = path.nodes.len() - 1;
+        let joint = self.joints[path.nodes[last] as usize].as_ref();
+        if zones.is_empty() && joint.is_none() {
+            return;
+        }
+        let mut targets = vec![Target::default(); last + 1];
+        let starts_fixed = self.joints[path.nodes[0] as usize].is_some()
+            || self.first_ring(path.nodes[0]).is_some();
+        if starts_fixed {
+            targets[0].weight = FIXED;
+        }
+        facing::targets(path, zones, &mut targets);
+        if let Some(joint) = joint {
+            let goal = frame::across(joint.shape.normal, path.tangents[last]);
+            let (_, rest) = frame::quarters(path.frames[last], goal, path.tangents[last]);
+            let before = targets[..last].iter().rev().find(|t| t.weight > 0.0);
+            let before = before.map_or(0.0, |t| t.angle);
+            let quarter = std::f64::consts::FRAC_PI_2;
+            targets[last] = Target {
+                angle: rest + ((before - rest) / quarter).round() * quarter,
+                weight: FIXED,
+            };
+        }
+        let stiffness: Vec<f64> = (0..last)
+            .map(|i| {
+                let length = path.centers[i].distance(path.centers[i + 1]);
+                let radius = path.radii[i].max(path.radii[i + 1]);
+                (radius / length.max(1e-9)).clamp(1e-4, 10.0)
+            })
+            .collect();
+        let angles = relax(&stiffness, &targets);
+        for i in usize::from(starts_fixed)..=last {
+            path.frames[i] = frame::turn(path.frames[i], path.tangents[i], angles[i]);
+        }
+    }
+
+    /// The vertices of all rings: those that there are, and new ones.
+    fn rings(&mut self, path: &PathRings, angles: &[[f64; 4]]) -> Vec<Ring> {
+        let last = path.nodes.len() - 1;
+        (0..=last)
+            .map(|i| self.ring(path, i, &angles[i]))
+            .collect()
+    }
+
+    fn ring(&mut self, path: &PathRings, i: usize, angles: &[f64; 4]) -> Ring {
+        let (node, last) = (path.nodes[i], path.nodes.len() - 1);
+        match &self.joints[node as usize] {
+            Some(joint) if i == 0 => return joint.ring(path.nodes[1]),
+            Some(joint) => {
+                // Seen from the path the joint's ring runs the other way round.
+                let [up, before, down, after] = joint.ring(path.nodes[i - 1]);
+                let along = [up, after, down, before];
+                let goal = frame::across(joint.shape.normal, path.tangents[i]);
+                let (quarter, _) = frame::quarters(path.frames[i], goal, path.tangents[i]);
+                return [0, 1, 2, 3].map(|k: i32| along[(k - quarter).rem_euclid(4) as usize]);
+            }
+            None => {}
+        }
+        if i == 0
+            && let Some(ring) = self.first_ring(node)
+        {
+            return ring;
+        }
+        debug_assert!(i > 0 || self.skeleton.node(node).root == Root::Free);
+        let role = if i == 0 || i == last {
+            Role::End
+        } else {
+            Role::Ordinary
+        };
+        self.own_ring(node, role, path.tangents[i], path.frames[i], angles)
+    }
+
+    /// Lateral patches between rings, but for quads that branches leave through, and caps at the ends.
+    /// Returns the number of the first patch of each segment, and one past the last.
+    fn tubes(&mut self, path: &PathRings, rings: &[Ring], facing: &[Facing]) -> Vec<u32> {
+        let (first, last) = (path.nodes[0], path.nodes.len() - 1);
+        let mut first_patches = vec![self.mesh.patches.len() as u32];
+        let free = self.joints[first as usize].is_none() && self.first_ring(first).is_none();
+        if free {
+            let [a, b, c, d] = rings[0];
+            self.cap([d, c, b, a]);
+        }
+        let mut facing = facing.iter().peekable();
+        for (i, pair) in rings.windows(2).enumerate() {
+            let mut open = [false; 4];
+            while let Some(branch) = facing.next_if(|f| f.ring == i) {
+                open[branch.side] = true;
+            }
+            let [ring, next] = [pair[0], pair[1]];
+            for k in (0..4).filter(|&k| !open[k]) {
+                let corners = [ring[k], ring[(k + 1) % 4], next[(k + 1) % 4], next[k]];
+                self.mesh.patches.push(Patch {
+                    corners,
+                    kind: PatchKind::Lateral,
+                });
+            }
+            first_patches.push(self.mesh.patches.len() as u32);
+        }
+        if self.joints[path.nodes[last] as usize].is_none() {
+            self.cap(rings[last]);
+        }
+        first_patches
+    }
+
+    fn cap(&mut self, corners: Ring) {
+        self.mesh.patches.push(Patch {
+            corners,
+            kind: PatchKind::Cap,
+        });
+    }
+
+    /// Adds an inset with its lofts; returns the node that its branch begins with.
+    fn inset(&mut self, path: &PathRings, rings: &[Ring], facing: &Facing) -> u32 {
+        let (ring, side) = (facing.ring, facing.side);
+        let inset = self.layout.insets[facing.inset as usize];
+        let shape = InsetSite {
+            exit: facing.exit,
+            direction: facing.direction,
+            radius: facing.radius,
+            lift: inset.lift,
+            along: path.chord(ring),
+        }
+        .shape(&path.cones(ring));
+        let root = self.inset_roots[facing.inset as usize];
+        let tracing = self.tracing(root, Role::Inset);
+        self.mesh.tracing[tracing as usize] = TracingPoint {
+            center: shape.center.as_vec3(),
+            tangent: shape.direction.as_vec3(),
+            collar: shape.collar as f32,
+            ..self.mesh.tracing[tracing as usize]
+        };
+        let inner: Vec<u32> = (0..4)
+            .map(|k| {
+                let vertex = self.vertex(shape.center, shape.corners[k] - shape.center, tracing);
+                self.mesh.vertices[vertex as usize].normal = shape.radials[k].as_vec3();
+                vertex
+            })
+            .collect();
+        let (near, far) = (rings[ring], rings[ring + 1]);
+        let after = (side + 1) % 4;
+        let outer = [near[side], near[after], far[after], far[side]];
+        let first = self.mesh.patches.len() as u32;
+        for k in 0..4 {
+            let next = (k + 1) % 4;
+            self.mesh.patches.push(Patch {
+                corners: [outer[k], outer[next], inner[next], inner[k]],
+                kind: PatchKind::Loft,
+            });
+        }
+        self.fork_patches.push((inset.fork, first..first + 4));
+        self.placed[facing.inset as usize] = Some(PlacedInset {
+            ring: [inner[0], inner[1], inner[2], inner[3]],
+            center: shape.center,
+            direction: shape.direction,
+        });
+        root
+    }
+
+    /// Notes which patches are near a fork: those of two segments from joints and insets, and of the
+    /// trunk around a zone.
+    fn note_forks(&mut self, path: &PathRings, zones: &[(usize, Vec<(u32, Inset)>)], first: &[u32]) {
+        let last = path.nodes.len() - 1;
+        let segments = |from: usize, to: usize| first[from.min(last)]..first[to.min(last)];
+        let start = match self.skeleton.node(path.nodes[0]).root {
+            Root::Inset(inset) => self.layout.insets[inset as usize].fork,
+            _ => self.skeleton.node(path.nodes[0]).marks.fork,
+        };
+        let end = self.skeleton.node(path.nodes[last]).marks.fork;
+        if start != NONE {
+            self.fork_patches.push((start, segments(0, 2)));
+        }
+        if end != NONE {
+            self.fork_patches.push((end, segments(last.saturating_sub(2), last)));
+        }
+        for (ring, insets) in zones {
+            for (_, inset) in insets {
+                let around = segments(ring.saturating_sub(1), ring + 2);
+                self.fork_patches.push((inset.fork, around));
+            }
+        }
+    }
+}
+
+/// Angles of the corners of every ring.
+fn corner_angles(path: &PathRings, facing: &[Facing]) -> Vec<[f64; 4]> {
+    let mut from = 0;
+    (0..path.nodes.len())
+        .map(|ring| {
+            while facing.get(from).is_some_and(|f| f.ring + 1 < ring) {
+                from += 1;
+            }
+            let here = facing[from..].iter().take_while(|f| f.ring <= ring);
+            facing::corner_angles(ring, &here.collect::<Vec<_>>())
+        })
+        .collect()
+}

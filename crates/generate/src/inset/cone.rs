@@ -1,0 +1,91 @@
+//! Distance from round cones: the solid that a traced segment stands for.
+
+use glam::DVec3;
+
+/// A sphere at either end and the cone that touches both (µm).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RoundCone {
+    pub(crate) a: DVec3,
+    pub(crate) b: DVec3,
+    pub(crate) radius_a: f64,
+    pub(crate) radius_b: f64,
+}
+
+impl RoundCone {
+    /// Signed distance (µm) of a point from the surface, negative inside: I. Quilez, "Round cone",
+    /// whose three regions are the two spheres and the cone between their circles of contact.
+    pub(crate) fn distance(&self, p: DVec3) -> f64 {
+        let axis = self.b - self.a;
+        let length2 = axis.length_squared();
+        let step = self.radius_a - self.radius_b;
+        let slant2 = length2 - step * step;
+        let to_a = p - self.a;
+        if length2 < 1e-18 || slant2 <= 0.0 {
+            // One sphere holds the other.
+            return (to_a.length() - self.radius_a).min(p.distance(self.b) - self.radius_b);
+        }
+        let along = to_a.dot(axis);
+        let beyond = along - length2;
+        let across2 = (to_a * length2 - axis * along).length_squared();
+        let (along2, beyond2) = (along * along * length2, beyond * beyond * length2);
+        let k = step.signum() * step * step * across2;
+        if beyond.signum() * slant2 * beyond2 > k {
+            (across2 + beyond2).sqrt() / length2 - self.radius_b
+        } else if along.signum() * slant2 * along2 < k {
+            (across2 + along2).sqrt() / length2 - self.radius_a
+        } else {
+            ((across2 * slant2 / length2).sqrt() + along * step) / length2 - self.radius_a
+        }
+    }
+}
+
+/// Signed distance (µm) from the union of cones.
+pub(crate) fn distance(cones: &[RoundCone], p: DVec3) -> f64 {
+    let distances = cones.iter().map(|cone| cone.distance(p));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+/// Unit direction in which the distance from the union grows, by differences over `step` (µm).
+pub(crate) fn outwards(cones: &[RoundCone], p: DVec3, step: f64) -> DVec3 {
+    let slope = |axis: DVec3| distance(cones, p + axis * step) - distance(cones, p - axis * step);
+    let gradient = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
+    gradient.try_normalize().unwrap_or(DVec3::Y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONE: RoundCone = RoundCone {
+        a: DVec3::ZERO,
+        b: DVec3::new(10.0, 0.0, 0.0),
+        radius_a: 2.0,
+        radius_b: 1.0,
+    };
+
+    #[test]
+    fn ends_are_spheres() {
+        assert!((CONE.distance(DVec3::new(-5.0, 0.0, 0.0)) - 3.0).abs() < 1e-12);
+        assert!((CONE.distance(DVec3::new(13.0, 0.0, 0.0)) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn middle_is_the_common_tangent_cone() {
+        let slant = (100.0_f64 - 1.0).sqrt();
+        // Half-way between the circles of contact, which lie off the centers by r·step/length.
+        let x = 5.0 + 0.5 * (2.0 + 1.0) * 0.1;
+        let radius = 1.5 * slant / 10.0;
+        assert!(CONE.distance(DVec3::new(x, radius, 0.0)).abs() < 1e-12);
+        let n = outwards(&[CONE], DVec3::new(x, radius, 0.0), 1e-4);
+        assert!((n.x - 0.1).abs() < 1e-6, "{n}");
+    }
+
+    #[test]
+    fn sphere_within_the_other_does_not_count() {
+        let cone = RoundCone {
+            b: DVec3::new(0.5, 0.0, 0.0),
+            ..CONE
+        };
+        assert!((cone.distance(DVec3::new(0.0, 5.0, 0.0)) - 3.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,76 @@
+//! Branches that leave a quad of their trunk through an inset, instead of a joint of tubes.
+//!
+//! ```text
+//!        ring low            ring high        the trunk runs on undisturbed
+//!    ──────●───────────────────●──────
+//!          │╲                 ╱│              between two of its rings, the quad
+//!          │  ●─────────────●  │              that faces the branch gets an inner quad
+//!          │  │   inset     │  │              of the branch's size, lifted off the trunk,
+//!          │  ●─────────────●  │              with four lofts around it
+//!          │╱                 ╲│
+//!    ──────●───────────────────●──────
+//! ```
+//!
+//! Planned here, on the skeleton: which child of a fork continues the trunk, where each other child
+//! leaves it (zone.rs), and how several share it (arrange.rs). A branch becomes a tree of its own, whose
+//! root stands for the inset; two nodes of the trunk stand for the zone's rings. A branch for which
+//! there is no room stays with its fork, which becomes a joint. The quads are made when the trunk's final
+//! rings are known: shape.rs and assemble.
+
+mod arrange;
+mod cone;
+mod path;
+mod polyline;
+mod shape;
+mod zone;
+
+use glam::DVec3;
+
+use crate::skeleton::Skeleton;
+
+pub(crate) use cone::{RoundCone, outwards};
+pub(crate) use shape::InsetSite;
+pub(crate) use zone::not_too_steep;
+
+/// What a fork becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ForkChoice {
+    /// Its tubes meet at one point.
+    Joint,
+    /// All children but the one that continues the trunk leave through insets, lifted this many radii
+    /// off the trunk.
+    Inset {
+        /// Radii of the branch.
+        lift: f64,
+    },
+}
+
+/// A branch that leaves through an inset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inset {
+    /// Fork of the skeleton that was laid out.
+    pub(crate) fork: u32,
+    /// Where its axis leaves the trunk, and the unit direction in which it does.
+    pub(crate) exit: DVec3,
+    pub(crate) direction: DVec3,
+    pub(crate) radius: f64,
+    pub(crate) lift: f64,
+}
+
+/// A skeleton whose branches leave through insets where they can.
+pub(crate) struct Layout {
+    pub(crate) skeleton: Skeleton,
+    /// By number of [`Root::Inset`](crate::skeleton::Root).
+    pub(crate) insets: Vec<Inset>,
+    /// By number of the zone: its insets.
+    pub(crate) zones: Vec<Vec<u32>>,
+    /// Forks that were to have insets, and have no room for them.
+    pub(crate) refused: Vec<u32>,
+    /// First nodes of branches that end inside their trunk, and are left out.
+    pub(crate) buried: Vec<u32>,
+}
+
+/// Lays a skeleton out. `choices`: by node of the skeleton, those that are no forks included.
+pub(crate) fn lay_out(skeleton: &Skeleton, choices: &[ForkChoice]) -> Layout {
+    path::Planner::new(skeleton, choices).plan()
+}

@@ -1,0 +1,130 @@
+//! The inner quad of an inset: a ring of the branch's size, lifted off its trunk.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use glam::DVec3;
+
+use super::cone::{RoundCone, distance, outwards};
+use super::zone::LEAST_STEEP;
+
+/// Share of the way from the trunk to the ring over which the lofts run along the branch.
+const COLLAR: f64 = 0.7;
+/// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
+const MOST_SHEAR: f64 = 2.2;
+
+/// The ring that a branch begins with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InsetShape {
+    pub(crate) center: DVec3,
+    /// Counter-clockwise about the direction: behind, on the left and right, then ahead.
+    pub(crate) corners: [DVec3; 4],
+    /// Unit directions of the corners across the branch.
+    pub(crate) radials: [DVec3; 4],
+    pub(crate) direction: DVec3,
+    /// Length (µm) over which the lofts run along the direction.
+    pub(crate) collar: f64,
+    /// How far (µm) the corners reach along the direction from the center.
+    pub(crate) reach: f64,
+}
+
+/// What a ring is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InsetSite {
+    /// Where the branch's axis leaves the trunk, and its unit direction there.
+    pub(crate) exit: DVec3,
+    pub(crate) direction: DVec3,
+    pub(crate) radius: f64,
+    /// Height of the corners over the trunk, in radii of the branch.
+    pub(crate) lift: f64,
+    /// Unit direction of the trunk's path.
+    pub(crate) along: DVec3,
+}
+
+impl InsetSite {
+    /// Places the ring over the trunk's cones: each corner on its line along the branch, where the
+    /// distance from the trunk is `lift` radii.
+    pub(crate) fn shape(&self, trunk: &[RoundCone]) -> InsetShape {
+        let normal = outwards(trunk, self.exit, 1e-3 * self.radius);
+        let ahead = (self.along - self.direction * self.along.dot(self.direction))
+            .try_normalize()
+            .unwrap_or_else(|| self.direction.any_orthonormal_vector());
+        let left = ahead.cross(self.direction) * -1.0;
+        let left = if left.dot(self.along.cross(normal)) < 0.0 {
+            -left
+        } else {
+            left
+        };
+        let radials = [-ahead - left, -ahead + left, ahead + left, ahead - left]
+            .map(|side| side * FRAC_1_SQRT_2);
+        let height = self.lift * self.radius;
+        let heights = radials.map(|side| self.height(trunk, side * self.radius, height));
+        let mean = heights.iter().sum::<f64>() / 4.0;
+        let most = MOST_SHEAR * self.radius;
+        let mut corners = [DVec3::ZERO; 4];
+        for k in 0..4 {
+            let up = heights[k].clamp(mean - most, mean + most);
+            corners[k] = self.exit + radials[k] * self.radius + self.direction * up;
+        }
+        let center = corners.iter().sum::<DVec3>() / 4.0;
+        let reaches = corners.map(|p| (p - center).dot(self.direction));
+        let steep = self.direction.dot(normal).max(LEAST_STEEP);
+        InsetShape {
+            center,
+            corners,
+            radials,
+            direction: self.direction,
+            collar: COLLAR * height.max(0.2 * self.radius) / steep,
+            reach: reaches.into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// Way along the branch from the exit's plane to where a line beside the axis is this high over the
+    /// trunk, by sphere tracing from outside.
+    fn height(&self, trunk: &[RoundCone], beside: DVec3, height: f64) -> f64 {
+        let mut up = 4.0 * self.radius + 2.0 * height;
+        for _ in 0..80 {
+            let above = distance(trunk, self.exit + beside + self.direction * up) - height;
+            if above.abs() < 1e-6 * self.radius {
+                break;
+            }
+            up -= above;
+            if up < -3.0 * self.radius {
+                break;
+            }
+        }
+        up
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ring_stands_over_its_trunk() {
+        let trunk = [RoundCone {
+            a: DVec3::new(-20.0, 0.0, 0.0),
+            b: DVec3::new(20.0, 0.0, 0.0),
+            radius_a: 1.0,
+            radius_b: 1.0,
+        }];
+        for slant in [0.0_f64, 0.5, -0.8] {
+            let site = InsetSite {
+                exit: DVec3::new(0.0, 1.0, 0.0),
+                direction: DVec3::new(slant, 1.0, 0.0).normalize(),
+                radius: 0.4,
+                lift: 0.4,
+                along: DVec3::X,
+            };
+            let shape = site.shape(&trunk);
+            for corner in shape.corners {
+                assert!((distance(&trunk, corner) - 0.16).abs() < 1e-5);
+            }
+            // Counter-clockwise about the direction.
+            let [a, b, _, d] = shape.corners;
+            assert!((b - a).cross(d - a).dot(site.direction) > 0.0);
+            // The first two corners are those behind.
+            assert!((a.x + b.x) < (shape.corners[2].x + d.x));
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! The zone of a branch on its trunk: where it leaves, in which direction, and between which two
+//! rings of the trunk the quad lies that it leaves through.
+
+use glam::DVec3;
+
+use super::cone::{distance, outwards};
+use super::polyline::Polyline;
+
+/// Steepest that a branch leaves its trunk, by the cosine of the angle to the trunk's normal: 60°.
+pub(crate) const LEAST_STEEP: f64 = 0.5;
+/// Steps of the walk out of the trunk at most: thin branches of thick trunks take finer ones.
+const MOST_STEPS: f64 = 2000.0;
+/// A branch that is thicker than this share of its trunk, where it leaves it, gets a joint.
+const MOST_RATIO: f64 = 1.2;
+
+/// A branch on a trunk.
+#[derive(Clone, Debug)]
+pub(crate) struct Zone {
+    /// Arc length on the trunk of the point nearest to the exit.
+    pub(crate) foot: f64,
+    /// Where the branch's axis leaves the trunk.
+    pub(crate) exit: DVec3,
+    /// Unit direction in which it does.
+    pub(crate) direction: DVec3,
+    /// Radius of the branch, and of the trunk at the foot.
+    pub(crate) radius: f64,
+    pub(crate) trunk_radius: f64,
+    /// Arc lengths of the two rings.
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// Arc lengths between which they may be.
+    pub(crate) room: [f64; 2],
+    /// Fork and first node of the branch.
+    pub(crate) fork: u32,
+    pub(crate) child: u32,
+    pub(crate) lift: f64,
+}
+
+/// What there is instead of a zone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoZone {
+    /// The branch does not leave the trunk.
+    Inside,
+    /// The trunk has no room for it.
+    NoRoom,
+}
+
+/// A branch as it leaves its trunk.
+pub(crate) struct Branch<'a> {
+    pub(crate) fork: u32,
+    pub(crate) child: u32,
+    /// From the fork along its main children, with the radius of its first point throughout.
+    pub(crate) path: &'a Polyline,
+    pub(crate) radius: f64,
+    pub(crate) lift: f64,
+}
+
+impl Branch<'_> {
+    /// The zone on `trunk`, whose fork lies at arc length `at`; `room`: arc lengths that are free.
+    pub(crate) fn zone(&self, trunk: &Polyline, at: f64, room: [f64; 2]) -> Result<Zone, NoZone> {
+        let near = trunk.radius(at);
+        let around = [at - 8.0 * near, at + 8.0 * near];
+        let cones = trunk.cones(around);
+        let exit_arc = self.exit(near, |p| distance(&cones, p))?;
+        let exit = self.path.at(exit_arc);
+        let way = self.path.at(exit_arc + 1.5 * self.radius)
+            - self.path.at((exit_arc - 0.75 * self.radius).max(0.0));
+        let normal = outwards(&cones, exit, 1e-3 * self.radius);
+        let direction = not_too_steep(way.try_normalize().unwrap_or(normal), normal);
+        let around = [around[0].max(0.0), around[1].min(trunk.length())];
+        let foot = trunk.foot(exit, around);
+        let trunk_radius = trunk.radius(foot);
+        if self.radius >= MOST_RATIO * trunk_radius {
+            return Err(NoZone::NoRoom);
+        }
+        let tangent = trunk.tangent(foot, 0.5 * trunk_radius);
+        let slant = 1.0 / direction.dot(normal).max(LEAST_STEEP);
+        let leaning = direction.dot(tangent);
+        let stretch = slant.powf(if leaning.abs() > 0.3 { 1.0 } else { 0.3 });
+        let half = (self.radius * (stretch + 0.5)).max(0.5 * trunk_radius);
+        let center = foot + 0.5 * self.lift * self.radius * leaning * slant;
+        let room = [room[0] + 0.3 * trunk_radius, room[1] - 0.3 * trunk_radius];
+        let free = room[1] - room[0];
+        if free < 1.5 * half {
+            return Err(NoZone::NoRoom);
+        }
+        let middle = if 2.0 * half > free {
+            0.5 * (room[0] + room[1])
+        } else {
+            center.clamp(room[0] + half, room[1] - half)
+        };
+        let shift = middle - center;
+        if shift.abs() > 2.5 * trunk_radius + self.radius {
+            return Err(NoZone::NoRoom);
+        }
+        let half = half.min(0.5 * free);
+        let mut zone = Zone {
+            foot,
+            exit,
+            direction,
+            radius: self.radius,
+            trunk_radius,
+            low: middle - half,
+            high: middle + half,
+            room,
+            fork: self.fork,
+            child: self.child,
+            lift: self.lift,
+        };
+        zone.move_exit(shift, trunk);
+        Ok(zone)
+    }
+
+    /// Arc length at which the branch leaves the trunk for good, or for twice the trunk's radius.
+    fn exit(&self, trunk_radius: f64, outside: impl Fn(DVec3) -> f64) -> Result<f64, NoZone> {
+        let reach = self.path.length().min(12.0 * trunk_radius);
+        let step = (0.25 * self.radius.min(trunk_radius)).max(12.0 * trunk_radius / MOST_STEPS);
+        let lasting = (2.0 * trunk_radius / step) as usize + 1;
+        let count = (reach / step).ceil() as usize;
+        let (mut first, mut inside) = (None, None);
+        let mut run = 0;
+        for i in 0..=count {
+            if outside(self.path.at(i as f64 * step)) > 0.0 {
+                first = first.or(Some(i));
+                run += 1;
+                if run == lasting {
+                    break;
+                }
+            } else {
+                inside = Some(i);
+                run = 0;
+            }
+        }
+        let Some(first) = first else {
+            return Err(NoZone::Inside);
+        };
+        // Outside up to the end of what was looked at, however short, counts as for good.
+        let first = match inside {
+            Some(inside) if run > 0 => inside + 1,
+            _ => first,
+        };
+        let (mut low, mut high) = (first.saturating_sub(1) as f64 * step, first as f64 * step);
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if outside(self.path.at(middle)) > 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Ok(high)
+    }
+}
+
+impl Zone {
+    /// Moves the exit along the trunk, and the foot with it.
+    fn move_exit(&mut self, by: f64, trunk: &Polyline) {
+        let to = (self.foot + by).clamp(0.0, trunk.length());
+        self.exit += trunk.at(to) - trunk.at(self.foot);
+        self.foot = to;
+    }
+
+    /// Moves all of it along the trunk.
+    pub(crate) fn shift(&mut self, by: f64, trunk: &Polyline) {
+        self.move_exit(by, trunk);
+        self.low += by;
+        self.high += by;
+    }
+
+    /// Unit direction of the exit from the trunk's axis.
+    pub(crate) fn side(&self, trunk: &Polyline) -> DVec3 {
+        let way = self.exit - trunk.at(self.foot);
+        way.try_normalize().unwrap_or(DVec3::Y)
+    }
+}
+
+/// A direction turned up to [`LEAST_STEEP`] from the surface's normal.
+pub(crate) fn not_too_steep(direction: DVec3, normal: DVec3) -> DVec3 {
+    let up = direction.dot(normal);
+    if up >= LEAST_STEEP {
+        return direction;
+    }
+    let flat = (direction - normal * up).try_normalize();
+    let flat = flat.unwrap_or_else(|| normal.any_orthonormal_vector());
+    normal * LEAST_STEEP + flat * (1.0 - LEAST_STEEP * LEAST_STEEP).sqrt()
+}
