@@ -8,12 +8,12 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, SurfaceMesh, self_intersections};
-use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
+use neurotess_mesh::CoarseMesh;
+use rayon::prelude::*;
 
 use crate::assemble::{Assembly, Somata};
 use crate::inset::{self, ForkChoice};
+use crate::judge::faults;
 use crate::skeleton::Skeleton;
 use crate::warning::Warnings;
 use crate::{crowd, fork, uncross};
@@ -27,10 +27,6 @@ const CHOICES: [ForkChoice; 4] = [
     ForkChoice::Joint,
 ];
 const JOINT: usize = CHOICES.len() - 1;
-/// Level at which patches are judged.
-const LEVEL: u32 = 2;
-/// Facets folded by more than this count: cosine of 120°.
-const FOLDED: f32 = -0.5;
 
 /// The mesh of a skeleton with the best choice for each fork.
 pub(crate) fn mesh(skeleton: &Skeleton, somata: &Somata<'_>, warnings: &mut Warnings) -> CoarseMesh {
@@ -118,16 +114,19 @@ impl ForkTrials {
                 near.entry(fork).or_default().extend(range);
             }
         }
+        let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
+        let judged: Vec<(u32, usize)> = near
+            .par_iter()
+            .map(|(fork, patches)| (*fork, faults(mesh, patches)))
+            .collect();
+        let faults: BTreeMap<u32, usize> = judged.into_iter().collect();
         let mut changed = false;
-        for (&fork, trial) in &mut self.trials {
-            if trial.settled {
-                continue;
-            }
+        for (fork, trial) in self.trials.iter_mut().filter(|(_, trial)| !trial.settled) {
             let before = CHOICES[trial.current];
-            let faults = near.get(&fork).map_or(0, |patches| faults(mesh, patches));
-            trial.faults[trial.current] = Some(faults);
+            // A fork without patches was left out with its branch.
+            trial.faults[trial.current] = Some(faults.get(fork).copied().unwrap_or(0));
             trial.next();
-            self.choices[fork as usize] = CHOICES[trial.current];
+            self.choices[*fork as usize] = CHOICES[trial.current];
             changed |= CHOICES[trial.current] != before;
         }
         changed
@@ -157,74 +156,4 @@ impl Trial {
             }
         }
     }
-}
-
-/// Crossing pairs and folded edges of some patches' refined surface.
-fn faults(mesh: &CoarseMesh, patches: &[u32]) -> usize {
-    let part = part(mesh, patches);
-    let options = RefineOptions::default();
-    let level = LodCriterion::Homogeneous(LEVEL);
-    let surface = SurfaceMesh::collect(&Refinement::new(&part, level, &options));
-    let positions: Vec<Vec3> = surface.vertices.iter().map(|v| v.position).collect();
-    let crossing = self_intersections(&positions, &surface.faces).len();
-    crossing + folds(&positions, &surface.faces.triangles)
-}
-
-/// A mesh of some patches only.
-fn part(mesh: &CoarseMesh, patches: &[u32]) -> CoarseMesh {
-    let mut patches = patches.to_vec();
-    patches.sort_unstable();
-    patches.dedup();
-    let corners = |&patch: &u32| mesh.patches[patch as usize].corners;
-    // In the mesh's order: edges run from the lower number.
-    let mut vertices: Vec<u32> = patches.iter().flat_map(corners).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let tracing_of = |v: u32| mesh.vertices[v as usize].tracing;
-    let mut tracing: Vec<u32> = vertices.iter().map(|&v| tracing_of(v)).collect();
-    tracing.sort_unstable();
-    tracing.dedup();
-    let number = |list: &[u32], of: u32| list.partition_point(|&x| x < of) as u32;
-    CoarseMesh {
-        origin: mesh.origin,
-        vertices: vertices
-            .iter()
-            .map(|&v| {
-                let vertex = mesh.vertices[v as usize];
-                let tracing = number(&tracing, vertex.tracing);
-                neurotess_mesh::Vertex { tracing, ..vertex }
-            })
-            .collect(),
-        tracing: tracing.iter().map(|&t| mesh.tracing[t as usize]).collect(),
-        patches: patches
-            .iter()
-            .map(|&p| {
-                let patch = mesh.patches[p as usize];
-                let corners = patch.corners.map(|v| number(&vertices, v));
-                neurotess_mesh::Patch { corners, ..patch }
-            })
-            .collect(),
-    }
-}
-
-/// Edges between facets that are folded over.
-fn folds(positions: &[Vec3], triangles: &[[u32; 3]]) -> usize {
-    let normal = |&[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|v| positions[v as usize]);
-        (b - a).cross(c - a).normalize_or_zero()
-    };
-    let normals: Vec<Vec3> = triangles.iter().map(normal).collect();
-    let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * triangles.len());
-    for (t, &[a, b, c]) in (0..).zip(triangles) {
-        for (p, q) in [(a, b), (b, c), (c, a)] {
-            edges.push((p.min(q), p.max(q), t));
-        }
-    }
-    edges.sort_unstable();
-    let folded = |pair: &&[(u32, u32, u32)]| {
-        let [a, b] = [pair[0], pair[1]];
-        let same = (a.0, a.1) == (b.0, b.1);
-        same && normals[a.2 as usize].dot(normals[b.2 as usize]) < FOLDED
-    };
-    edges.windows(2).filter(folded).count()
 }

@@ -9,6 +9,7 @@ mod forks;
 mod frame;
 mod inset;
 mod joint;
+mod judge;
 mod normals;
 mod options;
 mod prepare;

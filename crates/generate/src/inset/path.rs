@@ -25,6 +25,10 @@ const AHEAD: f64 = 0.35;
 const CLEAR: f64 = 1.05;
 /// Points of a branch that are looked at to find its way out.
 const MOST_LOOKED_AT: usize = 40;
+/// A fork of more children becomes joints: branches of one point need a side of the trunk each.
+const MOST_CHILDREN: usize = 4;
+/// A fork of more neighbors is split into several joints, none of which reaches far.
+const MOST_NEIGHBORS: usize = 6;
 /// Tries to lay out a path before all forks left on it become joints.
 const MOST_TRIES: usize = 6;
 
@@ -176,6 +180,10 @@ impl<'a> Planner<'a> {
             match children {
                 [] => return way,
                 [only] => way.nodes.push(*only),
+                _ if self.choices[here as usize] == ForkChoice::Joint => {
+                    way.ends_at_joint = true;
+                    return way;
+                }
                 _ => {
                     let main = self.main_child(way.nodes[last - 1], here);
                     if !self.leaves_through_insets(here, main) {
@@ -207,15 +215,15 @@ impl<'a> Planner<'a> {
     }
 
     fn leaves_through_insets(&self, fork: u32, main: u32) -> bool {
-        if self.choices[fork as usize] == ForkChoice::Joint {
-            return false;
-        }
         let [here, main_radius] = [fork, main].map(|n| self.base.node(n).radius);
         let trunk = if main_radius > 0.3 * here {
             here.min(main_radius)
         } else {
             here
         };
+        if self.children.of(fork).len() > MOST_CHILDREN {
+            return false;
+        }
         let mut others = self.children.of(fork).iter().filter(|&&c| c != main);
         others.all(|&child| self.base.node(child).radius < MOST_THICK * trunk)
     }
@@ -254,6 +262,9 @@ impl<'a> Planner<'a> {
 
     /// How far a joint reaches towards a neighbor, with room for all.
     fn joint_reach(&self, fork: u32, neighbor: u32) -> f64 {
+        if self.children.of(fork).len() >= MOST_NEIGHBORS {
+            return 2.0 * self.base.node(fork).radius;
+        }
         let around = fork::neighbors(self.children, self.base, fork);
         let tubes = fork::tubes(self.base, self.children, fork, &around);
         let free: Vec<Neighbor> = tubes
