@@ -57,7 +57,7 @@ fn select(
     let mut all = Vec::new();
     for batch in &plan.batches {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        refiner.choose(scene, &mut encoder, Some(batch), None);
+        refiner.select(scene, &mut encoder, Some(batch), None);
         gpu.queue.submit([encoder.finish()]);
         let selected = refiner.read_selected(gpu, scene, batch).expect("selected");
         let lists: Vec<Vec<GridPoint>> = selected.iter().map(&asked_for).collect();

@@ -136,7 +136,7 @@ impl Explorer {
     /// Resolves ids of pictures that were drawn from proxies.
     pub(crate) fn resolver(&self) -> Option<ProxyPickResolver> {
         let built = self.built.as_ref()?;
-        Some(built.exploration.namer(Arc::clone(&built.names)))
+        Some(built.exploration.resolver(Arc::clone(&built.names)))
     }
 
     /// Frames have fewer triangles where they take too long, and more where there is time.

@@ -136,9 +136,9 @@ fn covers(
     }
 }
 
-/// What a named patch is.
-pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<CursorHit> {
-    let (middle, tracing, soma) = match named.spot {
+/// The part of a neuron that was hit, and where.
+pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<CursorHit> {
+    let (middle, tracing, soma) = match hit.target {
         PickTarget::Patch(patch) => {
             let patch = mesh.patches.get(patch as usize)?;
             let corners = patch.corners.map(|v| &mesh.vertices[v as usize]);
@@ -152,7 +152,7 @@ pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> 
         }
         PickTarget::Point(point) | PickTarget::Soma(point) => {
             let traced = mesh.tracing.get(point as usize)?;
-            let soma = matches!(named.spot, PickTarget::Soma(_));
+            let soma = matches!(hit.target, PickTarget::Soma(_));
             (traced.center.as_dvec3(), point, soma)
         }
     };
@@ -164,7 +164,7 @@ pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> 
     };
     Some(CursorHit {
         picked: Picked {
-            neuron: named.instance as usize,
+            neuron: hit.instance as usize,
             part,
         },
         place: placement.world_from_cell(mesh.origin + middle),

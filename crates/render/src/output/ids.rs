@@ -136,7 +136,7 @@ impl Identifier {
             gpu.queue
                 .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            source.choose(round, &mut encoder, None);
+            source.select(round, &mut encoder, None);
             self.round(source, round, canvas, &group, &mut encoder);
             if round + 1 == rounds {
                 canvas.copy(&mut encoder);

@@ -196,7 +196,7 @@ impl TileRenderer {
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
             let timestamps = self.timer.compute(Pass::Choose);
-            source.choose(round, &mut encoder, timestamps);
+            source.select(round, &mut encoder, timestamps);
             let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }
@@ -249,7 +249,7 @@ impl TileRenderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
-            source.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
+            source.select(round, &mut encoder, self.timer.compute(Pass::Choose));
             let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }

@@ -218,7 +218,7 @@ impl Drawer {
         for round in 0..plan.batches.len().max(1) {
             let batch = plan.batches.get(round);
             if let Some(batch) = batch {
-                refiner.choose(scene, &mut encoder, Some(batch), None);
+                refiner.select(scene, &mut encoder, Some(batch), None);
             }
             let first = round == 0;
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

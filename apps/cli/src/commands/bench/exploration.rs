@@ -106,7 +106,7 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
             points: points.map(|n| n as u64).sum(),
             exploration: times,
             triangles: stats.triangles,
-            wanted: stats.wanted,
+            wanted: stats.requested,
             bytes: source.bytes().iter().map(|(_, bytes)| bytes).sum(),
             adaptive: None,
             adaptive_triangles: None,

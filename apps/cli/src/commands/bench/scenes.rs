@@ -5,7 +5,7 @@ use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
 use neurotess::render::bounds::bounds;
 use neurotess::render::color::{ColorTable, Palette, category};
-use neurotess::render::{BoundingSphere, Camera, Frame, Side, Tile};
+use neurotess::render::{BoundingSphere, Camera, Frame, Side};
 use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 
@@ -100,17 +100,7 @@ impl BenchScene {
         let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &spheres)?;
         let distance = |&(center, radius): &BoundingSphere| center.distance(camera.eye()) + radius;
         Ok(Self {
-            frame: Frame {
-                camera,
-                near: camera.near(&spheres),
-                size,
-                tile: Tile {
-                    x: 0,
-                    y: 0,
-                    width: size[0],
-                    height: size[1],
-                },
-            },
+            frame: Frame::whole(camera, camera.near(&spheres), size),
             far: spheres.iter().map(distance).fold(0.0, f64::max),
             placements,
         })

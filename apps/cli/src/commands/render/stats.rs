@@ -128,8 +128,8 @@ impl Stats {
         self.gpu_bytes = made.bytes;
         self.exploration = made.exploration.map(|stats| BudgetStats {
             budget: stats.budget,
-            wanted: stats.wanted,
-            left_out: stats.wanted - stats.triangles.min(stats.wanted),
+            wanted: stats.requested,
+            left_out: stats.requested - stats.triangles.min(stats.requested),
             neurons_in_picture: stats.instances,
         });
         self.gpu_bytes.insert("targets", cost.target_bytes);

@@ -6,7 +6,7 @@ use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
     ExplorationStats, Frame, Gpu, Instance, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Template, Templates, Tile, VertexSource,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource,
 };
 use rayon::prelude::*;
 
@@ -169,17 +169,7 @@ impl PictureSource {
 /// The whole picture as one frame.
 fn whole(gpu: &Gpu, camera: &Camera, near: f64, options: &PictureOptions) -> Frame {
     let size = options.size.map(|n| n * options.sub_pixels(gpu));
-    Frame {
-        camera: *camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
-    }
+    Frame::whole(*camera, near, size)
 }
 
 fn budgeted(

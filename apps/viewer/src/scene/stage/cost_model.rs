@@ -1,10 +1,10 @@
 //! What a full picture may cost. Where refining everything would hold the window up, exploration draws the
 //! picture at rest too, with as many triangles as there is time for.
 
-use neurotess::render::ViewParams;
 use neurotess::render::bounds::any_shows;
+use neurotess::render::{Frame, ViewParams};
 
-use super::{Stage, whole};
+use super::Stage;
 use crate::model::state::{Lowered, State};
 use crate::scene::content::SceneInstance;
 
@@ -117,7 +117,7 @@ impl Stage {
     /// Patches of all neurons of which something may show.
     pub(super) fn patches_in(&self, state: &State, params: &ViewParams) -> u64 {
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
-        let frame = whole(camera, near, params.size);
+        let frame = Frame::whole(camera, near, params.size);
         let shows = |instance: &&SceneInstance| {
             let Some(source) = self.content.sources.get(instance.source) else {
                 return false;

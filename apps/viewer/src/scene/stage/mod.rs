@@ -18,8 +18,8 @@ use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::color::InstanceValues;
 use neurotess::render::overlay::Legend;
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Frame, Gpu, ProgressiveRenderer, Scene,
-    Tile, ViewParams,
+    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Gpu, ProgressiveRenderer, Scene,
+    ViewParams,
 };
 
 use crate::io::frames::FrameReader;
@@ -320,20 +320,5 @@ impl Stage {
         };
         self.texture = Some((id, key.0, key.1));
         Some(id)
-    }
-}
-
-/// A frame without tiles.
-fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
-    Frame {
-        camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
     }
 }

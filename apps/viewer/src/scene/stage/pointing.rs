@@ -28,10 +28,10 @@ pub(super) enum Resolver {
 }
 
 impl Resolver {
-    fn name(&self, id: PickId) -> Option<PickHit> {
+    fn resolve(&self, id: PickId) -> Option<PickHit> {
         match self {
-            Self::Refined(resolver) => resolver.name(id),
-            Self::Explored(resolver) => resolver.name(id),
+            Self::Refined(resolver) => resolver.resolve(id),
+            Self::Explored(resolver) => resolver.resolve(id),
         }
     }
 }
@@ -73,10 +73,10 @@ impl Stage {
         let content = &self.content;
         self.picks_stale = false;
         self.picks = Some(Picks::new(size, &ids, |id| {
-            let named = resolver.name(id)?;
-            let instances = content.instances.get(named.instance as usize)?;
-            let source = content.sources.get(instances.source)?;
-            seen(named, &source.generated.mesh, &instances.placement)
+            let hit = resolver.resolve(id)?;
+            let instance = content.instances.get(hit.instance as usize)?;
+            let source = content.sources.get(instance.source)?;
+            seen(hit, &source.generated.mesh, &instance.placement)
         }));
         ctx.request_repaint();
         Ok(())

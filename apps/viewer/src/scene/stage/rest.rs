@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{AdaptiveSettings, DeviceError, Steps, VertexSource, ViewParams};
+use neurotess::render::{AdaptiveSettings, DeviceError, Frame, Steps, VertexSource, ViewParams};
 
 use super::cost_model::RestMode;
 use super::pointing::Resolver;
-use super::{RestPhase, Stage, whole};
+use super::{RestPhase, Stage};
 use crate::model::command::Tab;
 use crate::model::document::Detail;
 use crate::model::state::State;
@@ -111,7 +111,7 @@ impl Stage {
             self.progressive.identify(&self.gpu, adaptive, &params)?;
             self.resolver = match self.rest_mode {
                 RestMode::Refined | RestMode::Coarser => {
-                    Some(Resolver::Refined(self.adaptive.namer()))
+                    Some(Resolver::Refined(self.adaptive.resolver()))
                 }
                 RestMode::Explored => self.explorer.resolver().map(Resolver::Explored),
             };
@@ -151,8 +151,8 @@ impl Stage {
             return Ok(());
         };
         let stats = adaptive.stats(&self.gpu)?;
-        self.surveyed = Some([stats.triangles, stats.wanted]);
-        if self.cost_model.adapt(stats.wanted) {
+        self.surveyed = Some([stats.triangles, stats.requested]);
+        if self.cost_model.adapt(stats.requested) {
             self.phase = RestPhase::Waits;
         }
         Ok(())
@@ -170,7 +170,7 @@ impl Stage {
         }
         let params = drawn.params;
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
-        let frame = whole(camera, near, params.size);
+        let frame = Frame::whole(camera, near, params.size);
         self.adaptive.prepare(&self.gpu, &frame)?;
         let stats = self.adaptive.stats(&self.gpu)?;
         self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);

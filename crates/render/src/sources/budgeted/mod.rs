@@ -284,7 +284,7 @@ impl VertexSource for Exploration {
         Ok(1)
     }
 
-    fn choose(
+    fn select(
         &self,
         _round: usize,
         encoder: &mut wgpu::CommandEncoder,

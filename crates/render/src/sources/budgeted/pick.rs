@@ -30,7 +30,7 @@ impl ProxyPickTargets {
     }
 
     /// What a point of a chunk is.
-    fn spot(&self, chunk: usize, point: usize) -> Option<PickTarget> {
+    fn target(&self, chunk: usize, point: usize) -> Option<PickTarget> {
         let &(first, soma) = self.chunks.get(chunk)?;
         let end = self
             .chunks
@@ -56,20 +56,20 @@ pub struct ProxyPickResolver {
 
 impl ProxyPickResolver {
     /// What an id of the frame means; nothing where nothing was drawn.
-    pub fn name(&self, [first, place]: PickId) -> Option<PickHit> {
+    pub fn resolve(&self, [first, place]: PickId) -> Option<PickHit> {
         let instance = first.checked_sub(1)?;
         let &(template, first_chunk) = self.instances.get(instance as usize)?;
         let chunk = (place >> POINT_BITS).checked_sub(first_chunk)?;
         let point = place & ((1 << POINT_BITS) - 1);
         let names = self.names.get(template as usize)?;
-        let spot = names.spot(chunk as usize, point as usize)?;
-        Some(PickHit { instance, spot })
+        let target = names.target(chunk as usize, point as usize)?;
+        Some(PickHit { instance, target })
     }
 }
 
 impl Exploration {
     /// Who tells what ids of the instances of now mean. `names`: of all proxies that were added.
-    pub fn namer(&self, names: Arc<[ProxyPickTargets]>) -> ProxyPickResolver {
+    pub fn resolver(&self, names: Arc<[ProxyPickTargets]>) -> ProxyPickResolver {
         let instances = self.instances.iter().map(|instance| {
             let template = instance.template.0;
             (template, self.known[template as usize].first_chunk)

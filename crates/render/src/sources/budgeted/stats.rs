@@ -14,7 +14,7 @@ pub struct ExplorationStats {
     /// The most that may be.
     pub budget: u64,
     /// Triangles that half a pixel everywhere would take.
-    pub wanted: u64,
+    pub requested: u64,
     /// Runs and somata drawn.
     pub visible_chunks: u64,
     /// Instances that may show: not hidden, in the picture.
@@ -47,7 +47,7 @@ impl Exploration {
         Ok(ExplorationStats {
             triangles: 2 * u64::from(sums.quads),
             budget: u64::from(self.budget),
-            wanted: 2 * u64::from(sums.wanted),
+            requested: 2 * u64::from(sums.wanted),
             visible_chunks: u64::from(sums.visible_chunks),
             instances: u64::from(sums.instances),
             all_instances: self.instances.len() as u64,
