@@ -1,7 +1,7 @@
-//! Picking: the ids that sources draw, and what they stand for.
+//! Picking: the ids that sources draw, and what they mean.
 //!
-//! A source draws a [`PickId`] for each pixel; its resolver, taken when the frame was drawn, says later
-//! which instance and which part of its mesh that is.
+//! A source draws a [`PickId`] for each pixel. Its resolver, taken when the frame was drawn, later finds
+//! the instance and the place on its mesh that an id means.
 
 /// What is drawn at a pixel, as a [`PickResolver`](crate::pick::PickResolver) reads it; zeros where
 /// nothing is.
@@ -18,7 +18,7 @@ pub(crate) const POINT_BITS: u32 = 7;
 /// In place of a corner's number: the patch is refined.
 pub(crate) const FINE: u32 = 4;
 
-/// What is seen at a pixel.
+/// What is drawn at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PickHit {
     /// Index of the instance in the scene.
