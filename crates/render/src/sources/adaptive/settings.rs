@@ -76,7 +76,7 @@ impl CullView {
 pub struct AdaptiveSettings {
     /// What decides on the levels.
     pub lod: LodCriterion,
-    /// Course of the path.
+    /// Shape of the path between tracing points.
     pub path: Path,
     /// Shape of the ends.
     pub caps: Caps,
