@@ -7,14 +7,14 @@ use crate::gpu::error::DeviceError;
 /// The passes of a tile. If a scene is drawn in several rounds, the last one is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
-    Choose,
+    Select,
     Draw,
     Occlude,
     Blur,
     Gather,
 }
 
-/// Names of the passes, in the order of [`Pass`].
+/// Names of the passes in statistics, in the order of [`Pass`].
 pub(crate) const PASSES: [&str; 5] = ["choose", "draw", "occlude", "blur", "gather"];
 
 const COUNT: u32 = 2 * PASSES.len() as u32;

@@ -19,7 +19,7 @@ pub struct ViewParams {
     pub size: [u32; 2],
     /// Light, wireframe, cut.
     pub look: Look,
-    /// How far corners darken one another.
+    /// Ambient occlusion, which darkens corners.
     pub occlusion: Occlusion,
     /// Color behind everything.
     pub background: Rgb,
