@@ -20,5 +20,5 @@ pub use model::command::Command;
 pub use model::{command, document, playback, save, session, settings, sources, state, view};
 pub use scene::headless::{SessionPicture, draw_session};
 pub use scene::stage::Stage;
-pub use ui::app::{Hears, Viewer};
+pub use ui::app::{CommandListener, Viewer};
 pub use ui::window::{Options, ViewError, run, wgpu_setup};

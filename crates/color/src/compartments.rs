@@ -8,7 +8,7 @@ use neurotess_render::color::category;
 use crate::path_distance::path_distances;
 use crate::scheme::Cell;
 
-/// For each compartment of a cell that is cut in one way the nearest one of a cell cut in another.
+/// For each compartment of `cut`, the nearest one of `own`, in which the same cell is cut otherwise.
 pub(super) fn matched(cut: &[Compartment], own: &[Compartment]) -> Vec<usize> {
     if cut == own {
         return (0..own.len()).collect();

@@ -1,4 +1,4 @@
-//! How far tracing points are from where their neurite begins.
+//! Distances of tracing points from the beginning of their neurite.
 
 use std::collections::HashMap;
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
-use neurotess_viewer::Hears;
+use neurotess_viewer::CommandListener;
 use neurotess_viewer::document::SomaEdit;
 
 use crate::io::inputs::Inputs;
@@ -60,8 +60,8 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         report: args.report.clone(),
         adapter: args.adapter.clone(),
     };
-    let hears = reporter.verbose().then(|| Box::new(tell) as Hears);
-    neurotess_viewer::run(options, hears)?;
+    let listener = reporter.verbose().then(|| Box::new(tell) as CommandListener);
+    neurotess_viewer::run(options, listener)?;
     Ok(())
 }
 

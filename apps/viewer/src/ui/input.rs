@@ -12,11 +12,11 @@ use std::collections::VecDeque;
 use eframe::egui::{self, Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
 
 use crate::model::command::{Command, Toggles, listed};
-use crate::model::state::Over;
+use crate::model::state::Dialog;
 
 /// A frame that is made of waiting events alone lasts so long (s): less than the time between two clicks,
 /// enough to fly by a tap.
-const MOMENT: f64 = 1.0 / 60.0;
+const EVENT_FRAME: f64 = 1.0 / 60.0;
 /// So many frames keys wait for a dialog's line of text to come.
 const PATIENCE: u32 = 6;
 
@@ -33,27 +33,27 @@ pub(crate) enum Open {
     Question,
 }
 
-impl From<&Over> for Open {
-    fn from(over: &Over) -> Self {
-        match over {
-            Over::Nothing => Self::Nothing,
-            Over::Keys | Over::Problems => Self::Sheet,
-            Over::Palette(..) => Self::Palette,
-            Over::Files(_) | Over::Replace(..) => Self::Question,
+impl From<&Dialog> for Open {
+    fn from(dialog: &Dialog) -> Self {
+        match dialog {
+            Dialog::Nothing => Self::Nothing,
+            Dialog::Keys | Dialog::Problems => Self::Sheet,
+            Dialog::Palette(..) => Self::Palette,
+            Dialog::Files(_) | Dialog::Replace(..) => Self::Question,
         }
     }
 }
 
 impl Open {
     /// Whether it must be answered first.
-    fn asks(self) -> bool {
+    fn is_modal(self) -> bool {
         matches!(self, Self::Palette | Self::Question)
     }
 }
 
 /// Who hears the keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Hears {
+struct KeyFocus {
     /// A line of text has the keyboard.
     text: bool,
     /// Some control has it.
@@ -96,7 +96,7 @@ impl Input {
 
     /// Tells what is open from now on.
     pub(crate) fn set_open(&mut self, open: Open) {
-        if open != self.open && open.asks() {
+        if open != self.open && open.is_modal() {
             self.patience = PATIENCE;
         }
         self.open = open;
@@ -108,20 +108,20 @@ impl Input {
     }
 
     /// The next events that mean one thing; `time`: now.
-    fn next(&mut self, hears: Hears, events: Vec<Event>, time: f64) -> (Vec<Event>, f64) {
+    fn next(&mut self, focus: KeyFocus, events: Vec<Event>, time: f64) -> (Vec<Event>, f64) {
         self.waiting
             .extend(events.into_iter().map(|event| (time, event)));
         let mut batch = Batch::default();
-        let (mut came, waits) = (time, self.waits_for_text(hears));
+        let (mut came, waits) = (time, self.waits_for_text(focus));
         while let Some((_, event)) = self.waiting.front() {
-            if (waits && is_typed(event)) || batch.ends_before(event, hears) {
+            if (waits && is_typed(event)) || batch.ends_before(event, focus) {
                 break;
             }
             let Some((at, event)) = self.waiting.pop_front() else {
                 break;
             };
             came = at;
-            if let Some((keys, command)) = self.shortcut(&event, hears) {
+            if let Some((keys, command)) = self.shortcut(&event, focus) {
                 self.pressed.push(keys);
                 self.drop_twin(&event);
                 if command.moves_keyboard() {
@@ -129,31 +129,31 @@ impl Input {
                 }
                 continue;
             }
-            let ends = ends_after(&event, hears);
+            let ends = ends_after(&event, focus);
             batch.add(event);
             if ends {
                 break;
             }
         }
         // As late as it came, so that two clicks that waited are still a double click.
-        self.time = came.max(self.time + MOMENT).min(time).max(self.time);
+        self.time = came.max(self.time + EVENT_FRAME).min(time).max(self.time);
         (batch.events, self.time)
     }
 
     /// Whether keys wait for a dialog that opens: its line of text is not there yet. In its first frame
     /// what had the keyboard before may still have it.
-    fn waits_for_text(&mut self, hears: Hears) -> bool {
+    fn waits_for_text(&mut self, focus: KeyFocus) -> bool {
         let waits = match self.patience {
             0 => false,
             PATIENCE => true,
-            _ => self.open.asks() && !hears.text,
+            _ => self.open.is_modal() && !focus.text,
         };
         self.patience = if waits { self.patience - 1 } else { 0 };
         waits
     }
 
     /// The shortcut that an event is, if somebody listens to it.
-    fn shortcut(&self, event: &Event, hears: Hears) -> Option<(KeyboardShortcut, Command)> {
+    fn shortcut(&self, event: &Event, focus: KeyFocus) -> Option<(KeyboardShortcut, Command)> {
         let (key, modifiers) = match event {
             Event::Key {
                 key,
@@ -170,9 +170,9 @@ impl Input {
         let heard = match (command, key) {
             // The palette's own keys close it again.
             (Command::TogglePalette, _) => self.open != Open::Question,
-            _ if hears.text || self.open.asks() => false,
-            (_, Key::Tab | Key::Space) => !hears.control,
-            (_, Key::Escape) => !hears.control && !hears.menu && self.open == Open::Nothing,
+            _ if focus.text || self.open.is_modal() => false,
+            (_, Key::Tab | Key::Space) => !focus.control,
+            (_, Key::Escape) => !focus.control && !focus.menu && self.open == Open::Nothing,
             _ => true,
         };
         heard.then(|| (*keys, command.clone()))
@@ -193,14 +193,14 @@ impl Plugin for Input {
     }
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
-        let hears = Hears {
+        let focus = KeyFocus {
             text: ctx.text_edit_focused(),
             control: ctx.egui_wants_keyboard_input(),
             menu: egui::Popup::is_any_open(ctx),
         };
         let events = std::mem::take(&mut input.events);
-        let now = input.time.unwrap_or(self.time + MOMENT);
-        let (events, time) = self.next(hears, events, now);
+        let now = input.time.unwrap_or(self.time + EVENT_FRAME);
+        let (events, time) = self.next(focus, events, now);
         input.events = events;
         input.time = input.time.map(|_| time);
     }
@@ -227,7 +227,7 @@ impl Batch {
     }
 
     /// Whether an event must come in another frame than those before it.
-    fn ends_before(&self, event: &Event, hears: Hears) -> bool {
+    fn ends_before(&self, event: &Event, focus: KeyFocus) -> bool {
         match event {
             // What was moved with the button down is moved before it is let go.
             Event::PointerButton { pressed: false, .. } => self.moved,
@@ -236,21 +236,21 @@ impl Batch {
                 key,
                 pressed: false,
                 ..
-            } => !hears.text && self.pressed.contains(key),
+            } => !focus.text && self.pressed.contains(key),
             _ => false,
         }
     }
 }
 
 /// Whether what comes after an event may mean something else.
-fn ends_after(event: &Event, hears: Hears) -> bool {
+fn ends_after(event: &Event, focus: KeyFocus) -> bool {
     match event {
         Event::PointerButton { .. } => true,
         Event::Key {
             key: Key::Enter | Key::Escape | Key::Tab,
             pressed: true,
             ..
-        } => hears.text || hears.control || hears.menu,
+        } => focus.text || focus.control || focus.menu,
         _ => false,
     }
 }
@@ -284,12 +284,12 @@ mod tests {
     use super::*;
     use eframe::egui::{PointerButton, Pos2};
 
-    const WINDOW: Hears = Hears {
+    const WINDOW: KeyFocus = KeyFocus {
         text: false,
         control: false,
         menu: false,
     };
-    const TEXT: Hears = Hears {
+    const TEXT: KeyFocus = KeyFocus {
         text: true,
         control: true,
         menu: false,

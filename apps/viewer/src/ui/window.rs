@@ -14,7 +14,7 @@ use thiserror::Error;
 use crate::model::command::{Command, Edit};
 use crate::model::document::SomaEdit;
 use crate::model::settings::Settings;
-use crate::ui::app::{Hears, Viewer, lost};
+use crate::ui::app::{CommandListener, Viewer, lost};
 
 /// What to begin with.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ pub enum ViewError {
 ///
 /// # Errors
 /// Why it cannot be opened, or why it had to close.
-pub fn run(options: Options, hears: Option<Hears>) -> Result<(), ViewError> {
+pub fn run(options: Options, listener: Option<CommandListener>) -> Result<(), ViewError> {
     if !has_display() {
         let why = "neither DISPLAY nor WAYLAND_DISPLAY is set";
         return Err(ViewError::NoDisplay(why.into()));
@@ -78,7 +78,7 @@ pub fn run(options: Options, hears: Option<Hears>) -> Result<(), ViewError> {
         eframe::run_native(
             "neurotess",
             native,
-            Box::new(move |context| Ok(Box::new(Window::new(context, options, hears, out)?))),
+            Box::new(move |context| Ok(Box::new(Window::new(context, options, listener, out)?))),
         )
     }));
     drop(take_hook());
@@ -151,7 +151,7 @@ impl Window {
     fn new(
         context: &eframe::CreationContext<'_>,
         options: Options,
-        hears: Option<Hears>,
+        listener: Option<CommandListener>,
         fatal: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
         let render = context
@@ -161,8 +161,8 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
-        if let Some(hears) = hears {
-            viewer = viewer.with_hearing(hears);
+        if let Some(listener) = listener {
+            viewer = viewer.with_listener(listener);
         }
         if let Some(said) = said {
             viewer.state.problem("settings", said);

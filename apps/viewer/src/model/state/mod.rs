@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use neurotess::render::Side;
 
 use crate::model::circuits::Circuits;
-use crate::model::command::{Ask, Command, Edit, Tab, Toggles};
+use crate::model::command::{FilePurpose, Command, Edit, Tab, Toggles};
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
 use crate::model::playback::Playback;
@@ -85,7 +85,7 @@ pub struct State {
     /// Text to search the list by.
     pub search: String,
     /// Which window is open over the others.
-    pub over: Over,
+    pub dialog: Dialog,
     /// Whether the side panels show.
     pub panels: bool,
     /// What is remembered between starts.
@@ -111,7 +111,7 @@ pub struct State {
 
 /// A window over the others.
 #[derive(Clone, Debug, Default)]
-pub enum Over {
+pub enum Dialog {
     /// None.
     #[default]
     Nothing,
@@ -122,7 +122,7 @@ pub enum Over {
     /// What went wrong.
     Problems,
     /// Files to choose.
-    Files(Ask),
+    Files(FilePurpose),
     /// Files exist: what to do if they may be replaced.
     Replace(PathBuf, Box<Command>),
 }
@@ -168,7 +168,7 @@ impl State {
             status: String::new(),
             tab: Tab::default(),
             search: String::new(),
-            over: Over::Nothing,
+            dialog: Dialog::Nothing,
             panels: true,
             save: SaveForm::new(&settings),
             settings,
@@ -216,7 +216,7 @@ impl State {
                 };
                 self.forget_what_is_gone();
             }
-            Command::AskFiles(ask) => self.over = Over::Files(ask),
+            Command::AskFiles(purpose) => self.dialog = Dialog::Files(purpose),
             Command::Open(paths) => {
                 self.settings.remember_files(&paths);
                 self.effects.push(Effect::Load(paths));
@@ -256,9 +256,9 @@ impl State {
             Command::SetPace(pace) => self.playback.pace = pace,
             Command::SetFrozen(frozen) => self.frozen = frozen.then_some(self.view),
             Command::Show(tab) => (self.tab, self.panels) = (tab, true),
-            Command::ToggleKeys => self.toggle(Over::Keys),
-            Command::TogglePalette => self.toggle(Over::Palette(String::new(), 0)),
-            Command::ToggleProblems => self.toggle(Over::Problems),
+            Command::ToggleKeys => self.toggle(Dialog::Keys),
+            Command::TogglePalette => self.toggle(Dialog::Palette(String::new(), 0)),
+            Command::ToggleProblems => self.toggle(Dialog::Problems),
             Command::SetDark(dark) => {
                 self.settings.dark = dark;
             }
@@ -313,9 +313,9 @@ impl State {
         })
     }
 
-    fn toggle(&mut self, over: Over) {
-        let same = std::mem::discriminant(&self.over) == std::mem::discriminant(&over);
-        self.over = if same { Over::Nothing } else { over };
+    fn toggle(&mut self, dialog: Dialog) {
+        let same = std::mem::discriminant(&self.dialog) == std::mem::discriminant(&dialog);
+        self.dialog = if same { Dialog::Nothing } else { dialog };
     }
 
     fn remember(&mut self) {

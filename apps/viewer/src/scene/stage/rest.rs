@@ -89,8 +89,8 @@ impl Stage {
             }
         }
         // As soon as the first step shows, the cursor may ask.
-        let asks = !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
-        self.timed = !asks;
+        let identifies = !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
+        self.timed = !identifies;
         let budget = self.cost_model.budget;
         let adaptive: &mut dyn VertexSource = match self.rest_mode {
             RestMode::Refined | RestMode::Coarser => &mut self.adaptive,
@@ -107,7 +107,7 @@ impl Stage {
                 }
             }
         };
-        if asks {
+        if identifies {
             self.progressive.identify(&self.gpu, adaptive, &params)?;
             self.resolver = match self.rest_mode {
                 RestMode::Refined | RestMode::Coarser => {

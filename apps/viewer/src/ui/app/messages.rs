@@ -63,7 +63,7 @@ impl Viewer {
     }
 
     /// Somata that are not as the document wants them are made again, one at a time, the newest edit of each.
-    pub(super) fn want_somata(&mut self) {
+    pub(super) fn request_somata(&mut self) {
         if self.worker.is_remeshing() {
             return;
         }

@@ -50,11 +50,11 @@ pub struct Viewer {
     rescue: PathBuf,
     /// Stamps of neurons, edits of somata and meshes when every mesh was as its edit wants it.
     somata_checked: Option<[Revision; 3]>,
-    hears: Option<Hears>,
+    listener: Option<CommandListener>,
 }
 
 /// Told of every command before it runs.
-pub type Hears = Box<dyn Fn(&Command)>;
+pub type CommandListener = Box<dyn Fn(&Command)>;
 
 impl Viewer {
     /// In a window that has a device.
@@ -88,7 +88,7 @@ impl Viewer {
             ticked: Instant::now(),
             rescue: crate::model::settings::folder().unwrap_or_default(),
             somata_checked: None,
-            hears: None,
+            listener: None,
         })
     }
 
@@ -105,8 +105,8 @@ impl Viewer {
     }
 
     /// Tells somebody of every command before it runs.
-    pub fn with_hearing(mut self, hears: Hears) -> Self {
-        self.hears = Some(hears);
+    pub fn with_listener(mut self, listener: CommandListener) -> Self {
+        self.listener = Some(listener);
         self
     }
 
@@ -141,7 +141,7 @@ impl Viewer {
             ctx.request_repaint();
         }
         self.do_effects(&ctx);
-        self.want_somata();
+        self.request_somata();
         self.note_settings();
         self.end_input(&ctx);
         if self.quits {
@@ -241,7 +241,7 @@ impl Viewer {
 
     /// Tells the input what is open, for the next frame.
     fn end_input(&self, ctx: &egui::Context) {
-        let open = (&self.state.over).into();
+        let open = (&self.state.dialog).into();
         let waits = ctx.with_plugin(|input: &mut Input| {
             input.set_open(open);
             input.waits()
@@ -253,8 +253,8 @@ impl Viewer {
 
     /// Does a command, and tells whoever listens.
     fn run(&mut self, command: Command) {
-        if let Some(hears) = &self.hears {
-            hears(&command);
+        if let Some(listener) = &self.listener {
+            listener(&command);
         }
         self.state.run(command);
     }

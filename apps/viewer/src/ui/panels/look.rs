@@ -7,7 +7,7 @@ use neurotess::render::overlay::Legend;
 use super::heading;
 use super::number::{field, slider};
 use super::tip::Tip;
-use crate::model::command::{Ask, Command, Edit};
+use crate::model::command::{FilePurpose, Command, Edit};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
 
@@ -51,7 +51,7 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
         look.color_by = before;
         state.requests.push(match state.circuits.reports().pop() {
             Some((_, file)) => Edit::SetReport(Some(file)).into(),
-            None => Command::AskFiles(Ask::Report),
+            None => Command::AskFiles(FilePurpose::Report),
         });
     }
     if look != state.document.look {
@@ -175,7 +175,7 @@ fn report(state: &mut State, ui: &mut Ui) {
                 }
             }
             if ui.selectable_label(false, "another file…").clicked() {
-                state.requests.push(Command::AskFiles(Ask::Report));
+                state.requests.push(Command::AskFiles(FilePurpose::Report));
             }
         });
     ui.end_row();

@@ -8,7 +8,7 @@ mod look;
 mod marks;
 mod menu;
 mod number;
-mod over;
+mod dialogs;
 mod rings;
 mod save;
 mod soma;
@@ -81,8 +81,8 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
             empty::show(screen.state, reads, ui);
         }
     });
-    over::show(screen.state, screen.files, &ctx);
-    over::hover(&ctx);
+    dialogs::show(screen.state, screen.files, &ctx);
+    dialogs::hover(&ctx);
 }
 
 /// What is wider than its panel is cut off: it would push the panel over the picture.

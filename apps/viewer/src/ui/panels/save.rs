@@ -12,10 +12,10 @@ use super::heading;
 use super::number::field;
 use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
-use crate::model::command::{Ask, Command};
+use crate::model::command::{FilePurpose, Command};
 use crate::model::film::length;
 use crate::model::save::{FilmOptions, MeshLod, PictureFile};
-use crate::model::state::{Over, State};
+use crate::model::state::{Dialog, State};
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
@@ -31,14 +31,14 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     heading(ui, "Session");
     ui.weak("Keeps the files, the view, the look, soma settings, and what is hidden and selected, to continue later.");
     if ui.button("Save session…").clicked() {
-        state.requests.push(Command::AskFiles(Ask::SaveSession));
+        state.requests.push(Command::AskFiles(FilePurpose::SaveSession));
     }
 }
 
 /// Asks before files are replaced.
-fn ask(state: &mut State, out: PathBuf, exists: bool, command: Command, replacing: Command) {
+fn confirm(state: &mut State, out: PathBuf, exists: bool, command: Command, replacing: Command) {
     if exists {
-        state.over = Over::Replace(out, Box::new(replacing));
+        state.dialog = Dialog::Replace(out, Box::new(replacing));
     } else {
         state.requests.push(command);
     }
@@ -108,7 +108,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
             _ => options.out.with_extension(""),
         };
         let exists = out.exists();
-        ask(
+        confirm(
             state,
             out,
             exists,
@@ -184,7 +184,7 @@ fn picture(state: &mut State, ui: &mut Ui) {
             ..options.clone()
         };
         let exists = out.exists();
-        ask(
+        confirm(
             state,
             out,
             exists,
@@ -315,6 +315,6 @@ fn film(state: &mut State, ui: &mut Ui) {
         };
         let (command, replacing) = (film(false), film(true));
         let exists = first.exists();
-        ask(state, first, exists, command, replacing);
+        confirm(state, first, exists, command, replacing);
     }
 }

@@ -3,27 +3,27 @@
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use super::keys_text;
-use crate::model::command::{Ask, Command, Listed, listed};
-use crate::model::state::{Over, State};
+use crate::model::command::{FilePurpose, Command, Listed, listed};
+use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
 
 pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Context) {
-    let over = std::mem::take(&mut state.over);
-    if !matches!(over, Over::Files(_)) {
+    let dialog = std::mem::take(&mut state.dialog);
+    if !matches!(dialog, Dialog::Files(_)) {
         *panel = None;
     }
     let escape = ctx.input(|i| i.key_pressed(Key::Escape));
-    let stays = match over {
-        Over::Nothing => Over::Nothing,
-        Over::Keys => keys(state, ctx),
-        Over::Problems => problems(state, ctx),
-        Over::Palette(text, chosen) => palette(state, text, chosen, ctx),
-        Over::Files(ask) => files(state, ask, panel, ctx),
-        Over::Replace(path, command) => replace(state, path, command, ctx),
+    let stays = match dialog {
+        Dialog::Nothing => Dialog::Nothing,
+        Dialog::Keys => keys(state, ctx),
+        Dialog::Problems => problems(state, ctx),
+        Dialog::Palette(text, chosen) => palette(state, text, chosen, ctx),
+        Dialog::Files(purpose) => files(state, purpose, panel, ctx),
+        Dialog::Replace(path, command) => replace(state, path, command, ctx),
     };
-    let had = !matches!(stays, Over::Nothing);
-    state.over = if escape { Over::Nothing } else { stays };
-    if !matches!(state.over, Over::Files(_)) {
+    let had = !matches!(stays, Dialog::Nothing);
+    state.dialog = if escape { Dialog::Nothing } else { stays };
+    if !matches!(state.dialog, Dialog::Files(_)) {
         *panel = None;
     }
     if escape && had {
@@ -32,21 +32,21 @@ pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Conte
     }
 }
 
-fn files(state: &mut State, ask: Ask, panel: &mut Option<FilePanel>, ctx: &Context) -> Over {
+fn files(state: &mut State, purpose: FilePurpose, panel: &mut Option<FilePanel>, ctx: &Context) -> Dialog {
     let mut shown = panel
         .take()
-        .filter(|panel| panel.is_for(ask))
+        .filter(|panel| panel.is_for(purpose))
         .unwrap_or_else(|| {
             let session = state.session.as_deref();
-            FilePanel::new(ask, &state.settings.folder, session)
+            FilePanel::new(purpose, &state.settings.folder, session)
         });
     let mut open = true;
     state.requests.extend(shown.show(ctx, &mut open));
     if !open {
-        return Over::Nothing;
+        return Dialog::Nothing;
     }
     *panel = Some(shown);
-    Over::Files(ask)
+    Dialog::Files(purpose)
 }
 
 /// What a drop would do, while files are held over the window.
@@ -92,7 +92,7 @@ const MOUSE: [(&str, &str); 9] = [
     ("+  −", "zoom in and out"),
 ];
 
-fn keys(state: &State, ctx: &Context) -> Over {
+fn keys(state: &State, ctx: &Context) -> Dialog {
     let mut open = true;
     window("Keys and mouse", ctx)
         .open(&mut open)
@@ -103,7 +103,7 @@ fn keys(state: &State, ctx: &Context) -> Over {
             let area = area.min_scrolled_width(room.x).min_scrolled_height(room.y);
             area.show(ui, |ui| keys_and_mouse(state, ui));
         });
-    if open { Over::Keys } else { Over::Nothing }
+    if open { Dialog::Keys } else { Dialog::Nothing }
 }
 
 fn keys_and_mouse(state: &State, ui: &mut Ui) {
@@ -153,7 +153,7 @@ fn rows<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>
         });
 }
 
-fn problems(state: &mut State, ctx: &Context) -> Over {
+fn problems(state: &mut State, ctx: &Context) -> Dialog {
     let mut open = true;
     window("What went wrong", ctx)
         .open(&mut open)
@@ -184,10 +184,10 @@ fn problems(state: &mut State, ctx: &Context) -> Over {
                 }
             });
         });
-    if open { Over::Problems } else { Over::Nothing }
+    if open { Dialog::Problems } else { Dialog::Nothing }
 }
 
-fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Over {
+fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Dialog {
     let mut done = false;
     egui::Window::new("palette")
         .title_bar(false)
@@ -240,9 +240,9 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
             }
         });
     if done {
-        Over::Nothing
+        Dialog::Nothing
     } else {
-        Over::Palette(text, chosen)
+        Dialog::Palette(text, chosen)
     }
 }
 
@@ -268,7 +268,7 @@ fn replace(
     path: std::path::PathBuf,
     command: Box<Command>,
     ctx: &Context,
-) -> Over {
+) -> Dialog {
     let mut answer = None;
     window("Replace?", ctx).show(ctx, |ui| {
         let what = if path.is_dir() {
@@ -291,10 +291,10 @@ fn replace(
     match answer {
         Some(true) => {
             state.requests.push(*command);
-            Over::Nothing
+            Dialog::Nothing
         }
-        Some(false) => Over::Nothing,
-        None => Over::Replace(path, command),
+        Some(false) => Dialog::Nothing,
+        None => Dialog::Replace(path, command),
     }
 }
 
