@@ -89,7 +89,10 @@ fn every_shortcut_runs_its_command_and_nothing_else() {
             assert_eq!(ran, [now.command], "{keys:?}");
             if !matches!(state(&mut window).dialog, Dialog::Nothing) {
                 slow_frame(&mut window, key(Key::Escape, Modifiers::NONE).to_vec());
-                assert!(matches!(state(&mut window).dialog, Dialog::Nothing), "{keys:?}");
+                assert!(
+                    matches!(state(&mut window).dialog, Dialog::Nothing),
+                    "{keys:?}"
+                );
                 assert!(list.borrow().is_empty(), "escape closes, and nothing else");
             }
         }

@@ -9,7 +9,7 @@ use eframe::egui::{Event, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{FilePurpose, Edit, Tab};
+use neurotess_viewer::command::{Edit, FilePurpose, Tab};
 use neurotess_viewer::document::{ColorBy, Look};
 use neurotess_viewer::state::{CellPart, Picked};
 

@@ -16,7 +16,7 @@ use neurotess::refine::LodCriterion;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{FilePurpose, Edit, Tab};
+use neurotess_viewer::command::{Edit, FilePurpose, Tab};
 use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
 use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;

@@ -1,5 +1,5 @@
-//! Colors of whole neurons: a color for each, by an attribute, or those given in a scene. Neurons that
-//! share a template have a value each, which determines their color.
+//! Colors of whole neurons: a color for each, by an attribute, or those given in a scene. Neurons
+//! that share a template have a value each, which determines their color.
 
 use std::collections::BTreeMap;
 
@@ -80,8 +80,9 @@ pub fn each(cells: &[Cell<'_>], names: &[String], scheme: &ColorScheme) -> Color
     categorical(cells, &own, names, "neuron", scheme)
 }
 
-/// Neurons with equal values of an attribute have the same color. If there are more different numbers than
-/// colors, they are on the scale. `neurons`: in the order of the instances; none for those of no circuit.
+/// Neurons with equal values of an attribute have the same color. If there are more different
+/// numbers than colors, they are on the scale. `neurons`: in the order of the instances; none for
+/// those of no circuit.
 ///
 /// # Errors
 /// No neuron's circuit has such an attribute.

@@ -41,8 +41,8 @@ struct Quantity {
 enum Span {
     /// 0 and the greatest.
     FromZero,
-    /// The least number and the 98th percentile: with outliers, all other points would have nearly the same
-    /// color.
+    /// The least number and the 98th percentile: with outliers, all other points would have nearly
+    /// the same color.
     WithoutOutliers,
 }
 
@@ -122,8 +122,8 @@ fn by_neuron(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
     )
 }
 
-/// Colors of things that are numbered from 0 on in each cell, different for all cells; somata have a color of
-/// their own.
+/// Colors of things that are numbered from 0 on in each cell, different for all cells; somata have
+/// a color of their own.
 fn categorical(
     cells: &[Cell<'_>],
     scheme: &ColorScheme,

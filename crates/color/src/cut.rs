@@ -1,15 +1,15 @@
-//! Inserts a point into a tracing at the middle of each compartment of a report, so that all its values
-//! show.
+//! Inserts a point into a tracing at the middle of each compartment of a report, so that all its
+//! values show.
 //!
-//! **Theory.** The membrane shows the value of the nearest tracing point, so a dendrite of two points would
-//! show only two of its compartments, and a section of one point its parent's. Values belong to positions
-//! along a section, wherever points were traced. **Practice.** Before such a cell is meshed, points
-//! are inserted on the straight line between two traced ones, with the radius between theirs, at the middle
-//! of each compartment; none where a traced point is there already. Colors then change half-way between two
-//! middles, which is where compartments meet.
+//! **Theory.** The membrane shows the value of the nearest tracing point, so a dendrite of two
+//! points would show only two of its compartments, and a section of one point its parent's. Values
+//! belong to positions along a section, wherever points were traced. **Practice.** Before such a
+//! cell is meshed, points are inserted on the straight line between two traced ones, with the
+//! radius between theirs, at the middle of each compartment; none where a traced point is there
+//! already. Colors then change half-way between two middles, which is where compartments meet.
 //!
-//! **Why not** a position along the section for each vertex, looked up in the shader: joints and somata have
-//! no such position, and every source of vertices would carry another number.
+//! **Why not** a position along the section for each vertex, looked up in the shader: joints and
+//! somata have no such position, and every source of vertices would carry another number.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -19,12 +19,13 @@ use neurotess_circuit::{
 };
 use neurotess_morphology::{Morphology, Point, SectionId, shape};
 
-/// No point is inserted if a traced one is this near to the compartment's middle (share of the compartment's
-/// length).
+/// No point is inserted if a traced one is this near to the compartment's middle (share of the
+/// compartment's length).
 const NEAR: f64 = 0.05;
 
-/// How cells are cut into compartments in a report: for each cell, the compartments of the first neuron with
-/// values that shows it. `instances`: the cell that each neuron shows and its node. Empty for spikes.
+/// How cells are cut into compartments in a report: for each cell, the compartments of the first
+/// neuron with values that shows it. `instances`: the cell that each neuron shows and its node.
+/// Empty for spikes.
 ///
 /// # Errors
 /// The file is invalid, or belongs to another circuit.

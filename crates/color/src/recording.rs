@@ -1,12 +1,13 @@
 //! Values of a simulation on the membrane: those of a report at a time, or spikes that fade.
 //!
-//! **Theory.** Compartments are matched with neurons once, when a recording is opened. After that, showing
-//! another time only reads the values of the neurons in question, and nothing else of the scene changes. A
-//! color key is an index into a neuron's own values, so that neurons of one cell share their keys on the
-//! device.
+//! **Theory.** Compartments are matched with neurons once, when a recording is opened. After that,
+//! showing another time only reads the values of the neurons in question, and nothing else of the
+//! scene changes. A color key is an index into a neuron's own values, so that neurons of one cell
+//! share their keys on the device.
 //!
-//! **Practice.** The first neuron of a cell that has values determines where compartments are; for another
-//! one of the same cell that was cut otherwise, the nearest compartment of the same section is taken.
+//! **Practice.** The first neuron of a cell that has values determines where compartments are; for
+//! another one of the same cell that was cut otherwise, the nearest compartment of the same section
+//! is taken.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -80,8 +81,8 @@ enum Source {
 }
 
 impl Recording {
-    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none for a neuron of no
-    /// circuit, or of another one.
+    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none for a
+    /// neuron of no circuit, or of another one.
     ///
     /// # Errors
     /// The file is invalid, or belongs to another circuit.
@@ -208,8 +209,8 @@ impl Recording {
         &self.color_keys
     }
 
-    /// Values at a time (ms) of the neurons for which `shows` is true; the others have none. `decay`: time
-    /// (ms) after which the flash of a spike has faded to about a third.
+    /// Values at a time (ms) of the neurons for which `shows` is true; the others have none.
+    /// `decay`: time (ms) after which the flash of a spike has faded to about a third.
     ///
     /// # Errors
     /// The recording has no values at that time, or the file is invalid.
@@ -285,8 +286,8 @@ impl Recording {
         frame_values
     }
 
-    /// Least and greatest value, over the whole recording, of the neurons for which `shows` is true: of all
-    /// frames, or of some that are spread evenly if there are too many.
+    /// Least and greatest value, over the whole recording, of the neurons for which `shows` is
+    /// true: of all frames, or of some that are spread evenly if there are too many.
     ///
     /// # Errors
     /// The file is invalid.
@@ -327,7 +328,8 @@ impl Recording {
     }
 }
 
-/// A time axis from the first start to the last end of all populations, in the smallest of their steps.
+/// A time axis from the first start to the last end of all populations, in the smallest of their
+/// steps.
 fn together(populations: &[ReportPopulation]) -> TimeAxis {
     let all = || populations.iter().map(|population| &population.time);
     let start = all().map(|axis| axis.start).fold(f64::MAX, f64::min);

@@ -44,7 +44,8 @@ pub struct ColorScheme {
 pub const NOTHING: Rgb = [160; 3];
 
 impl ColorScheme {
-    /// A coloring by these keys, with a legend of this range; points of the first category have no value.
+    /// A coloring by these keys, with a legend of this range; points of the first category have no
+    /// value.
     pub fn scaled(
         &self,
         color_keys: Vec<Vec<u32>>,

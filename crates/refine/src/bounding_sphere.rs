@@ -1,13 +1,15 @@
-//! Bounding spheres that hold a patch at any level, for culling. Twin: `patch_sphere` in render's cull.wgsl.
+//! Bounding spheres that hold a patch at any level, for culling. Twin: `patch_sphere` in render's
+//! cull.wgsl.
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
 
-/// Greatest distance of a tube's surface from the segment between its centers, in radii of the larger ring:
-/// the ring itself, the sway of the center line (0.24), and the bulge of a quarter ellipse.
+/// Greatest distance of a tube's surface from the segment between its centers, in radii of the
+/// larger ring: the ring itself, the sway of the center line (0.24), and the bulge of a quarter
+/// ellipse.
 pub(crate) const TUBE_REACH: f32 = 1.5;
-/// Greatest distance of a soma's patch from its center, as a multiple of the distance of its farthest
-/// corner.
+/// Greatest distance of a soma's patch from its center, as a multiple of the distance of its
+/// farthest corner.
 pub(crate) const SOMA_REACH: f32 = 1.5;
 
 /// Bounding sphere of a patch at any level: center and radius (µm).

@@ -10,12 +10,13 @@
 //! | explicit patch | 8 | four explicit vertices, kind |
 //! | cap | 4 | its ring |
 //!
-//! A point has an implicit ring, four vertices a quarter turn apart, and four lateral patches to the next
-//! point: rings and lateral patches are computed from points alone. Joints, insertions and somata are
-//! made of explicit vertices, stored relative to anchors. Errors: at most 0.2 % of the radius for the center
-//! (a ring whose sphere is too large for that becomes explicit), 0.02 % for the radius, 0.4 % for the
-//! tangent, 0.4 % for the turn; for explicit vertices 2⁻¹⁶ of their distance from the anchor. All together
-//! less than a hundredth of the radius: `resident_form_is_within_a_hundredth_of_the_radius`.
+//! A point has an implicit ring, four vertices a quarter turn apart, and four lateral patches to
+//! the next point: rings and lateral patches are computed from points alone. Joints, insertions and
+//! somata are made of explicit vertices, stored relative to anchors. Errors: at most 0.2 % of the
+//! radius for the center (a ring whose sphere is too large for that becomes explicit), 0.02 % for
+//! the radius, 0.4 % for the tangent, 0.4 % for the turn; for explicit vertices 2⁻¹⁶ of their
+//! distance from the anchor. All together less than a hundredth of the radius:
+//! `resident_form_is_within_a_hundredth_of_the_radius`.
 
 use glam::Vec3;
 use neurotess_mesh::Role;
@@ -27,7 +28,8 @@ pub(crate) const SPHERE_U32S: usize = 5;
 /// Bit of a vertex that is explicit.
 pub(crate) const EXPLICIT: u32 = 1 << 31;
 pub(crate) const POINT_KIND_SHIFT: u32 = 30;
-/// Kinds of a point: with an implicit ring, the same at an end, or with a ring of explicit vertices.
+/// Kinds of a point: with an implicit ring, the same at an end, or with a ring of explicit
+/// vertices.
 pub(crate) const POINT_ORDINARY: u32 = 0;
 pub(crate) const POINT_END: u32 = 1;
 pub(crate) const POINT_EXPLICIT: u32 = 2;
@@ -67,8 +69,8 @@ pub(crate) fn to_octahedral(v: Vec3, most: f32) -> (u32, u32) {
     (steps(x), steps(y))
 }
 
-/// Two unit vectors that form a right-handed orthonormal basis with a third: Duff et al., Building an
-/// orthonormal basis, revisited, 2017.
+/// Two unit vectors that form a right-handed orthonormal basis with a third: Duff et al., Building
+/// an orthonormal basis, revisited, 2017.
 pub(crate) fn basis(tangent: Vec3) -> (Vec3, Vec3) {
     let sign = if tangent.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (sign + tangent.z);
@@ -82,7 +84,8 @@ pub(crate) fn basis(tangent: Vec3) -> (Vec3, Vec3) {
     (u, v)
 }
 
-/// Unit direction from a ring's center to its corner k: corners are a quarter turn about the tangent apart.
+/// Unit direction from a ring's center to its corner k: corners are a quarter turn about the
+/// tangent apart.
 pub(crate) fn ring_direction(tangent: Vec3, turn: u32, k: u32) -> Vec3 {
     let (u, v) = basis(tangent);
     let t = (turn & 0xff) as f32 / 256.0;
@@ -96,7 +99,8 @@ pub(crate) fn ring_direction(tangent: Vec3, turn: u32, k: u32) -> Vec3 {
     }
 }
 
-/// The turn of a ring whose corner 0 is in this direction, in the form that [`ring_direction`] reads.
+/// The turn of a ring whose corner 0 is in this direction, in the form that [`ring_direction`]
+/// reads.
 pub(crate) fn to_turn(tangent: Vec3, direction: Vec3) -> u32 {
     let (u, v) = basis(tangent);
     let angle = direction.dot(v).atan2(direction.dot(u));
@@ -118,7 +122,8 @@ pub(crate) fn radius(code: u32) -> f32 {
     f32::from_bits((code + RADIUS_BASE) << 12)
 }
 
-/// A taper as 4 bits and a sign. The bits are those of its square root, so that small tapers are accurate.
+/// A taper as 4 bits and a sign. The bits are those of its square root, so that small tapers are
+/// accurate.
 pub(crate) fn to_slope(slope: f32) -> (u32, bool) {
     let root = slope.abs().min(1.0).sqrt();
     ((root * 15.0 + 0.5) as u32, slope < 0.0)
@@ -183,6 +188,7 @@ const MOST_CENTER_ERROR: f32 = 0.002;
 
 /// Whether a sphere is small enough for a point of this radius.
 pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
-    // A step is sphere · 2 / POSITION_STEPS; a center is off by up to half a step in each of three directions.
+    // A step is sphere · 2 / POSITION_STEPS; a center is off by up to half a step in each of three
+    // directions.
     sphere / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
 }

@@ -1,7 +1,7 @@
 //! The refined surface as a function: edges, patches, normals.
 //!
-//! **Theory.** García-Cantero et al. 2017, eq. 1 and 2: a point of a tube is `v = c + r n̂`, with the
-//! center c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
+//! **Theory.** García-Cantero et al. 2017, eq. 1 and 2: a point of a tube is `v = c + r n̂`, with
+//! the center c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
 //! renormalized so that the tube does not pinch. We interpolate the offsets d = v − c of the four
 //! corners and divide by the length of the interpolated unit normals,
 //!
@@ -71,8 +71,8 @@ impl Corner {
         }
     }
 
-    /// The soma's cubics leave a corner at right angles to this normal. At a neurite's ring it is the tube's,
-    /// so that the soma runs smoothly into the neurite.
+    /// The soma's cubics leave a corner at right angles to this normal. At a neurite's ring it is
+    /// the tube's, so that the soma runs smoothly into the neurite.
     fn soma_normal(&self) -> Vec3 {
         if self.role == Role::Soma {
             self.normal
@@ -105,21 +105,22 @@ pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
     }
 }
 
-/// Greatest distance by which the tangent at one end may bend the center line away from the straight
-/// segment, in radii of the thinner end.
+/// Greatest distance by which the tangent at one end may bend the center line away from the
+/// straight segment, in radii of the thinner end.
 ///
-/// With its full tangents, a thin neurite with long segments would sway by many times its radius, away
-/// from the cones that were traced and into its neighbors. Chosen from 0.1, 0.12, 0.25, 0.5 and no limit
-/// with the example `fidelity`: the largest that keeps the median distance to the traced cones under
-/// 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113, 0.20 on
-/// IF4_140201). The price is visible corners on thin axons with long segments.
+/// With its full tangents, a thin neurite with long segments would sway by many times its radius,
+/// away from the cones that were traced and into its neighbors. Chosen from 0.1, 0.12, 0.25, 0.5
+/// and no limit with the example `fidelity`: the largest that keeps the median distance to the
+/// traced cones under 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113,
+/// 0.20 on IF4_140201). The price is visible corners on thin axons with long segments.
 pub(crate) const MOST_SWAY: f32 = 0.12;
 
-/// Tangents of the center line: the directions at its ends times the segment's length, so that it makes no
-/// loops, shortened where it would sway too far. At a joint the segment itself, since the tubes there have
-/// no common direction.
+/// Tangents of the center line: the directions at its ends times the segment's length, so that it
+/// makes no loops, shortened where it would sway too far. At a joint the segment itself, since the
+/// tubes there have no common direction.
 ///
-/// A tangent bends a cubic away from the segment by at most 4/27 of the tangent's part across the segment.
+/// A tangent bends a cubic away from the segment by at most 4/27 of the tangent's part across the
+/// segment.
 pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
     let way = b.center - a.center;
     let length = way.length();
@@ -206,8 +207,8 @@ fn cubic([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Jet {
     }
 }
 
-/// Normal on an edge: that of the corners, made perpendicular to the edge's own direction. It depends
-/// on the edge alone, so that both patches beside it have the same.
+/// Normal on an edge: that of the corners, made perpendicular to the edge's own direction. It
+/// depends on the edge alone, so that both patches beside it have the same.
 pub(crate) fn edge_normal(a: &Corner, b: &Corner, derivative: Vec3, t: f32) -> Vec3 {
     let along = derivative.normalize_or_zero();
     let normal = mix(a.normal, b.normal, t);

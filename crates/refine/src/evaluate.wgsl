@@ -89,8 +89,9 @@ struct TubePoint {
     axis: vec3<f32>,
 }
 
-// The same expression for tubes and their edges, so that different shaders compute the same bits: a ring's
-// edge from a to b is tube_point(a, b, b, a, x, 0), an edge along the path tube_point(a, a, d, d, 0, y).
+// The same expression for tubes and their edges, so that different shaders compute the same bits: a
+// ring's edge from a to b is tube_point(a, b, b, a, x, 0), an edge along the path tube_point(a, a,
+// d, d, 0, y).
 fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: f32) -> TubePoint {
     let offset_near = blend(a.offset, b.offset, x);
     let offset_far = blend(d.offset, c.offset, x);

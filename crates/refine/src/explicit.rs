@@ -8,8 +8,9 @@ use crate::packer::{Packer, cap_ring};
 use crate::runs::{Tube, implicit_ring};
 
 impl Packer<'_> {
-    /// Finds the explicit vertices. A ring is implicit, which means that its vertices are computed from its
-    /// point, if it is a circle and belongs to a single run, and to no patch outside that run but its cap.
+    /// Finds the explicit vertices. A ring is implicit, which means that its vertices are computed
+    /// from its point, if it is a circle and belongs to a single run, and to no patch outside that
+    /// run but its cap.
     pub(crate) fn find_explicit(&mut self) {
         let mut uses = vec![0_u8; self.mesh.vertices.len()];
         for ring in self.runs.iter().flat_map(|run| &run.rings) {

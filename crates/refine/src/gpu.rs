@@ -1,8 +1,8 @@
 //! What shaders share with this crate: constants, structs and the twins of its functions.
 //!
 //! A shader is composed ([`compose`](crate::wgsl::compose)) of its own file, which imports those of
-//! [`FILES`] that it needs, with [`constants`]. Constants are defined in Rust and passed to WGSL; layouts
-//! of structs are compared field by field in `tests/shaders.rs`.
+//! [`FILES`] that it needs, with [`constants`]. Constants are defined in Rust and passed to WGSL;
+//! layouts of structs are compared field by field in `tests/shaders.rs`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -34,8 +34,8 @@ pub const EVALUATE: WgslFile = file!("evaluate.wgsl");
 pub const LEVEL: WgslFile = file!("level.wgsl");
 /// The layout of a packed mesh, twin of `decode.rs`; binds group 0, binding 0.
 pub const TEMPLATE: WgslFile = file!("template.wgsl");
-/// Twin of `plan.rs`. Another file must define `CornerSource`, `base_of` and `corner_of`, by which it reads
-/// the corners of patches; [`CORNER_SOURCE`] is one.
+/// Twin of `plan.rs`. Another file must define `CornerSource`, `base_of` and `corner_of`, by which
+/// it reads the corners of patches; [`CORNER_SOURCE`] is one.
 pub const PLAN: WgslFile = file!("plan.wgsl");
 /// Corners read from the packed mesh, for shaders that do not compute them beforehand.
 pub const CORNER_SOURCE: WgslFile = file!("corner_source.wgsl");
@@ -152,7 +152,8 @@ pub struct GpuLodCriterion {
 }
 
 impl GpuLodCriterion {
-    /// Translates a criterion. Levels per point are not part of it: they are stored with the points.
+    /// Translates a criterion. Levels per point are not part of it: they are stored with the
+    /// points.
     pub fn new(criterion: LodCriterion, options: &RefineOptions) -> Self {
         let (kind, level, amount) = match criterion {
             LodCriterion::Homogeneous(level) => (LEVELS_HOMOGENEOUS, level, 0.0),

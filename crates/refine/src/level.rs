@@ -11,13 +11,13 @@ use crate::{Lod, LodCriterion, LodView, Path};
 /// Highest level.
 pub const HIGHEST_LEVEL: u32 = 64;
 
-/// The share of the permitted error that each direction of a patch may take, around and along; the rest is
-/// for the error of flat triangles on a twisted quad. Checked by `adaptive_error_is_kept`.
+/// The share of the permitted error that each direction of a patch may take, around and along; the
+/// rest is for the error of flat triangles on a twisted quad. Checked by `adaptive_error_is_kept`.
 pub(crate) const SHARE: f32 = 0.3;
 
-/// Subtracted before a level is rounded up. Two devices that compute a level from the same numbers differ
-/// by a few 10⁻⁷ of it; geometry made of round numbers gives exactly whole levels, where the last bit
-/// would decide. A level that is too low by this much adds 10⁻⁴ of the error.
+/// Subtracted before a level is rounded up. Two devices that compute a level from the same numbers
+/// differ by a few 10⁻⁷ of it; geometry made of round numbers gives exactly whole levels, where the
+/// last bit would decide. A level that is too low by this much adds 10⁻⁴ of the error.
 pub(crate) const SLACK: f32 = 1e-4;
 
 /// Greatest tan(θ/2) of the angle θ between two corners that a level is computed for: tan 1.3.
@@ -59,7 +59,8 @@ pub(crate) fn edge_level(
     level.clamp(1, HIGHEST_LEVEL)
 }
 
-/// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n²) from its chords.
+/// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n²) from its
+/// chords.
 fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
     round_up((bend(path, kind, a, b) / (8.0 * error)).sqrt())
 }

@@ -13,8 +13,8 @@ struct LodView {
     near: f32,
 }
 
-// What decides on levels: `kind` is a LEVELS_ constant, `amount` its length or number of pixels. Twin of
-// GpuLodCriterion in gpu.rs.
+// What decides on levels: `kind` is a LEVELS_ constant, `amount` its length or number of pixels.
+// Twin of GpuLodCriterion in gpu.rs.
 struct LodCriterion {
     kind: u32,
     level: u32,
@@ -58,8 +58,8 @@ fn edge_level(
     return clamp(level, 1u, HIGHEST_LEVEL);
 }
 
-// The level of the edges of an implicit ring, the same for all since it is a circle. `value`: the level
-// given for its tracing point. Equal to edge_level's, up to rounding.
+// The level of the edges of an implicit ring, the same for all since it is a circle. `value`: the
+// level given for its tracing point. Equal to edge_level's, up to rounding.
 fn ring_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f32, value: u32) -> u32 {
     let nearest = max(dot(view.forward, center - view.eye) - radius, view.near);
     let pixel = view.slope * nearest + view.flat;
@@ -88,7 +88,8 @@ fn ring_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f3
     return clamp(level, 1u, HIGHEST_LEVEL);
 }
 
-// The level of all edges within a sphere that bend by at most `bend`; 0 if they may have different levels.
+// The level of all edges within a sphere that bend by at most `bend`; 0 if they may have different
+// levels.
 fn sphere_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f32, bend: f32) -> u32 {
     switch (levels.kind) {
         case LEVELS_PER_POINT, LEVELS_PIXEL_SIZE: {
@@ -116,7 +117,8 @@ fn one_if(certain: bool) -> u32 {
     return select(0u, 1u, certain);
 }
 
-// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n^2) from its chords.
+// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n^2) from its
+// chords.
 fn by_error(error: f32, path: u32, kind: u32, a: Corner, b: Corner) -> u32 {
     var bend = 0.0;
     if (kind == EDGE_RING) {

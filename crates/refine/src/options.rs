@@ -12,8 +12,8 @@ pub enum LodCriterion {
     PerPoint,
     /// So fine that the surface is within this distance (µm) of the level-64 surface.
     MaxError(f32),
-    /// García-Cantero et al. 2017: `level × clamp(1 − d / far, 0, 1)` with the distance d (µm) to the eye, as
-    /// the mean of an edge's two ends.
+    /// García-Cantero et al. 2017: `level × clamp(1 − d / far, 0, 1)` with the distance d (µm) to
+    /// the eye, as the mean of an edge's two ends.
     Distance {
         /// Level at the eye, 1 to 64.
         level: u32,

@@ -1,4 +1,5 @@
-//! Packs a coarse mesh into the form that is uploaded to the GPU. Its layout is described in decode.rs.
+//! Packs a coarse mesh into the form that is uploaded to the GPU. Its layout is described in
+//! decode.rs.
 
 use neurotess_mesh::CoarseMesh;
 
@@ -8,12 +9,13 @@ use crate::part::{MeshPart, PATCHES_OF_SPHERE};
 use crate::plan::patch_bends;
 
 /// Packs a mesh into parts of at most `most_patches` slots for patches, some of which stay empty.
-/// `color_keys`: one per tracing point, for the renderer; `values`: one level per tracing point. Missing
-/// ones are 0 and 1.
+/// `color_keys`: one per tracing point, for the renderer; `values`: one level per tracing point.
+/// Missing ones are 0 and 1.
 ///
 /// A soma has the color key of its first vertex. A part's points have at most 1,024 different color
-/// keys. If no color key is from 2²⁰ to 2³¹, they are taken for indices, and a mesh with more different
-/// ones is cut into more parts; else they are taken for fractions of a scale, and lose their lowest bits.
+/// keys. If no color key is from 2²⁰ to 2³¹, they are taken for indices, and a mesh with more
+/// different ones is cut into more parts; else they are taken for fractions of a scale, and lose
+/// their lowest bits.
 pub fn pack(
     mesh: &CoarseMesh,
     color_keys: &[u32],
@@ -31,7 +33,8 @@ pub fn pack(
     parts
 }
 
-/// Writes into every sphere how much the edges of its patches bend, with positions as shaders read them.
+/// Writes into every sphere how much the edges of its patches bend, with positions as shaders read
+/// them.
 fn write_bends(mesh: &CoarseMesh, parts: &mut [MeshPart]) {
     let bends = patch_bends(&dequantized(mesh, parts));
     for part in parts {

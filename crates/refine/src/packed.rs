@@ -61,8 +61,8 @@ impl Packer<'_> {
             }));
     }
 
-    /// Writes points and bounding spheres. Returns the point of every implicit ring, by the ring's first
-    /// vertex.
+    /// Writes points and bounding spheres. Returns the point of every implicit ring, by the ring's
+    /// first vertex.
     fn write_points(
         &self,
         contents: &Contents,
@@ -234,7 +234,8 @@ impl ColorKeys {
     }
 }
 
-/// Anchors, which explicit vertices are stored relative to: their tracing points, or the center of a soma.
+/// Anchors, which explicit vertices are stored relative to: their tracing points, or the center of
+/// a soma.
 struct Anchors {
     /// By key: index, tracing point and greatest coordinate of an offset (µm).
     all: BTreeMap<(u32, [u32; 3]), (u32, u32, f32)>,

@@ -1,8 +1,8 @@
 //! Decides what goes into which part of a packed mesh.
 //!
 //! A mesh that would not fit is cut into **parts**. Vertices that two parts or two runs share are
-//! explicit, and explicit vertices keep the mesh's order. So the two patches beside an edge have the same
-//! bits for it and evaluate it in the same direction: there are no cracks.
+//! explicit, and explicit vertices keep the mesh's order. So the two patches beside an edge have
+//! the same bits for it and evaluate it in the same direction: there are no cracks.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,7 +19,8 @@ const MOST_EXPLICIT: usize = 1 << 15;
 /// Patches of somata are stored with indices of 12 bits: they reach this many explicit vertices.
 const FEW_EXPLICIT: usize = 1 << 12;
 
-/// If all color keys below 2³¹ are also below this, they are taken for indices: see [`crate::pack`].
+/// If all color keys below 2³¹ are also below this, they are taken for indices: see
+/// [`crate::pack`].
 const MOST_NUMBERS: u32 = 1 << 20;
 
 /// Runs and other patches that go into one part, by index.
@@ -43,7 +44,8 @@ impl<'m> Packer<'m> {
     /// Finds the runs of a mesh; no vertex is explicit yet.
     pub(crate) fn new(mesh: &'m CoarseMesh, color_keys: &'m [u32], values: &'m [u8]) -> Self {
         let (mut runs, others) = find_runs(mesh);
-        // Runs that are near one another share a sphere, which is then small, so that centers are accurate.
+        // Runs that are near one another share a sphere, which is then small, so that centers are
+        // accurate.
         let middle = |run: &Tube| {
             let ring = run.rings[run.rings.len() / 2];
             mesh.tracing[mesh.vertices[ring[0] as usize].tracing as usize].center
@@ -164,8 +166,8 @@ impl<'m> Packer<'m> {
         slots
     }
 
-    /// Whether a run should begin with a sphere of its own: an empty slot takes a fifth of the memory of a
-    /// ring that is explicit because its sphere is too large.
+    /// Whether a run should begin with a sphere of its own: an empty slot takes a fifth of the
+    /// memory of a ring that is explicit because its sphere is too large.
     fn strays(&self, slots: &[Slot], run: &Tube) -> bool {
         let begun = slots.len() % POINTS_OF_SPHERE;
         if begun == 0 {
@@ -238,7 +240,8 @@ impl<'m> Packer<'m> {
         self.color_keys.get(tracing as usize).copied().unwrap_or(0)
     }
 
-    /// Whether color keys are indices, which must keep all their bits, and not fractions of a scale.
+    /// Whether color keys are indices, which must keep all their bits, and not fractions of a
+    /// scale.
     fn has_numbers(&self) -> bool {
         let mut color_keys = self.color_keys.iter();
         color_keys.all(|key| !(MOST_NUMBERS..1 << 31).contains(key))
@@ -266,7 +269,8 @@ pub(crate) struct Contents {
     pub(crate) caps: Vec<usize>,
 }
 
-/// First vertex of the ring that a cap closes, and whether the cap has the ring's vertices in reverse order.
+/// First vertex of the ring that a cap closes, and whether the cap has the ring's vertices in
+/// reverse order.
 pub(crate) fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
     let first = corners.into_iter().min()?;
     let forwards = [0, 1, 2, 3].map(|k| first + k);
@@ -278,8 +282,8 @@ pub(crate) fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
     }
 }
 
-/// Morton code of a point with coordinates from 0 to 1: their bits interleaved. Close points have close
-/// codes.
+/// Morton code of a point with coordinates from 0 to 1: their bits interleaved. Close points have
+/// close codes.
 fn morton(p: Vec3) -> u32 {
     let spread = |c: f32| {
         let bits = (c.clamp(0.0, 1.0) * 1023.0) as u32;

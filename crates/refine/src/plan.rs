@@ -1,8 +1,8 @@
 //! The plan of a refinement: edges with their levels, and the numbers of all refined vertices.
 //!
-//! The vertices of the coarse mesh come first, then the inner ones of every edge in the edge's direction,
-//! then the inner ones of every patch row by row. Memory grows with the coarse mesh only, not with the
-//! level.
+//! The vertices of the coarse mesh come first, then the inner ones of every edge in the edge's
+//! direction, then the inner ones of every patch row by row. Memory grows with the coarse mesh
+//! only, not with the level.
 
 use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
 
@@ -13,7 +13,8 @@ use crate::{Caps, Lod, Path, RefineOptions};
 /// An edge of the coarse mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
-    /// The vertices where it starts and ends: along the path, or from the lower index to the higher.
+    /// The vertices where it starts and ends: along the path, or from the lower index to the
+    /// higher.
     pub(crate) from: u32,
     pub(crate) to: u32,
     pub(crate) kind: EdgeKind,
@@ -81,8 +82,8 @@ impl Plan {
         Grid::new(mesh.patches[patch].kind, options.caps, levels)
     }
 
-    /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those of
-    /// its edge: where the edge has fewer, several columns share one.
+    /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those
+    /// of its edge: where the edge has fewer, several columns share one.
     pub(crate) fn vertex(
         &self,
         corners: [u32; 4],
@@ -140,7 +141,8 @@ impl Plan {
         for j in 0..grid.ny {
             for i in 0..grid.nx {
                 let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                // Diagonals run towards the patch's corners on round patches, and are parallel on others.
+                // Diagonals run towards the patch's corners on round patches, and are parallel on
+                // others.
                 let falling = fans && ((2 * i < grid.nx) != (2 * j < grid.ny));
                 cell(quad, falling, options.quads, out);
             }
@@ -148,8 +150,8 @@ impl Plan {
     }
 }
 
-/// The vertex of an edge of `level` parts that is nearest to vertex i of n parts. If level ≤ n, every
-/// vertex of the edge is the nearest of some i.
+/// The vertex of an edge of `level` parts that is nearest to vertex i of n parts. If level ≤ n,
+/// every vertex of the edge is the nearest of some i.
 fn snap(i: u32, n: u32, level: u32) -> u32 {
     (2 * i * level + n) / (2 * n)
 }
@@ -206,8 +208,8 @@ impl Grid {
         Self { nx, ny, levels }
     }
 
-    /// Numbers of triangles and quads. Every step of a side that snapping makes empty takes one triangle
-    /// away.
+    /// Numbers of triangles and quads. Every step of a side that snapping makes empty takes one
+    /// triangle away.
     pub(crate) fn face_counts(&self, quads: bool) -> (usize, usize) {
         let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);
         let empty: usize = self
@@ -237,8 +239,8 @@ impl Grid {
     }
 }
 
-/// Finds the edges, and those of every patch. Counts half-edges by their lower vertex: this needs no hashing,
-/// and sorts only the few edges of each vertex.
+/// Finds the edges, and those of every patch. Counts half-edges by their lower vertex: this needs
+/// no hashing, and sorts only the few edges of each vertex.
 fn find_edges(mesh: &CoarseMesh) -> (Vec<Edge>, Vec<[u32; 4]>) {
     let ends = |patch: usize, side: usize| {
         let corners = mesh.patches[patch].corners;

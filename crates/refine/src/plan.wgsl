@@ -1,8 +1,9 @@
 // The grid of a patch and its vertices.
 //
-// Imported by all shaders that evaluate patches. Rust twin: plan.rs; that numbers the vertices of the
-// whole surface, while this evaluates one vertex of one patch's grid, which is the same point. Corners
-// come from a CornerSource: the packed mesh (corner_source.wgsl), or corners that a renderer has computed.
+// Imported by all shaders that evaluate patches. Rust twin: plan.rs; that numbers the vertices of
+// the whole surface, while this evaluates one vertex of one patch's grid, which is the same point.
+// Corners come from a CornerSource: the packed mesh (corner_source.wgsl), or corners that a
+// renderer has computed.
 
 #import level.wgsl
 #import template.wgsl
@@ -90,8 +91,8 @@ fn patch_grid(kind: u32, caps: u32, levels: vec4<u32>) -> Grid {
     return Grid(nx, ny);
 }
 
-// The vertex of an edge of `level` parts that is nearest to vertex i of n parts. If level <= n, every
-// vertex of the edge is the nearest of some i.
+// The vertex of an edge of `level` parts that is nearest to vertex i of n parts. If level <= n,
+// every vertex of the edge is the nearest of some i.
 fn snap(i: u32, n: u32, level: u32) -> u32 {
     return (2u * i * level + n) / (2u * n);
 }

@@ -10,8 +10,8 @@ use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
 use crate::plan::{Edge, Grid, Plan};
 use crate::{Lod, RefineOptions};
 
-/// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are evaluated when
-/// they are read, so that memory does not grow with the level.
+/// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are
+/// evaluated when they are read, so that memory does not grow with the level.
 pub struct Refinement<'m> {
     mesh: &'m CoarseMesh,
     options: RefineOptions,
@@ -48,16 +48,16 @@ impl<'m> Refinement<'m> {
         histogram
     }
 
-    /// Number of faces of one patch. The surface has them in the order of patches, triangles and quads in
-    /// separate lists.
+    /// Number of faces of one patch. The surface has them in the order of patches, triangles and
+    /// quads in separate lists.
     pub fn patch_face_count(&self, patch: usize) -> usize {
         let grid = self.plan.grid(self.mesh, &self.options, patch);
         let (triangles, quads) = grid.face_counts(self.options.quads);
         triangles + quads
     }
 
-    /// Levels of the four sides of a patch: the first and third are the sides along x at y = 0 and 1, the
-    /// second and fourth those along y at x = 1 and 0.
+    /// Levels of the four sides of a patch: the first and third are the sides along x at y = 0 and
+    /// 1, the second and fourth those along y at x = 1 and 0.
     pub fn patch_levels(&self, patch: usize) -> [u32; 4] {
         self.plan.patch_edges[patch].map(|e| u32::from(self.plan.edges[e as usize].level))
     }
@@ -68,8 +68,8 @@ impl<'m> Refinement<'m> {
         (grid.nx, grid.ny)
     }
 
-    /// The vertex at column i and row j of a patch's grid. On a coarser side several columns or rows have
-    /// the same vertex. The GPU must compute the same.
+    /// The vertex at column i and row j of a patch's grid. On a coarser side several columns or
+    /// rows have the same vertex. The GPU must compute the same.
     pub fn grid_vertex(&self, patch: usize, i: u32, j: u32) -> SurfaceVertex {
         let corners = self.mesh.patches[patch].corners;
         let grid = self.plan.grid(self.mesh, &self.options, patch);
@@ -90,7 +90,8 @@ impl<'m> Refinement<'m> {
         found.unwrap_or_else(|| self.coarse_vertex(index as usize))
     }
 
-    /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all cores.
+    /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
+    /// cores.
     pub fn volume_and_area(&self) -> (f64, f64) {
         let center = self
             .mesh
@@ -241,8 +242,8 @@ impl<'m> Refinement<'m> {
     }
 }
 
-/// The tracing point of a vertex on an edge. A soma's edges belong to the soma as far as the neurite's
-/// ring, so that the color changes there.
+/// The tracing point of a vertex on an edge. A soma's edges belong to the soma as far as the
+/// neurite's ring, so that the color changes there.
 fn on_soma<'t>(
     kind: EdgeKind,
     ends: [&'t TracingPoint; 2],

@@ -1,7 +1,8 @@
 // Reads a packed coarse mesh: patches, their corners, and their attributes.
 //
-// Imported by all shaders that evaluate patches. This is the only WGSL file that knows the layout: for
-// another layout, write another file with the same functions. Rust twin: decode.rs; packed.rs writes it.
+// Imported by all shaders that evaluate patches. This is the only WGSL file that knows the layout:
+// for another layout, write another file with the same functions. Rust twin: decode.rs; packed.rs
+// writes it.
 
 #import evaluate.wgsl
 
@@ -27,8 +28,8 @@ struct Base {
     color_keys: u32,
 }
 
-// A patch by its kind and the vertices at its corners. A vertex is four times the index of a point plus
-// the corner of its implicit ring; or, with the bit EXPLICIT, the index of an explicit vertex.
+// A patch by its kind and the vertices at its corners. A vertex is four times the index of a point
+// plus the corner of its implicit ring; or, with the bit EXPLICIT, the index of an explicit vertex.
 struct Patch {
     kind: u32,
     corners: vec4<u32>,
@@ -105,8 +106,8 @@ fn patch_at(base: Base, index: u32) -> Patch {
     return Patch(PATCH_CAP, vec4<u32>(first) + vec4<u32>(0u, 1u, 2u, 3u));
 }
 
-// Unit vector from octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010), each of
-// which is one of `most` + 1 steps from -1 to 1.
+// Unit vector from octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010),
+// each of which is one of `most` + 1 steps from -1 to 1.
 fn octahedral(x: u32, y: u32, most: f32) -> vec3<f32> {
     let px = f32(x) * (2.0 / most) - 1.0;
     let py = f32(y) * (2.0 / most) - 1.0;
@@ -140,7 +141,8 @@ fn point_radius(point_bits: vec4<u32>) -> f32 {
     return bitcast<f32>(((point_bits.z & 0xffffu) + RADIUS_BASE) << 12u);
 }
 
-// Unit direction from a ring's center to its corner k: corners are a quarter turn about the tangent apart.
+// Unit direction from a ring's center to its corner k: corners are a quarter turn about the tangent
+// apart.
 fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     // Duff et al., Building an orthonormal basis, revisited, 2017.
     let sign = select(-1.0, 1.0, tangent.z >= 0.0);
@@ -148,8 +150,8 @@ fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     let b = tangent.x * tangent.y * a;
     let u = vec3<f32>(1.0 + sign * tangent.x * tangent.x * a, sign * b, -sign * tangent.x);
     let v = vec3<f32>(b, sign + tangent.y * tangent.y * a, -tangent.y);
-    // The upper bits of `turn` count quarter turns; the lower eight are the tangent of half the remaining
-    // angle, from which its cosine and sine follow.
+    // The upper bits of `turn` count quarter turns; the lower eight are the tangent of half the
+    // remaining angle, from which its cosine and sine follow.
     let t = f32(turn & 0xffu) / 256.0;
     let scale = 1.0 / (1.0 + t * t);
     let c = (1.0 - t * t) * scale;
@@ -180,8 +182,8 @@ struct ImplicitRing {
     role: u32,
 }
 
-// The slope of the radius along the path at a point with an implicit ring, as five bits: the square root of
-// its absolute value, and whether the tube narrows.
+// The slope of the radius along the path at a point with an implicit ring, as five bits: the square
+// root of its absolute value, and whether the tube narrows.
 fn slope_bits(point_bits: vec4<u32>) -> u32 {
     return ((point_bits.w >> 18u) & 0xfu) | select(0u, 16u, (point_bits.y & POINT_NARROWS) != 0u);
 }

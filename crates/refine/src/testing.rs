@@ -1,5 +1,5 @@
-//! For tests of shaders: parses and validates them, and translates them into all languages that wgpu may
-//! need.
+//! For tests of shaders: parses and validates them, and translates them into all languages that
+//! wgpu may need.
 
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -9,8 +9,8 @@ use crate::wgsl::Shader;
 
 pub use naga;
 
-/// Parses a shader and translates it into SPIR-V (Vulkan), MSL (Metal), HLSL (DirectX 12) and GLSL ES 3.2.
-/// Returns the module and the validator's information about it.
+/// Parses a shader and translates it into SPIR-V (Vulkan), MSL (Metal), HLSL (DirectX 12) and GLSL
+/// ES 3.2. Returns the module and the validator's information about it.
 ///
 /// # Panics
 /// With file and line, if the shader is not valid in one of these languages.

@@ -1,16 +1,17 @@
 //! Shaders from files that import one another.
 //!
-//! **Theory.** WGSL has no modules and no preprocessor. Here a file may begin with `#import other.wgsl`,
-//! which adds that file once, before it; and lines between `#ifdef NAME`, `#else` and `#endif` are kept or
-//! left out by the flags in [`Constants`]. Numbers that Rust knows are defined there too, so that none is
-//! written twice.
+//! **Theory.** WGSL has no modules and no preprocessor. Here a file may begin with `#import
+//! other.wgsl`, which adds that file once, before it; and lines between `#ifdef NAME`, `#else` and
+//! `#endif` are kept or left out by the flags in [`Constants`]. Numbers that Rust knows are defined
+//! there too, so that none is written twice.
 //!
-//! **Practice.** [`compose`] makes one text of all files that a shader needs, with blank lines in place of
-//! directives, and keeps the file and line that each line comes from: in a compiler's message,
-//! [`Shader::explain`] replaces `wgsl:1234:5` by them.
+//! **Practice.** [`compose`] makes one text of all files that a shader needs, with blank lines in
+//! place of directives, and keeps the file and line that each line comes from: in a compiler's
+//! message, [`Shader::explain`] replaces `wgsl:1234:5` by them.
 //!
-//! Why not naga_oil? It mangles names and parses each module by itself: a file that calls functions which
-//! another one defines, as the shading calls those of a vertex source, would need stand-ins for them.
+//! Why not naga_oil? It mangles names and parses each module by itself: a file that calls functions
+//! which another one defines, as the shading calls those of a vertex source, would need stand-ins
+//! for them.
 
 use std::collections::BTreeSet;
 use std::fmt::{self, Write};

@@ -1,12 +1,13 @@
 //! Pictures of coarse meshes on the GPU, without a window.
 //!
-//! A [`Gpu`] is an open device. A **camera** ([`Camera`]) has a position, a direction and a field of view.
-//! A **vertex source** ([`VertexSource`]) makes vertices and selects how many: [`Adaptive`] refines a
-//! [`Scene`] as it is drawn, [`Prerefined`] keeps a refined surface in memory, and [`Exploration`] draws
-//! within a number of triangles. Each tracing point has a **color key**, and a
-//! [`ColorTable`](color::ColorTable) has their colors. [`render_still`] draws a picture of any size, tile by
-//! tile, and hands it over in **bands** of rows; an [`Overlay`](overlay::Overlay) draws legend and scale
-//! bar over them, and a [`PngWriter`] writes them to a file.
+//! A [`Gpu`] is an open device. A **camera** ([`Camera`]) has a position, a direction and a field
+//! of view. A **vertex source** ([`VertexSource`]) makes vertices and selects how many:
+//! [`Adaptive`] refines a [`Scene`] as it is drawn, [`Prerefined`] keeps a refined surface in
+//! memory, and [`Exploration`] draws within a number of triangles. Each tracing point has a **color
+//! key**, and a [`ColorTable`](color::ColorTable) has their colors. [`render_still`] draws a
+//! picture of any size, tile by tile, and hands it over in **bands** of rows; an
+//! [`Overlay`](overlay::Overlay) draws legend and scale bar over them, and a [`PngWriter`] writes
+//! them to a file.
 //!
 //! ```text
 //! source: levels, vertices ─▶ shade.wgsl: light, lines, wireframe ─▶ occlusion.wgsl ─▶ finish.wgsl: bytes

@@ -230,8 +230,8 @@ fn nothing_vanishes_near_or_far() {
                 "{count} at {distance}: {change:+.4} ink, {:.4} off",
                 off / all
             );
-            // As much ink, and where it was, in each 16 × 16 pixels. Measured on lavapipe: 0.024 and
-            // 0.047, both at the greatest distance.
+            // As much ink, and where it was, in each 16 × 16 pixels. Measured on lavapipe: 0.024
+            // and 0.047, both at the greatest distance.
             assert!(change.abs() < 0.03, "{count} at {distance}: {change}");
             assert!(off / all < 0.06, "{count} at {distance}: {}", off / all);
         }

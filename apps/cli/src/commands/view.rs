@@ -22,8 +22,8 @@ use crate::report::Reporter;
   neurotess view circuit/ --report circuit/reports/voltage.h5
   neurotess view yesterday.neurotess")]
 pub(crate) struct ViewArgs {
-    /// Morphology files, folders (searched recursively), globs, circuits, or a session that the window
-    /// saved; nothing: a window to open files in
+    /// Morphology files, folders (searched recursively), globs, circuits, or a session that the
+    /// window saved; nothing: a window to open files in
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub(crate) struct ViewArgs {
 pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let mut inputs = Vec::new();
     for input in &args.inputs {
-        // Folders and circuits are searched by the window's threads; only globs are found here.
+        // Folders and circuits are searched by the window's threads; only globs are expanded here.
         if input.exists() {
             inputs.push(input.clone());
             continue;
@@ -60,7 +60,9 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         report: args.report.clone(),
         adapter: args.adapter.clone(),
     };
-    let listener = reporter.verbose().then(|| Box::new(tell) as CommandListener);
+    let listener = reporter
+        .verbose()
+        .then(|| Box::new(tell) as CommandListener);
     neurotess_viewer::run(options, listener)?;
     Ok(())
 }

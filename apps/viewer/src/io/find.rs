@@ -1,4 +1,5 @@
-//! Finds what is behind the paths that are opened: tracings below folders, cells of circuits, reports.
+//! Finds what is behind the paths that are opened: tracings below folders, cells of circuits,
+//! reports.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

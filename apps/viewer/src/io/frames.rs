@@ -74,8 +74,8 @@ impl FrameReader {
         &self.recording
     }
 
-    /// The values of a frame if they have been read; if not they are read next. `stride`: frames from one
-    /// picture to the next, by which later ones are read ahead; 0: none are.
+    /// The values of a frame if they have been read; if not they are read next. `stride`: frames
+    /// from one picture to the next, by which later ones are read ahead; 0: none are.
     pub(crate) fn get(
         &self,
         frame: u64,
@@ -162,8 +162,8 @@ fn read(shared: &Shared, recording: &Recording, wake: &impl Fn()) {
         });
         let (values, problem) = match values {
             Ok(values) => (values.values(inputs.range), None),
-            // Without values the neurons are gray. The empty values are kept, so that the frame is not read
-            // again and again.
+            // Without values the neurons are gray. The empty values are kept, so that the frame is
+            // not read again and again.
             Err(why) => (none(inputs.shows.len()), Some(why)),
         };
         let mut inner = shared.lock();

@@ -1,5 +1,5 @@
-//! Background tasks: a thread that reports its progress, can be canceled, and returns a result. A panic is
-//! an error with its text.
+//! Background tasks: a thread that reports its progress, can be canceled, and returns a result. A
+//! panic is an error with its text.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -96,8 +96,8 @@ impl<T: Send + 'static> Task<T> {
     }
 }
 
-/// The result of `work`; a panic becomes an error with its text, so that a bug that one cell triggers fails
-/// that cell only.
+/// The result of `work`; a panic becomes an error with its text, so that a bug that one cell
+/// triggers fails that cell only.
 pub(crate) fn caught<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic_text(&*panic);

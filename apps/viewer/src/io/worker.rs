@@ -1,5 +1,5 @@
-//! The window's background work: reading, meshing, saving. Results come back as messages, and the window is
-//! woken for each.
+//! The window's background work: reading, meshing, saving. Results come back as messages, and the
+//! window is woken for each.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -174,7 +174,8 @@ impl Worker {
                     });
                 }
                 drop(sender);
-                // Results are passed on in the order of the files, so that the list is always the same.
+                // Results are passed on in the order of the files, so that the list is always the
+                // same.
                 let (mut early, mut next) = (BTreeMap::new(), 0);
                 for (index, loaded) in receiver {
                     early.insert(index, loaded);

@@ -19,8 +19,9 @@ pub(crate) fn length(keys: usize, frames: u32, over_time: bool) -> usize {
     }
 }
 
-/// The pictures of a film: `frames` from each key view to the next, and the last key view. With fewer than
-/// two key views the camera stays at the current view (`now`), and only the time goes on.
+/// The pictures of a film: `frames` from each key view to the next, and the last key view. With
+/// fewer than two key views the camera stays at the current view (`now`), and only the time goes
+/// on.
 pub(crate) fn film_frames(
     keys: &[View],
     now: View,

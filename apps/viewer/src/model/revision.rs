@@ -1,5 +1,5 @@
-//! Revisions: equal revisions mean equal contents. Whatever is derived from a content keeps its revision, and
-//! is derived again only when that has changed.
+//! Revisions: equal revisions mean equal contents. Whatever is derived from a content keeps its
+//! revision, and is derived again only when that has changed.
 
 use std::cell::{Cell, RefCell};
 use std::ops::{Deref, DerefMut};
@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The revision of a content. A copy has the same revision, so an undo brings the old one back. The default is
-/// the revision of an empty content.
+/// The revision of a content. A copy has the same revision, so an undo brings the old one back. The
+/// default is the revision of an empty content.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Revision(u64);
 

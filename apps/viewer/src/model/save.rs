@@ -10,10 +10,10 @@ use crate::model::settings::Settings;
 /// The level of detail that a mesh is written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshLod {
-    /// By the panel's level of detail, from the present view where it depends on that.
+    /// The panel's level of detail, in the current view if it depends on that.
     #[default]
     AsShown,
-    /// By a criterion that needs no view; none: the coarse quads.
+    /// A criterion that needs no view; none: the coarse quads.
     Fixed(Option<LodCriterion>),
 }
 
@@ -81,7 +81,7 @@ pub struct FilmOptions {
     pub video: bool,
 }
 
-/// What the panel holds.
+/// The inputs of the panel.
 #[derive(Clone, Debug)]
 pub struct SaveForm {
     /// Typed path of meshes.

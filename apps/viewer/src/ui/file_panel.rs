@@ -1,5 +1,5 @@
-//! The panel that asks for files: folders to walk through, and a line to type or paste a path into. It
-//! needs nothing of the desktop, so it is the same everywhere.
+//! The file dialog: folders to walk through, and a line to type or paste a path into. It does not
+//! use the desktop's own dialog, so it is the same everywhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,18 +8,18 @@ use eframe::egui::{self, Key, RichText, ScrollArea};
 
 use crate::io::find;
 use crate::io::paths::{self, Name, completed, goes_on, parted};
-use crate::model::command::{FilePurpose, Command, Edit};
+use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::session;
 use crate::ui::path_line;
 
-/// Where one is, and what is typed.
+/// State of the file dialog: the folder, and what is typed.
 #[derive(Clone, Debug)]
 pub(crate) struct FilePanel {
     purpose: FilePurpose,
     folder: PathBuf,
     entries: Vec<Entry>,
     typed: String,
-    /// The name that is being typed: others are not listed.
+    /// The name that is being typed; only names that begin with it are listed.
     begun: String,
     chosen: Vec<PathBuf>,
     said: String,
@@ -35,7 +35,7 @@ struct Entry {
 }
 
 impl FilePanel {
-    /// In a folder; `session`: where the session was saved last.
+    /// A dialog that shows a folder. `session`: the file that the session was last saved to.
     pub(crate) fn new(purpose: FilePurpose, folder: &Path, session: Option<&Path>) -> Self {
         let typed = match (purpose, session) {
             (FilePurpose::SaveSession, Some(session)) => session.display().to_string(),
@@ -59,7 +59,7 @@ impl FilePanel {
         panel
     }
 
-    /// Whether it asks for this.
+    /// Whether it is for this purpose.
     pub(crate) fn is_for(&self, purpose: FilePurpose) -> bool {
         self.purpose == purpose
     }
@@ -95,7 +95,9 @@ impl FilePanel {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("json"));
         let wanted = match self.purpose {
-            FilePurpose::Open => is_folder || find::is_readable(path) || session::is_session(path) || json,
+            FilePurpose::Open => {
+                is_folder || find::is_readable(path) || session::is_session(path) || json
+            }
             FilePurpose::Report => is_folder || find::is_hdf5(path),
             FilePurpose::SaveSession => is_folder || session::is_session(path),
         };
@@ -107,7 +109,8 @@ impl FilePanel {
         })
     }
 
-    /// Shows the panel; gives what to do, or nothing; `open` is cleared when it is to be closed.
+    /// Shows the dialog. Returns the command to run, if there is one; clears `open` when it must be
+    /// closed.
     pub(crate) fn show(&mut self, ctx: &egui::Context, open: &mut bool) -> Option<Command> {
         let title = match self.purpose {
             FilePurpose::Open => "Open tracings, folders, circuits or a session",
@@ -158,7 +161,7 @@ impl FilePanel {
         }
     }
 
-    /// The line goes along to another folder: a session keeps its name.
+    /// Sets the typed path to the current folder. A session keeps its name.
     fn type_here(&mut self) {
         match (self.purpose, Path::new(&self.typed).file_name()) {
             (FilePurpose::SaveSession, Some(name)) => {
@@ -168,8 +171,8 @@ impl FilePanel {
         }
     }
 
-    /// The list goes along with what is typed: its folder, and names that begin so. Whether that made the
-    /// text another one.
+    /// Lists what fits the typed path: its folder, and names that begin with its last part. True if
+    /// that has changed the typed path.
     fn follow(&mut self) -> bool {
         let (before, begun) = parted(&self.typed);
         let begun = begun.to_owned();
@@ -178,7 +181,7 @@ impl FilePanel {
         let mut rewritten = false;
         if other && folder.is_dir() {
             if !Path::new(before).is_absolute() && !before.starts_with('~') {
-                // From the folder of before, which no longer shows.
+                // The typed path was relative to the folder before, which is no longer shown.
                 self.typed = folder.join(&begun).display().to_string();
                 rewritten = true;
             }
@@ -199,7 +202,9 @@ impl FilePanel {
             let says = match (self.begun.is_empty(), self.purpose) {
                 (false, _) => "No name here begins like that",
                 (true, FilePurpose::SaveSession) => "No folder and no session here yet",
-                (true, FilePurpose::Open | FilePurpose::Report) => "No folder and no file to open here",
+                (true, FilePurpose::Open | FilePurpose::Report) => {
+                    "No folder and no file to open here"
+                }
             };
             ui.allocate_ui([ui.available_width(), height].into(), |ui| {
                 ui.centered_and_justified(|ui| ui.weak(says));
@@ -323,7 +328,7 @@ fn choose(chosen: &mut Vec<PathBuf>, path: &Path, adds: bool) {
     }
 }
 
-/// Bytes for people.
+/// A number of bytes as text.
 pub(crate) fn size(bytes: u64) -> String {
     let b = bytes as f64;
     match bytes {

@@ -1,7 +1,7 @@
 //! The GPU without a window: its adapter, its limits and its errors.
 //!
-//! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until they are taken:
-//! by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work.
+//! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until they are
+//! taken: by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -66,17 +66,19 @@ pub fn adapters() -> Vec<AdapterName> {
 }
 
 impl Gpu {
-    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (in upper or
-    /// lower case). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (in
+    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
     ///
-    /// The device has the adapter's own limits, and those of [`optional_features`] that it supports.
+    /// The device has the adapter's own limits, and those of [`optional_features`] that it
+    /// supports.
     ///
     /// # Errors
     /// There is no such adapter, or its driver reports an error.
     pub fn open(wanted: Option<&str>) -> Result<Self, DeviceError> {
         let variable = std::env::var(ADAPTER_VARIABLE).ok();
         let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
-        // OpenGL last and only if needed, since without a display it prints messages when it starts.
+        // OpenGL last and only if needed, since without a display it prints messages when it
+        // starts.
         let mut adapters = found(Backends::PRIMARY);
         if choose(&adapters, wanted).is_err() {
             adapters.extend(found(Backends::SECONDARY));
@@ -93,8 +95,8 @@ impl Gpu {
         Ok(Self::share(adapter, device, queue))
     }
 
-    /// Shares a device that was opened elsewhere by [`device_descriptor`]. From now on [`Gpu::check`]
-    /// returns its errors.
+    /// Shares a device that was opened elsewhere by [`device_descriptor`]. From now on
+    /// [`Gpu::check`] returns its errors.
     pub fn share(adapter: &Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let fault = Fault::default();
         let (of_work, of_device) = (fault.clone(), fault.clone());

@@ -72,7 +72,8 @@ impl GrowableBuffer {
         if bytes > most {
             return Err(DeviceError::TooLarge { what, bytes, most });
         }
-        // A fourth more than needed, so that not every addition to a growing scene copies everything.
+        // A fourth more than needed, so that not every addition to a growing scene copies
+        // everything.
         let larger = make(gpu, what, (bytes + bytes / 4).min(most / 4 * 4));
         if self.used > 0 {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());

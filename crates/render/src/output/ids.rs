@@ -1,4 +1,5 @@
-//! The pass that draws picking ids instead of colors, with ids.wgsl; and their way back to the host.
+//! The pass that draws picking ids instead of colors, with ids.wgsl; and their way back to the
+//! host.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};

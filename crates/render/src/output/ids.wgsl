@@ -1,5 +1,6 @@
-// Draws picking ids: first the batch and the first component of `surface_id`, plus 1; second the other
-// component; zeros where nothing is drawn. A source's file must define `surface_id`. Called by ids.rs.
+// Draws picking ids: first the batch and the first component of `surface_id`, plus 1; second the
+// other component; zeros where nothing is drawn. A source's file must define `surface_id`. Called
+// by ids.rs.
 
 #import shade.wgsl
 

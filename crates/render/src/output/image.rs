@@ -39,7 +39,11 @@ impl Image {
         let row = 4 * self.width as usize;
         let (start, tile_row) = (4 * left as usize, 4 * tile_width as usize);
         let length = tile_row.min(row - start);
-        for (to, from) in self.pixels.chunks_mut(row).zip(tile.chunks(tile_row.max(1))) {
+        for (to, from) in self
+            .pixels
+            .chunks_mut(row)
+            .zip(tile.chunks(tile_row.max(1)))
+        {
             to[start..start + length].copy_from_slice(&from[..length]);
         }
     }

@@ -146,9 +146,9 @@ fn bar(
     }
 }
 
-/// Round numbers beside a bar, with their position as a share of its height. `more`: the upper end is one
-/// of them, round or not, marked as standing for all above. They are at least `line`, a share of the
-/// height, apart, so that they do not overlap.
+/// Round numbers beside a bar, with their position as a share of its height. `more`: the upper end
+/// is one of them, round or not, marked as standing for all above. They are at least `line`, a
+/// share of the height, apart, so that they do not overlap.
 fn ticks([low, high]: [f32; 2], more: bool, line: f32) -> Vec<(f32, String)> {
     let [low, high] = [low, high].map(f64::from);
     let step = nice_step((high - low) / 5.0);
@@ -168,7 +168,8 @@ fn ticks([low, high]: [f32; 2], more: bool, line: f32) -> Vec<(f32, String)> {
     ticks
 }
 
-/// A scale bar `length` pixels long, with `length_um` written above in a line of this height (pixels).
+/// A scale bar `length` pixels long, with `length_um` written above in a line of this height
+/// (pixels).
 pub fn scale_bar(length_um: f64, length: f32, line: f32, ink: Rgb) -> Image {
     let text = Text::new(line);
     let name = format!("{} µm", number(length_um, length_um));

@@ -1,5 +1,5 @@
-//! Measures the time of frames: they are selected and drawn as in a window, with one sample a pixel, but
-//! neither finished nor read back.
+//! Measures the time of frames: they are selected and drawn as in a window, with one sample a
+//! pixel, but neither finished nor read back.
 
 use std::time::Instant;
 
@@ -17,9 +17,9 @@ use crate::view::frame::Frame;
 pub struct FrameTime {
     /// Milliseconds from the start on the CPU until the GPU had finished.
     pub waited_ms: f64,
-    /// Milliseconds of the pass that selects and the pass that draws, if the GPU supports timestamps. None
-    /// for scenes so large that they are drawn in several rounds, and none in software rendering, where
-    /// timestamps are taken before all threads have finished.
+    /// Milliseconds of the pass that selects and the pass that draws, if the GPU supports
+    /// timestamps. None for scenes so large that they are drawn in several rounds, and none in
+    /// software rendering, where timestamps are taken before all threads have finished.
     pub gpu_ms: Option<[f64; 2]>,
 }
 

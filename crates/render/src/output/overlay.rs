@@ -13,8 +13,8 @@ pub struct Overlay {
     kept: Option<Kept>,
     /// Whether there is no room for the legend.
     pub legend_left_out: bool,
-    /// If the legend covers a part of the scene: the share of the picture's width, on the left (negative)
-    /// or on the right, that would have to be free for it.
+    /// If the legend covers a part of the scene: the share of the picture's width, on the left
+    /// (negative) or on the right, that would have to be free for it.
     pub covering: Option<f64>,
 }
 
@@ -26,7 +26,8 @@ struct Kept {
     background: Option<Rgb>,
     /// Corner of the legend, and whether it covers something.
     legend: Option<(usize, bool)>,
-    /// Corner of the scale bar, its length (µm; 0: as long as fits), and whether it covers something.
+    /// Corner of the scale bar, its length (µm; 0: as long as fits), and whether it covers
+    /// something.
     bar: Option<(usize, f64, bool)>,
 }
 
@@ -95,7 +96,8 @@ impl Overlay {
         overlay
     }
 
-    /// The overlay of another picture of the series: with its legend and scale bar, in the same corners.
+    /// The overlay of another picture of the series: with its legend and scale bar, in the same
+    /// corners.
     #[must_use]
     pub fn again(&self, legend: Option<&Legend>, camera: &Camera) -> Self {
         let mut overlay = self.clone();

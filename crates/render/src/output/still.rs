@@ -1,8 +1,8 @@
 //! Pictures of any size, tile by tile, band by band.
 //!
-//! A picture is drawn in **tiles** that fit the device and handed over in **bands**: the rows of pixels that
-//! one row of tiles covers. Memory is for one tile and one band, whatever the picture's size. Tiles
-//! overlap by the reach of ambient occlusion, so that they fit together.
+//! A picture is drawn in **tiles** that fit the device and handed over in **bands**: the rows of
+//! pixels that one row of tiles covers. Memory is for one tile and one band, whatever the picture's
+//! size. Tiles overlap by the reach of ambient occlusion, so that they fit together.
 
 use std::time::Instant;
 
@@ -51,8 +51,8 @@ pub enum Occlusion {
 }
 
 impl Occlusion {
-    /// Radius of occlusion in a picture of this height (sub-pixels): µm, and the most sub-pixels. It does
-    /// not depend on tiles, so that they fit together.
+    /// Radius of occlusion in a picture of this height (sub-pixels): µm, and the most sub-pixels.
+    /// It does not depend on tiles, so that they fit together.
     pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
         let height = f64::from(height);
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
@@ -79,10 +79,11 @@ impl Default for PictureOptions {
     }
 }
 
-/// Greatest width and height of a tile by default: with four samples of a sub-pixel, which take 104 bytes,
-/// 240 MiB.
+/// Greatest width and height of a tile by default: with four samples of a sub-pixel, which take 104
+/// bytes, 240 MiB.
 const TILE: u32 = 1536;
-/// Greatest reach (sub-pixels) of ambient occlusion: with more, margins would take up most of a tile.
+/// Greatest reach (sub-pixels) of ambient occlusion: with more, margins would take up most of a
+/// tile.
 const MOST_MARGIN: f64 = 360.0;
 /// Numbers of samples that a pixel can have.
 pub const SAMPLES: [u32; 5] = [1, 4, 16, 36, 64];
@@ -132,7 +133,8 @@ struct Parting {
 }
 
 impl PictureOptions {
-    /// Number of samples that a pixel gets: the greatest possible number that is not above `samples`.
+    /// Number of samples that a pixel gets: the greatest possible number that is not above
+    /// `samples`.
     pub fn samples_taken(&self) -> u32 {
         let most = SAMPLES.into_iter().rfind(|&n| n <= self.samples);
         most.unwrap_or(1)
@@ -171,8 +173,8 @@ impl PictureOptions {
     }
 }
 
-/// Number of samples of a sub-pixel: four; or one if a pixel has only one sample, and on OpenGL, for which
-/// naga 30 translates sample masks wrongly.
+/// Number of samples of a sub-pixel: four; or one if a pixel has only one sample, and on OpenGL,
+/// for which naga 30 translates sample masks wrongly.
 pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
     if samples == 1 || gpu.adapter.backend == "gl" {
         1
@@ -205,8 +207,8 @@ pub struct Viewpoint {
     pub near: f64,
 }
 
-/// Draws pictures one after the other. Keeps pipelines and targets, so that a series of pictures makes
-/// them once.
+/// Draws pictures one after the other. Keeps pipelines and targets, so that a series of pictures
+/// makes them once.
 #[derive(Default)]
 pub struct StillRenderer {
     renderers: Vec<TileRenderer>,
@@ -220,8 +222,8 @@ impl StillRenderer {
         Self::default()
     }
 
-    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and so on; 0 for
-    /// instances beyond the end.
+    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and so
+    /// on; 0 for instances beyond the end.
     pub fn set_states(&mut self, states: &[u32]) {
         self.states = states.to_vec();
     }
@@ -249,7 +251,8 @@ impl StillRenderer {
         Ok(renderer)
     }
 
-    /// Draws a picture and calls `take` with its bands from the top: the first row of each, and its pixels.
+    /// Draws a picture and calls `take` with its bands from the top: the first row of each, and its
+    /// pixels.
     ///
     /// # Errors
     /// The device reports an error, `take` returns one, or the watch has stopped the picture.

@@ -148,8 +148,8 @@ impl TileRenderer {
         self.targets.as_ref().map_or(0, |targets| targets.bytes)
     }
 
-    /// Draws a tile. Returns its pixels without the margins: four bytes a pixel, straight alpha, sRGB; nothing
-    /// if the watch has stopped the picture.
+    /// Draws a tile. Returns its pixels without the margins: four bytes a pixel, straight alpha,
+    /// sRGB; nothing if the watch has stopped the picture.
     pub(crate) fn render(
         &mut self,
         gpu: &Gpu,
@@ -220,7 +220,8 @@ impl TileRenderer {
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
         let Some(pixels) = read_watched(gpu, &targets.read, bytes, watch)? else {
-            // The device may still be copying into the buffer that is read, so it cannot be used again.
+            // The device may still be copying into the buffer that is read, so it cannot be used
+            // again.
             self.targets = None;
             return Ok(None);
         };
@@ -228,8 +229,8 @@ impl TileRenderer {
         Ok(Some(pixels))
     }
 
-    /// Selects and draws a frame and waits for it, without reading it back: for measurements. Returns the
-    /// number of rounds.
+    /// Selects and draws a frame and waits for it, without reading it back: for measurements.
+    /// Returns the number of rounds.
     pub(crate) fn draw_only(
         &mut self,
         gpu: &Gpu,
@@ -410,7 +411,8 @@ fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
     gpu.queue.write_buffer(buffer, 0, bytes);
 }
 
-/// Waits for the device and copies the first bytes of a buffer; nothing if the watch has stopped the picture.
+/// Waits for the device and copies the first bytes of a buffer; nothing if the watch has stopped
+/// the picture.
 fn read_watched(
     gpu: &Gpu,
     buffer: &wgpu::Buffer,

@@ -1,8 +1,8 @@
 //! Colors: color keys, the table that they are looked up in, palettes and color maps.
 //!
-//! A tracing point has a **color key**. It is a **category**, or a fraction of a **scale**. The table has
-//! the colors of the scale, then those of the categories, so that another color map or palette leaves the
-//! color keys as they are.
+//! A tracing point has a **color key**. It is a **category**, or a fraction of a **scale**. The
+//! table has the colors of the scale, then those of the categories, so that another color map or
+//! palette leaves the color keys as they are.
 
 use std::str::FromStr;
 
@@ -43,8 +43,8 @@ pub struct InstanceValues {
 }
 
 impl InstanceValues {
-    /// Adds the values of the next instance: fractions of the scale, 0 to 1. NaN has the color of the first
-    /// category, and so has an instance without values.
+    /// Adds the values of the next instance: fractions of the scale, 0 to 1. NaN has the color of
+    /// the first category, and so has an instance without values.
     pub fn push(&mut self, values: &[f32]) {
         let first = self.fours.len() as u32;
         self.first
@@ -73,8 +73,8 @@ impl InstanceValues {
 }
 
 const NO_VALUE: f32 = -1.0;
-/// Index of the first values of an instance that has none: beyond the end, so that shaders take the last
-/// entry.
+/// Index of the first values of an instance that has none: beyond the end, so that shaders take the
+/// last entry.
 const NOWHERE: u32 = 1 << 24;
 
 impl ColorTable {
@@ -88,8 +88,8 @@ impl ColorTable {
         entries
     }
 
-    /// The buffer that shaders look colors up in, and the number of colors. The colors come first, then the
-    /// index of each instance's first values, then the values, four to an entry.
+    /// The buffer that shaders look colors up in, and the number of colors. The colors come first,
+    /// then the index of each instance's first values, then the values, four to an entry.
     pub(crate) fn entries(&self) -> (Vec<[f32; 4]>, u32) {
         let mut entries = self.linear();
         let colors = entries.len() as u32;
@@ -253,8 +253,8 @@ impl Palette {
 
     /// Undefined, soma, axon, basal and apical dendrites.
     ///
-    /// Shading does not show on pure primaries, so blue, red and purple are those used in print, and black
-    /// is the darkest gray on which shading still shows a shape.
+    /// Shading does not show on pure primaries, so blue, red and purple are those used in print,
+    /// and black is the darkest gray on which shading still shows a shape.
     fn types(self) -> [Rgb; 5] {
         match self {
             Self::NeuroM => [

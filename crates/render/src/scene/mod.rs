@@ -1,7 +1,8 @@
 //! What is drawn: templates, and instances of them.
 //!
-//! A **template** is a coarse mesh that the device holds once. An **instance** is a placement of a template
-//! with a state: ten thousand neurons of a thousand morphologies take a thousand templates.
+//! A **template** is a coarse mesh that the device holds once. An **instance** is a placement of a
+//! template with a state: ten thousand neurons of a thousand morphologies take a thousand
+//! templates.
 
 pub(crate) mod color;
 pub(crate) mod templates;
@@ -101,7 +102,8 @@ pub enum SceneError {
     },
 }
 
-/// Checks the template and the placement of an instance; `index`: its own, `templates`: their number.
+/// Checks the template and the placement of an instance; `index`: its own, `templates`: their
+/// number.
 pub(crate) fn check_placement(
     index: usize,
     instance: &Instance,
@@ -183,7 +185,8 @@ impl Scene {
         (self.templates, self.instances)
     }
 
-    /// Bounding spheres that hold all instances that are not hidden, in the world (µm): to fit a camera to.
+    /// Bounding spheres that hold all instances that are not hidden, in the world (µm): to fit a
+    /// camera to.
     pub fn spheres(&self) -> Vec<BoundingSphere> {
         let shown = self.instances.iter().filter(|instance| !instance.hidden);
         shown

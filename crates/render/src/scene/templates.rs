@@ -17,11 +17,12 @@ pub(crate) const CLUSTER: usize = 64;
 const EXPLICIT_VERTEX_U32S: u32 = 3;
 /// Most slots for patches in a part: as many as a batch has, so that each part fits a batch.
 pub(crate) const MOST_PATCHES: usize = 1 << 20;
-/// Most u32s that a part takes per patch: an explicit patch with four explicit vertices and their anchors.
+/// Most u32s that a part takes per patch: an explicit patch with four explicit vertices and their
+/// anchors.
 const U32S_OF_PATCH: usize = 2 + 4 * (3 + 8);
 
-/// Where the arrays of a part are in the packed buffer of its page: [`PartLayout`] with the part's offset
-/// added. Twin of the struct of the same name in refine's template.wgsl.
+/// Where the arrays of a part are in the packed buffer of its page: [`PartLayout`] with the part's
+/// offset added. Twin of the struct of the same name in refine's template.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Base {
@@ -170,8 +171,8 @@ impl Templates {
         Ok(ids.map(|id| TemplateId(id as u32)).collect())
     }
 
-    /// Replaces a template's mesh. The new mesh gets pages of its own, in place of those that no other
-    /// template uses.
+    /// Replaces a template's mesh. The new mesh gets pages of its own, in place of those that no
+    /// other template uses.
     ///
     /// # Errors
     /// The device has no memory left, or reports another error; the old mesh stays.

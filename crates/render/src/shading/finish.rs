@@ -42,10 +42,11 @@ impl Finish {
 
 /// Number of samples that the occlusion of a sub-pixel takes around it.
 const TAPS: u32 = 14;
-/// How dark corners are. Chosen by eye: it shows at forks and where neurites leave the soma, but not on
-/// tubes.
+/// How dark corners are. Chosen by eye: it shows at forks and where neurites leave the soma, but
+/// not on tubes.
 const STRENGTH: f32 = 3.0;
-/// Sub-pixels that the occlusion is blurred over, to each side: its pattern of turns repeats after four.
+/// Sub-pixels that the occlusion is blurred over, to each side: its pattern of turns repeats after
+/// four.
 pub(crate) const BLUR: u32 = 4;
 
 /// What the last pass does.
@@ -53,7 +54,8 @@ pub(crate) const BLUR: u32 = 4;
 pub(crate) enum Last {
     /// Computes pixels from sub-pixels.
     Gather,
-    /// Adds sub-pixels, which are pixels here, to the sums of the steps before; has one more binding.
+    /// Adds sub-pixels, which are pixels here, to the sums of the steps before; has one more
+    /// binding.
     Accumulate,
 }
 
@@ -104,7 +106,8 @@ pub(crate) fn finish_shader(samples: u32, last: Last) -> Shader {
     if last == Last::Accumulate {
         parts.files.push(shader::file("accumulate.wgsl"));
     }
-    // Textures of normals and depths are then multisampled; the first sample stands for the sub-pixel.
+    // Textures of normals and depths are then multisampled; the first sample stands for the
+    // sub-pixel.
     if samples > 1 {
         parts.constants.flag("MULTISAMPLED");
     }

@@ -1,5 +1,5 @@
-// What the passes after the drawing share; and the last of them, from samples to the bytes of a picture.
-// Called by tiles.rs. Rust twin: finish.rs.
+// What the passes after the drawing share; and the last of them, from samples to the bytes of a
+// picture. Called by tiles.rs. Rust twin: finish.rs.
 
 struct Finish {
     tile_size: vec2<u32>,
@@ -54,7 +54,8 @@ fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
     return vec3(place * vec2(1.0, -1.0) * finish.slope * depth, -depth);
 }
 
-// Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's radius.
+// Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's
+// radius.
 fn alike(depth: f32, q: vec2<i32>) -> f32 {
     let other = depth_at(q);
     if other == 0.0 || depth == 0.0 {

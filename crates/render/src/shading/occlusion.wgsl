@@ -1,9 +1,9 @@
 // Ambient occlusion from depth and normals. Called by tiles.rs. Rust twin of the uniform:
 // finish.rs.
 //
-// Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: samples on a spiral, each weighted
-// by how far it rises above the tangent plane, less with greater distance. The blur is theirs too, along x
-// here and along y in finish.wgsl; it stops where the depth jumps.
+// Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: samples on a spiral, each
+// weighted by how far it rises above the tangent plane, less with greater distance. The blur is
+// theirs too, along x here and along y in finish.wgsl; it stops where the depth jumps.
 
 #import finish.wgsl
 
@@ -24,8 +24,8 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let reach = min(finish.radius / pixel, finish.most);
     let radius = reach * pixel;
     let whole = vec2<u32>(p + finish.tile_origin + 65536);
-    // One of 16 turns of the spiral, so that neighboring sub-pixels, which the blur averages, sample different
-    // directions.
+    // One of 16 turns of the spiral, so that neighboring sub-pixels, which the blur averages,
+    // sample different directions.
     let turn = f32((whole.x & 3u) + 4u * ((whole.y & 3u) ^ ((whole.x & 1u) << 1u))) / 16.0;
     var sum = 0.0;
     for (var i = 0u; i < TAPS; i++) {

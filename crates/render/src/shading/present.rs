@@ -90,7 +90,8 @@ struct FullScreenPass {
 /// The texture that a picture is shown in.
 pub(crate) struct Screen {
     pub(crate) texture: wgpu::Texture,
-    /// A draft's own mask, computed on the device. Other pictures have the mask that the host uploads.
+    /// A draft's own mask, computed on the device. Other pictures have the mask that the host
+    /// uploads.
     drawn: Option<wgpu::Texture>,
 }
 
@@ -138,7 +139,8 @@ impl Presenter {
         }
     }
 
-    /// Bytes of [`SELECTED`] and [`HOVERED`] by pixel, for pictures of this size; none: no outlines.
+    /// Bytes of [`SELECTED`] and [`HOVERED`] by pixel, for pictures of this size; none: no
+    /// outlines.
     pub(crate) fn set_mask(&mut self, gpu: &Gpu, mask: Option<([u32; 2], &[u8])>) {
         self.mask_size = mask.map(|(size, _)| size);
         let Some((size, bytes)) = mask else { return };

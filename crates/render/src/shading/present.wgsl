@@ -1,7 +1,8 @@
-// From the bytes of a picture to a texture, with outlines around the things in a mask. Called by present.rs.
+// From the bytes of a picture to a texture, with outlines around the things in a mask. Called by
+// present.rs.
 //
-// One pixel is left free between a selected thing and its outline. Without it, neurites of a pixel's width
-// would seem to have the outline's color.
+// One pixel is left free between a selected thing and its outline. Without it, neurites of a
+// pixel's width would seem to have the outline's color.
 
 struct Present {
     size: vec2<u32>,

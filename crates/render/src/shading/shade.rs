@@ -33,9 +33,9 @@ pub struct Look {
     pub highlighted: (Rgb, f32),
     /// Opacity of [`GHOSTED`] instances, 0 to 1.
     pub ghosted: f32,
-    /// Background against which colors of the scale must stand out: colors about as light as the background
-    /// have edges, dark ones on a light background and light ones on a dark one. None, or [`Light::Flat`]:
-    /// no edges.
+    /// Background against which colors of the scale must stand out: colors about as light as the
+    /// background have edges, dark ones on a light background and light ones on a dark one. None,
+    /// or [`Light::Flat`]: no edges.
     pub contrast: Option<Rgb>,
 }
 
@@ -66,8 +66,8 @@ pub enum Light {
     /// A soft key light from the upper left, a weak fill and the sky.
     #[default]
     Soft,
-    /// The same with the key light from this direction, in the picture's coordinates: right, up, towards
-    /// the viewer. Any length but 0.
+    /// The same with the key light from this direction, in the picture's coordinates: right, up,
+    /// towards the viewer. Any length but 0.
     From(Vec3),
     /// No light: plain colors.
     Flat,
@@ -175,7 +175,8 @@ impl Shade {
         }
     }
 
-    /// For a step of a progressive picture: offset by `jitter` (sub-pixels), its dither pattern by `turn`.
+    /// For a step of a progressive picture: offset by `jitter` (sub-pixels), its dither pattern by
+    /// `turn`.
     pub(crate) fn moved(mut self, jitter: [f32; 2], turn: [f32; 2]) -> Self {
         self.jitter = jitter;
         self.tile_origin = [0, 1].map(|k| self.tile_origin[k] + turn[k]);
@@ -183,7 +184,8 @@ impl Shade {
     }
 }
 
-/// Color of edges on a background, and the background's luminance; a luminance above 1 gives no edges.
+/// Color of edges on a background, and the background's luminance; a luminance above 1 gives no
+/// edges.
 fn edge(background: Option<Rgb>) -> [f32; 4] {
     let Some(background) = background else {
         return [0.0, 0.0, 0.0, 100.0];
@@ -192,8 +194,9 @@ fn edge(background: Option<Rgb>) -> [f32; 4] {
     [ink, ink, ink, luminance(background)]
 }
 
-/// Sub-pixels by which the viewport is larger than the tile on each side. Software rasterizers clip at the
-/// viewport, and a clipped edge may cover other samples: one in 600,000 differed at the borders of tiles.
+/// Sub-pixels by which the viewport is larger than the tile on each side. Software rasterizers clip
+/// at the viewport, and a clipped edge may cover other samples: one in 600,000 differed at the
+/// borders of tiles.
 pub(crate) const GUARD: f32 = 512.0;
 
 /// Half the width (pixels) of the thinnest line drawn: thinner ones would look dotted.
@@ -273,8 +276,8 @@ pub(crate) struct PipelineKey {
     pub(crate) samples: u32,
     /// Whether back faces are drawn, since a plane cuts the surface.
     pub(crate) cut: bool,
-    /// Whether instances have values. Shaders for scenes without values do not look for them: that took
-    /// software Vulkan 10 ms a frame.
+    /// Whether instances have values. Shaders for scenes without values do not look for them: that
+    /// took software Vulkan 10 ms a frame.
     pub(crate) valued: bool,
 }
 

@@ -1,6 +1,6 @@
-// From a source's vertices to lit samples: projection, widening of thin tubes, color, light, wireframe.
-// Called by tiles.rs, with a vertex source. Rust twin of the uniform: shade.rs. SAMPLES is the number of
-// samples of a sub-pixel.
+// From a source's vertices to lit samples: projection, widening of thin tubes, color, light,
+// wireframe. Called by tiles.rs, with a vertex source. Rust twin of the uniform: shade.rs. SAMPLES
+// is the number of samples of a sub-pixel.
 
 #import surface_vertex.wgsl
 
@@ -30,8 +30,8 @@ struct Shade {
     // Number of all colors, and of instances whose values follow them in the table.
     colors: u32,
     valued: u32,
-    // Added to the source's positions to make them relative to the eye: 0 unless the source has selected
-    // for another eye.
+    // Added to the source's positions to make them relative to the eye: 0 unless the source has
+    // selected for another eye.
     shift: vec3<f32>,
     // Coverage of ghosted instances.
     ghosted: f32,
@@ -44,8 +44,8 @@ struct Shade {
     // Index of the batch that is drawn: for picking ids.
     batch: u32,
     pad: u32,
-    // Linear color of edges, and luminance of the background, against which they make colors of the scale
-    // stand out.
+    // Linear color of edges, and luminance of the background, against which they make colors of the
+    // scale stand out.
     edge: vec4<f32>,
 }
 
@@ -83,8 +83,9 @@ fn value_of_instance(color_key: u32, instance: u32) -> f32 {
     return table[min(first + color_key / 4u, arrayLength(&table) - 1u)][color_key % 4u];
 }
 
-// A color key is a category, whose color comes after those of the scale; or a fraction of the scale; or the
-// index of one of the instance's values. The last component is 1 for colors of the scale.
+// A color key is a category, whose color comes after those of the scale; or a fraction of the
+// scale; or the index of one of the instance's values. The last component is 1 for colors of the
+// scale.
 fn color_of(color_key: u32, instance: u32) -> vec4<f32> {
     var share = f32(color_key) / f32(CATEGORY_BIT);
     var category = (color_key & CATEGORY_BIT) != 0u;
@@ -106,17 +107,17 @@ fn luminance(color: vec3<f32>) -> f32 {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// How close a color is to the background's: 1 up to a contrast of 1.25, which the light end of viridis has
-// against white, falling to 0 at 1.8. Contrast as WCAG 2.2 defines it.
+// How close a color is to the background's: 1 up to a contrast of 1.25, which the light end of
+// viridis has against white, falling to 0 at 1.8. Contrast as WCAG 2.2 defines it.
 fn lack_of_contrast(color: vec3<f32>) -> f32 {
     let own = luminance(color) + 0.05;
     let other = shade.edge.w + 0.05;
     return 1.0 - smoothstep(1.25, 1.8, max(own, other) / min(own, other));
 }
 
-// Rasterizers round positions to 1/256 of a pixel. Here they are rounded in the whole picture's coordinates,
-// so that a triangle covers the same samples whatever tile it is drawn in. The quarter of a step keeps
-// positions away from ties.
+// Rasterizers round positions to 1/256 of a pixel. Here they are rounded in the whole picture's
+// coordinates, so that a triangle covers the same samples whatever tile it is drawn in. The quarter
+// of a step keeps positions away from ties.
 fn snapped(clip: vec4<f32>) -> vec4<f32> {
     let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size + shade.jitter;
     let local = floor(pixel * 256.0) / 256.0 - shade.viewport_origin + 0.25 / 256.0;
@@ -124,17 +125,18 @@ fn snapped(clip: vec4<f32>) -> vec4<f32> {
     return vec4(ndc * clip.w, clip.z, clip.w);
 }
 
-// The same without rounding, for vertices behind the near plane, where the division by w is not possible.
+// The same without rounding, for vertices behind the near plane, where the division by w is not
+// possible.
 fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
     let scale = shade.size / shade.viewport_size;
     let shift = (shade.size + 2.0 * (shade.jitter - shade.viewport_origin)) / shade.viewport_size - 1.0;
     return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
 }
 
-// Coverage of a line by the share of a pixel that it fills. With coverage equal to that share, the axons of a
-// whole cell nearly vanish: 0.3 of a pixel in linear light can hardly be seen on white. This rises faster:
-// it is 0.5 for a twentieth of a pixel and 0.9 for 0.3. Chosen by eye on the samples and on real cells of
-// 1 to 3 mm.
+// Coverage of a line by the share of a pixel that it fills. With coverage equal to that share, the
+// axons of a whole cell nearly vanish: 0.3 of a pixel in linear light can hardly be seen on white.
+// This rises faster: it is 0.5 for a twentieth of a pixel and 0.9 for 0.3. Chosen by eye on the
+// samples and on real cells of 1 to 3 mm.
 fn ink_of(share: f32) -> f32 {
     let rest = 1.0 - sqrt(share);
     return 1.0 - rest * rest * rest;
@@ -145,9 +147,10 @@ fn state_of(instance: u32) -> u32 {
     return select(0u, states[min(instance, last)], instance <= last);
 }
 
-// Coverage of a vertex if somata or neurites are left out. Vertices of somata have radius 0, but the
-// soma's patches around a neurite have corners on its first ring, with the neurite's radius. Coverage is
-// interpolated between them: values far outside 0 to 1 move the border to the ring itself.
+// Coverage of a vertex if somata or neurites are left out. Vertices of somata have radius 0, but
+// the soma's patches around a neurite have corners on its first ring, with the neurite's radius.
+// Coverage is interpolated between them: values far outside 0 to 1 move the border to the ring
+// itself.
 fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {
     if (state & WITHOUT_NEURITES) != 0u {
         return select(0.0, 1000.0, radius == 0.0);
@@ -171,7 +174,8 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     if v.radius > 0.0 {
         // A tube thinner than a pixel is widened to a pixel and made fainter.
         let depth = max(-dot(v.axis, shade.backward), shade.near);
-        // The width does not depend on values, so that another frame of a recording changes colors only.
+        // The width does not depend on values, so that another frame of a recording changes colors
+        // only.
         let narrowest = shade.half_width * shade.slope * depth;
         thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
         if v.radius < narrowest {
@@ -217,19 +221,20 @@ fn vertex(
 struct Sample {
     // Linear, premultiplied by coverage through the mask.
     @location(0) color: vec4<f32>,
-    // Normal in the view, mapped from -1..1 to 0..1, and a byte with the bits of the outlines' mask.
+    // Normal in the view, mapped from -1..1 to 0..1, and a byte with the bits of the outlines'
+    // mask.
     @location(1) normal: vec4<f32>,
-    // Depth (µm), as the bytes of an f32: OpenGL cannot load from depth textures, and cannot always draw to
-    // floating-point ones.
+    // Depth (µm), as the bytes of an f32: OpenGL cannot load from depth textures, and cannot always
+    // draw to floating-point ones.
     @location(2) depth: vec4<f32>,
 #ifdef MULTISAMPLED
     @builtin(sample_mask) mask: u32,
 #endif
 }
 
-// A key light from the upper left, a weak fill light from the lower right, and a sky brighter than the
-// ground. The weights were chosen by eye on real cells, so that a surface that faces the viewer has the
-// color of the legend.
+// A key light from the upper left, a weak fill light from the lower right, and a sky brighter than
+// the ground. The weights were chosen by eye on real cells, so that a surface that faces the viewer
+// has the color of the legend.
 fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
     let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
@@ -276,13 +281,15 @@ fn left_by_clip(relative: vec3<f32>, coverage: f32) -> f32 {
 
 @fragment
 fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
-    // Back faces show only where the surface is cut: with the plane's normal it looks as if it were filled.
+    // Back faces show only where the surface is cut: with the plane's normal it looks as if it were
+    // filled.
     let world = select(-shade.clip.xyz, normalize(in.normal), front);
     let axes = mat3x3(shade.right, shade.up, shade.backward);
     let left = left_by_clip(in.relative, in.coverage);
     let to_eye = -normalize(in.relative) * axes;
-    // A thin line is lit like a surface that faces the viewer, so that it has the color of the legend. With
-    // the mean over all its sides it was a third darker, and thin neurites looked gray.
+    // A thin line is lit like a surface that faces the viewer, so that it has the color of the
+    // legend. With the mean over all its sides it was a third darker, and thin neurites looked
+    // gray.
     let n = normalize(mix(world * axes, to_eye, in.thin));
     var color = in.color;
     if shade.wire > 0.0 {

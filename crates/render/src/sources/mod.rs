@@ -1,6 +1,7 @@
 //! Vertex sources: what makes vertices, apart from what shades them.
 //!
-//! A **source** provides WGSL with the function `surface_vertex`, and issues the draws that call it:
+//! A **source** provides WGSL with the function `surface_vertex`, and issues the draws that call
+//! it:
 //!
 //! ```wgsl
 //! struct SurfaceVertex {
@@ -15,8 +16,8 @@
 //! fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex
 //! ```
 //!
-//! The struct is in `surface_vertex.wgsl`, which both sides import. Bind group 0 is the source's, groups
-//! from 1 on are the shading's.
+//! The struct is in `surface_vertex.wgsl`, which both sides import. Bind group 0 is the source's,
+//! groups from 1 on are the shading's.
 
 pub(crate) mod adaptive;
 pub(crate) mod budgeted;
@@ -52,8 +53,8 @@ pub trait VertexSource {
     fn shader(&self, shader: usize) -> ShaderParts;
 
     /// WGSL that is added to [`VertexSource::shader`] for picking: defines
-    /// `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`. The first component is less than
-    /// 8 if a frame can have several rounds. None if the source does not support picking.
+    /// `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`. The first component is
+    /// less than 8 if a frame can have several rounds. None if the source does not support picking.
     fn id_shader(&self) -> Option<WgslFile> {
         None
     }
@@ -66,15 +67,15 @@ pub trait VertexSource {
         true
     }
 
-    /// Uploads what a frame needs. Returns the number of rounds: a frame is drawn in rounds, each first
-    /// selected, then drawn.
+    /// Uploads what a frame needs. Returns the number of rounds: a frame is drawn in rounds, each
+    /// first selected, then drawn.
     ///
     /// # Errors
     /// The device reports an error.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError>;
 
-    /// The compute pass of a round. An empty pass if there is nothing to do, since its timestamps are
-    /// read.
+    /// The compute pass of a round. An empty pass if there is nothing to do, since its timestamps
+    /// are read.
     fn select(
         &self,
         _round: usize,
@@ -87,6 +88,7 @@ pub trait VertexSource {
         });
     }
 
-    /// Draws what was selected for one of its shaders. The pipeline and the groups from 1 on are set.
+    /// Draws what was selected for one of its shaders. The pipeline and the groups from 1 on are
+    /// set.
     fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>);
 }

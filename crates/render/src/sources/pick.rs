@@ -1,7 +1,7 @@
 //! Picking: the ids that sources draw, and what they mean.
 //!
-//! A source draws a [`PickId`] for each pixel. Its resolver, taken when the frame was drawn, later finds
-//! the instance and the place on its mesh that an id means.
+//! A source draws a [`PickId`] for each pixel. Its resolver, taken when the frame was drawn, later
+//! finds the instance and the place on its mesh that an id means.
 
 /// What is drawn at a pixel, as a [`PickResolver`](crate::pick::PickResolver) reads it; zeros where
 /// nothing is.
@@ -9,11 +9,11 @@ pub type PickId = [u32; 2];
 /// Width and height (pixels), and the ids of all pixels by row.
 pub type PickIds = ([u32; 2], Vec<PickId>);
 
-/// Low bits of an id's first number: the corner of a flat patch, or [`FINE`]. The bits above are the
-/// index of the batch.
+/// Low bits of an id's first number: the corner of a flat patch, or [`FINE`]. The bits above are
+/// the index of the batch.
 pub(crate) const BATCH_SHIFT: u32 = 3;
-/// Low bits of an id's second number, in exploration mode: the point of the chunk. The bits above are
-/// the index of the chunk.
+/// Low bits of an id's second number, in exploration mode: the point of the chunk. The bits above
+/// are the index of the chunk.
 pub(crate) const POINT_BITS: u32 = 7;
 /// In place of a corner's number: the patch is refined.
 pub(crate) const FINE: u32 = 4;

@@ -1,7 +1,7 @@
 //! Bounding spheres of a mesh, to find the empty tiles of a picture.
 //!
-//! The passes over a tile's sub-pixels take as long for an empty tile as for a full one, and nine of ten
-//! tiles of a cell drawn 4096 pixels high are empty.
+//! The passes over a tile's sub-pixels take as long for an empty tile as for a full one, and nine
+//! of ten tiles of a cell drawn 4096 pixels high are empty.
 
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, Role};
@@ -29,8 +29,8 @@ fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {
     let low = positions().fold(Vec3::MAX, Vec3::min);
     let high = positions().fold(Vec3::MIN, Vec3::max);
     let center = (low + high) / 2.0;
-    // A tube bulges by up to its radius, also at its end. Somata are left out, since their radius is their
-    // whole size.
+    // A tube bulges by up to its radius, also at its end. Somata are left out, since their radius
+    // is their whole size.
     let radius = corners()
         .map(|v| &mesh.tracing[mesh.vertices[v as usize].tracing as usize])
         .filter(|point| point.role != Role::Soma)
@@ -50,15 +50,15 @@ pub fn any_shows(spheres: &[BoundingSphere], frame: &Frame) -> bool {
     let eye = frame.camera.eye();
     spheres.iter().any(|&(center, radius)| {
         let center = (center - eye).as_vec3();
-        // Half a pixel is at most four sub-pixels; twice that, since sub-pixels are larger in the picture's
-        // corners.
+        // Half a pixel is at most four sub-pixels; twice that, since sub-pixels are larger in the
+        // picture's corners.
         let pixels = 8.0 * (f64::from(center.length()) + radius) * frame.slope();
         shows(&planes, center, (radius + pixels) as f32)
     })
 }
 
-/// At most this many spheres that hold all of these. Spheres that follow one another should be close to
-/// one another.
+/// At most this many spheres that hold all of these. Spheres that follow one another should be
+/// close to one another.
 pub fn merged(spheres: &[BoundingSphere], most: usize) -> Vec<BoundingSphere> {
     if spheres.len() <= most {
         return spheres.to_vec();

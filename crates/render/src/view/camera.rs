@@ -1,7 +1,7 @@
 //! Cameras.
 //!
-//! A circuit is 10⁴ µm wide and a membrane 10⁻² µm thick, so a camera has f64 coordinates, and shaders get
-//! all positions relative to the eye: near things keep their full precision.
+//! A circuit is 10⁴ µm wide and a membrane 10⁻² µm thick, so a camera has f64 coordinates, and
+//! shaders get all positions relative to the eye: near things keep their full precision.
 //!
 //! Depth is reversed and has no far end: 1 at the near plane, 0 infinitely far. With floating-point
 //! depth, precision is then the same share of the distance everywhere (Upchurch & Desbrun,
@@ -35,7 +35,8 @@ pub enum CameraError {
 pub struct Camera {
     eye: DVec3,
     target: DVec3,
-    /// Rotation from the world to the view. Its rows are the unit directions right, up and backward.
+    /// Rotation from the world to the view. Its rows are the unit directions right, up and
+    /// backward.
     pub(crate) view_from_world: DMat3,
     fov: f64,
 }
@@ -112,8 +113,8 @@ impl Camera {
         -(self.view_from_world * (point - self.eye)).z
     }
 
-    /// Depth (µm) of a near plane for a scene of these spheres: a little before the nearest sphere, but not
-    /// so near that precision is lost.
+    /// Depth (µm) of a near plane for a scene of these spheres: a little before the nearest sphere,
+    /// but not so near that precision is lost.
     pub fn near(&self, spheres: &[BoundingSphere]) -> f64 {
         let depths = spheres
             .iter()
@@ -122,8 +123,8 @@ impl Camera {
         (0.9 * near.min(far)).max(1e-5 * far)
     }
 
-    /// Depth (µm) of the nearest sphere in the picture, at least a thousandth of the target's; the target's
-    /// if there is none. Spheres outside the picture or behind the eye do not count.
+    /// Depth (µm) of the nearest sphere in the picture, at least a thousandth of the target's; the
+    /// target's if there is none. Spheres outside the picture or behind the eye do not count.
     pub fn nearest_seen(&self, aspect: f64, spheres: &[BoundingSphere]) -> f64 {
         let target = self.depth(self.target).abs();
         let planes = self.frustum(aspect, 0.0);
@@ -155,8 +156,8 @@ impl Camera {
         Mat4::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose()
     }
 
-    /// Planes of the frustum relative to the eye, with unit normals inwards: left, right, bottom, top,
-    /// near. A point p is inside if n·p + d ≥ 0 for all.
+    /// Planes of the frustum relative to the eye, with unit normals inwards: left, right, bottom,
+    /// top, near. A point p is inside if n·p + d ≥ 0 for all.
     pub fn frustum(&self, aspect: f64, near: f64) -> [Vec4; 5] {
         let [right, up, backward] = self.axes();
         let (tan_x, tan_y) = self.tangents(aspect, 0.0);
@@ -174,8 +175,8 @@ impl Camera {
         ]
     }
 
-    /// Position of a point in a picture of this size (pixels from the upper left corner); none if it is
-    /// behind the eye.
+    /// Position of a point in a picture of this size (pixels from the upper left corner); none if
+    /// it is behind the eye.
     pub fn pixel_of(&self, point: DVec3, size: [u32; 2]) -> Option<[f64; 2]> {
         let v = self.view_from_world * (point - self.eye);
         let [width, height] = size.map(f64::from);

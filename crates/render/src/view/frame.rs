@@ -4,7 +4,8 @@ use glam::{DVec3, Mat4, Vec4};
 
 use crate::view::camera::Camera;
 
-/// A rectangle of a picture in sub-pixels, from its upper left corner. It may reach over the border.
+/// A rectangle of a picture in sub-pixels, from its upper left corner. It may reach over the
+/// border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tile {
     /// Left side.
@@ -19,9 +20,9 @@ pub struct Tile {
 
 /// A tile of a picture.
 ///
-/// A **sub-pixel** is a pixel of what is drawn; a pixel of the finished picture is the mean of one or
-/// more. Whatever decides how finely something is drawn takes the size of the whole picture, not that
-/// of the tile, so that tiles fit together.
+/// A **sub-pixel** is a pixel of what is drawn; a pixel of the finished picture is the mean of one
+/// or more. Whatever decides how finely something is drawn takes the size of the whole picture, not
+/// that of the tile, so that tiles fit together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The camera.

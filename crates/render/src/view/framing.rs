@@ -44,9 +44,9 @@ impl Side {
 }
 
 impl Camera {
-    /// The nearest camera on this side that has all spheres in the picture, with a `margin` (share of its
-    /// width and height) free on each side. `aspect` is width by height. Without spheres it looks at the
-    /// origin from 100 µm away.
+    /// The nearest camera on this side that has all spheres in the picture, with a `margin` (share
+    /// of its width and height) free on each side. `aspect` is width by height. Without spheres it
+    /// looks at the origin from 100 µm away.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -78,8 +78,8 @@ impl Camera {
         }
         let (tan_x, tan_y) = start.tangents(aspect, 0.0);
         let [left, right, top, bottom] = margins.map(|m| 1.0 - 2.0 * m.clamp(0.0, 0.45));
-        // Position of the eye along an axis, and its distance, at which the planes on both sides touch the
-        // spheres.
+        // Position of the eye along an axis, and its distance, at which the planes on both sides
+        // touch the spheres.
         let touch = |axis: usize, low_tan: f64, high_tan: f64| {
             let (mut low, mut high) = (f64::MAX, f64::MIN);
             for &(center, radius) in spheres {

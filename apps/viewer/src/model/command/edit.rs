@@ -7,7 +7,8 @@ use crate::model::document::{Detail, Document, Look, SomaEdit, SourceId};
 /// A change of the document.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// Selects these only; or with `add` changes their selection: those that are selected are unselected.
+    /// Selects these only; or with `add` changes their selection: those that are selected are
+    /// unselected.
     Select(Vec<usize>, bool),
     /// Selects all neurons that are shown.
     SelectAll,

@@ -4,7 +4,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
-use super::{FilePurpose, Command, Edit, Tab};
+use super::{Command, Edit, FilePurpose, Tab};
 
 /// A command of the menus and the palette.
 pub struct Listed {
@@ -38,7 +38,11 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
         (
             "File",
             vec![
-                item("Open…", Some((CTRL, Key::O)), Command::AskFiles(FilePurpose::Open)),
+                item(
+                    "Open…",
+                    Some((CTRL, Key::O)),
+                    Command::AskFiles(FilePurpose::Open),
+                ),
                 item(
                     "Open report or spikes…",
                     Some((CTRL_SHIFT, Key::O)),

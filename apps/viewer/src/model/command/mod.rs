@@ -1,5 +1,5 @@
-//! Commands: all that can be done in the window, as values. Menus, shortcuts, the palette and tests share
-//! one list.
+//! Commands: all that can be done in the window, as values. Menus, shortcuts, the palette and tests
+//! share one list.
 
 mod edit;
 mod list;

@@ -5,15 +5,15 @@ use neurotess::render::Light;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
 use serde::{Deserialize, Serialize};
 
-/// Default background: a light gray, on which pale lines can be seen, and which makes dark somata look less
-/// hard than white does.
+/// Default background: a light gray, on which pale lines can be seen, and which makes dark somata
+/// look less hard than white does.
 pub const PAPER: Rgb = [238, 240, 243];
 
 /// Colors, light, and which parts of cells are shown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Look {
-    /// What colors tell.
+    /// What neurons are colored by.
     #[serde(alias = "colour_by")]
     pub color_by: ColorBy,
     /// Name of the attribute, for [`ColorBy::Attribute`].
@@ -30,33 +30,33 @@ pub struct Look {
     pub color_map: ColorMap,
     /// Whether the end of the color map that is as light or dark as the background is left out.
     pub trim_map: bool,
-    /// Behind everything.
+    /// Color of the background.
     pub background: Rgb,
-    /// What surfaces are lit by.
+    /// How surfaces are lit.
     pub light: Lighting,
-    /// Whether corners darken one another.
+    /// Whether corners are darkened by ambient occlusion.
     pub occlusion: bool,
-    /// Triangles.
+    /// Whether a wireframe shows the triangles.
     #[serde(alias = "wires")]
     pub wireframe: bool,
-    /// What colors mean.
+    /// Whether there is a legend.
     pub legend: bool,
-    /// A length to compare with.
+    /// Whether there is a scale bar.
     pub scale_bar: bool,
-    /// Directions of x, y and z.
+    /// Whether the directions of x, y and z are shown.
     pub axes: bool,
-    /// A color of its own for what is selected.
+    /// Whether selected neurons have a color of their own.
     #[serde(alias = "mark_selected")]
     pub highlight_selected: bool,
-    /// Whether one looks through what is not selected.
+    /// Whether neurons that are not selected are transparent.
     #[serde(alias = "faint_others")]
     pub ghost_others: bool,
-    /// Share of what is not selected that is still seen.
+    /// Opacity of transparent neurons, 0 to 1.
     #[serde(alias = "faint")]
     pub ghost_opacity: f32,
-    /// What is drawn of cells.
+    /// Which parts of cells are drawn.
     pub parts: VisibleParts,
-    /// What is cut away.
+    /// A plane that cuts a part of the scene away.
     pub cut: Option<Cut>,
 }
 

@@ -103,7 +103,8 @@ impl Document {
     }
 }
 
-/// Placements of neurons side by side. `extents`: center and size (µm) of each at its own placement.
+/// Placements of neurons side by side. `extents`: center and size (µm) of each at its own
+/// placement.
 pub fn grid(neurons: &[Neuron], extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
     let columns = (neurons.len() as f64).sqrt().ceil().max(1.0) as usize;
     let widest = |axis: usize| {

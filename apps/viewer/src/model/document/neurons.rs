@@ -6,8 +6,8 @@ use super::Neuron;
 use crate::model::ids::SourceId;
 use crate::model::revision::Revision;
 
-/// Neurons in the order of the list. They are read as a slice, and changed by methods that keep revisions
-/// and counts up to date.
+/// Neurons in the order of the list. They are read as a slice, and changed by methods that keep
+/// revisions and counts up to date.
 #[derive(Clone, Debug, Default)]
 pub struct Neurons {
     list: Vec<Neuron>,
@@ -114,7 +114,8 @@ impl Neurons {
         }
     }
 
-    /// Hides and selects neurons: `state` returns for each whether it is hidden and whether it is selected.
+    /// Hides and selects neurons: `state` returns for each whether it is hidden and whether it is
+    /// selected.
     pub fn set_states(&mut self, mut state: impl FnMut(usize, &Neuron) -> (bool, bool)) {
         let (mut hides, mut selects) = (false, false);
         for (i, neuron) in self.list.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
-//! Windows over the others: keys, commands, problems, files, questions.
+//! Dialogs: keys, commands, problems, files, questions.
 
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use super::keys_text;
-use crate::model::command::{FilePurpose, Command, Listed, listed};
+use crate::model::command::{Command, FilePurpose, Listed, listed};
 use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
 
@@ -27,12 +27,17 @@ pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Conte
         *panel = None;
     }
     if escape && had {
-        // This escape closed a window: it does not also drop the selection.
+        // Escape has closed a dialog: it must not also clear the selection.
         ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Escape));
     }
 }
 
-fn files(state: &mut State, purpose: FilePurpose, panel: &mut Option<FilePanel>, ctx: &Context) -> Dialog {
+fn files(
+    state: &mut State,
+    purpose: FilePurpose,
+    panel: &mut Option<FilePanel>,
+    ctx: &Context,
+) -> Dialog {
     let mut shown = panel
         .take()
         .filter(|panel| panel.is_for(purpose))
@@ -49,7 +54,7 @@ fn files(state: &mut State, purpose: FilePurpose, panel: &mut Option<FilePanel>,
     Dialog::Files(purpose)
 }
 
-/// What a drop would do, while files are held over the window.
+/// While files are dragged over the window: says what dropping them would do.
 pub(super) fn hover(ctx: &Context) {
     let count = ctx.input(|input| input.raw.hovered_files.len());
     if count == 0 {
@@ -98,7 +103,7 @@ fn keys(state: &State, ctx: &Context) -> Dialog {
         .open(&mut open)
         .show(ctx, |ui| {
             let room = ctx.content_rect().size() - egui::vec2(60.0, 90.0);
-            // As large as it must be, and as the window allows.
+            // As large as its content, as far as the window allows.
             let area = ScrollArea::both().max_width(room.x).max_height(room.y);
             let area = area.min_scrolled_width(room.x).min_scrolled_height(room.y);
             area.show(ui, |ui| keys_and_mouse(state, ui));
@@ -184,7 +189,11 @@ fn problems(state: &mut State, ctx: &Context) -> Dialog {
                 }
             });
         });
-    if open { Dialog::Problems } else { Dialog::Nothing }
+    if open {
+        Dialog::Problems
+    } else {
+        Dialog::Nothing
+    }
 }
 
 fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Dialog {
@@ -202,7 +211,8 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
             line.request_focus();
             let [up, down, enter] = [Key::ArrowUp, Key::ArrowDown, Key::Enter]
                 .map(|key| ui.input(|i| i.key_pressed(key)));
-            // Found by the words of now: Enter may have come with the last letter.
+            // Searched with the current text, since Enter may be in the same frame as the last
+            // letter.
             let items = found(state, &text);
             let last = items.len().saturating_sub(1);
             chosen = match (up, down) {
@@ -235,7 +245,7 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
                     }
                 });
             if done {
-                // The next key is no text any more.
+                // The next key is not for the line of text any more.
                 line.surrender_focus();
             }
         });
@@ -246,7 +256,7 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
     }
 }
 
-/// Commands with their menus, of those whose names have all words.
+/// Commands whose titles contain all words, with their menus.
 fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
     let all = listed(&state.toggles());
     all.into_iter()

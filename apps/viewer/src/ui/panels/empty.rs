@@ -1,9 +1,9 @@
-//! The window before anything is open: how to begin.
+//! Shown before anything is open: how to begin.
 
 use eframe::egui::{self, Align, Layout, RichText};
 use neurotess::synth::Kind;
 
-use crate::model::command::{FilePurpose, Command};
+use crate::model::command::{Command, FilePurpose};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, reading: bool, ui: &mut egui::Ui) {

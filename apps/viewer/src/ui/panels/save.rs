@@ -1,4 +1,4 @@
-//! Meshes, pictures, films, sessions.
+//! Saves meshes, pictures, films and sessions.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use super::heading;
 use super::number::field;
 use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
-use crate::model::command::{FilePurpose, Command};
+use crate::model::command::{Command, FilePurpose};
 use crate::model::film::length;
 use crate::model::save::{FilmOptions, MeshLod, PictureFile};
 use crate::model::state::{Dialog, State};
@@ -31,7 +31,9 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     heading(ui, "Session");
     ui.weak("Keeps the files, the view, the look, soma settings, and what is hidden and selected, to continue later.");
     if ui.button("Save session…").clicked() {
-        state.requests.push(Command::AskFiles(FilePurpose::SaveSession));
+        state
+            .requests
+            .push(Command::AskFiles(FilePurpose::SaveSession));
     }
 }
 
@@ -213,7 +215,7 @@ fn size(picture: &mut PictureFile, ui: &mut Ui) {
     });
 }
 
-/// From when to when a recording goes on.
+/// First and last time of a film through a recording.
 fn film_time(state: &mut State, ui: &mut Ui) {
     let Some(facts) = &state.playback.facts else {
         return;

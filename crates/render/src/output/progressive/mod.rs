@@ -1,10 +1,10 @@
 //! Pictures for a window: they stay on the device, and get better slice by slice.
 //!
 //! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
-//! camera moves, a **draft** is drawn at once: four samples, no occlusion. At rest the picture is drawn in
-//! **steps** of one sub-pixel each, offset so that they add up to the samples of a saved picture
-//! (`still.rs`), and each step in **slices**, which are short whatever the scene: between them a window
-//! can show what there is so far, or stop.
+//! camera moves, a **draft** is drawn at once: four samples, no occlusion. At rest the picture is
+//! drawn in **steps** of one sub-pixel each, offset so that they add up to the samples of a saved
+//! picture (`still.rs`), and each step in **slices**, which are short whatever the scene: between
+//! them a window can show what there is so far, or stop.
 //!
 //! ```text
 //! source ─▶ draw, band by band ─▶ occlude once ─▶ accumulate ─▶ present: texture, outlines
@@ -114,15 +114,16 @@ impl ProgressiveRenderer {
     }
 
     /// Outlines from the next [`ProgressiveRenderer::show`] on: bytes of
-    /// [`SELECTED`](crate::outline::SELECTED) and [`HOVERED`](crate::outline::HOVERED) by pixel of a
-    /// picture of this size.
+    /// [`SELECTED`](crate::outline::SELECTED) and [`HOVERED`](crate::outline::HOVERED) by pixel of
+    /// a picture of this size.
     pub fn set_outlines(&mut self, gpu: &Gpu, outlines: Outlines, mask: Option<([u32; 2], &[u8])>) {
         self.outlines = outlines;
         self.presenter.set_mask(gpu, mask);
     }
 
-    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::state::OUTLINED) have an outline in the
-    /// color of selected ones, as wide as [`ProgressiveRenderer::set_outlines`] says.
+    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::state::OUTLINED) have an
+    /// outline in the color of selected ones, as wide as [`ProgressiveRenderer::set_outlines`]
+    /// says.
     ///
     /// # Errors
     /// What the device cannot do.
@@ -133,7 +134,8 @@ impl ProgressiveRenderer {
         params: &ViewParams,
     ) -> Result<(), DeviceError> {
         self.under_way = None;
-        // As many samples as the first step at rest has: with one, lines thinner than a pixel are dots.
+        // As many samples as the first step at rest has: with one, lines thinner than a pixel are
+        // dots.
         let samples = samples_in_sub_pixel(gpu, 4);
         let renderer = self.renderer(gpu, source, samples, params)?;
         self.make_canvas(gpu, true, params.size, samples)?;
@@ -182,8 +184,9 @@ impl ProgressiveRenderer {
         Some(made as f32 / (way.steps.steps * way.steps.slices) as f32)
     }
 
-    /// Draws the next slice of the picture under way. True if it was the last of its step, so that there
-    /// is something new to show. The slice before must be done: see [`ProgressiveRenderer::is_busy`].
+    /// Draws the next slice of the picture under way. True if it was the last of its step, so that
+    /// there is something new to show. The slice before must be done: see
+    /// [`ProgressiveRenderer::is_busy`].
     ///
     /// # Errors
     /// What the device cannot do.
@@ -210,8 +213,8 @@ impl ProgressiveRenderer {
         Ok(whole)
     }
 
-    /// Whether the device is still at work on what was submitted last. Call it again and again: it polls
-    /// the device, which makes progress only when polled.
+    /// Whether the device is still at work on what was submitted last. Call it again and again: it
+    /// polls the device, which makes progress only when polled.
     pub fn is_busy(&self, gpu: &Gpu) -> bool {
         // The next call that draws returns what went wrong.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
@@ -245,7 +248,8 @@ impl ProgressiveRenderer {
         self.shows_draft
     }
 
-    /// Draws the ids of a picture for picking; [`ProgressiveRenderer::ids`] has them a little later.
+    /// Draws the ids of a picture for picking; [`ProgressiveRenderer::ids`] has them a little
+    /// later.
     ///
     /// # Errors
     /// What the device cannot do.
@@ -276,8 +280,8 @@ impl ProgressiveRenderer {
         Ok(())
     }
 
-    /// The size of the picture that was identified last and its ids by row: given out once, and none
-    /// before they have arrived.
+    /// The size of the picture that was identified last and its ids by row: given out once, and
+    /// none before they have arrived.
     ///
     /// # Errors
     /// The device is lost.
@@ -453,8 +457,9 @@ impl ProgressiveRenderer {
     }
 }
 
-/// Decides what the slices of a picture are. What is selected in one round is drawn shader by shader, and
-/// is not selected again for every slice; with several `rounds` the picture is drawn in bands of rows.
+/// Decides what the slices of a picture are. What is selected in one round is drawn shader by
+/// shader, and is not selected again for every slice; with several `rounds` the picture is drawn in
+/// bands of rows.
 fn lay_out(way: &mut UnderWay, rounds: usize, source: &dyn VertexSource) {
     way.banded = rounds > 1 && way.steps.slices > 1;
     if !way.banded {

@@ -32,13 +32,13 @@ pub struct ViewParams {
 pub struct Steps {
     /// Number of steps: 1, 4 or 16.
     pub steps: u32,
-    /// Slices that a step is drawn in. One slice draws with one or more of the source's shaders; where a
-    /// scene is too large for one batch, it draws a band of rows.
+    /// Slices that a step is drawn in. One slice draws with one or more of the source's shaders;
+    /// where a scene is too large for one batch, it draws a band of rows.
     pub slices: u32,
 }
 
-/// Offset of a step (pixels) from the pixel's center, and of its dither pattern: the column and row of
-/// the step's sub-pixel.
+/// Offset of a step (pixels) from the pixel's center, and of its dither pattern: the column and row
+/// of the step's sub-pixel.
 pub(super) fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
     let side = f64::from(steps).sqrt() as u32;
     if side <= 1 {
@@ -48,10 +48,12 @@ pub(super) fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
     (place.map(|k| (k + 0.5) / side as f32 - 0.5), place)
 }
 
-/// Rows above and below a band that are selected with it, since steps are offset by up to half a pixel.
+/// Rows above and below a band that are selected with it, since steps are offset by up to half a
+/// pixel.
 const SPARE_ROWS: u32 = 2;
 
-/// The frame that the source selects for: a band of rows, or all; from the frozen camera if there is one.
+/// The frame that the source selects for: a band of rows, or all; from the frozen camera if there
+/// is one.
 pub(super) fn selected(params: &ViewParams, band: Option<(u32, u32)>) -> Frame {
     let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
     let mut frame = Frame::whole(camera, near, params.size);

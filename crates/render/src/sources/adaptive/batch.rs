@@ -41,8 +41,8 @@ pub struct FramePlan {
     pub(crate) placed: Vec<Placed>,
 }
 
-/// Parts of instances that may show, each with its page; and the number of patches of all instances that
-/// are not hidden.
+/// Parts of instances that may show, each with its page; and the number of patches of all instances
+/// that are not hidden.
 pub(crate) fn place_all(
     scene: &Scene,
     view: &CullView,
@@ -75,8 +75,8 @@ pub(crate) fn place_all(
     (placed, patches)
 }
 
-/// Gives every placed part its slots, a whole number of clusters, and begins a new batch when the page
-/// changes or a batch is full. Also returns the index of every batch's first explicit vertex.
+/// Gives every placed part its slots, a whole number of clusters, and begins a new batch when the
+/// page changes or a batch is full. Also returns the index of every batch's first explicit vertex.
 pub(crate) fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
     let mut batches: Vec<Batch> = Vec::new();
     for (i, (page, part)) in placed.iter_mut().enumerate() {

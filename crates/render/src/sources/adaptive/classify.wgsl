@@ -1,13 +1,14 @@
-// Finds the clusters that show, and those in which one level holds everywhere: most of what is far away.
+// Finds the clusters that show, and those in which one level holds everywhere: most of what is far
+// away.
 //
-// Called by refiner.rs for a batch, before all other passes. A cluster that does not show costs nothing
-// after this.
+// Called by refiner.rs for a batch, before all other passes. A cluster that does not show costs
+// nothing after this.
 
 #import clusters.wgsl
 #import shown.wgsl
 
-// Workgroups of the passes that take queues of clusters, and of the one that takes single patches: three
-// u32s each.
+// Workgroups of the passes that take queues of clusters, and of the one that takes single patches:
+// three u32s each.
 @group(2) @binding(0) var<storage, read_write> cluster_dispatches: array<atomic<u32>>;
 @group(2) @binding(1) var<storage, read_write> single_dispatch: array<atomic<u32>>;
 

@@ -29,9 +29,9 @@ fn queued_level(entry: u32) -> u32 {
 }
 
 // Where each queue begins. Four are of clusters: those in which one level holds everywhere (plain);
-// those with tubes that must be decided one by one (asked); all that show; those whose rings are needed.
-// Then one of points, whose four patches are decided one by one (single), and one of sections with
-// patches that are refined.
+// those with tubes that must be decided one by one (asked); all that show; those whose rings are
+// needed. Then one of points, whose four patches are decided one by one (single), and one of
+// sections with patches that are refined.
 fn plain_queue() -> u32 {
     return 0u;
 }

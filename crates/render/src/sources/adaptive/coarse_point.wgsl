@@ -1,21 +1,22 @@
-// Rings and explicit vertices where an instance puts them: computed once a frame, whatever the level.
-// All patches that meet in a corner compute it by the same expression from the same u32s, so that they
-// agree to the bit.
+// Rings and explicit vertices where an instance puts them: computed once a frame, whatever the
+// level. All patches that meet in a corner compute it by the same expression from the same u32s, so
+// that they agree to the bit.
 //
 // Packed into few u32s, since vertex shaders load little else. Written by coarse.wgsl, read by
 // vertices.wgsl. Rust twin of the struct: work.rs.
 
 #import placed.wgsl
 
-// Rings come first, at a quarter of the index of their first corner; then two entries for each explicit
-// vertex. Positions are relative to the eye (micrometers), directions are the world's.
+// Rings come first, at a quarter of the index of their first corner; then two entries for each
+// explicit vertex. Positions are relative to the eye (micrometers), directions are the world's.
 struct CoarsePoint {
     // Of a ring: its center. Of an explicit vertex: its position; in its second entry its center.
     x: f32,
     y: f32,
     z: f32,
     radius: f32,
-    // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its role.
+    // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its
+    // role.
     low: u32,
     high: u32,
     color_key: u32,
@@ -47,9 +48,9 @@ fn unpack_direction(packed: u32) -> vec3<f32> {
     return normalize(vec3(folded, z));
 }
 
-// The orientation of a ring: directions of its first and second corner, and the tangent, all at right
-// angles. Packed as a quaternion without its largest component, 19 bits for each of the others, with five
-// bits of the slope.
+// The orientation of a ring: directions of its first and second corner, and the tangent, all at
+// right angles. Packed as a quaternion without its largest component, 19 bits for each of the
+// others, with five bits of the slope.
 fn pack_turn(first: vec3<f32>, second: vec3<f32>, tangent: vec3<f32>, slope: u32) -> vec2<u32> {
     // Squares of the components, each times four.
     let squares = vec4<f32>(

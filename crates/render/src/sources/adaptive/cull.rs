@@ -1,5 +1,5 @@
-//! What is drawn: culls bounding spheres by the frustum and by the smallest size. The levels themselves
-//! are refine's.
+//! What is drawn: culls bounding spheres by the frustum and by the smallest size. The levels
+//! themselves are refine's.
 //!
 //! CPU twin of the decisions in cull.wgsl. The host culls whole parts of templates with it, before
 //! anything reaches the device; tests cull every patch.
@@ -14,8 +14,8 @@ use crate::scene::Placement;
 use crate::scene::templates::MOST_PATCHES;
 use crate::sources::adaptive::settings::{AdaptiveSettings, CullView, FrameUniforms, Placed};
 
-/// What the device must decide for every patch of a mesh at a placement: nothing if it is culled, else
-/// the levels of its four sides. `values`: a level per tracing point.
+/// What the device must decide for every patch of a mesh at a placement: nothing if it is culled,
+/// else the levels of its four sides. `values`: a level per tracing point.
 pub fn decide(
     mesh: &CoarseMesh,
     values: &[u8],
@@ -51,8 +51,8 @@ pub fn decide(
     decided
 }
 
-/// Whether a sphere in a placed part's coordinates shows. It may reach a pixel further, since thin tubes
-/// are drawn a pixel wide.
+/// Whether a sphere in a placed part's coordinates shows. It may reach a pixel further, since thin
+/// tubes are drawn a pixel wide.
 pub(crate) fn shows(frame: &FrameUniforms, placed: &Placed, center: Vec3, radius: f32) -> bool {
     let [eye, forward] = [placed.eye, placed.forward].map(Vec3::from_array);
     let depth = (forward.dot(center - eye) - radius).max(placed.near);

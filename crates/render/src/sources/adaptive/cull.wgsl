@@ -1,8 +1,8 @@
 // Decides for each patch whether it is drawn, and at which levels.
 //
-// Called by refiner.rs for a batch, after classify.wgsl, for what it queued: `decide_plain` for clusters
-// whose one level is known; `decide_tubes` for points with implicit rings, a lane for the four patches to
-// the next point; `decide_singles` for all other patches. CPU twin: cull.rs.
+// Called by refiner.rs for a batch, after classify.wgsl, for what it queued: `decide_plain` for
+// clusters whose one level is known; `decide_tubes` for points with implicit rings, a lane for the
+// four patches to the next point; `decide_singles` for all other patches. CPU twin: cull.rs.
 
 #import clusters.wgsl
 #import shown.wgsl
@@ -52,8 +52,8 @@ fn asked_point(group: u32, lane: u32) -> AskedPoint {
     return AskedPoint(true, slot, owner, (slot - placed[owner].first_slot) / 4u);
 }
 
-// Levels of the rings of asked clusters, and of the first ring of the next cluster. They are computed
-// only here, so that all patches that meet at a ring agree.
+// Levels of the rings of asked clusters, and of the first ring of the next cluster. They are
+// computed only here, so that all patches that meet at a ring agree.
 @compute @workgroup_size(CLUSTER)
 fn level_rings(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -123,8 +123,8 @@ fn ask_tube(place: Placed, point: u32, slot: u32) -> vec4<u32> {
     if (shown(place, (first.center + last.center) * 0.5, reach) == SHOWS_NOTHING) {
         return vec4<u32>(0u);
     }
-    // Opposite corners of a ring have opposite directions, so edges along the path have the same level
-    // there, unless the criterion measures the edge itself.
+    // Opposite corners of a ring have opposite directions, so edges along the path have the same
+    // level there, unless the criterion measures the edge itself.
     let levels = levels_of(place);
     let view = view_of(frame, place);
     let values = vec2<u32>(value_of(base, 4u * point), value_of(base, 4u * point + 4u));

@@ -1,5 +1,5 @@
-//! Stores vertices on the device, computed by the functions that the vertex shaders use. With it tests
-//! prove that what is drawn is what is exported.
+//! Stores vertices on the device, computed by the functions that the vertex shaders use. With it
+//! tests prove that what is drawn is what is exported.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::{Shader, ShaderParts};
@@ -68,8 +68,8 @@ pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
 }
 
 impl Refiner {
-    /// Computes the vertices at these grid points of a batch that was selected just before, in the same
-    /// order. Waits for the device. At most 2²⁶ at a time.
+    /// Computes the vertices at these grid points of a batch that was selected just before, in the
+    /// same order. Waits for the device. At most 2²⁶ at a time.
     ///
     /// # Errors
     /// The device reports an error.

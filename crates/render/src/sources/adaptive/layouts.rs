@@ -15,7 +15,8 @@ pub(crate) struct WorkLayouts {
     pub(crate) one: wgpu::BindGroupLayout,
     pub(crate) two: wgpu::BindGroupLayout,
     pub(crate) three: wgpu::BindGroupLayout,
-    /// Group 0 of the shaders that compute vertices: binding 0 is a page's, those from 4 on are a frame's.
+    /// Group 0 of the shaders that compute vertices: binding 0 is a page's, those from 4 on are a
+    /// frame's.
     pub(crate) drawing: wgpu::BindGroupLayout,
 }
 

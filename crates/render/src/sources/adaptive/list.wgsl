@@ -1,5 +1,5 @@
-// Lists the patches that are refined, bucket by bucket, in their order, so that equal scenes are drawn in
-// equal order.
+// Lists the patches that are refined, bucket by bucket, in their order, so that equal scenes are
+// drawn in equal order.
 //
 // Called by refiner.rs for a batch, after scan.wgsl: a workgroup for each queued section.
 

@@ -47,8 +47,8 @@ pub struct Adaptive {
 }
 
 impl Adaptive {
-    /// `sub_pixels`: number of sub-pixels along a pixel's side. Levels and culling by size go by whole
-    /// pixels.
+    /// `sub_pixels`: number of sub-pixels along a pixel's side. Levels and culling by size go by
+    /// whole pixels.
     ///
     /// # Errors
     /// The device reports an error.
@@ -81,8 +81,9 @@ impl Adaptive {
         self.settings = settings;
     }
 
-    /// Bounding spheres that hold all that the scene shows (µm, in the world). Tiles of a picture that
-    /// none of them reaches are not drawn. [`bounds`](crate::bounds::bounds) computes them from a mesh.
+    /// Bounding spheres that hold all that the scene shows (µm, in the world). Tiles of a picture
+    /// that none of them reaches are not drawn. [`bounds`](crate::bounds::bounds) computes them
+    /// from a mesh.
     pub fn set_bounds(&mut self, spheres: Vec<BoundingSphere>) {
         self.bounds = Some(spheres);
     }
@@ -95,9 +96,9 @@ impl Adaptive {
         self.kept = None;
     }
 
-    /// Whether the selection is kept while the view stays the same: for windows, where a picture is drawn
-    /// in several steps. Scenes of more than a million patches in view keep none: they are selected and
-    /// drawn batch by batch.
+    /// Whether the selection is kept while the view stays the same: for windows, where a picture is
+    /// drawn in several steps. Scenes of more than a million patches in view keep none: they are
+    /// selected and drawn batch by batch.
     pub fn set_keeping(&mut self, keeps: bool) {
         self.keeps = keeps;
         self.kept = None;

@@ -6,10 +6,10 @@
 //!    ─▶ flatten: triangles of level 1 ─▶ scatter: the list of all others
 //! ```
 //!
-//! A cluster of 64 patches that does not show costs one lane. Where all edges of a cluster are known to
-//! have one level, its patches are not decided one by one; and the four patches of a tube are decided
-//! together. Each of these cases is a pass with a queue, not a branch: Mesa's software Vulkan takes the
-//! time of both sides of a branch.
+//! A cluster of 64 patches that does not show costs one lane. Where all edges of a cluster are
+//! known to have one level, its patches are not decided one by one; and the four patches of a tube
+//! are decided together. Each of these cases is a pass with a queue, not a branch: Mesa's software
+//! Vulkan takes the time of both sides of a branch.
 
 use neurotess_refine::wgsl::{Shader, ShaderParts};
 

@@ -38,8 +38,8 @@ pub struct FrameStats {
     pub patches: u64,
     /// Patches that were drawn.
     pub patches_drawn: u64,
-    /// Vertices that were evaluated, each once per patch. Patches at level 1 share their corners and
-    /// count as one vertex each.
+    /// Vertices that were evaluated, each once per patch. Patches at level 1 share their corners
+    /// and count as one vertex each.
     pub vertices: u64,
     /// Triangles with an area.
     pub triangles: u64,
@@ -75,8 +75,8 @@ impl FrameStats {
 }
 
 impl Refiner {
-    /// Patches that [`Refiner::select`] last decided to draw, in the order of their slots. Waits for the
-    /// device.
+    /// Patches that [`Refiner::select`] last decided to draw, in the order of their slots. Waits
+    /// for the device.
     ///
     /// # Errors
     /// The device reports an error.

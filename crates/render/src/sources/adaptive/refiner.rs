@@ -1,15 +1,16 @@
-//! Selection of levels: compute passes that turn the placed parts of a scene into arguments of indirect
-//! draws.
+//! Selection of levels: compute passes that turn the placed parts of a scene into arguments of
+//! indirect draws.
 //!
-//! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016, cull
-//! and decide in the tessellation control stage. wgpu has no such stage, so compute passes do it for
-//! every patch (passes.rs), and patches with grids of the same size are drawn together (grids.rs).
+//! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016,
+//! cull and decide in the tessellation control stage. wgpu has no such stage, so compute passes do
+//! it for every patch (passes.rs), and patches with grids of the same size are drawn together
+//! (grids.rs).
 //!
 //! **Practice.** The host culls whole parts of instances, orders them by page, and cuts them into
 //! **batches** of at most a million patches, which share one set of work buffers: memory does not
-//! grow with the level, and beyond a million patches not with the scene. Per batch: [`Refiner::select`]
-//! in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was made with
-//! [`Refiner::vertex_shader`] and [`Refiner::layout`]. Nothing is read back.
+//! grow with the level, and beyond a million patches not with the scene. Per batch:
+//! [`Refiner::select`] in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was
+//! made with [`Refiner::vertex_shader`] and [`Refiner::layout`]. Nothing is read back.
 
 use neurotess_refine::wgsl::{Constants, ShaderParts};
 use wgpu::BufferUsages;
@@ -67,14 +68,15 @@ impl Refiner {
         })
     }
 
-    /// Number of shaders that draw: one for patches at level 1, one for other tubes, one for all else.
+    /// Number of shaders that draw: one for patches at level 1, one for other tubes, one for all
+    /// else.
     pub const SHADERS: usize = 3;
 
     /// Defines `fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`. Binds
     /// group 0.
     ///
-    /// All shaders compute an edge's vertices by the same expressions, so that there are no cracks. For
-    /// that, a vertex shader that calls it must declare its position `@invariant`.
+    /// All shaders compute an edge's vertices by the same expressions, so that there are no cracks.
+    /// For that, a vertex shader that calls it must declare its position `@invariant`.
     pub fn vertex_shader(shader: usize) -> ShaderParts {
         ShaderParts {
             files: vec![shader::file("vertices.wgsl")],
@@ -165,8 +167,8 @@ impl Refiner {
         }
     }
 
-    /// Draws a batch that was selected just before, with the pipeline that is set, which must be that of
-    /// the shader. Sets group 0.
+    /// Draws a batch that was selected just before, with the pipeline that is set, which must be
+    /// that of the shader. Sets group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, shader: usize) {
         pass.set_bind_group(0, self.drawing_group(batch), &[]);
         let (indices, draws) = match shader {
@@ -196,7 +198,8 @@ impl Refiner {
     }
 }
 
-/// Constants of the shaders that compute vertices; DRAWS says which kind of patches vertices.wgsl draws.
+/// Constants of the shaders that compute vertices; DRAWS says which kind of patches vertices.wgsl
+/// draws.
 pub(crate) fn drawing_constants(shader: usize) -> Constants {
     let mut constants = constants();
     constants.u32("DRAWS", shader as u32);

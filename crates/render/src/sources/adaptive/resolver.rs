@@ -1,4 +1,5 @@
-//! What a picking id means: an instance, and a patch of its mesh. Reads what surface_id.wgsl writes.
+//! What a picking id means: an instance, and a patch of its mesh. Reads what surface_id.wgsl
+//! writes.
 
 use std::collections::BTreeMap;
 
@@ -87,7 +88,8 @@ impl PickResolver {
     }
 }
 
-/// The patch at an index of a part. The last ring of a path has no patches: then the last one before it.
+/// The patch at an index of a part. The last ring of a path has no patches: then the last one
+/// before it.
 fn patch(patches: &[u32], at: usize) -> Option<u32> {
     let before = patches.get(..=at.min(patches.len().checked_sub(1)?))?;
     before.iter().copied().rfind(|&patch| patch != u32::MAX)

@@ -28,7 +28,8 @@ struct DrawIndexed {
 
 var<workgroup> sums: array<u32, CLUSTER>;
 
-// Exclusive prefix sums: a workgroup for each bucket's sections, and one for the flat patches of clusters.
+// Exclusive prefix sums: a workgroup for each bucket's sections, and one for the flat patches of
+// clusters.
 @compute @workgroup_size(CLUSTER)
 fn scan_marks(
     @builtin(workgroup_id) group: vec3<u32>,

@@ -37,8 +37,8 @@ pub struct CullView {
     pub eye: DVec3,
     /// Unit direction of view.
     pub forward: DVec3,
-    /// Planes of the frustum relative to the eye, unit normals inwards. Those of the tile if a picture is
-    /// drawn in tiles.
+    /// Planes of the frustum relative to the eye, unit normals inwards. Those of the tile if a
+    /// picture is drawn in tiles.
     pub planes: [Vec4; 5],
     /// Size (µm) of a pixel at unit depth.
     pub slope: f64,
@@ -82,8 +82,8 @@ pub struct AdaptiveSettings {
     pub caps: Caps,
     /// What is smaller than this many pixels is left out; 0 leaves out nothing.
     pub smallest: f32,
-    /// Whether vertices know their position in their patch's grid, as [`Look::wire`](crate::Look) needs.
-    /// Patches at level 1 then do not share corners, which costs time.
+    /// Whether vertices know their position in their patch's grid, as [`Look::wire`](crate::Look)
+    /// needs. Patches at level 1 then do not share corners, which costs time.
     pub wireframe: bool,
 }
 

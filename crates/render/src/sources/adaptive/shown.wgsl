@@ -3,7 +3,8 @@
 #import clusters.wgsl
 
 // How much of a sphere shows: nothing, some or all. It must reach into the frustum, and must not be
-// smaller than the smallest size. It may reach a pixel further, since thin tubes are drawn a pixel wide.
+// smaller than the smallest size. It may reach a pixel further, since thin tubes are drawn a pixel
+// wide.
 const SHOWS_NOTHING: u32 = 0u;
 const SHOWS_SOME: u32 = 1u;
 const SHOWS_ALL: u32 = 2u;

@@ -1,4 +1,5 @@
-// A quick way to compute the vertices of tubes between two implicit rings, which are most of all vertices.
+// A quick way to compute the vertices of tubes between two implicit rings, which are most of all
+// vertices.
 //
 // Called by vertices.wgsl. Returns the same as grid_vertex of plan.wgsl.
 
@@ -12,8 +13,8 @@ fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32
     let far = j == grid.ny;
     let on_ring = near || far;
     let on_side = !on_ring && (i == 0u || i == grid.nx);
-    // For a vertex on a ring, start and end are that ring; for one on an edge along the path, left and
-    // right are the same column.
+    // For a vertex on a ring, start and end are that ring; for one on an edge along the path, left
+    // and right are the same column.
     let start = drawn_ring(coarse[select(point, point + 1u, far)]);
     let end = drawn_ring(coarse[select(point + 1u, point, near)]);
     var left = k;

@@ -1,8 +1,8 @@
 // Computes vertices as they are drawn, from a resident patch and its decided levels.
 //
-// Shaders that shade call `surface_vertex` (see sources/mod.rs) with the builtin indices of a draw that
-// refiner.rs sets up. A vertex index, from the index buffer of grids.rs, says which bucket, which patch
-// of the instance, and which column and row of the patch's grid.
+// Shaders that shade call `surface_vertex` (see sources/mod.rs) with the builtin indices of a draw
+// that refiner.rs sets up. A vertex index, from the index buffer of grids.rs, says which bucket,
+// which patch of the instance, and which column and row of the patch's grid.
 
 #import surface_vertex.wgsl
 #import placed.wgsl
@@ -46,8 +46,8 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     return listed_other_vertex(listed, i, j);
 }
 
-// Vertex at column i and row j of a patch, given its slot and decision. Columns and rows beyond its grid
-// are the last ones.
+// Vertex at column i and row j of a patch, given its slot and decision. Columns and rows beyond its
+// grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     if (is_flat(listed.y)) {
         return listed_flat_vertex(listed, i, j);

@@ -12,7 +12,8 @@ use crate::sources::adaptive::grids::{BUCKETS, FLAT_INDICES};
 use crate::sources::adaptive::layouts::WorkLayouts;
 use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed, SECTION};
 
-/// A ring or an explicit vertex as it is drawn. Twin of the struct of the same name in coarse_point.wgsl.
+/// A ring or an explicit vertex as it is drawn. Twin of the struct of the same name in
+/// coarse_point.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct CoarsePoint {
@@ -69,8 +70,9 @@ pub(crate) struct Buffers {
     pub(crate) owners: wgpu::Buffer,
     pub(crate) queues: wgpu::Buffer,
     marks: wgpu::Buffer,
-    /// Dispatch arguments of the passes that take queues, in a buffer for each pass that fills queues:
-    /// classify.wgsl (clusters), cull.wgsl (single patches) and note.wgsl (sections and rings).
+    /// Dispatch arguments of the passes that take queues, in a buffer for each pass that fills
+    /// queues: classify.wgsl (clusters), cull.wgsl (single patches) and note.wgsl (sections and
+    /// rings).
     pub(crate) cluster_dispatches: wgpu::Buffer,
     pub(crate) single_dispatch: wgpu::Buffer,
     pub(crate) noted_dispatches: wgpu::Buffer,

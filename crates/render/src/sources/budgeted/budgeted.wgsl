@@ -1,8 +1,8 @@
-// What the shaders of exploration mode share: structs, placements of instances, and the steps of detail
-// that chunks request.
+// What the shaders of exploration mode share: structs, placements of instances, and the steps of
+// detail that chunks request.
 //
-// Imported by select.wgsl and visible_chunks.wgsl. Rust twins: layout.rs for the structs and constants,
-// lod_requests.rs for `offers`.
+// Imported by select.wgsl and visible_chunks.wgsl. Rust twins: layout.rs for the structs and
+// constants, lod_requests.rs for `offers`.
 
 struct Eye {
     planes: array<vec4<f32>, 5>,
@@ -64,15 +64,15 @@ fn turn(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return v + q.w * t + cross(q.xyz, t);
 }
 
-// From a template's coordinates to those relative to the eye. Cells cancel as whole numbers, so that
-// far from the origin of the world no digit is lost.
+// From a template's coordinates to those relative to the eye. Cells cancel as whole numbers, so
+// that far from the origin of the world no digit is lost.
 fn relative(place: GpuInstance, p: vec3<f32>) -> vec3<f32> {
     let cells = vec3<f32>(place.cell - eye.cell) * CELL;
     return cells + (place.offset - eye.offset) + place.scale * turn(place.rotation, p);
 }
 
-// Whether a sphere, relative to the eye, reaches into the frustum. It may reach a pixel further, since
-// thin tubes are drawn a pixel wide.
+// Whether a sphere, relative to the eye, reaches into the frustum. It may reach a pixel further,
+// since thin tubes are drawn a pixel wide.
 fn in_sight(p: vec3<f32>, reach: f32) -> bool {
     let depth = max(dot(eye.forward, p) + reach, eye.near);
     let most = reach + eye.slope * depth;
@@ -162,9 +162,9 @@ struct Seen {
 // Most segments of the polyline that seen_part looks at.
 const LOOKED_AT: u32 = 8u;
 
-// The visible part of a chunk that is near, or partly outside the picture: segment by segment, each cut by
-// the planes. Going by its bounding sphere alone, a chunk that merely passes beside the eye would seem to
-// be at depth 0, and would get the finest detail.
+// The visible part of a chunk that is near, or partly outside the picture: segment by segment, each
+// cut by the planes. Going by its bounding sphere alone, a chunk that merely passes beside the eye
+// would seem to be at depth 0, and would get the finest detail.
 fn seen_part(chunk: Chunk, place: GpuInstance) -> Seen {
     var level = 0u;
     for (var k = 1u; k < LEVELS; k += 1u) {
@@ -242,8 +242,8 @@ fn lod_width(lod: u32) -> f32 {
     return f32(lod >> LOD_WIDTH_SHIFT) / f32(FULL_WIDTH);
 }
 
-// Number of quads of a sphere seen from the front. A disc is a fan of quads that cover two sectors each; a
-// dome has six such quads and a ring of twelve around them.
+// Number of quads of a sphere seen from the front. A disc is a fan of quads that cover two sectors
+// each; a dome has six such quads and a ring of twelve around them.
 const DISC_QUADS: u32 = 4u;
 const DOME_QUADS: u32 = 18u;
 
@@ -256,9 +256,9 @@ fn ink_share(share: f32) -> f32 {
     return 1.0 - rest * rest * rest;
 }
 
-// Up to four steps in which a chunk can be drawn better. For each: the bin of its worth, the quads that it
-// takes in addition to the steps before, and the level of detail that it leads to. Worth falls from step
-// to step.
+// Up to four steps in which a chunk can be drawn better. For each: the bin of its worth, the quads
+// that it takes in addition to the steps before, and the level of detail that it leads to. Worth
+// falls from step to step.
 struct Offers {
     bins: vec4<u32>,
     quads: vec4<u32>,
@@ -286,8 +286,8 @@ fn no_offers() -> Offers {
     return Offers(vec4<u32>(0u), vec4<u32>(0u), vec4<u32>(0u));
 }
 
-// Number of strips around the visible half of a tube of this radius (pixels): enough to be within half a
-// pixel of the circle.
+// Number of strips around the visible half of a tube of this radius (pixels): enough to be within
+// half a pixel of the circle.
 fn strips_of(radius: f32) -> u32 {
     if (radius < 3.0) {
         return 1u;
@@ -345,9 +345,9 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     let first = segments(chunk, coarse);
     let second = segments(chunk, fine) << halvings;
     let third = second * strips + caps;
-    // Worth goes by projected size. A chunk is worth as much as the largest one behind it, so that no
-    // chunk is drawn without those that lead to it. The random factor keeps equal chunks of different
-    // instances from appearing and vanishing all at once.
+    // Worth goes by projected size. A chunk is worth as much as the largest one behind it, so that
+    // no chunk is drawn without those that lead to it. The random factor keeps equal chunks of
+    // different instances from appearing and vanishing all at once.
     let worth = 2.0 * chunk.carried / (far_pixel * sqrt(far_pixel)) * exp2(0.5 * chance(instance) - 0.25);
     var all = no_offers();
     all.bins.x = max(bin_of(worth), 1u);

@@ -15,7 +15,8 @@ use super::quantized::{STEPS, error_byte, grid, packed, packed_direction, sphere
 use super::somata;
 
 impl Proxy {
-    /// The proxy of a mesh. `color_keys`: one per tracing point, for the shading; missing ones are 0.
+    /// The proxy of a mesh. `color_keys`: one per tracing point, for the shading; missing ones are
+    /// 0.
     pub fn new(mesh: &CoarseMesh, color_keys: &[u32]) -> Self {
         let mut proxy = Self {
             origin: mesh.origin,
@@ -148,7 +149,8 @@ impl Carriers {
     }
 }
 
-/// Unit direction of a path at each of its points: the mean of those of the segments before and after.
+/// Unit direction of a path at each of its points: the mean of those of the segments before and
+/// after.
 fn directions(points: &[PathPoint]) -> Vec<Vec3> {
     let way = |i: usize| (points[i + 1].center - points[i].center).normalize_or_zero();
     let last = points.len() - 1;

@@ -1,5 +1,5 @@
-//! What the shaders of exploration mode share with the host: constants, and structs that are twins of
-//! those in budgeted.wgsl and select.wgsl.
+//! What the shaders of exploration mode share with the host: constants, and structs that are twins
+//! of those in budgeted.wgsl and select.wgsl.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::Constants;
@@ -29,8 +29,8 @@ pub(crate) const ERROR_OFFSET: f32 = 20.0;
 pub(crate) const NO_LOD: u8 = 255;
 /// Edge (µm) of the cells that positions in the world are relative to.
 pub(crate) const CELL: f64 = 1024.0;
-/// Equal to [`neurotess_refine`]'s constant of the same name: a path sways by no more than this share of
-/// the radius.
+/// Equal to [`neurotess_refine`]'s constant of the same name: a path sways by no more than this
+/// share of the radius.
 pub(crate) const MOST_SWAY: f32 = 0.12;
 
 /// Flags of a chunk: it is a soma; nothing closes it at its start; nothing closes it at its end.
@@ -62,8 +62,8 @@ const WHAT_DOT: u32 = 1;
 const WHAT_DISC: u32 = 2;
 const WHAT_DOME: u32 = 3;
 const WHAT_SOMA: u32 = 4;
-/// First bits of the other fields of a packed level of detail: index of the polyline, halvings of its
-/// segments, strips around it, and the share of its width that is drawn.
+/// First bits of the other fields of a packed level of detail: index of the polyline, halvings of
+/// its segments, strips around it, and the share of its width that is drawn.
 const LOD_LEVEL_SHIFT: u32 = 3;
 const LOD_HALVINGS_SHIFT: u32 = 6;
 const LOD_STRIPS_SHIFT: u32 = 8;
@@ -81,8 +81,8 @@ pub(crate) struct Chunk {
     /// Stored positions are counted from here, in steps of this length (µm).
     pub(crate) low: [f32; 3],
     pub(crate) step: f32,
-    /// A byte for each of the polylines 0 to 6: number of segments. Of a soma: numbers of quads and of
-    /// vertices.
+    /// A byte for each of the polylines 0 to 6: number of segments. Of a soma: numbers of quads and
+    /// of vertices.
     pub(crate) counts: [u32; 2],
     /// A byte for each polyline: its error.
     pub(crate) errors: [u32; 2],
@@ -96,8 +96,9 @@ pub(crate) struct Chunk {
     pub(crate) radius: f32,
     /// Length of the path (µm).
     pub(crate) length: f32,
-    /// The greatest product of length and square root of the mean radius (µm^1.5) among it and all chunks
-    /// that branch off behind it: the shading draws thin lines with an opacity that grows with the root.
+    /// The greatest product of length and square root of the mean radius (µm^1.5) among it and all
+    /// chunks that branch off behind it: the shading draws thin lines with an opacity that grows
+    /// with the root.
     pub(crate) carried: f32,
     /// Packed directions of the path at its ends.
     pub(crate) start: u32,

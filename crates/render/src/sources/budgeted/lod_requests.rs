@@ -1,5 +1,5 @@
-//! The steps of detail that a chunk requests: twin of `offers` in budgeted.wgsl, for tests. Computed in
-//! f64 from the same definitions.
+//! The steps of detail that a chunk requests: twin of `offers` in budgeted.wgsl, for tests.
+//! Computed in f64 from the same definitions.
 
 use glam::{DQuat, DVec3, Vec3};
 
@@ -216,8 +216,8 @@ impl Steps {
     }
 }
 
-/// The part of a segment that is inside all planes, or outside by no more than a distance: parameters from
-/// 0 to 1. `a` and `b`: distances of the segment's ends from the planes.
+/// The part of a segment that is inside all planes, or outside by no more than a distance:
+/// parameters from 0 to 1. `a` and `b`: distances of the segment's ends from the planes.
 fn between(a: [f64; 5], b: [f64; 5], reach: f64) -> Option<[f64; 2]> {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (a, b) in a.iter().zip(b).map(|(a, b)| (a + reach, b + reach)) {

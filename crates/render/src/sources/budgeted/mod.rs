@@ -1,27 +1,28 @@
 //! Exploration mode: any scene within a budget of triangles, for a camera that moves.
 //!
-//! **Theory.** A scene of 50 million segments has more parts than a screen has pixels, so the work must
-//! depend on what is visible. Instances are culled as a whole. For each of the others, every **chunk**, up
-//! to 64 segments of a path ([`Proxy`]), computes on the GPU how many quads it would take to draw it
-//! coarsely, within half a pixel, and round, and what each of these steps is worth: square pixels per
-//! quad. A histogram of quads by worth gives the least worth that is within the budget; in the same frame,
-//! all steps that are worth more are listed and drawn (select.wgsl, visible_chunks.wgsl).
+//! **Theory.** A scene of 50 million segments has more parts than a screen has pixels, so the work
+//! must depend on what is visible. Instances are culled as a whole. For each of the others, every
+//! **chunk**, up to 64 segments of a path ([`Proxy`]), computes on the GPU how many quads it would
+//! take to draw it coarsely, within half a pixel, and round, and what each of these steps is worth:
+//! square pixels per quad. A histogram of quads by worth gives the least worth that is within the
+//! budget; in the same frame, all steps that are worth more are listed and drawn (select.wgsl,
+//! visible_chunks.wgsl).
 //!
-//! A chunk is stored as seven nested polylines and drawn as the coarsest that is within half a pixel of the
-//! curved path. A tube of a radius below three pixels is a strip that faces the eye, with a cylinder's
-//! normals; a wider one is the half of the tube that faces the eye, round within half a pixel. The shading
-//! widens strips below a pixel and makes them fainter, as it does all tubes. Somata are dots of at least
-//! a pixel, then spheres, then their own mesh.
+//! A chunk is stored as seven nested polylines and drawn as the coarsest that is within half a
+//! pixel of the curved path. A tube of a radius below three pixels is a strip that faces the eye,
+//! with a cylinder's normals; a wider one is the half of the tube that faces the eye, round within
+//! half a pixel. The shading widens strips below a pixel and makes them fainter, as it does all
+//! tubes. Somata are dots of at least a pixel, then spheres, then their own mesh.
 //!
 //! **Practice.** [`Proxy::new`] on any thread, [`Exploration::add`] once for each template,
 //! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
-//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any time:
-//! pipelines are made once. A frame uploads 144 bytes and what changed; if camera, size and scene are
-//! those of the frame before, it keeps that frame's selection.
+//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any
+//! time: pipelines are made once. A frame uploads 144 bytes and what changed; if camera, size and
+//! scene are those of the frame before, it keeps that frame's selection.
 //!
-//! Why not the patches of [`Adaptive`](crate::Adaptive)? They form a closed surface at any levels, for
-//! which they need eight triangles a segment. When a whole neuron fits the screen, the difference cannot
-//! be seen.
+//! Why not the patches of [`Adaptive`](crate::Adaptive)? They form a closed surface at any levels,
+//! for which they need eight triangles a segment. When a whole neuron fits the screen, the
+//! difference cannot be seen.
 
 mod build;
 pub(crate) mod layout;
@@ -65,7 +66,8 @@ pub const DEFAULT_BUDGET: u32 = 100_000;
 pub const MOST_BUDGET: u32 = 1 << 23;
 /// Greatest distance (pixels) of what is drawn from the true surface.
 const ERROR: f32 = 0.5;
-/// Greatest share of a picture's height by which a tile's margin may reach over the picture's border.
+/// Greatest share of a picture's height by which a tile's margin may reach over the picture's
+/// border.
 const MOST_MARGIN: f64 = 0.1;
 
 /// A source that draws any scene within a budget of triangles.
@@ -93,8 +95,8 @@ pub struct Exploration {
 }
 
 impl Exploration {
-    /// An empty scene. `sub_pixels`: number of sub-pixels along a pixel's side; errors are measured in
-    /// whole pixels.
+    /// An empty scene. `sub_pixels`: number of sub-pixels along a pixel's side; errors are measured
+    /// in whole pixels.
     ///
     /// # Errors
     /// The device reports an error.

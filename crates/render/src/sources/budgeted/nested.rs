@@ -1,9 +1,9 @@
 //! Simplified polylines of one chunk, each a subset of the next finer one.
 //!
-//! **Theory.** Ramer 1972, Douglas & Peucker 1973, run from the coarse end: start with the two end points
-//! and add, again and again, the point that lies farthest from the polyline so far. So every coarser
-//! polyline is a subset of the finer ones, and its error is known. A point's distance includes the
-//! difference in radius: it bounds the distance of the tube's surface.
+//! **Theory.** Ramer 1972, Douglas & Peucker 1973, run from the coarse end: start with the two end
+//! points and add, again and again, the point that lies farthest from the polyline so far. So every
+//! coarser polyline is a subset of the finer ones, and its error is known. A point's distance
+//! includes the difference in radius: it bounds the distance of the tube's surface.
 
 use glam::Vec3;
 
@@ -14,7 +14,8 @@ use super::layout::{LEVELS, MOST_SEGMENTS};
 pub(crate) struct Simplified {
     /// Indices of the points that are kept, ascending.
     pub(crate) kept: Vec<u8>,
-    /// Greatest distance (µm) of the surface at a point that was left out from the simplified surface.
+    /// Greatest distance (µm) of the surface at a point that was left out from the simplified
+    /// surface.
     pub(crate) error: f32,
 }
 
@@ -50,7 +51,8 @@ pub(crate) fn simplify(points: &[(Vec3, f32)]) -> [Option<Simplified>; LEVELS - 
     }
 }
 
-/// The point between two others that lies farthest from the tube between them, and its distance (µm).
+/// The point between two others that lies farthest from the tube between them, and its distance
+/// (µm).
 fn worst(points: &[(Vec3, f32)], from: usize, to: usize) -> (usize, f32) {
     let between = (from + 1..to).map(|i| (i, apart(points[i], points[from], points[to])));
     // The first of several equal ones; an end, at distance −1, only if there is no point between.

@@ -336,8 +336,8 @@ impl Work {
 /// Number of indices: those of a full block, and those of the rest.
 const INDICES: usize = 12 * BLOCK;
 
-/// Two triangles a quad, split along the diagonal from corner 1 to 3. Vertex indices of the rest follow
-/// those of a full block.
+/// Two triangles a quad, split along the diagonal from corner 1 to 3. Vertex indices of the rest
+/// follow those of a full block.
 fn indices() -> Vec<u32> {
     let quads = 0..2 * BLOCK as u32;
     quads
@@ -352,8 +352,8 @@ pub(crate) fn select_shader() -> Shader {
     shader::shader("select", &parts)
 }
 
-/// The shader that computes vertices. It has refine's constants too, since near somata are evaluated by
-/// evaluate.wgsl.
+/// The shader that computes vertices. It has refine's constants too, since near somata are
+/// evaluated by evaluate.wgsl.
 pub(crate) fn vertex_shader() -> ShaderParts {
     let mut parts = ShaderParts::new(&[shader::file("visible_chunks.wgsl")]);
     parts.constants = gpu::constants();

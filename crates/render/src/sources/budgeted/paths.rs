@@ -1,8 +1,9 @@
-//! A coarse mesh's tubes as paths: from a start through forks to a tip, always along the branch that
-//! reaches farthest. A branch that leaves such a path is a path of its own, which starts at the fork.
+//! A coarse mesh's tubes as paths: from a start through forks to a tip, always along the branch
+//! that reaches farthest. A branch that leaves such a path is a path of its own, which starts at
+//! the fork.
 //!
-//! Since paths go on through forks, there are only as many paths as tips, and a neuron far away takes only
-//! as many chunks; and there is no seam along the main branch of a fork.
+//! Since paths go on through forks, there are only as many paths as tips, and a neuron far away
+//! takes only as many chunks; and there is no seam along the main branch of a fork.
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
@@ -100,7 +101,8 @@ struct Tree {
 }
 
 impl Tree {
-    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2).
+    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and
+    /// 2).
     fn new(mesh: &CoarseMesh) -> Self {
         let count = mesh.tracing.len();
         let mut parents = vec![NONE; count];
@@ -162,11 +164,11 @@ impl Tree {
     }
 }
 
-/// Whether `from` descends from `ancestor`: then a patch from `from` to `ancestor` would close a circle,
-/// which only a mesh of something other than a tree has.
+/// Whether `from` descends from `ancestor`: then a patch from `from` to `ancestor` would close a
+/// circle, which only a mesh of something other than a tree has.
 fn leads_to(parents: &[u32], from: u32, ancestor: u32) -> bool {
-    // Meshes that we generate have the patches of parents before those of children, so that the child has
-    // no descendants yet. Where a parent comes later it is rare, and its chain is short.
+    // Meshes that we generate have the patches of parents before those of children, so that the
+    // child has no descendants yet. Where a parent comes later it is rare, and its chain is short.
     let mut at = from;
     for _ in 0..parents.len() {
         if at == ancestor {

@@ -1,5 +1,5 @@
-//! What a picking id of exploration mode means: an instance, and a tracing point of its mesh. Reads what
-//! visible_chunks_id.wgsl writes.
+//! What a picking id of exploration mode means: an instance, and a tracing point of its mesh. Reads
+//! what visible_chunks_id.wgsl writes.
 
 use std::sync::Arc;
 
@@ -69,7 +69,8 @@ impl ProxyPickResolver {
 }
 
 impl Exploration {
-    /// Resolves ids of the current instances. `targets`: those of all proxies that were added, in order.
+    /// Resolves ids of the current instances. `targets`: those of all proxies that were added, in
+    /// order.
     pub fn resolver(&self, targets: Arc<[ProxyPickTargets]>) -> ProxyPickResolver {
         let instances = self.instances.iter().map(|instance| {
             let template = instance.template.0;

@@ -1,10 +1,10 @@
-//! What exploration mode keeps of a coarse mesh: chunks of its paths with simplified polylines, and its
-//! somata.
+//! What exploration mode keeps of a coarse mesh: chunks of its paths with simplified polylines, and
+//! its somata.
 //!
 //! A **chunk** is up to 64 segments of a path, which are culled, selected and listed together. Its
-//! positions and radii are stored in 65,535 steps of its own extent: 8 bytes a point. Each point of a
-//! simplified polyline takes a byte, and all simplified polylines together have no more points than the
-//! chunk.
+//! positions and radii are stored in 65,535 steps of its own extent: 8 bytes a point. Each point of
+//! a simplified polyline takes a byte, and all simplified polylines together have no more points
+//! than the chunk.
 
 use glam::{DVec3, Vec3};
 

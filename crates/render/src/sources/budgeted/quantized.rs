@@ -46,8 +46,8 @@ pub(super) fn packed_direction(v: Vec3) -> u32 {
     whole(p.x) | (whole(p.y) << 16)
 }
 
-/// Octahedral coordinates of a unit vector, −1 to 1 (Meyer et al., On floating-point normal vectors,
-/// 2010).
+/// Octahedral coordinates of a unit vector, −1 to 1 (Meyer et al., On floating-point normal
+/// vectors, 2010).
 pub(super) fn octahedral(v: Vec3) -> Vec2 {
     let size = v.abs().element_sum();
     if size <= 0.0 {

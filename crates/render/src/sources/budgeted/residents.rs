@@ -1,4 +1,5 @@
-//! What exploration mode keeps on the device, and how it changes: templates, their colors, instances.
+//! What exploration mode keeps on the device, and how it changes: templates, their colors,
+//! instances.
 
 use glam::{DVec3, Vec3};
 
@@ -50,8 +51,8 @@ impl Exploration {
     /// Uploads templates. Their ids follow those already there.
     ///
     /// # Errors
-    /// All templates together are larger than a buffer that the device can bind, or the device reports
-    /// another error.
+    /// All templates together are larger than a buffer that the device can bind, or the device
+    /// reports another error.
     pub fn add(&mut self, gpu: &Gpu, proxies: &[Proxy]) -> Result<Vec<TemplateId>, DeviceError> {
         let first = self.known.len();
         let (mut chunks, mut shapes) = (Vec::new(), Vec::new());
@@ -137,7 +138,8 @@ impl Exploration {
     /// Replaces the instances. Shaders know an instance by its index in this list.
     ///
     /// # Errors
-    /// An instance has no template or a placement that is not finite, or the device reports an error.
+    /// An instance has no template or a placement that is not finite, or the device reports an
+    /// error.
     pub fn set_instances(
         &mut self,
         gpu: &Gpu,
@@ -179,7 +181,8 @@ impl Exploration {
         self.edit(instance);
     }
 
-    /// Marks an instance as edited. The next frame uploads all from the first to the last edited one.
+    /// Marks an instance as edited. The next frame uploads all from the first to the last edited
+    /// one.
     fn edit(&mut self, instance: usize) {
         self.edited = match self.edited.is_empty() {
             true => instance..instance + 1,

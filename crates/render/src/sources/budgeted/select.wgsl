@@ -1,13 +1,13 @@
-// Selects what exploration mode draws, and how finely, within a budget. Seven passes, and nothing is read
-// back:
+// Selects what exploration mode draws, and how finely, within a budget. Seven passes, and nothing
+// is read back:
 //
 // cull_instances  for each instance that may show, its number of clusters of 64 chunks
 // sum_clusters    where the clusters of each instance begin
-// measure         for each chunk, the steps that it requests, summed into a histogram of quads by worth
-// limit           the least worth that is within the budget, and the clusters that have anything above it
-// count           the quads and visible chunks of each of those clusters
-// sum_visible     where those of each cluster begin; arguments of the draws
-// write           the list of quads, in the order of instances and chunks, so that equal frames are
+// measure         for each chunk, the steps that it requests, summed into a histogram of quads by
+// worth limit           the least worth that is within the budget, and the clusters that have
+// anything above it count           the quads and visible chunks of each of those clusters
+// sum_visible     where those of each cluster begin; arguments of the draws write           the
+// list of quads, in the order of instances and chunks, so that equal frames are
 //                 drawn equally
 //
 // Called by passes.rs.
@@ -249,8 +249,8 @@ fn drawn(offers: Offers) -> Drawn {
         }
     }
     if (lod_what(it.lod) == WHAT_TUBE) {
-        // A chunk that is only just within the budget is drawn with part of its width, so that it fades in
-        // and out.
+        // A chunk that is only just within the budget is drawn with part of its width, so that it
+        // fades in and out.
         var width = FULL_WIDTH;
         if (threshold > 1u) {
             let over = f32(offers.bins.x - threshold) + 1.0;
@@ -336,8 +336,8 @@ fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         ask = lod_requests(visible[at].cluster, lane);
         it = drawn(ask.offers);
     }
-    // Inclusive sums, computed by each lane for itself: this takes two barriers instead of twelve, which
-    // are slow in software rendering.
+    // Inclusive sums, computed by each lane for itself: this takes two barriers instead of twelve,
+    // which are slow in software rendering.
     counts[lane] = it.quads;
     workgroupBarrier();
     var sum = 0u;

@@ -1,5 +1,5 @@
-//! The somata of a proxy: their quads as they are in the mesh, and one more for each neurite, which closes
-//! the opening that the neurite grows from.
+//! The somata of a proxy: their quads as they are in the mesh, and one more for each neurite, which
+//! closes the opening that the neurite grows from.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,8 @@ pub(super) fn add(proxy: &mut Proxy, mesh: &CoarseMesh) {
     }
 }
 
-/// The rings that neurites grow from, facing outwards: they close the openings of a soma's own quads.
+/// The rings that neurites grow from, facing outwards: they close the openings of a soma's own
+/// quads.
 fn first_rings(mesh: &CoarseMesh) -> Vec<[u32; 4]> {
     let near = |patch: &Patch| {
         let tracing = mesh.vertices[patch.corners[0] as usize].tracing;
@@ -133,7 +134,8 @@ fn add_soma(proxy: &mut Proxy, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
     );
 }
 
-/// Center of a soma, and the mean distance (µm) of its surface from it, leaving out the rings of neurites.
+/// Center of a soma, and the mean distance (µm) of its surface from it, leaving out the rings of
+/// neurites.
 fn middle(mesh: &CoarseMesh, vertices: &[u32]) -> Option<(Vec3, f32)> {
     let own = || {
         let tracing = vertices.iter().map(|&v| mesh.vertices[v as usize].tracing);

@@ -37,8 +37,8 @@ pub struct DrawnChunk {
 }
 
 impl Exploration {
-    /// What the picture that was prepared last draws. Selects once more and waits for the device: for
-    /// statistics, not for every frame.
+    /// What the picture that was prepared last draws. Selects once more and waits for the device:
+    /// for statistics, not for every frame.
     ///
     /// # Errors
     /// The device reports an error.

@@ -1,8 +1,8 @@
 // Vertices of the chunks that exploration mode has selected: four for each quad.
 //
-// Shaders that shade call `surface_vertex` (see sources/mod.rs). A tube is drawn as the half of it that
-// faces the eye: one strip as wide as the tube, or 5, 10 or 20 strips around it. A sphere is drawn as the
-// cap that faces the eye.
+// Shaders that shade call `surface_vertex` (see sources/mod.rs). A tube is drawn as the half of it
+// that faces the eye: one strip as wide as the tube, or 5, 10 or 20 strips around it. A sphere is
+// drawn as the cap that faces the eye.
 
 #import surface_vertex.wgsl
 #import evaluate.wgsl
@@ -12,8 +12,8 @@
 @group(0) @binding(4) var<storage, read> quads: array<u32>;
 @group(0) @binding(6) var<storage, read> color_keys: array<u32>;
 
-// Index of the quad that a vertex belongs to. The quads after the last full block are a draw of their
-// own, with vertex indices from 4 * BLOCK on.
+// Index of the quad that a vertex belongs to. The quads after the last full block are a draw of
+// their own, with vertex indices from 4 * BLOCK on.
 fn quad_place(vertex_index: u32, instance_index: u32) -> u32 {
     let rest = vertex_index >= 4u * BLOCK;
     let local = vertex_index % (4u * BLOCK);
@@ -62,7 +62,8 @@ fn across(v: vec3<f32>) -> vec3<f32> {
     return normalize(cross(axis, v));
 }
 
-// Unit vector from octahedral coordinates, -1 to 1 (Meyer et al., On floating-point normal vectors, 2010).
+// Unit vector from octahedral coordinates, -1 to 1 (Meyer et al., On floating-point normal vectors,
+// 2010).
 fn from_octahedral(p: vec2<f32>) -> vec3<f32> {
     let z = 1.0 - abs(p.x) - abs(p.y);
     let fold = max(-z, 0.0);
@@ -70,8 +71,8 @@ fn from_octahedral(p: vec2<f32>) -> vec3<f32> {
     return normalize(vec3<f32>(folded, z));
 }
 
-// Direction of the path at a point of a polyline. At the ends of a chunk it is the stored one, which the
-// next chunk shares, unless a coarse polyline starts off in quite another direction.
+// Direction of the path at a point of a polyline. At the ends of a chunk it is the stored one,
+// which the next chunk shares, unless a coarse polyline starts off in quite another direction.
 fn direction(chunk: Chunk, level: u32, index: u32, here: vec3<f32>) -> vec3<f32> {
     let last = segments(chunk, level);
     if (index > 0u && index < last) {
@@ -121,7 +122,8 @@ fn on_path(p: Stored, tangent: vec3<f32>) -> Corner {
     return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY);
 }
 
-// Angle (radians) by which a tube is drawn further around than the half that faces the eye, on each side.
+// Angle (radians) by which a tube is drawn further around than the half that faces the eye, on each
+// side.
 const BEYOND: f32 = 0.35;
 
 fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceVertex {
@@ -156,8 +158,8 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
     var normal = sideways * (2.0 * share - 1.0);
     var offset = normal;
     if (strips == 1u) {
-        // Normals at the strip's edges are tilted by 45°: interpolated between them, they are close to
-        // those of a cylinder except near its outline.
+        // Normals at the strip's edges are tilted by 45°: interpolated between them, they are close
+        // to those of a cylinder except near its outline.
         normal = normalize(normal + up);
     } else {
         // With exactly half a turn, gaps would show where paths bend sharply.

@@ -1,7 +1,9 @@
-//! The simplest vertex source: a surface that was refined beforehand, held whole in the GPU's memory.
+//! The simplest vertex source: a surface that was refined beforehand, held whole in the GPU's
+//! memory.
 //!
 //! Its memory grows with the level. The adaptive source is compared with it. Surfaces are cut into
-//! **chunks** that each fit one binding, and chunks into **runs** of triangles, which are culled as one.
+//! **chunks** that each fit one binding, and chunks into **runs** of triangles, which are culled as
+//! one.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -29,8 +31,8 @@ const CHUNK: usize = 128 * RUN;
 /// Alignment of dynamic offsets into a uniform buffer that every device supports.
 const STRIDE: u64 = 256;
 
-/// A coarse mesh with a color key for each tracing point, which [`ColorTable`](crate::color::ColorTable)
-/// looks colors up by.
+/// A coarse mesh with a color key for each tracing point, which
+/// [`ColorTable`](crate::color::ColorTable) looks colors up by.
 #[derive(Clone, Copy, Debug)]
 pub struct PrerefinedSurface<'m> {
     /// The mesh.
@@ -116,7 +118,8 @@ struct Chunk {
 pub struct Prerefined {
     layout: wgpu::BindGroupLayout,
     placements: wgpu::Buffer,
-    /// By place: index of the mesh, and the point of the world that its coordinates are relative to.
+    /// By place: index of the mesh, and the point of the world that its coordinates are relative
+    /// to.
     places: Vec<(usize, DVec3)>,
     chunks: Vec<Chunk>,
     bounds: Vec<BoundingSphere>,
@@ -127,8 +130,8 @@ pub struct Prerefined {
 }
 
 impl Prerefined {
-    /// Refines meshes and uploads them. `lod` returns the levels of the mesh with this index, in the
-    /// mesh's coordinates; `barycentric`: whether a wireframe will be drawn.
+    /// Refines meshes and uploads them. `lod` returns the levels of the mesh with this index, in
+    /// the mesh's coordinates; `barycentric`: whether a wireframe will be drawn.
     ///
     /// # Errors
     /// They do not fit the device.
@@ -193,8 +196,8 @@ impl Prerefined {
             barycentric,
         };
         for (index, source) in meshes.iter().enumerate() {
-            // A vertex of a surface knows its sample: with the index of the tracing point in its place, the
-            // color key is found by it.
+            // A vertex of a surface knows its sample: with the index of the tracing point in its
+            // place, the color key is found by it.
             let mut numbered = source.mesh.clone();
             for (point, number) in numbered.tracing.iter_mut().zip(0..) {
                 point.sample = number;
