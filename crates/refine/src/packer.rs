@@ -20,7 +20,7 @@ const MOST_EXPLICIT: usize = 1 << 15;
 const FEW_EXPLICIT: usize = 1 << 12;
 
 /// If all color keys below 2³¹ are also below this, they are taken for indices: see
-/// [`crate::pack`].
+/// [`crate::pack()`].
 const MOST_NUMBERS: u32 = 1 << 20;
 
 /// Runs and other patches that go into one part, by index.

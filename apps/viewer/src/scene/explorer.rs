@@ -31,7 +31,7 @@ type ProxyResult = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
 
 struct BuiltScene {
     exploration: Exploration,
-    names: Arc<[ProxyPickTargets]>,
+    targets: Arc<[ProxyPickTargets]>,
     /// Revision of the content that it was computed from.
     content: Revision,
     /// Key of its instances.
@@ -52,10 +52,10 @@ impl Explorer {
             let key = *key;
             self.making = None;
             match built {
-                Ok(Ok((exploration, names))) => {
+                Ok(Ok((exploration, targets))) => {
                     self.built = Some(BuiltScene {
                         exploration,
-                        names,
+                        targets,
                         content: key,
                         instances: None,
                     });
@@ -137,7 +137,7 @@ impl Explorer {
     /// Resolves ids of pictures that were drawn from proxies.
     pub(crate) fn resolver(&self) -> Option<ProxyPickResolver> {
         let built = self.built.as_ref()?;
-        Some(built.exploration.resolver(Arc::clone(&built.names)))
+        Some(built.exploration.resolver(Arc::clone(&built.targets)))
     }
 
     /// Adapts the budget: fewer triangles if frames take too long, more if there is time.

@@ -256,7 +256,7 @@ fn row(
     triangles: u64,
     bytes: u64,
 ) -> Row {
-    let choose = times
+    let selection = times
         .iter()
         .filter_map(|time| Some(time.gpu_ms?[0]))
         .collect();
@@ -266,7 +266,7 @@ fn row(
         level,
         ms: median(times.iter().map(FrameTime::best_ms).collect()).unwrap_or(0.0),
         waited_ms: median(times.iter().map(|t| t.waited_ms).collect()).unwrap_or(0.0),
-        choose_ms: median(choose),
+        choose_ms: median(selection),
         triangles,
         bytes,
     }
