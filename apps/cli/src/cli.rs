@@ -1,4 +1,4 @@
-//! The program's options and commands, as types: their documentation is what --help prints.
+//! The program's options and commands, as types: --help prints their documentation.
 
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -17,6 +17,28 @@ use crate::commands::{
 use crate::commands::{completions, man, version};
 use crate::report::{Common, Reporter, usage};
 
+/// The end of the program's help. `$render`: an example for builds that draw pictures.
+macro_rules! examples {
+    ($render:literal) => {
+        concat!(
+            "Examples:
+  neurotess mesh cell.swc -o cell.ply
+",
+            $render,
+            "  neurotess info cells/ --json
+  neurotess mesh cells/ -o meshes/ --format glb --resume --log meshes.jsonl
+  neurotess check cell.ply
+
+Exit codes: 0 all inputs done, 1 some failed, 2 wrong usage, 130 interrupted."
+        )
+    };
+}
+
+#[cfg(feature = "render")]
+const EXAMPLES: &str = examples!("  neurotess render cell.swc -o cell.png\n");
+#[cfg(not(feature = "render"))]
+const EXAMPLES: &str = examples!("");
+
 /// From tracings of neurons to closed surface meshes. Lengths are micrometers (µm).
 #[derive(Debug, Parser)]
 #[command(
@@ -24,14 +46,7 @@ use crate::report::{Common, Reporter, usage};
     disable_version_flag = true,
     arg_required_else_help = true
 )]
-#[command(after_help = "Examples:
-  neurotess mesh cell.swc -o cell.ply
-  neurotess render cell.swc -o cell.png
-  neurotess info cells/ --json
-  neurotess mesh cells/ -o meshes/ --format glb --resume --log meshes.jsonl
-  neurotess check cell.ply
-
-Exit codes: 0 all inputs done, 1 some failed, 2 wrong usage, 130 interrupted.")]
+#[command(after_help = EXAMPLES)]
 pub(crate) struct Cli {
     #[command(flatten)]
     pub(crate) common: Common,

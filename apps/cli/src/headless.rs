@@ -1,17 +1,18 @@
-//! Drawing without a window touches no window system.
+//! Keeps drawing without a window away from window systems.
 //!
-//! Mesa's Vulkan layer that selects devices asks for a Wayland display as soon as an instance is made
-//! with the extensions of surfaces, which wgpu always asks for; where there is none, libwayland says
-//! `error: XDG_RUNTIME_DIR is invalid or not set` on standard error, once for each instance. The layer
-//! obeys a variable of the environment, which must be there when the program starts: setting it later
-//! is unsafe where there are threads. So the program starts itself again with it, in the same process.
+//! Mesa's Vulkan layer that selects devices connects to a Wayland display as soon as an instance is
+//! made with the extensions for surfaces, which wgpu always enables. Without a display, libwayland
+//! prints `error: XDG_RUNTIME_DIR is invalid or not set` on standard error, once for each instance.
+//! An environment variable turns the layer off. It must be set when the program starts, since
+//! setting it later is unsafe with threads. So the program starts itself again with it, in the same
+//! process.
 //!
-//! Who chooses a device by that layer (MESA_VK_DEVICE_SELECT, DRI_PRIME) keeps it.
+//! If the user selects a device by that layer (MESA_VK_DEVICE_SELECT, DRI_PRIME), it stays on.
 
-/// Tells Mesa's layer to stay away.
+/// Environment variable that turns Mesa's layer off.
 const OFF: &str = "NODEVICE_SELECT";
 
-/// Starts the program again without the layer, if it would be there.
+/// Starts the program again without the layer, if it would be used.
 #[cfg(target_os = "linux")]
 pub(crate) fn stay_away_from_windows() {
     use std::os::unix::process::CommandExt;
@@ -29,7 +30,7 @@ pub(crate) fn stay_away_from_windows() {
     };
     let mut again = std::process::Command::new(program);
     again.arg0(name).args(arguments).env(OFF, "1");
-    // It returns only where it failed; then the message stays, and nothing else.
+    // It returns only if it failed; then libwayland's message appears, which is harmless.
     drop(again.exec());
 }
 

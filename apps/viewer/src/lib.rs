@@ -1,9 +1,9 @@
 //! The window: open, look, pick, tune, save.
 //!
-//! [`run`] opens it. The [`State`](state::State) holds all that shows; panels are functions of it that ask
-//! for [`Command`]s; an edit changes the [`Document`](document::Document), of which the history keeps those
-//! before. Work goes to threads and comes back as messages. No geometry is made here: cells are meshed
-//! and drawn by the library.
+//! [`run`] opens it. The [`State`](state::State) holds all that is shown. Panels are functions of
+//! it that request [`Command`]s. Edits change the [`Document`](document::Document), and the history
+//! keeps earlier ones. Background threads send their results as messages. No geometry is computed
+//! here: cells are meshed and drawn by the library.
 //!
 //! ```text
 //! mouse, keys, menus, palette, tests ─▶ Command ─▶ State ─▶ panels
@@ -20,5 +20,5 @@ pub use model::command::Command;
 pub use model::{command, document, playback, save, session, settings, sources, state, view};
 pub use scene::headless::{SessionPicture, draw_session};
 pub use scene::stage::Stage;
-pub use ui::app::{Hears, Viewer};
+pub use ui::app::{CommandListener, Viewer};
 pub use ui::window::{Options, ViewError, run, wgpu_setup};

@@ -11,7 +11,7 @@ use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Tab, Toggles, listed};
-use neurotess_viewer::state::Over;
+use neurotess_viewer::state::Dialog;
 
 use common::{Window, gpu, run, settle, state, with_samples};
 
@@ -62,7 +62,7 @@ fn heard(window: &mut Window) -> Rc<RefCell<Vec<Command>>> {
     let ours = Rc::clone(&list);
     let slot = window.state_mut();
     *slot = slot.take().map(|viewer| {
-        viewer.with_hearing(Box::new(move |command| {
+        viewer.with_listener(Box::new(move |command| {
             ours.borrow_mut().push(command.clone());
         }))
     });
@@ -87,9 +87,12 @@ fn every_shortcut_runs_its_command_and_nothing_else() {
             slow_frame(&mut window, key(keys.logical_key, keys.modifiers).to_vec());
             let ran = std::mem::take(&mut *list.borrow_mut());
             assert_eq!(ran, [now.command], "{keys:?}");
-            if !matches!(state(&mut window).over, Over::Nothing) {
+            if !matches!(state(&mut window).dialog, Dialog::Nothing) {
                 slow_frame(&mut window, key(Key::Escape, Modifiers::NONE).to_vec());
-                assert!(matches!(state(&mut window).over, Over::Nothing), "{keys:?}");
+                assert!(
+                    matches!(state(&mut window).dialog, Dialog::Nothing),
+                    "{keys:?}"
+                );
                 assert!(list.borrow().is_empty(), "escape closes, and nothing else");
             }
         }

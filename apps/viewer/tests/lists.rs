@@ -9,7 +9,7 @@ use eframe::egui::{Event, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Ask, Edit, Tab};
+use neurotess_viewer::command::{Edit, FilePurpose, Tab};
 use neurotess_viewer::document::{ColorBy, Look};
 use neurotess_viewer::state::{CellPart, Picked};
 
@@ -209,7 +209,7 @@ fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
     for name in ["purkinje_1.swc", "purkinje_2.swc"] {
         fs::write(folder.path().join("reconstructions").join(name), "").expect("written");
     }
-    run(&mut window, Command::AskFiles(Ask::Open));
+    run(&mut window, Command::AskFiles(FilePurpose::Open));
     window.run_steps(3);
     let type_in = |window: &mut Window, text: String| {
         window.event(Event::Text(text));
@@ -239,7 +239,7 @@ fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
     window.key_press(eframe::egui::Key::Escape);
     window.step();
     state(&mut window).settings.folder = folder.path().join("reconstructions");
-    run(&mut window, Command::AskFiles(Ask::SaveSession));
+    run(&mut window, Command::AskFiles(FilePurpose::SaveSession));
     window.run_steps(3);
     window.get_by_label("No folder and no session here yet");
 }

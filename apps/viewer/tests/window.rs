@@ -16,7 +16,7 @@ use neurotess::refine::LodCriterion;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Ask, Edit, Tab};
+use neurotess_viewer::command::{Edit, FilePurpose, Tab};
 use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
 use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
@@ -88,7 +88,7 @@ fn tabs_show_their_panels() {
     snapshot(&mut window, "palette_light");
     window.key_press(Key::Escape);
     window.run_steps(2);
-    run(&mut window, Command::AskFiles(Ask::Open));
+    run(&mut window, Command::AskFiles(FilePurpose::Open));
     window.get_by_label("Open this whole folder");
 }
 

@@ -1,5 +1,5 @@
-//! Colors that neurons have as a whole: each its own, those of an attribute, or those that a scene gives
-//! them. Neurons of one template share it; a value for each says its color.
+//! Colors of whole neurons: a color for each, by an attribute, or those given in a scene. Neurons
+//! that share a template have a value each, which determines their color.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use thiserror::Error;
 
 use crate::scheme::{Cell, ColorScheme, Coloring, NOTHING};
 
-/// A node and the circuit that it is of.
+/// A node and its circuit.
 #[derive(Clone, Copy, Debug)]
 pub struct Node<'c> {
     /// The circuit.
     pub circuit: &'c Circuit,
-    /// Which of its nodes.
+    /// The node in it.
     pub node: NodeRef,
 }
 
@@ -32,7 +32,7 @@ impl<'c> Node<'c> {
         self.attribute(attribute)?.number(self.node.row as usize)
     }
 
-    /// What it has of an attribute; numbers as text.
+    /// The node's value of an attribute; numbers as text.
     pub fn text(&self, attribute: &str) -> Option<String> {
         let row = self.node.row as usize;
         match self.attribute(attribute) {
@@ -55,13 +55,13 @@ const POPULATION: &str = "population";
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("no cell has an attribute '{attribute}': there are {}", there.join(", "))]
 pub struct NoAttribute {
-    /// What was asked for.
+    /// The name that was given.
     pub attribute: String,
-    /// What there is.
+    /// The attributes that exist.
     pub there: Vec<String>,
 }
 
-/// Attributes that nodes of these circuits can be told apart by, sorted.
+/// Attributes that nodes of these circuits can be colored by, sorted.
 pub fn attributes<'c>(circuits: impl IntoIterator<Item = &'c Circuit>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for circuit in circuits {
@@ -74,14 +74,15 @@ pub fn attributes<'c>(circuits: impl IntoIterator<Item = &'c Circuit>) -> Vec<St
     names
 }
 
-/// Every neuron its own color; `names`: one for each neuron.
+/// A color for each neuron; `names`: a name for each, for the legend.
 pub fn each(cells: &[Cell<'_>], names: &[String], scheme: &ColorScheme) -> Coloring {
     let own: Vec<Option<usize>> = (0..names.len()).map(Some).collect();
     categorical(cells, &own, names, "neuron", scheme)
 }
 
-/// Neurons of equal attribute have one color; numbers of more kinds than there are colors are on the
-/// scale. `neurons`: in the order of the instances; none: of no circuit.
+/// Neurons with equal values of an attribute have the same color. If there are more different
+/// numbers than colors, they are on the scale. `neurons`: in the order of the instances; none for
+/// those of no circuit.
 ///
 /// # Errors
 /// No neuron's circuit has such an attribute.
@@ -91,7 +92,7 @@ pub fn by_attribute(
     attribute: &str,
     scheme: &ColorScheme,
 ) -> Result<Coloring, NoAttribute> {
-    // Of many neurons most are of the same few circuits.
+    // Many neurons belong to few circuits.
     let mut circuits: Vec<&Circuit> = neurons.iter().flatten().map(|n| n.circuit).collect();
     circuits.dedup_by_key(|circuit| std::ptr::from_ref(*circuit));
     let there = attributes(circuits);
@@ -127,7 +128,7 @@ pub fn by_attribute(
     Ok(categorical(cells, &own, &names, attribute, scheme))
 }
 
-/// The colors that a scene gives its cells; none if it gives no cell any.
+/// The colors given in a scene; none if no cell has one.
 pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Coloring> {
     let mut colors: Vec<Rgb> = Vec::new();
     let mut names: BTreeMap<String, Rgb> = BTreeMap::new();
@@ -219,7 +220,7 @@ fn on_scale(
     coloring
 }
 
-/// Every point has the first value of whichever neuron shows the cell.
+/// Color keys by which every point has the first value of its neuron.
 pub(super) fn first_values(cells: &[Cell<'_>]) -> Vec<Vec<u32>> {
     let points = cells.iter().map(|cell| cell.mesh.tracing.len());
     points.map(|points| vec![0; points]).collect()

@@ -1,4 +1,4 @@
-//! Colors by what a tracing says: types, neurites, sections, numbers along the path.
+//! Colors by what is in a tracing: types, neurites, sections, numbers along the path.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use neurotess_render::overlay::Legend;
 use crate::path_distance::path_distances;
 use crate::scheme::{Cell, ColorScheme, Coloring};
 
-/// What colors tell.
+/// What cells are colored by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorBy {
     /// SWC type.
     #[default]
     Type,
-    /// Every neurite its own.
+    /// A color for each neurite.
     Neurite,
     /// Neighboring sections differ.
     Section,
@@ -26,7 +26,7 @@ pub enum ColorBy {
     Radius,
     /// Distance along the neurite from its start (µm).
     PathDistance,
-    /// Every cell its own.
+    /// A color for each cell.
     Neuron,
 }
 
@@ -37,12 +37,12 @@ struct Quantity {
     span: Span,
 }
 
-/// Which numbers stand at the ends of the scale, unless the scheme says so.
+/// Numbers at the ends of the scale, unless the scheme sets them.
 enum Span {
     /// 0 and the greatest.
     FromZero,
-    /// The least, and what all but the greatest fiftieth are below: outliers would leave one color for the
-    /// rest.
+    /// The least number and the 98th percentile: with outliers, all other points would have nearly
+    /// the same color.
     WithoutOutliers,
 }
 
@@ -51,7 +51,7 @@ const BRANCH_ORDER: Quantity = Quantity {
     unit: "",
     span: Span::FromZero,
 };
-/// A few stems are far thicker than all else.
+/// Radius: without outliers, since a few stems are far thicker than all else.
 const RADIUS: Quantity = Quantity {
     title: "radius",
     unit: "µm",
@@ -63,7 +63,7 @@ const PATH_DISTANCE: Quantity = Quantity {
     span: Span::FromZero,
 };
 
-/// Colors of cells by what their tracings say.
+/// Colors of cells by what is in their tracings.
 pub fn coloring(cells: &[Cell<'_>], by: ColorBy, scheme: &ColorScheme) -> Coloring {
     match by {
         ColorBy::Type => by_type(cells, scheme),
@@ -77,7 +77,7 @@ pub fn coloring(cells: &[Cell<'_>], by: ColorBy, scheme: &ColorScheme) -> Colori
 }
 
 fn by_type(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
-    // The soma's points keep a type of their own whatever the file says.
+    // The soma's points have the soma's type, whatever the file says.
     let kind = |point: &TracingPoint| match point.role {
         Role::Soma => NeuriteKind::SOMA.0,
         _ => point.kind,
@@ -122,7 +122,8 @@ fn by_neuron(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
     )
 }
 
-/// Things numbered from 0 on over all cells; somata have a color of their own.
+/// Colors of things that are numbered from 0 on in each cell, different for all cells; somata have
+/// a color of their own.
 fn categorical(
     cells: &[Cell<'_>],
     scheme: &ColorScheme,
@@ -149,7 +150,7 @@ fn categorical(
     coloring
 }
 
-/// Category i has the i-th distinct color and name.
+/// A coloring in which category i has the i-th distinct color and the i-th name.
 fn listed(
     color_keys: Vec<Vec<u32>>,
     names: &[String],

@@ -8,7 +8,8 @@ use neurotess_render::color::category;
 use crate::path_distance::path_distances;
 use crate::scheme::Cell;
 
-/// For each compartment of a cell that is cut in one way the nearest one of a cell cut in another.
+/// For each compartment of `cut`, the nearest one of `own`, in which the same cell is cut
+/// otherwise.
 pub(super) fn matched(cut: &[Compartment], own: &[Compartment]) -> Vec<usize> {
     if cut == own {
         return (0..own.len()).collect();
@@ -82,7 +83,8 @@ mod tests {
 
     #[test]
     fn points_take_the_nearest_compartment_of_their_section() {
-        // A soma, an axon of 40 µm second in the file and first in the report, a dendrite of 100 µm.
+        // A soma, an axon of 40 µm second in the file and first in the report, a dendrite of 100
+        // µm.
         let dendrite = (1..=10).map(|i| format!("{} 3 0 {} 0 1 {i}\n", i + 1, 5 + 10 * i));
         let axon = (1..=4).map(|i| {
             let parent = if i == 1 { 1 } else { 10 + i };

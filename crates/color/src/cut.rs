@@ -1,14 +1,15 @@
-//! Room for values: a tracing gets a point at the middle of each compartment of a report.
+//! Inserts a point into a tracing at the middle of each compartment of a report, so that all its
+//! values show.
 //!
-//! **Theory.** The membrane shows the value of the tracing point that it is nearest to, so a dendrite of
-//! two points would show two of its compartments, and a section of one point its parent's. Values belong to
-//! positions along a section, wherever the tracer clicked. **Practice.** Before such a cell is meshed, points
-//! are inserted on the straight line between two traced ones, with the radius between theirs, at the middle
-//! of each compartment; none where a traced point is there already. Colors then change half-way between two
-//! middles, which is where compartments meet.
+//! **Theory.** The membrane shows the value of the nearest tracing point, so a dendrite of two
+//! points would show only two of its compartments, and a section of one point its parent's. Values
+//! belong to positions along a section, wherever points were traced. **Practice.** Before such a
+//! cell is meshed, points are inserted on the straight line between two traced ones, with the
+//! radius between theirs, at the middle of each compartment; none where a traced point is there
+//! already. Colors then change half-way between two middles, which is where compartments meet.
 //!
-//! **Why not** a position along the section for each vertex, looked up in the shader: joints and somata have
-//! no such position, and every source of vertices would carry another number.
+//! **Why not** a position along the section for each vertex, looked up in the shader: joints and
+//! somata have no such position, and every source of vertices would carry another number.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -18,14 +19,16 @@ use neurotess_circuit::{
 };
 use neurotess_morphology::{Morphology, Point, SectionId, shape};
 
-/// A traced point this near to a compartment's middle, as a share of the compartment's length, will do.
+/// No point is inserted if a traced one is this near to the compartment's middle (share of the
+/// compartment's length).
 const NEAR: f64 = 0.05;
 
-/// How cells are cut in a report: for each that a neuron with values shows, the compartments of the first such
-/// neuron. `instances`: the cell that each neuron shows and its node. Empty for spikes.
+/// How cells are cut into compartments in a report: for each cell, the compartments of the first
+/// neuron with values that shows it. `instances`: the cell that each neuron shows and its node.
+/// Empty for spikes.
 ///
 /// # Errors
-/// What is wrong with the file, or that it is of another circuit.
+/// The file is invalid, or belongs to another circuit.
 pub fn cuts(
     report: &Path,
     circuit: &Circuit,
@@ -94,11 +97,11 @@ pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Mo
     cut
 }
 
-/// The middles that are still to come along a section.
+/// The middles of compartments that are still ahead along a section.
 struct MiddlesAhead<'m> {
     /// Shares of the section's length, ascending.
     middles: &'m [f64],
-    /// Of the section (µm).
+    /// Length of the section (µm).
     length: f64,
     /// Distance so far (µm).
     way: f64,
@@ -115,7 +118,7 @@ impl<'m> MiddlesAhead<'m> {
         }
     }
 
-    /// Where between two points, as shares of their distance, there is to be one.
+    /// Positions between two points, as shares of their distance, at which to insert points.
     fn within(&mut self, from: &Point, to: &Point) -> Vec<f32> {
         let distance = f64::from(from.position.distance(to.position));
         let end = self.way + distance;

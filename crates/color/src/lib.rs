@@ -1,8 +1,8 @@
-//! What colors tell: a color key for every tracing point, the table of colors and the legend.
+//! Colors by data: a color key for every tracing point, the table of colors and the legend.
 //!
-//! Color keys belong to a cell, whichever neurons show it. What differs from neuron to neuron of one cell is in the
-//! table's values: a color for each ([`each`], [`by_attribute`], [`given`]), or those of a recording
-//! ([`Recording`]).
+//! Color keys belong to a cell and are shared by all neurons that show it. What differs between
+//! neurons of one cell is in the table's values: a color for each ([`each`], [`by_attribute`],
+//! [`given`]), or values of a recording ([`Recording`]).
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "circuit")]

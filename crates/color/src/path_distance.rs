@@ -1,4 +1,4 @@
-//! How far tracing points are from where their neurite begins.
+//! Distances of tracing points from the beginning of their neurite.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,8 @@ use neurotess_morphology::{Morphology, Section, SectionId, shape};
 
 use crate::scheme::Cell;
 
-/// Distance (µm) along the neurite from its first point to each tracing point; none for points of somata.
+/// Distance (µm) along the neurite from its first point to each tracing point; none for points of
+/// somata.
 pub fn path_distances(cell: &Cell<'_>) -> Vec<Option<f32>> {
     let morphology = cell.morphology;
     let ends = shape::path_lengths(morphology);

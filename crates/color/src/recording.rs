@@ -1,11 +1,13 @@
 //! Values of a simulation on the membrane: those of a report at a time, or spikes that fade.
 //!
-//! **Theory.** Opening matches compartments with neurons once; after that a time costs the values of the
-//! neurons that are asked for, and nothing of the scene changes. A color key is an index among a neuron's
-//! own values, so that neurons of one cell share it on the device.
+//! **Theory.** Compartments are matched with neurons once, when a recording is opened. After that,
+//! showing another time only reads the values of the neurons in question, and nothing else of the
+//! scene changes. A color key is an index into a neuron's own values, so that neurons of one cell
+//! share their keys on the device.
 //!
-//! **Practice.** The first neuron of a cell that has values says where compartments are; another one of the
-//! same cell that was cut otherwise takes the nearest compartment of the same section.
+//! **Practice.** The first neuron of a cell that has values determines where compartments are; for
+//! another one of the same cell that was cut otherwise, the nearest compartment of the same section
+//! is taken.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -22,20 +24,20 @@ use crate::compartments::{matched, on_cell};
 use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
 use crate::scheme::{Cell, ColorScheme, Coloring};
 
-/// After this time (ms) a flash has a third of its light, unless told otherwise.
+/// Default time (ms) after which the flash of a spike has faded to about a third.
 pub const DECAY: f64 = 5.0;
-/// Between two steps (ms) through spikes, which have no frames.
+/// Time (ms) between two steps through spikes, which have no frames.
 const SPIKE_STEP: f64 = 0.5;
-/// Flashes fade from 1 to 0.
+/// Range of the values of flashes, which fade from 1 to 0.
 const OF_FLASHES: [f32; 2] = [0.0, 1.0];
-/// Most values that are read to find a range, and fewest frames.
+/// Most values that are read to find a range, and the fewest frames that they are taken from.
 const RANGE_VALUES: u64 = 4_000_000;
 const RANGE_FRAMES: u64 = 32;
 
 /// Why there are no values. Displays as `FILE: what: what to do`.
 #[derive(Debug, Error)]
 pub enum RecordingError {
-    /// The file, or that it is of another circuit.
+    /// The file is invalid, or belongs to another circuit.
     #[error(transparent)]
     Circuit(#[from] CircuitError),
     /// A time beyond the recording.
@@ -43,11 +45,11 @@ pub enum RecordingError {
     NoValues {
         /// The file.
         file: String,
-        /// What was asked for (ms).
+        /// The requested time (ms).
         time: f64,
-        /// Where it begins (ms).
+        /// Start of the recording (ms).
         start: f64,
-        /// Where it ends (ms).
+        /// End of the recording (ms).
         end: f64,
     },
 }
@@ -59,9 +61,9 @@ pub struct Recording {
     pub file: String,
     /// What is recorded, for legends.
     pub title: String,
-    /// Unit of the values; empty: none is known.
+    /// Unit of the values; empty if unknown.
     pub unit: String,
-    /// Times (ms); of spikes, steps through them.
+    /// Times (ms) of its frames, or of steps through spikes.
     pub time: TimeAxis,
     color_keys: Vec<Vec<u32>>,
     has_values: Vec<bool>,
@@ -74,16 +76,16 @@ type InstancesOfNode = HashMap<u64, Vec<usize>>;
 #[derive(Debug)]
 enum Source {
     Report(Report, Vec<PopulationMatch>),
-    /// By population of the file.
+    /// Spikes, and the instances by population of the file.
     Spikes(Spikes, Vec<InstancesOfNode>),
 }
 
 impl Recording {
-    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none: it is of no
-    /// circuit, or of another one.
+    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none for a
+    /// neuron of no circuit, or of another one.
     ///
     /// # Errors
-    /// What is wrong with the file, or that it is of another circuit.
+    /// The file is invalid, or belongs to another circuit.
     pub fn open(
         path: &Path,
         circuit: &Circuit,
@@ -173,7 +175,7 @@ impl Recording {
                 });
             firing.push(shown.collect());
         }
-        // A neuron that never fires is silent, not without a value.
+        // A neuron that never fires has values, all 0.
         let of_known = |node: &Option<NodeRef>| node.is_some_and(|n| known.contains(&n.population));
         let has_values = instances.iter().map(|(_, node)| of_known(node)).collect();
         Ok(Self {
@@ -187,7 +189,7 @@ impl Recording {
         })
     }
 
-    /// Whether it is of spikes, which have no frames.
+    /// Whether it holds spikes, which have no frames.
     pub fn is_of_spikes(&self) -> bool {
         matches!(self.source, Source::Spikes(..))
     }
@@ -202,16 +204,16 @@ impl Recording {
         self.has_values.iter().filter(|has| !**has).count()
     }
 
-    /// Color keys of cells, whatever the time.
+    /// Color keys of cells, the same for all times.
     pub fn color_keys(&self) -> &[Vec<u32>] {
         &self.color_keys
     }
 
-    /// Values at a time (ms), of those neurons that show; the others have none. `decay`: after this time
-    /// (ms) the flash of a spike has a third of its light.
+    /// Values at a time (ms) of the neurons for which `shows` is true; the others have none.
+    /// `decay`: time (ms) after which the flash of a spike has faded to about a third.
     ///
     /// # Errors
-    /// The recording has none at that time; what is wrong with the file.
+    /// The recording has no values at that time, or the file is invalid.
     pub fn at(
         &self,
         time: f64,
@@ -284,11 +286,11 @@ impl Recording {
         frame_values
     }
 
-    /// Least and greatest value of those neurons over the whole recording: of all its frames, or, where
-    /// that would be too many, of some that are spread evenly.
+    /// Least and greatest value, over the whole recording, of the neurons for which `shows` is
+    /// true: of all frames, or of some that are spread evenly if there are too many.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// The file is invalid.
     pub fn range(&self, shows: &dyn Fn(usize) -> bool) -> Result<[f32; 2], RecordingError> {
         if self.is_of_spikes() {
             return Ok(OF_FLASHES);
@@ -301,10 +303,10 @@ impl Recording {
         self.range_at((0..frames).map(|i| axis.time_of(frame(i))), shows)
     }
 
-    /// Least and greatest value of those neurons at some times (ms).
+    /// Least and greatest value, at these times (ms), of the neurons for which `shows` is true.
     ///
     /// # Errors
-    /// The recording has none at one of the times; what is wrong with the file.
+    /// The recording has no values at one of the times, or the file is invalid.
     pub fn range_at(
         &self,
         times: impl IntoIterator<Item = f64>,
@@ -320,13 +322,14 @@ impl Recording {
         Ok(opened(bounds))
     }
 
-    /// Colors, as yet without values: those of a [`ReportFrame`] belong into the table.
+    /// Colors without values: set [`ReportFrame::values`] in the table to show a time.
     pub fn coloring(&self, range: [f32; 2], scheme: &ColorScheme) -> Coloring {
         scheme.scaled(self.color_keys.clone(), &self.title, &self.unit, range)
     }
 }
 
-/// From the first beginning to the last end, in the smallest steps.
+/// A time axis from the first start to the last end of all populations, in the smallest of their
+/// steps.
 fn together(populations: &[ReportPopulation]) -> TimeAxis {
     let all = || populations.iter().map(|population| &population.time);
     let start = all().map(|axis| axis.start).fold(f64::MAX, f64::min);
@@ -341,7 +344,7 @@ fn together(populations: &[ReportPopulation]) -> TimeAxis {
     }
 }
 
-/// Steps from 0, or from the first spike if it is earlier, to the last one.
+/// A time axis from 0, or from the first spike if it is earlier, to the last spike.
 fn steps_through(spikes: &Spikes) -> TimeAxis {
     let times = || spikes.populations.iter().flat_map(|p| &p.times);
     let start = times().copied().fold(0.0, f64::min);

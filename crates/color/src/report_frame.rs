@@ -12,12 +12,12 @@ pub struct ReportFrame {
     of_instance: Vec<Range<usize>>,
 }
 
-/// What is shown of a population of a report.
+/// The instances that show neurons of a report's population, and their compartments.
 #[derive(Debug, Default)]
 pub(super) struct PopulationMatch {
     /// Compartments of all instances, one after another.
     pub(super) compartments: Vec<u64>,
-    /// Instance, and where its compartments are in the list.
+    /// Instances, each with the range of its compartments in the list.
     pub(super) spans: Vec<(usize, Range<usize>)>,
 }
 
@@ -43,19 +43,19 @@ impl ReportFrame {
         shows: &dyn Fn(usize) -> bool,
     ) -> Result<(), CircuitError> {
         let shown = || part.spans.iter().filter(|(instance, _)| shows(*instance));
-        // Together, so that neighbors in the file are read at once.
-        let mut wanted = Vec::new();
+        // Read together, so that neighbors in the file are read at once.
+        let mut compartments = Vec::new();
         for (_, span) in shown() {
-            wanted.extend_from_slice(&part.compartments[span.clone()]);
+            compartments.extend_from_slice(&part.compartments[span.clone()]);
         }
-        let mut values = population.values(frame, &wanted)?.into_iter();
+        let mut values = population.values(frame, &compartments)?.into_iter();
         for (instance, span) in shown() {
             self.put(*instance, values.by_ref().take(span.len()));
         }
         Ok(())
     }
 
-    /// Least and greatest value; never the same.
+    /// Least and greatest value; always different.
     pub fn range(&self) -> [f32; 2] {
         opened(self.bounds())
     }
@@ -65,7 +65,7 @@ impl ReportFrame {
         finite.fold(NO_BOUNDS, |[low, high], &v| [low.min(v), high.max(v)])
     }
 
-    /// As the color table has them, in the order of the neurons.
+    /// Values for the color table, in the order of the neurons.
     pub fn values(&self, [low, high]: [f32; 2]) -> InstanceValues {
         let mut values = InstanceValues::default();
         let mut shares = Vec::new();
@@ -88,14 +88,14 @@ impl ReportFrame {
         self.values.is_empty()
     }
 
-    /// Values of a neuron; none: it does not show or has none.
+    /// Values of a neuron; empty if it does not show or has none.
     pub fn of(&self, instance: usize) -> &[f32] {
         let range = self.of_instance.get(instance).cloned().unwrap_or_default();
         &self.values[range]
     }
 }
 
-/// Of no values.
+/// Bounds of no values.
 pub(super) const NO_BOUNDS: [f32; 2] = [f32::MAX, f32::MIN];
 
 pub(super) fn merged([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {

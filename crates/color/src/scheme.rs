@@ -1,4 +1,4 @@
-//! What goes into a coloring and what comes out of it.
+//! The inputs and the result of a coloring.
 
 use neurotess_mesh::CoarseMesh;
 use neurotess_morphology::{Morphology, NeuriteKind};
@@ -19,32 +19,33 @@ pub struct Cell<'c> {
 /// Colors of all cells.
 #[derive(Clone, Debug)]
 pub struct Coloring {
-    /// For each cell a key per tracing point.
+    /// By cell: a key for each tracing point.
     pub color_keys: Vec<Vec<u32>>,
     /// The color that each key stands for.
     pub table: ColorTable,
-    /// What the colors tell, for people.
+    /// The legend.
     pub legend: Legend,
 }
 
-/// The colors to choose from.
+/// The colors that a coloring uses.
 #[derive(Clone, Debug)]
 pub struct ColorScheme {
-    /// Of types, and of categories without an order.
+    /// Colors of types and other categories.
     pub palette: Palette,
-    /// Behind everything: black is not drawn on black.
+    /// The background, so that somata are not drawn black on black.
     pub background: Option<Rgb>,
-    /// Of numbers.
+    /// Colors of numbers.
     pub scale: Vec<Rgb>,
-    /// Numbers at both ends of the scale; none: those that fit.
+    /// Numbers at both ends of the scale; none: they follow from the data.
     pub range: Option<[f32; 2]>,
 }
 
-/// Color of what has no value: a gray that no scale has.
+/// Color of points without a value: a gray that is in no color map.
 pub const NOTHING: Rgb = [160; 3];
 
 impl ColorScheme {
-    /// Color keys on the scale, from one number to another; the first category is for what has none.
+    /// A coloring by these keys, with a legend of this range; points of the first category have no
+    /// value.
     pub fn scaled(
         &self,
         color_keys: Vec<Vec<u32>>,

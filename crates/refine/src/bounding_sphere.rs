@@ -1,15 +1,18 @@
-//! Bounding spheres that hold a patch at any level: for culling. Twin: `patch_sphere` in the shader that decides.
+//! Bounding spheres that hold a patch at any level, for culling. Twin: `patch_sphere` in render's
+//! cull.wgsl.
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
 
-/// Farthest that a tube reaches from its center's chord, in its larger ring's size: the rings
-/// themselves, the sway of the center line (0.24), and what a quarter ellipse bulges.
+/// Greatest distance of a tube's surface from the segment between its centers, in radii of the
+/// larger ring: the ring itself, the sway of the center line (0.24), and the bulge of a quarter
+/// ellipse.
 pub(crate) const TUBE_REACH: f32 = 1.5;
-/// Farthest that a soma's patch, or one around an inset, reaches from its middle, in the distance of its farthest corner.
+/// Greatest distance of a soma's patch, or one around an inset, from its center, as a multiple of the
+/// distance of its farthest corner.
 pub(crate) const SOMA_REACH: f32 = 1.5;
 
-/// Bounding sphere around a patch at any level: center and radius (µm).
+/// Bounding sphere of a patch at any level: center and radius (µm).
 pub fn patch_sphere(mesh: &CoarseMesh, patch: &Patch) -> (Vec3, f32) {
     let soma = matches!(patch.kind, PatchKind::Soma | PatchKind::Loft);
     let corners = patch.corners.map(|v| {
@@ -32,7 +35,7 @@ pub fn patch_sphere(mesh: &CoarseMesh, patch: &Patch) -> (Vec3, f32) {
     (middle, (0..4).map(reach).fold(0.0, f32::max))
 }
 
-/// A sphere around spheres: about the middle of their box.
+/// A sphere that holds these spheres, around the center of their bounding box.
 pub fn sphere_around(spheres: impl Iterator<Item = (Vec3, f32)> + Clone) -> (Vec3, f32) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for (center, radius) in spheres.clone() {
@@ -44,7 +47,7 @@ pub fn sphere_around(spheres: impl Iterator<Item = (Vec3, f32)> + Clone) -> (Vec
     }
     let middle = (low + high) / 2.0;
     let reach = spheres.map(|(center, radius)| center.distance(middle) + radius);
-    // Rounding, of coordinates as large as the middle's, must not uncover anything.
+    // A little more, since coordinates as large as the center's are rounded.
     let slack = 1e-6 * middle.abs().max_element();
     (middle, reach.fold(0.0, f32::max) * 1.000_01 + slack)
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Faces, Surface, SurfaceVertex};
 
-/// The coarse quads as they are, or halved.
+/// The coarse mesh as a [`Surface`]: its quads as they are, or each cut into two triangles.
 pub struct CoarseSurface<'m> {
     mesh: &'m CoarseMesh,
     quads: bool,

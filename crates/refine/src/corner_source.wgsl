@@ -1,6 +1,6 @@
-// Corners as they are resident, in the coordinates of their part.
+// Corners read from the packed mesh, in the coordinates of their part.
 //
-// Called by plan.wgsl, where nobody has made corners beforehand.
+// Used by plan.wgsl in shaders that do not compute corners beforehand.
 
 #import template.wgsl
 

@@ -1,4 +1,4 @@
-//! The resident form of a coarse mesh, read: what shaders make of its packed buffer. Twin: template.wgsl.
+//! The layout of a packed mesh, and how its numbers are read. WGSL twin: template.wgsl.
 //!
 //! | what | bytes | holds |
 //! | --- | --- | --- |
@@ -10,37 +10,39 @@
 //! | explicit patch | 8 | four explicit vertices, kind |
 //! | cap | 4 | its ring |
 //!
-//! A point has a ring of its own, four vertices a quarter turn apart, and four lateral patches to the
-//! next: rings and lateral patches are derived from points alone. Joints, insertions and somata are
-//! explicit vertices around anchors. Errors: at most 0.2 % of the radius for the center (a point for which
-//! the sphere is too large becomes explicit), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the
-//! turn; explicit vertices: 2⁻¹⁶ of their distance from the anchor. All together under a hundredth of
-//! the radius: `resident_form_is_within_a_hundredth_of_the_radius`.
+//! A point has an implicit ring, four vertices a quarter turn apart, and four lateral patches to
+//! the next point: rings and lateral patches are computed from points alone. Joints, insertions and
+//! somata are made of explicit vertices, stored relative to anchors. Errors: at most 0.2 % of the
+//! radius for the center (a ring whose sphere is too large for that becomes explicit), 0.02 % for
+//! the radius, 0.4 % for the tangent, 0.4 % for the turn; for explicit vertices 2⁻¹⁶ of their
+//! distance from the anchor. All together less than a hundredth of the radius:
+//! `resident_form_is_within_a_hundredth_of_the_radius`.
 
 use glam::Vec3;
 use neurotess_mesh::Role;
 
-/// Points whose centers are relative to the same sphere.
+/// Number of points whose centers are stored relative to the same sphere.
 pub const POINTS_OF_SPHERE: usize = 32;
-/// u32s of a bounding sphere.
+/// Number of u32s of a bounding sphere.
 pub(crate) const SPHERE_U32S: usize = 5;
 /// Bit of a vertex that is explicit.
 pub(crate) const EXPLICIT: u32 = 1 << 31;
 pub(crate) const POINT_KIND_SHIFT: u32 = 30;
-/// Kinds of a point: a ring of its own, the same at an end, a ring of explicit vertices.
+/// Kinds of a point: with an implicit ring, the same at an end, or with a ring of explicit
+/// vertices.
 pub(crate) const POINT_ORDINARY: u32 = 0;
 pub(crate) const POINT_END: u32 = 1;
 pub(crate) const POINT_EXPLICIT: u32 = 2;
-/// The tube narrows here.
+/// Bit of a point where the tube narrows.
 pub(crate) const POINT_NARROWS: u32 = 1 << 29;
-/// Lateral patches lead on to the next point.
+/// Bit of a point that has lateral patches to the next.
 pub(crate) const POINT_GOES_ON: u32 = 1 << 28;
-/// Steps of a coordinate from one side of the sphere's box to the other.
+/// Number of steps of a coordinate from one side of the sphere's bounding box to the other.
 pub(crate) const POSITION_STEPS: f32 = ((1 << 20) - 1) as f32;
-/// Radii are floats of 5 bits of exponent, 2⁻¹⁶ to 2¹⁶ µm, and 11 of fraction.
+/// Radii are stored as floats with 5 bits of exponent, 2⁻¹⁶ to 2¹⁶ µm, and 11 bits of fraction.
 pub(crate) const RADIUS_BASE: u32 = 111 << 11;
 
-/// Unit vector from its place on an octahedron, each coordinate one of `most` + 1 steps.
+/// Unit vector from octahedral coordinates, each of which is one of `most` + 1 steps.
 pub(crate) fn octahedral(x: u32, y: u32, most: f32) -> Vec3 {
     let px = x as f32 * (2.0 / most) - 1.0;
     let py = y as f32 * (2.0 / most) - 1.0;
@@ -50,12 +52,12 @@ pub(crate) fn octahedral(x: u32, y: u32, most: f32) -> Vec3 {
     normalize_or(Vec3::new(px + away(px), py + away(py), z), Vec3::Z)
 }
 
-/// As in evaluate.wgsl.
+/// The function of the same name in evaluate.wgsl.
 pub(crate) fn normalize_or(v: Vec3, otherwise: Vec3) -> Vec3 {
     v.normalize_or(otherwise)
 }
 
-/// Place of a unit vector on an octahedron.
+/// Octahedral coordinates of a unit vector, in `most` + 1 steps.
 pub(crate) fn to_octahedral(v: Vec3, most: f32) -> (u32, u32) {
     let p = v / (v.x.abs() + v.y.abs() + v.z.abs()).max(f32::MIN_POSITIVE);
     let (mut x, mut y) = (p.x, p.y);
@@ -67,8 +69,8 @@ pub(crate) fn to_octahedral(v: Vec3, most: f32) -> (u32, u32) {
     (steps(x), steps(y))
 }
 
-/// Two directions that make a right-handed frame with a third: Duff et al., Building an orthonormal
-/// basis, revisited, 2017.
+/// Two unit vectors that form a right-handed orthonormal basis with a third: Duff et al., Building
+/// an orthonormal basis, revisited, 2017.
 pub(crate) fn basis(tangent: Vec3) -> (Vec3, Vec3) {
     let sign = if tangent.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (sign + tangent.z);
@@ -82,7 +84,8 @@ pub(crate) fn basis(tangent: Vec3) -> (Vec3, Vec3) {
     (u, v)
 }
 
-/// Corner k of a ring, relative to the center: a quarter turn about the tangent each.
+/// Unit direction from a ring's center to its corner k: corners are a quarter turn about the
+/// tangent apart.
 pub(crate) fn ring_direction(tangent: Vec3, turn: u32, k: u32) -> Vec3 {
     let (u, v) = basis(tangent);
     let t = (turn & 0xff) as f32 / 256.0;
@@ -96,7 +99,8 @@ pub(crate) fn ring_direction(tangent: Vec3, turn: u32, k: u32) -> Vec3 {
     }
 }
 
-/// Turn of a ring whose corner 0 lies in this direction.
+/// The turn of a ring whose corner 0 is in this direction, in the form that [`ring_direction`]
+/// reads.
 pub(crate) fn to_turn(tangent: Vec3, direction: Vec3) -> u32 {
     let (u, v) = basis(tangent);
     let angle = direction.dot(v).atan2(direction.dot(u));
@@ -107,7 +111,7 @@ pub(crate) fn to_turn(tangent: Vec3, direction: Vec3) -> u32 {
     ((quarter as u32) * 256 + step) & 0x3ff
 }
 
-/// A radius as 16 bits, if it is one of those there are.
+/// A radius (µm) in 16 bits, if it is in their range.
 pub(crate) fn to_radius(radius: f32) -> Option<u32> {
     // Rounded to the nearest fraction.
     let code = ((radius.to_bits() + (1 << 11)) >> 12).checked_sub(RADIUS_BASE)?;
@@ -127,7 +131,8 @@ pub(crate) fn collar(code: u32) -> f32 {
     if code == 0 { 0.0 } else { radius(code) }
 }
 
-/// Taper as 4 bits and a sign: fine where it is small.
+/// A taper as 4 bits and a sign. The bits are those of its square root, so that small tapers are
+/// accurate.
 pub(crate) fn to_slope(slope: f32) -> (u32, bool) {
     let root = slope.abs().min(1.0).sqrt();
     ((root * 15.0 + 0.5) as u32, slope < 0.0)
@@ -138,7 +143,7 @@ pub(crate) fn slope(code: u32, narrows: bool) -> f32 {
     if narrows { -(root * root) } else { root * root }
 }
 
-/// A coordinate in a sphere's box.
+/// A position from its steps in a sphere's bounding box.
 pub(crate) fn from_sphere(center: Vec3, sphere_radius: f32, [x, y, z]: [u32; 3]) -> Vec3 {
     let step = sphere_radius * (2.0 / POSITION_STEPS);
     let from_sphere = Vec3::new(x as f32, y as f32, z as f32) * step - Vec3::splat(sphere_radius);
@@ -152,7 +157,7 @@ pub(crate) fn to_sphere(center: Vec3, sphere_radius: f32, p: Vec3) -> [u32; 3] {
     [steps(place.x), steps(place.y), steps(place.z)]
 }
 
-/// A number of 16 bits from −1 to 1.
+/// A number from −1 to 1, stored in 16 bits.
 pub(crate) fn signed16(bits: u32) -> f32 {
     (bits & 0xffff) as f32 * (2.0 / 65535.0) - 1.0
 }
@@ -161,7 +166,7 @@ pub(crate) fn to_signed16(value: f32) -> u32 {
     ((value + 1.0) * 0.5 * 65535.0 + 0.5).clamp(0.0, 65535.0) as u32
 }
 
-/// What a ring of its own is stored as.
+/// An implicit ring in the form that it is stored in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ImplicitRing {
     pub(crate) tracing: u32,
@@ -187,11 +192,12 @@ impl ImplicitRing {
     }
 }
 
-/// Largest error of a point's center, in its radii.
+/// Greatest error of a point's center, in radii.
 const MOST_CENTER_ERROR: f32 = 0.002;
 
 /// Whether a sphere is small enough for a point of this radius.
 pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
-    // Half a step in each of three directions.
+    // A step is sphere · 2 / POSITION_STEPS; a center is off by up to half a step in each of three
+    // directions.
     sphere / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
 }

@@ -1,7 +1,7 @@
 //! The refined surface as a function: edges, patches, normals.
 //!
-//! **Theory.** García-Cantero et al. 2017, eq. 1 and 2: a point of a tube is `v = c + r n̂`, with the
-//! center c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
+//! **Theory.** García-Cantero et al. 2017, eq. 1 and 2: a point of a tube is `v = c + r n̂`, with
+//! the center c on a cubic Hermite curve between two tracing points, r and n̂ interpolated and n̂
 //! renormalized so that the tube does not pinch. We interpolate the offsets d = v − c of the four
 //! corners and divide by the length of the interpolated unit normals,
 //!
@@ -43,7 +43,7 @@ pub(crate) struct Jet {
     pub(crate) derivative: Vec3,
 }
 
-/// A corner with what its edges need to know.
+/// A corner with all that its edges depend on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corner {
     pub(crate) position: Vec3,
@@ -85,8 +85,8 @@ impl Corner {
         }
     }
 
-    /// Normal that the cubics of somata and lofts leave the corner across: at a ring that of the tube,
-    /// so that the soma runs smoothly into the neurite.
+    /// The cubics of somata and lofts leave a corner at right angles to this normal. At a neurite's ring it
+    /// is the tube's, so that the soma runs smoothly into the neurite.
     fn cubic_normal(&self) -> Vec3 {
         if self.role == Role::Soma {
             self.normal
@@ -119,21 +119,22 @@ pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
     }
 }
 
-/// Farthest that one end's tangent may lead the center line away from the straight segment, in radii
-/// of the thinner end.
+/// Greatest distance by which the tangent at one end may bend the center line away from the
+/// straight segment, in radii of the thinner end.
 ///
-/// A full tangent sways a thin neurite of long segments by many times its radius, away from the
-/// cones that were traced and into its neighbors. Chosen from 0.1, 0.12, 0.25, 0.5 and no limit with
-/// the example `fidelity`: the largest that keeps the median distance to the traced cones under
-/// 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113, 0.20 on
-/// IF4_140201). The price is visible corners on thin axons of long segments.
+/// With its full tangents, a thin neurite with long segments would sway by many times its radius,
+/// away from the cones that were traced and into its neighbors. Chosen from 0.1, 0.12, 0.25, 0.5
+/// and no limit with the example `fidelity`: the largest that keeps the median distance to the
+/// traced cones under 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113,
+/// 0.20 on IF4_140201). The price is visible corners on thin axons with long segments.
 pub(crate) const MOST_SWAY: f32 = 0.12;
 
-/// Tangents of the center line: the orientations times the segment's length, so that it makes no
-/// loops, shortened where it would sway too far; the segment itself at a joint, whose tubes have no
-/// direction in common.
+/// Tangents of the center line: the directions at its ends times the segment's length, so that it
+/// makes no loops, shortened where it would sway too far. At a joint the segment itself, since the
+/// tubes there have no common direction.
 ///
-/// A tangent m leads a cubic at most 4/27 of its part across the segment away from it.
+/// A tangent bends a cubic away from the segment by at most 4/27 of the tangent's part across the
+/// segment.
 pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
     let way = b.center - a.center;
     let length = way.length();
@@ -233,8 +234,8 @@ fn cubic([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Jet {
     }
 }
 
-/// Normal on an edge: that of the corners, made perpendicular to the edge's own direction. Depends
-/// on the edge alone, so both faces beside it have it.
+/// Normal on an edge: that of the corners, made perpendicular to the edge's own direction. It
+/// depends on the edge alone, so that both patches beside it have the same.
 pub(crate) fn edge_normal(a: &Corner, b: &Corner, derivative: Vec3, t: f32) -> Vec3 {
     let along = derivative.normalize_or_zero();
     let normal = mix(a.normal, b.normal, t);
@@ -246,7 +247,7 @@ pub(crate) fn edge_normal(a: &Corner, b: &Corner, derivative: Vec3, t: f32) -> V
 pub(crate) struct PatchShape {
     pub(crate) kind: PatchKind,
     pub(crate) corners: [Corner; 4],
-    /// Per side: how it runs, and whether it runs against the patch's coordinate.
+    /// By side: the kind of its edge, and whether the edge runs against the patch's coordinate.
     pub(crate) sides: [(EdgeKind, bool); 4],
 }
 
@@ -281,7 +282,7 @@ impl PatchShape {
             .derivative
             .cross(center.derivative + along.derivative);
         let outwards = radial.normalize_or(a.normal);
-        // A sharp bend folds the surface over; light it as the tube that it is part of.
+        // Where a sharp bend folds the surface over, it gets the normal of a tube without the fold.
         let normal = normal.normalize_or(outwards);
         let normal = if normal.dot(outwards) > 0.0 {
             normal

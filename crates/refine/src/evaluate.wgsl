@@ -1,7 +1,7 @@
 // The refined surface as a function: edges, patches, normals.
 //
 // Called by the shaders that draw and by the one that expands patches for the parity test.
-// Rust twin: evaluate.rs, with the theory. Constants come from the prelude (gpu.rs).
+// Rust twin: evaluate.rs, with the theory. Constants are defined in gpu.rs.
 
 struct Jet {
     position: vec3<f32>,
@@ -81,19 +81,20 @@ fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
     return a * (1.0 - t) + b * t;
 }
 
-// A point of the tube between two rings' corners a, b and d, c, with its derivatives.
+// A point of the tube between corners a, b of one ring and d, c of the next, with its derivatives.
 struct TubePoint {
     position: vec3<f32>,
     by_x: vec3<f32>,
     by_y: vec3<f32>,
-    // Where the surface faces, not yet of unit length.
+    // Direction away from the center line, not of unit length.
     radial: vec3<f32>,
     // Point of the center line.
     axis: vec3<f32>,
 }
 
-// The one expression for tubes and their edges, so that different shaders find the same bits: a ring
-// from a to b is tube_point(a, b, b, a, x, 0), an edge along the path tube_point(a, a, d, d, 0, y).
+// The same expression for tubes and their edges, so that different shaders compute the same bits: a
+// ring's edge from a to b is tube_point(a, b, b, a, x, 0), an edge along the path tube_point(a, a,
+// d, d, 0, y).
 fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: f32) -> TubePoint {
     let offset_near = blend(a.offset, b.offset, x);
     let offset_far = blend(d.offset, c.offset, x);
@@ -215,7 +216,7 @@ fn lateral(shape: PatchShape, path: u32, x: f32, y: f32) -> Inside {
 // Normal inside a tube's patch.
 fn tube_normal(point: TubePoint, otherwise: vec3<f32>) -> vec3<f32> {
     let outwards = normalize_or(point.radial, otherwise);
-    // A sharp bend folds the surface over; light it as the tube that it is part of.
+    // Where a sharp bend folds the surface over, it gets the normal of a tube without the fold.
     let normal = normalize_or(cross(point.by_x, point.by_y), outwards);
     if (!(dot(normal, outwards) > 0.0)) {
         return outwards;
@@ -223,7 +224,7 @@ fn tube_normal(point: TubePoint, otherwise: vec3<f32>) -> vec3<f32> {
     return normal;
 }
 
-// A side from corner `from` to corner `to` in the patch's coordinate.
+// A point of a side, from `from_corner` to `to_corner` along the patch's coordinate.
 fn side(shape: u32, from_corner: Corner, to_corner: Corner, path: u32, t: f32) -> Jet {
     let kind = shape & SIDE_KIND;
     if ((shape & SIDE_REVERSED) != 0u) {

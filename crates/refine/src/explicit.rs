@@ -1,4 +1,4 @@
-//! Which vertices are explicit: those that no point describes, or not well enough.
+//! Which vertices are explicit: those that no point describes accurately enough.
 
 use neurotess_mesh::PatchKind;
 
@@ -8,7 +8,9 @@ use crate::packer::{Packer, cap_ring};
 use crate::runs::{Tube, implicit_ring};
 
 impl Packer<'_> {
-    /// A ring is implicit, made from its point, if it is a circle, in one run only, and otherwise in its cap at most.
+    /// Finds the explicit vertices. A ring is implicit, which means that its vertices are computed
+    /// from its point, if it is a circle and belongs to a single run, and to no patch outside that
+    /// run but its cap.
     pub(crate) fn find_explicit(&mut self) {
         let mut uses = vec![0_u8; self.mesh.vertices.len()];
         for ring in self.runs.iter().flat_map(|run| &run.rings) {
@@ -40,7 +42,7 @@ impl Packer<'_> {
                 }
             }
         }
-        // In the worst of cases a sphere holds points of two runs at the mesh's two ends.
+        // At worst, a sphere holds points of two runs at opposite ends of the mesh.
         let reach = |run: &Tube| {
             let centers = run.rings.iter().map(|ring| (self.center(ring[0]), 0.0));
             sphere_around(centers)
@@ -58,7 +60,7 @@ impl Packer<'_> {
         }
     }
 
-    /// Makes explicit what the sphere that it would be in is too large for.
+    /// Makes rings explicit whose bounding sphere would be too large for accurate centers.
     fn make_inaccurate_explicit(&mut self) {
         loop {
             let mut found = Vec::new();

@@ -1,7 +1,8 @@
 //! What shaders share with this crate: constants, structs and the twins of its functions.
 //!
 //! A shader is composed ([`compose`](crate::wgsl::compose)) of its own file, which imports those of
-//! [`FILES`] that it needs, with [`constants`]. Constants go one way, from Rust into WGSL; layouts are compared field by field in `tests/shaders.rs`.
+//! [`FILES`] that it needs, with [`constants`]. Constants are defined in Rust and passed to WGSL;
+//! layouts of structs are compared field by field in `tests/shaders.rs`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -31,12 +32,12 @@ macro_rules! file {
 pub const EVALUATE: WgslFile = file!("evaluate.wgsl");
 /// Twin of `level.rs`.
 pub const LEVEL: WgslFile = file!("level.wgsl");
-/// The layout of resident data, twin of `decode.rs`; binds group 0, binding 0.
+/// The layout of a packed mesh, twin of `decode.rs`; binds group 0, binding 0.
 pub const TEMPLATE: WgslFile = file!("template.wgsl");
-/// Twin of `plan.rs`. Beside it, `CornerSource`, `base_of` and `corner_of` must be defined: they say where
-/// patches have their corners from. [`CORNER_SOURCE`] is one such file.
+/// Twin of `plan.rs`. Another file must define `CornerSource`, `base_of` and `corner_of`, by which
+/// it reads the corners of patches; [`CORNER_SOURCE`] is one.
 pub const PLAN: WgslFile = file!("plan.wgsl");
-/// Corners as they are resident, where nothing else makes them.
+/// Corners read from the packed mesh, for shaders that do not compute them beforehand.
 pub const CORNER_SOURCE: WgslFile = file!("corner_source.wgsl");
 
 /// All files, for imports.
@@ -55,7 +56,7 @@ const LEVELS_DISTANCE: u32 = 3;
 const LEVELS_PIXEL_SIZE: u32 = 4;
 const LEVELS_PIXEL_ERROR: u32 = 5;
 
-/// What the files need of Rust.
+/// Constants that the files share with Rust.
 pub fn constants() -> Constants {
     let mut constants = Constants::default();
     let mut whole = |name: &str, value: u32| constants.u32(name, value);
@@ -107,7 +108,7 @@ pub fn constants() -> Constants {
     constants
 }
 
-/// A [`LodView`] as shaders have it.
+/// A [`LodView`] for shaders.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct GpuLodView {
@@ -121,7 +122,7 @@ pub struct GpuLodView {
     pub flat: f32,
     /// See [`LodView`].
     pub near: f32,
-    /// To a multiple of 16 bytes.
+    /// Padding to a multiple of 16 bytes.
     pub pad: [f32; 3],
 }
 
@@ -138,24 +139,25 @@ impl From<LodView> for GpuLodView {
     }
 }
 
-/// [`LodCriterion`] and [`RefineOptions`] as shaders have them; the view is a [`GpuLodView`].
+/// [`LodCriterion`] and [`RefineOptions`] for shaders; the view is a [`GpuLodView`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct GpuLodCriterion {
-    /// Which.
+    /// Which criterion: a `LEVELS_…` constant.
     pub kind: u32,
-    /// Level of those that have one.
+    /// The criterion's level, if it has one.
     pub level: u32,
-    /// Length (µm) or pixels of those that have one.
+    /// The criterion's length (µm) or number of pixels, if it has one.
     pub amount: f32,
-    /// Course of the path.
+    /// A [`Path`].
     pub path: u32,
-    /// Shape of the ends.
+    /// The [`Caps`].
     pub caps: u32,
 }
 
 impl GpuLodCriterion {
-    /// Translates a criterion; levels per point travel in the tracing points themselves.
+    /// Translates a criterion. Levels per point are not part of it: they are stored with the
+    /// points.
     pub fn new(criterion: LodCriterion, options: &RefineOptions) -> Self {
         let (kind, level, amount) = match criterion {
             LodCriterion::Homogeneous(level) => (LEVELS_HOMOGENEOUS, level, 0.0),
@@ -176,8 +178,7 @@ impl GpuLodCriterion {
 }
 
 impl LodView {
-    /// A view without perspective whose pixels are `size` µm wide, of anything at the eye's depth
-    /// or beyond.
+    /// A view without perspective, with pixels of `size` µm.
     pub fn parallel(eye: Vec3, forward: Vec3, size: f32) -> Self {
         Self {
             eye,

@@ -1,4 +1,4 @@
-//! The level of an edge, 1 to 64, from what the edge itself knows.
+//! The level of an edge, 1 to 64, from the edge alone.
 //!
 //! A level depends on the edge's two corners and their tracing points alone, and not on their
 //! order, so the two faces beside the edge always agree: no cracks for any choice of levels.
@@ -11,16 +11,16 @@ use crate::{Lod, LodCriterion, LodView, Path};
 /// Highest level.
 pub const HIGHEST_LEVEL: u32 = 64;
 
-/// The share of the permitted error that one direction of a patch may take: around, along, and a
-/// rest for what flat triangles lose on a twisted quad. Checked by `adaptive_error_is_kept`.
+/// The share of the permitted error that each direction of a patch may take, around and along; the
+/// rest is for the error of flat triangles on a twisted quad. Checked by `adaptive_error_is_kept`.
 pub(crate) const SHARE: f32 = 0.3;
 
-/// What is taken off before a level is rounded up. Two devices that compute a level from the same
-/// numbers differ by a few 10⁻⁷ of it; geometry made of round numbers lands exactly on whole levels,
-/// and there the last bit would decide. A level too low by this much errs by 10⁻⁴ of the error.
+/// Subtracted before a level is rounded up. Two devices that compute a level from the same numbers
+/// differ by a few 10⁻⁷ of it; geometry made of round numbers gives exactly whole levels, where the
+/// last bit would decide. A level that is too low by this much adds 10⁻⁴ of the error.
 pub(crate) const SLACK: f32 = 1e-4;
 
-/// Steepest half turn between two corners that a level is made for: tan 1.3.
+/// Greatest tan(θ/2) of the angle θ between two corners that a level is computed for: tan 1.3.
 pub(crate) const STEEPEST: f32 = 3.6;
 
 /// Level of an edge between tracing points `ta` and `tb`.
@@ -59,7 +59,8 @@ pub(crate) fn edge_level(
     level.clamp(1, HIGHEST_LEVEL)
 }
 
-/// A curve of second derivative M, cut in n, is at most M / (8 n²) from its chords.
+/// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n²) from its
+/// chords.
 fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
     round_up((bend(path, kind, a, b) / (8.0 * error)).sqrt())
 }
@@ -79,7 +80,7 @@ fn cubic_bend([p0, p1, p2, p3]: [Vec3; 4]) -> f32 {
     second(p0, p1, p2).max(second(p1, p2, p3))
 }
 
-/// The paper's importance, from the mean of the two ends.
+/// The importance of García-Cantero et al. 2017, as the mean of the two ends.
 fn by_distance(view: &LodView, level: u32, far: f32, a: &Corner, b: &Corner) -> u32 {
     let importance = |k: &Corner| (1.0 - (k.center - view.eye).length() / far).clamp(0.0, 1.0);
     (level as f32 * 0.5 * (importance(a) + importance(b)) + 0.5) as u32
@@ -93,7 +94,7 @@ fn um_per_pixel(view: &LodView, a: &Corner, b: &Corner) -> f32 {
 }
 
 fn round_up(cuts: f32) -> u32 {
-    // Also where it is not a number.
+    // Written so that NaN gives the highest level.
     if cuts < HIGHEST_LEVEL as f32 {
         (cuts - SLACK).ceil().max(1.0) as u32
     } else {
@@ -105,7 +106,7 @@ fn round_up(cuts: f32) -> u32 {
 /// normalized mixture of two directions θ apart turns by at most 2 tan(θ/2) per unit.
 fn turning(a: &Corner, b: &Corner) -> f32 {
     let (ra, rb) = (a.offset.length(), b.offset.length());
-    // tan(θ/2) of unit vectors without the arc cosine, which GPUs have to few digits only.
+    // tan(θ/2) of unit vectors without the arc cosine, which is inaccurate on GPUs.
     let (apart, together) = (
         (a.radial - b.radial).length(),
         (a.radial + b.radial).length(),

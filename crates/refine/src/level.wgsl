@@ -1,7 +1,7 @@
-// The level of an edge, 1 to 64, from what the edge itself knows.
+// The level of an edge, 1 to 64, from the edge alone.
 //
 // Called by the shader that decides levels and by the one of the parity test.
-// Rust twin: level.rs. Constants come from the prelude (gpu.rs).
+// Rust twin: level.rs. Constants are defined in gpu.rs.
 
 #import evaluate.wgsl
 
@@ -13,7 +13,8 @@ struct LodView {
     near: f32,
 }
 
-// Who chooses levels: `kind` is a LEVELS_ constant, `amount` its length or number of pixels.
+// What decides on levels: `kind` is a LEVELS_ constant, `amount` its length or number of pixels.
+// Twin of GpuLodCriterion in gpu.rs.
 struct LodCriterion {
     kind: u32,
     level: u32,
@@ -22,7 +23,7 @@ struct LodCriterion {
     caps: u32,
 }
 
-// Level of an edge; `value_a` and `value_b` are the users' levels at its tracing points.
+// Level of an edge; `value_a` and `value_b` are the levels given for its two tracing points.
 fn edge_level(
     levels: LodCriterion,
     view: LodView,
@@ -38,7 +39,7 @@ fn edge_level(
             level = max(value_a, value_b);
         }
         case LEVELS_MAX_ERROR, LEVELS_PIXEL_ERROR: {
-            // One call for both: shaders hold a copy of it for each.
+            // A single call for both cases, since compilers copy the function into every call.
             var error = max(levels.amount, 1e-6);
             if (levels.kind == LEVELS_PIXEL_ERROR) {
                 error = levels.amount * um_per_pixel(view, a, b);
@@ -57,8 +58,8 @@ fn edge_level(
     return clamp(level, 1u, HIGHEST_LEVEL);
 }
 
-// The level of the edges of a ring of a point's own: a circle, whose quarters are all alike. `value`: the
-// user's level. What edge_level gives, up to rounding.
+// The level of the edges of an implicit ring, the same for all since it is a circle. `value`: the
+// level given for its tracing point. Equal to edge_level's, up to rounding.
 fn ring_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f32, value: u32) -> u32 {
     let nearest = max(dot(view.forward, center - view.eye) - radius, view.near);
     let pixel = view.slope * nearest + view.flat;
@@ -72,7 +73,7 @@ fn ring_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f3
             if (levels.kind == LEVELS_PIXEL_ERROR) {
                 error = levels.amount * pixel;
             }
-            // A quarter turn: `turning` of 2 tan(45 degrees).
+            // by_error with `turning` of a quarter turn, whose speed is 2 tan(45 degrees).
             level = round_up(sqrt(4.0 * radius / (8.0 * error * SHARE)));
         }
         case LEVELS_DISTANCE: {
@@ -87,7 +88,8 @@ fn ring_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f3
     return clamp(level, 1u, HIGHEST_LEVEL);
 }
 
-// The level of all edges within a sphere that bend by at most `bend`, or 0 where each must be asked.
+// The level of all edges within a sphere that bend by at most `bend`; 0 if they may have different
+// levels.
 fn sphere_level(levels: LodCriterion, view: LodView, center: vec3<f32>, radius: f32, bend: f32) -> u32 {
     switch (levels.kind) {
         case LEVELS_PER_POINT, LEVELS_PIXEL_SIZE: {
@@ -115,7 +117,8 @@ fn one_if(certain: bool) -> u32 {
     return select(0u, 1u, certain);
 }
 
-// A curve of second derivative M, cut in n, is at most M / (8 n^2) from its chords.
+// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n^2) from its
+// chords.
 fn by_error(error: f32, path: u32, kind: u32, a: Corner, b: Corner) -> u32 {
     var bend = 0.0;
     if (kind == EDGE_RING) {
@@ -140,7 +143,7 @@ fn importance(view: LodView, far: f32, k: Corner) -> f32 {
     return clamp(1.0 - length(k.center - view.eye) / far, 0.0, 1.0);
 }
 
-// The paper's importance, from the mean of the two ends.
+// The importance of Garcia-Cantero et al. 2017, as the mean of the two ends.
 fn by_distance(view: LodView, level: u32, far: f32, a: Corner, b: Corner) -> u32 {
     return u32(f32(level) * 0.5 * (importance(view, far, a) + importance(view, far, b)) + 0.5);
 }

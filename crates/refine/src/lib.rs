@@ -1,10 +1,10 @@
 //! Refinement of a coarse mesh: one integer level per edge, one conforming closed surface.
 //!
-//! A pure function of the coarse mesh and its **levels**. Levels live on tracing points or come
-//! from an error; an **edge** takes its level from its own two ends only, so that two patches
-//! beside it always agree, and any mixture of levels gives a closed mesh without cracks or
+//! A pure function of the coarse mesh and its **levels**. Levels are given for tracing points or
+//! follow from an error; an **edge** takes its level from its own two ends only, so that the two
+//! patches beside it always agree, and any mixture of levels gives a closed mesh without cracks or
 //! T-junctions. A patch is a grid as fine as its finest sides; on a coarser side the grid's outer
-//! row snaps to the edge's own vertices, and what becomes empty is left out.
+//! row snaps to the edge's own vertices, and triangles that become empty are left out.
 //!
 //! ```text
 //!   ┌──┬──┬──┬──┐   finer side, level 4
@@ -13,9 +13,9 @@
 //!   └─────┴─────┘   coarser side, level 2
 //! ```
 //!
-//! This is the reference for the shaders: plain arrays in, no allocation per patch. The shaders' own
-//! text lies beside each file under the same stem; [`gpu`] hands it out, with the resident form of a
-//! mesh that they read ([`pack`]).
+//! This is the reference for the shaders: plain arrays in, no allocation per patch. The WGSL twin
+//! of a file is beside it under the same stem; [`gpu`] provides the WGSL files, and [`pack`] the
+//! packed form of a mesh that they read.
 #![forbid(unsafe_code)]
 
 mod bounding_sphere;

@@ -2,32 +2,32 @@
 
 use glam::Vec3;
 
-/// By what the level of an edge is chosen.
+/// What decides on the level of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LodCriterion {
     /// The same level, 1 to 64, everywhere.
     Homogeneous(u32),
-    /// The level, 1 to 64, that each tracing point was given: [`Lod::point_levels`].
+    /// A level, 1 to 64, for each tracing point: [`Lod::point_levels`].
     PerPoint,
-    /// As fine as keeps the surface within this distance (µm) of the level-64 surface.
+    /// So fine that the surface is within this distance (µm) of the level-64 surface.
     MaxError(f32),
-    /// García-Cantero et al. 2017: `level × clamp(1 − d / far, 0, 1)`, d the distance (µm) to the eye,
-    /// the mean of an edge's two ends.
+    /// García-Cantero et al. 2017: `level × clamp(1 − d / far, 0, 1)` with the distance d (µm) to
+    /// the eye, as the mean of an edge's two ends.
     Distance {
         /// Level at the eye, 1 to 64.
         level: u32,
         /// Distance (µm) from which on the level is 1.
         far: f32,
     },
-    /// No piece of an edge longer than this many pixels.
+    /// So fine that no refined edge is longer than this many pixels.
     PixelSize(f32),
-    /// Within this many pixels of the level-64 surface.
+    /// So fine that the surface is within this many pixels of the level-64 surface.
     PixelError(f32),
 }
 
 impl Default for LodCriterion {
-    /// Half a pixel: what no one sees.
+    /// Half a pixel, which cannot be seen.
     fn default() -> Self {
         Self::PixelError(0.5)
     }
@@ -63,7 +63,7 @@ impl LodCriterion {
         }
     }
 
-    /// Whether levels depend on where one looks from: [`Lod::view`].
+    /// Whether levels depend on the view: [`Lod::view`].
     pub fn needs_view(self) -> bool {
         match self {
             Self::Distance { .. } | Self::PixelSize(_) | Self::PixelError(_) => true,
@@ -83,16 +83,16 @@ impl LodCriterion {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lod<'a> {
-    /// By what levels are chosen.
+    /// What decides on levels.
     pub criterion: LodCriterion,
-    /// From where, in the mesh's own coordinates; read where [`LodCriterion::needs_view`].
+    /// The view, in the mesh's own coordinates; used if [`LodCriterion::needs_view`].
     pub view: LodView,
-    /// A level, 1 to 64, per tracing point; read by [`LodCriterion::PerPoint`]. Missing ones are 1.
+    /// A level, 1 to 64, per tracing point; used by [`LodCriterion::PerPoint`]. Missing ones are 1.
     pub point_levels: &'a [u8],
 }
 
 impl<'a> Lod<'a> {
-    /// Levels by a criterion, seen from here.
+    /// Levels by a criterion, in this view.
     pub fn seen_from(criterion: LodCriterion, view: LodView) -> Self {
         Self {
             criterion,
@@ -117,7 +117,7 @@ impl From<LodCriterion> for Lod<'_> {
     }
 }
 
-/// What a level needs to know of a camera, in the mesh's own coordinates.
+/// What levels depend on of a camera, in the mesh's own coordinates.
 ///
 /// A pixel at depth z (µm along `forward` from `eye`, at least `near`) is `slope z + flat` µm wide:
 /// `flat` is 0 in perspective, `slope` 0 without.
@@ -131,17 +131,17 @@ pub struct LodView {
     pub slope: f32,
     /// Size (µm) of a pixel at depth 0.
     pub flat: f32,
-    /// Depth (µm) of the nearest thing seen.
+    /// Depth (µm) of the near plane.
     pub near: f32,
 }
 
-/// How the path runs between tracing points.
+/// The shape of the path between tracing points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Path {
     /// A cubic Hermite curve.
     #[default]
     Hermite,
-    /// Straight.
+    /// A straight line.
     Linear,
 }
 
@@ -155,13 +155,13 @@ pub enum Caps {
     Flat,
 }
 
-/// Choices of shape and output.
+/// Options of shape and output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RefineOptions {
-    /// Course of the path between tracing points.
+    /// Shape of the path between tracing points.
     pub path: Path,
     /// Shape of the ends.
     pub caps: Caps,
-    /// Quads where all four corners differ, instead of two triangles.
+    /// Whether cells with four different corners are quads instead of two triangles.
     pub quads: bool,
 }

@@ -1,4 +1,5 @@
-//! The resident form of a coarse mesh, written: what goes to the GPU once. Its layout: decode.rs.
+//! Packs a coarse mesh into the form that is uploaded to the GPU. Its layout is described in
+//! decode.rs.
 
 use neurotess_mesh::CoarseMesh;
 
@@ -7,13 +8,14 @@ use crate::packer::Packer;
 use crate::part::{MeshPart, PATCHES_OF_SPHERE};
 use crate::plan::patch_bends;
 
-/// Packs a mesh into parts of at most `most_patches` patches, counting those that stay empty.
-/// `color_keys`: one per tracing point for the renderer; `values`: one level per tracing point. Missing
-/// ones are 0 and 1.
+/// Packs a mesh into parts of at most `most_patches` slots for patches, some of which stay empty.
+/// `color_keys`: one per tracing point, for the renderer; `values`: one level per tracing point.
+/// Missing ones are 0 and 1.
 ///
 /// A soma has the color key of its first vertex. A part's points have at most 1,024 different color
-/// keys. Where all color keys below 2³¹ are numbers below 2²⁰, a mesh with more of them has more parts;
-/// else they are shares of a scale, and lose their lowest bits.
+/// keys. If no color key is from 2²⁰ to 2³¹, they are taken for indices, and a mesh with more
+/// different ones is cut into more parts; else they are taken for fractions of a scale, and lose
+/// their lowest bits.
 pub fn pack(
     mesh: &CoarseMesh,
     color_keys: &[u32],
@@ -31,7 +33,8 @@ pub fn pack(
     parts
 }
 
-/// Tells every sphere how much the edges of its patches bend, as shaders read them.
+/// Writes into every sphere how much the edges of its patches bend, with positions as shaders read
+/// them.
 fn write_bends(mesh: &CoarseMesh, parts: &mut [MeshPart]) {
     let bends = patch_bends(&dequantized(mesh, parts));
     for part in parts {
@@ -40,7 +43,7 @@ fn write_bends(mesh: &CoarseMesh, parts: &mut [MeshPart]) {
             let there = patches
                 .iter()
                 .filter_map(|&patch| bends.get(patch as usize));
-            // Devices round the last bits otherwise.
+            // A little more, since devices may round the last bits differently.
             let bend = there.copied().fold(0.0, f32::max) * 1.001 + 1e-12;
             part.packed[first + SPHERE_U32S * sphere + SPHERE_U32S - 1] = bend.to_bits();
         }

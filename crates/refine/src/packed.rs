@@ -1,4 +1,4 @@
-//! The packed buffer of a part, written. Their layout: decode.rs.
+//! Writes the packed buffer of a part. Its layout is described in decode.rs.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +30,7 @@ impl Packer<'_> {
         part
     }
 
-    /// Which patch is where, and the spheres around them.
+    /// Lists the patches in the order of their slots, and their bounding spheres.
     fn list_patches(&self, contents: &Contents, part: &mut MeshPart) {
         let Contents {
             slots,
@@ -61,7 +61,8 @@ impl Packer<'_> {
             }));
     }
 
-    /// Gives the point of every implicit ring by the ring's first vertex.
+    /// Writes points and bounding spheres. Returns the point of every implicit ring, by the ring's
+    /// first vertex.
     fn write_points(
         &self,
         contents: &Contents,
@@ -99,7 +100,7 @@ impl Packer<'_> {
         for &(center, radius) in &part.spheres {
             let sphere = center.extend(radius).to_array().map(f32::to_bits);
             part.packed.extend(sphere);
-            // How much edges bend is known when all is rounded: pack.rs.
+            // The bend of its edges: pack.rs fills it in, once all positions are rounded.
             part.packed.push(0);
         }
         point_of
@@ -209,9 +210,10 @@ impl Contents {
     }
 }
 
-/// Different color keys of a part's points.
+/// The different color keys of a part's points.
 struct ColorKeys {
     list: Vec<u32>,
+    /// Number of low bits that are set to 0, so that there are few enough different ones.
     dropped: u32,
 }
 
@@ -239,9 +241,10 @@ impl ColorKeys {
     }
 }
 
-/// What explicit vertices are relative to: their tracing points, one for all of a soma.
+/// Anchors, which explicit vertices are stored relative to: their tracing points, or the center of
+/// a soma.
 struct Anchors {
-    /// By key: index, tracing point and reach.
+    /// By key: index, tracing point and greatest coordinate of an offset (µm).
     all: BTreeMap<(u32, [u32; 3]), (u32, u32, f32)>,
 }
 

@@ -1,8 +1,8 @@
-//! What goes into which part of a packed mesh.
+//! Decides what goes into which part of a packed mesh.
 //!
-//! A mesh is cut into **parts** where it would not fit. Vertices that two parts or two runs share are
-//! explicit, and explicit vertices keep the mesh's order, so that both sides of every edge have the same bits
-//! and run along it in the same direction: no crack opens.
+//! A mesh that would not fit is cut into **parts**. Vertices that two parts or two runs share are
+//! explicit, and explicit vertices keep the mesh's order. So the two patches beside an edge have
+//! the same bits for it and evaluate it in the same direction: there are no cracks.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,15 +14,16 @@ use crate::decode::{ImplicitRing, POINTS_OF_SPHERE, accurate};
 use crate::part::{MOST_COLOR_KEYS, PATCHES_OF_SPHERE};
 use crate::runs::{Tube, find_runs, implicit_ring};
 
-/// Most explicit vertices of a part: their numbers have 15 bits.
+/// Most explicit vertices of a part: their indices have 15 bits.
 const MOST_EXPLICIT: usize = 1 << 15;
-/// Loose vertices whose numbers fit somata's patches: 12 bits.
+/// Patches of somata are stored with indices of 12 bits: they reach this many explicit vertices.
 const FEW_EXPLICIT: usize = 1 << 12;
 
-/// Color keys below are taken for numbers if all are.
+/// If all color keys below 2³¹ are also below this, they are taken for indices: see
+/// [`crate::pack()`].
 const MOST_NUMBERS: u32 = 1 << 20;
 
-/// What goes into one part.
+/// Runs and other patches that go into one part, by index.
 #[derive(Default)]
 pub(crate) struct Pile {
     runs: Vec<usize>,
@@ -35,15 +36,16 @@ pub(crate) struct Packer<'m> {
     values: &'m [u8],
     pub(crate) runs: Vec<Tube>,
     pub(crate) others: Vec<usize>,
-    /// By vertex.
+    /// By vertex: whether it is explicit.
     pub(crate) explicit: Vec<bool>,
 }
 
 impl<'m> Packer<'m> {
-    /// As yet no vertex is explicit.
+    /// Finds the runs of a mesh; no vertex is explicit yet.
     pub(crate) fn new(mesh: &'m CoarseMesh, color_keys: &'m [u32], values: &'m [u8]) -> Self {
         let (mut runs, others) = find_runs(mesh);
-        // Runs that are near one another share a sphere: it is small, and its points are accurate.
+        // Runs that are near one another share a sphere, which is then small, so that centers are
+        // accurate.
         let middle = |run: &Tube| {
             let ring = run.rings[run.rings.len() / 2];
             mesh.tracing[mesh.vertices[ring[0] as usize].tracing as usize].center
@@ -116,7 +118,7 @@ impl<'m> Packer<'m> {
                 piles[pile].others.push(other);
             }
         }
-        // A cap of an implicit ring goes where its ring is.
+        // The cap of an implicit ring goes into the part of its ring.
         let mut owner = BTreeMap::new();
         for (p, pile) in piles.iter().enumerate() {
             for &run in &pile.runs {
@@ -139,7 +141,7 @@ impl<'m> Packer<'m> {
         piles
     }
 
-    /// The rings of a pile, one after the other, with the patches that lead on.
+    /// The rings of a pile, one after the other, with the patches from each to the next.
     pub(crate) fn rings(&self, pile: &Pile) -> Vec<Slot> {
         let mut slots = Vec::new();
         for run in pile.runs.iter().map(|&run| &self.runs[run]) {
@@ -164,8 +166,8 @@ impl<'m> Packer<'m> {
         slots
     }
 
-    /// Whether a run had better begin with a sphere of its own: a place left empty costs a fifth of what a
-    /// ring costs that is explicit because its sphere is too large.
+    /// Whether a run should begin with a sphere of its own: an empty slot takes a fifth of the
+    /// memory of a ring that is explicit because its sphere is too large.
     fn strays(&self, slots: &[Slot], run: &Tube) -> bool {
         let begun = slots.len() % POINTS_OF_SPHERE;
         if begun == 0 {
@@ -197,7 +199,7 @@ impl<'m> Packer<'m> {
         widened(sphere_around(patches.chain(centers)))
     }
 
-    /// What goes into the part of a pile.
+    /// The contents of the part that a pile becomes.
     pub(crate) fn contents(&self, pile: &Pile) -> Contents {
         let slots = self.rings(pile);
         let (others, caps): (Vec<usize>, Vec<usize>) = pile
@@ -238,7 +240,8 @@ impl<'m> Packer<'m> {
         self.color_keys.get(tracing as usize).copied().unwrap_or(0)
     }
 
-    /// Whether color keys are numbers, of which no bit may be lost, and not shares of a scale.
+    /// Whether color keys are indices, which must keep all their bits, and not fractions of a
+    /// scale.
     fn has_numbers(&self) -> bool {
         let mut color_keys = self.color_keys.iter();
         color_keys.all(|key| !(MOST_NUMBERS..1 << 31).contains(key))
@@ -250,14 +253,14 @@ impl<'m> Packer<'m> {
     }
 }
 
-/// Place for a point: its ring, and the first of the patches that lead on.
+/// Room for a point: its ring, and the first of the four patches to the next point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Slot {
     pub(crate) ring: Option<[u32; 4]>,
     pub(crate) patch: Option<usize>,
 }
 
-/// What goes into one part, in its order: patches by index, explicit vertices sorted.
+/// The contents of one part, in order: patches by index, explicit vertices sorted.
 pub(crate) struct Contents {
     pub(crate) slots: Vec<Slot>,
     pub(crate) explicit: Vec<u32>,
@@ -266,7 +269,8 @@ pub(crate) struct Contents {
     pub(crate) caps: Vec<usize>,
 }
 
-/// First vertex of the ring that a cap closes, and whether it runs the other way round.
+/// First vertex of the ring that a cap closes, and whether the cap has the ring's vertices in
+/// reverse order.
 pub(crate) fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
     let first = corners.into_iter().min()?;
     let forwards = [0, 1, 2, 3].map(|k| first + k);
@@ -278,7 +282,8 @@ pub(crate) fn cap_ring(corners: [u32; 4]) -> Option<(u32, bool)> {
     }
 }
 
-/// Place on a curve that keeps near what is near: the bits of three coordinates from 0 to 1, in turns.
+/// Morton code of a point with coordinates from 0 to 1: their bits interleaved. Close points have
+/// close codes.
 fn morton(p: Vec3) -> u32 {
     let spread = |c: f32| {
         let bits = (c.clamp(0.0, 1.0) * 1023.0) as u32;
@@ -287,7 +292,7 @@ fn morton(p: Vec3) -> u32 {
     spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2)
 }
 
-/// Room for what rounding moves.
+/// A sphere that is a little larger, since rounding moves points.
 pub(crate) fn widened((center, radius): (Vec3, f32)) -> (Vec3, f32) {
     (center, radius * 1.01 + 1e-6)
 }

@@ -1,13 +1,13 @@
-//! A part of a packed mesh: what is resident, and where what lies in it.
+//! A part of a packed mesh: its packed buffer, and where the arrays begin in it.
 
 use glam::Vec3;
 use neurotess_mesh::TracingPoint;
 
 use crate::decode::POINTS_OF_SPHERE;
 
-/// Patches that a bounding sphere is for.
+/// Number of patches that share a bounding sphere.
 pub const PATCHES_OF_SPHERE: usize = 4 * POINTS_OF_SPHERE;
-/// Most different color keys of a part's points: their numbers have 10 bits.
+/// Most different color keys of a part's points: their indices have 10 bits.
 pub(crate) const MOST_COLOR_KEYS: usize = 1 << 10;
 
 /// Where the arrays of a part begin in its packed buffer, in u32s, and how many there are.
@@ -37,27 +37,27 @@ pub struct PartLayout {
     pub color_keys: u32,
 }
 
-/// A piece of a coarse mesh that fits a device.
+/// A part of a coarse mesh, small enough for a device to bind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshPart {
-    /// All that is resident.
+    /// The buffer to be uploaded.
     pub packed: Vec<u32>,
     /// Where its arrays begin.
     pub layout: PartLayout,
-    /// By place: the mesh's patch, or `u32::MAX` where there is none.
+    /// By slot: index of the mesh's patch, or `u32::MAX` if the slot is empty.
     pub patches: Vec<u32>,
-    /// By number: the mesh's vertex that is explicit.
+    /// By explicit vertex: index of the mesh's vertex.
     pub explicit: Vec<u32>,
-    /// Bounding sphere around each [`PATCHES_OF_SPHERE`] patches, at any level (µm).
+    /// Bounding sphere (µm) of each [`PATCHES_OF_SPHERE`] slots, at any level.
     pub spheres: Vec<(Vec3, f32)>,
-    /// By vertex of the mesh that is in this part: position and normal as shaders read them.
+    /// Vertices of the mesh in this part: index, and position and normal as shaders read them.
     pub(crate) vertices: Vec<(u32, Vec3, Vec3)>,
-    /// Tracing points as shaders read them.
+    /// Tracing points in this part: index, and the point as shaders read it.
     pub(crate) tracing: Vec<(u32, TracingPoint)>,
 }
 
 impl MeshPart {
-    /// Bytes by the name of what they hold.
+    /// Bytes of each array, by its name.
     pub fn bytes(&self) -> Vec<(&'static str, u64)> {
         let p = &self.layout;
         let names = [

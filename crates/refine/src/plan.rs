@@ -1,8 +1,8 @@
-//! Which vertex is where: edges with their levels, and the numbers of all refined vertices.
+//! The plan of a refinement: edges with their levels, and the numbers of all refined vertices.
 //!
-//! Vertices are numbered so: the coarse mesh's own, then the inner ones of every edge in the edge's
-//! direction, then the inner ones of every patch row by row. Memory is for the coarse mesh only,
-//! whatever the level.
+//! The vertices of the coarse mesh come first, then the inner ones of every edge in the edge's
+//! direction, then the inner ones of every patch row by row. Memory grows with the coarse mesh
+//! only, not with the level.
 
 use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
 
@@ -13,7 +13,8 @@ use crate::{Caps, Lod, Path, RefineOptions};
 /// An edge of the coarse mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
-    /// Where it starts and ends in its own direction: along the path, else from the lower index.
+    /// The vertices where it starts and ends: along the path, or from the lower index to the
+    /// higher.
     pub(crate) from: u32,
     pub(crate) to: u32,
     pub(crate) kind: EdgeKind,
@@ -22,7 +23,7 @@ pub(crate) struct Edge {
     pub(crate) first: u32,
 }
 
-/// All edges, and where patches find theirs and their inner vertices.
+/// All edges, and the edges and inner vertices of each patch.
 pub(crate) struct Plan {
     pub(crate) edges: Vec<Edge>,
     pub(crate) patch_edges: Vec<[u32; 4]>,
@@ -32,7 +33,7 @@ pub(crate) struct Plan {
     pub(crate) quads: usize,
 }
 
-/// The grid of a patch: cells and the levels of its four sides.
+/// The grid of a patch: its columns and rows of cells, and the levels of its four sides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
     pub(crate) nx: u32,
@@ -81,8 +82,8 @@ impl Plan {
         Grid::new(mesh.patches[patch].kind, options.caps, levels)
     }
 
-    /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those of
-    /// its edge: where the edge has fewer, several columns share one.
+    /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those
+    /// of its edge: where the edge has fewer, several columns share one.
     pub(crate) fn vertex(
         &self,
         corners: [u32; 4],
@@ -140,7 +141,8 @@ impl Plan {
         for j in 0..grid.ny {
             for i in 0..grid.nx {
                 let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                // Diagonals run towards the patch's corners on round patches, else all one way.
+                // Diagonals run towards the patch's corners on round patches, and are parallel on
+                // others.
                 let falling = fans && ((2 * i < grid.nx) != (2 * j < grid.ny));
                 cell(quad, falling, options.quads, out);
             }
@@ -148,8 +150,8 @@ impl Plan {
     }
 }
 
-/// Place on an edge of `level` parts that is nearest to place i of n; every place is hit if
-/// level ≤ n.
+/// The vertex of an edge of `level` parts that is nearest to vertex i of n parts. If level ≤ n,
+/// every vertex of the edge is the nearest of some i.
 fn snap(i: u32, n: u32, level: u32) -> u32 {
     (2 * i * level + n) / (2 * n)
 }
@@ -180,7 +182,7 @@ pub(crate) fn patch_bends(mesh: &CoarseMesh) -> Vec<f32> {
         .iter()
         .map(|edge| {
             let [a, b] = [edge.from, edge.to].map(|v| Corner::new(mesh, v));
-            // A straight path bends less.
+            // A bound for both paths, since the straight one bends less.
             let bend = bend(Path::Hermite, edge.kind, &a, &b);
             if bend.is_nan() { f32::INFINITY } else { bend }
         })
@@ -206,7 +208,8 @@ impl Grid {
         Self { nx, ny, levels }
     }
 
-    /// Triangles and quads. Every step of a side that snapping makes empty takes one triangle away.
+    /// Numbers of triangles and quads. Every step of a side that snapping makes empty takes one
+    /// triangle away.
     pub(crate) fn face_counts(&self, quads: bool) -> (usize, usize) {
         let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);
         let empty: usize = self
@@ -236,8 +239,8 @@ impl Grid {
     }
 }
 
-/// Numbers the edges and lists those of every patch, by counting half-edges per lower vertex: no
-/// hashing, no sorting beyond a vertex's own few.
+/// Finds the edges, and those of every patch. Counts half-edges by their lower vertex: this needs
+/// no hashing, and sorts only the few edges of each vertex.
 fn find_edges(mesh: &CoarseMesh) -> (Vec<Edge>, Vec<[u32; 4]>) {
     let ends = |patch: usize, side: usize| {
         let corners = mesh.patches[patch].corners;

@@ -1,8 +1,9 @@
-// Which vertex is where in a patch's grid.
+// The grid of a patch and its vertices.
 //
-// Called by everything that evaluates patches. Rust twin: plan.rs; where that numbers the vertices of
-// the whole surface, this evaluates one vertex of one patch's grid, which is the same point. Its corners
-// come from a CornerSource: the resident data (corner_source.wgsl), or what a renderer made of them.
+// Imported by all shaders that evaluate patches. Rust twin: plan.rs; that numbers the vertices of
+// the whole surface, while this evaluates one vertex of one patch's grid, which is the same point.
+// Corners come from a CornerSource: the packed mesh (corner_source.wgsl), or corners that a
+// renderer has computed.
 
 #import level.wgsl
 #import template.wgsl
@@ -66,7 +67,7 @@ fn patch_side(base: Base, p: Patch, index: u32) -> Side {
     return Side(end, start, kind, true);
 }
 
-// Levels of the four sides. A loop, so that one piece of code decides for both faces of an edge.
+// Levels of the four sides. A loop, so that the same code decides for both patches beside an edge.
 fn side_levels(base: Base, p: Patch, levels: LodCriterion, view: LodView) -> vec4<u32> {
     var found = vec4<u32>(1u);
     for (var index = 0u; index < 4u; index += 1u) {
@@ -97,8 +98,8 @@ fn patch_grid(kind: u32, caps: u32, levels: vec4<u32>) -> Grid {
     return Grid(nx, ny);
 }
 
-// Place on an edge of `level` parts that is nearest to place i of n; every place is hit if
-// level <= n.
+// The vertex of an edge of `level` parts that is nearest to vertex i of n parts. If level <= n,
+// every vertex of the edge is the nearest of some i.
 fn snap(i: u32, n: u32, level: u32) -> u32 {
     return (2u * i * level + n) / (2u * n);
 }

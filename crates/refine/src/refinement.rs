@@ -1,4 +1,4 @@
-//! The refined surface, made block by block from the coarse mesh.
+//! The refined surface, evaluated block by block from the coarse mesh.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +10,8 @@ use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
 use crate::plan::{Edge, Grid, Plan};
 use crate::{Lod, RefineOptions};
 
-/// A coarse mesh with levels. Holds no refined vertex: a [`Surface`] whose blocks are evaluated when
-/// they are asked for, so memory does not grow with the level.
+/// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are
+/// evaluated when they are read, so that memory does not grow with the level.
 pub struct Refinement<'m> {
     mesh: &'m CoarseMesh,
     options: RefineOptions,
@@ -35,7 +35,7 @@ impl<'m> Refinement<'m> {
 
     /// Number of edges of the refined surface.
     pub fn edge_count(&self) -> usize {
-        // Closed: every edge has two faces.
+        // The mesh is closed: every edge has two faces.
         (3 * self.plan.triangles + 4 * self.plan.quads) / 2
     }
 
@@ -48,16 +48,16 @@ impl<'m> Refinement<'m> {
         histogram
     }
 
-    /// Number of faces of one patch; those of all patches follow one another in the patches' order,
-    /// triangles and quads apart.
+    /// Number of faces of one patch. The surface has them in the order of patches, triangles and
+    /// quads in separate lists.
     pub fn patch_face_count(&self, patch: usize) -> usize {
         let grid = self.plan.grid(self.mesh, &self.options, patch);
         let (triangles, quads) = grid.face_counts(self.options.quads);
         triangles + quads
     }
 
-    /// Levels of the four sides of a patch: those along x at y = 0 and 1 are the first and third,
-    /// those along y at x = 1 and 0 the second and fourth.
+    /// Levels of the four sides of a patch: the first and third are the sides along x at y = 0 and
+    /// 1, the second and fourth those along y at x = 1 and 0.
     pub fn patch_levels(&self, patch: usize) -> [u32; 4] {
         self.plan.patch_edges[patch].map(|e| u32::from(self.plan.edges[e as usize].level))
     }
@@ -68,8 +68,8 @@ impl<'m> Refinement<'m> {
         (grid.nx, grid.ny)
     }
 
-    /// The vertex at column i and row j of a patch's grid: one of the surface's, those on the sides
-    /// perhaps several times. What the GPU makes must equal this.
+    /// The vertex at column i and row j of a patch's grid. On a coarser side several columns or
+    /// rows have the same vertex. The GPU must compute the same.
     pub fn grid_vertex(&self, patch: usize, i: u32, j: u32) -> SurfaceVertex {
         let corners = self.mesh.patches[patch].corners;
         let grid = self.plan.grid(self.mesh, &self.options, patch);
@@ -90,7 +90,8 @@ impl<'m> Refinement<'m> {
         found.unwrap_or_else(|| self.coarse_vertex(index as usize))
     }
 
-    /// Volume (µm³) and area (µm²) of the refined surface; evaluates all of it, on all cores.
+    /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
+    /// cores.
     pub fn volume_and_area(&self) -> (f64, f64) {
         let center = self
             .mesh
@@ -244,7 +245,8 @@ impl<'m> Refinement<'m> {
     }
 }
 
-/// A soma's edges belong to the soma up to the neurite's ring, so that colors change there.
+/// The tracing point of a vertex on an edge. A soma's edges belong to the soma as far as the
+/// neurite's ring, so that the color changes there.
 fn on_soma<'t>(
     kind: EdgeKind,
     ends: [&'t TracingPoint; 2],

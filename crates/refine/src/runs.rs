@@ -1,4 +1,5 @@
-//! Runs of rings in a coarse mesh, and which rings are circles that a point alone describes.
+//! Runs of rings in a coarse mesh, and which rings are circles that can be computed from their
+//! points.
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
@@ -7,10 +8,11 @@ use crate::decode::{ImplicitRing, to_octahedral, to_radius, to_slope, to_turn};
 
 /// Most segments of a run; longer ones are cut.
 const MOST_SEGMENTS: usize = 1 << 14;
-/// Farthest, in radii, that a derived corner may lie from the mesh's own, the center's error aside.
+/// Greatest distance, in radii, of a computed corner from the mesh's own, apart from the center's
+/// error.
 const MOST_APART: f32 = 0.0095;
 
-/// Rings that lateral patches lead along, four patches from each to the next.
+/// A run: rings in a row, with four lateral patches from each to the next.
 #[derive(Clone, Debug)]
 pub(crate) struct Tube {
     pub(crate) first_patch: usize,

@@ -1,7 +1,8 @@
-// What is resident of a coarse mesh, and how a patch and its corners are found in it.
+// Reads a packed coarse mesh: patches, their corners, and their attributes.
 //
-// Called by everything that evaluates patches. This is the only file that knows the layout: another
-// layout is another file with the same functions. Rust twin: decode.rs; pack.rs writes it.
+// Imported by all shaders that evaluate patches. This is the only WGSL file that knows the layout:
+// for another layout, write another file with the same functions. Rust twin: decode.rs; packed.rs
+// writes it.
 
 #import evaluate.wgsl
 
@@ -27,8 +28,8 @@ struct Base {
     color_keys: u32,
 }
 
-// A patch by its kind and the vertices at its corners. A vertex is a corner of a point's own ring,
-// four times the point plus the corner, or, with EXPLICIT, an explicit vertex.
+// A patch by its kind and the vertices at its corners. A vertex is four times the index of a point
+// plus the corner of its implicit ring; or, with the bit EXPLICIT, the index of an explicit vertex.
 struct Patch {
     kind: u32,
     corners: vec4<u32>,
@@ -41,7 +42,7 @@ fn packed_point(base: Base, point: u32) -> vec4<u32> {
     return vec4<u32>(packed[at], packed[at + 1u], packed[at + 2u], packed[at + 3u]);
 }
 
-// Vertices of the ring at a point, four of them.
+// The four vertices of the ring at a point.
 fn ring_of(point: u32, point_bits: vec4<u32>) -> vec4<u32> {
     if ((point_bits.y >> POINT_KIND_SHIFT) == POINT_EXPLICIT) {
         return vec4<u32>(point_bits.x & 0xffffu, point_bits.x >> 16u, point_bits.z & 0xffffu, point_bits.z >> 16u)
@@ -50,7 +51,7 @@ fn ring_of(point: u32, point_bits: vec4<u32>) -> vec4<u32> {
     return vec4<u32>(4u * point) + vec4<u32>(0u, 1u, 2u, 3u);
 }
 
-// Whether a patch is part of a tube between two points with rings of their own.
+// Whether a patch is part of a tube between two points with implicit rings.
 fn patch_is_tube(base: Base, index: u32) -> bool {
     let point = index / 4u;
     if (point >= base.point_count) {
@@ -61,7 +62,7 @@ fn patch_is_tube(base: Base, index: u32) -> bool {
         && (packed[at + 4u] >> POINT_KIND_SHIFT) != POINT_EXPLICIT;
 }
 
-// Whether there is a patch at a place: a run's last point has none after it.
+// Whether there is a patch with this index: after the last point of a run there is none.
 fn patch_exists(base: Base, index: u32) -> bool {
     let point = index / 4u;
     return point >= base.point_count || (packed[base.points + 4u * point + 1u] & POINT_GOES_ON) != 0u;
@@ -105,8 +106,8 @@ fn patch_at(base: Base, index: u32) -> Patch {
     return Patch(PATCH_CAP, vec4<u32>(first) + vec4<u32>(0u, 1u, 2u, 3u));
 }
 
-// Unit vector from its place on an octahedron (Meyer et al., On floating-point normal vectors, 2010),
-// each coordinate one of `most` + 1 steps from -1 to 1.
+// Unit vector from octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010),
+// each of which is one of `most` + 1 steps from -1 to 1.
 fn octahedral(x: u32, y: u32, most: f32) -> vec3<f32> {
     let px = f32(x) * (2.0 / most) - 1.0;
     let py = f32(y) * (2.0 / most) - 1.0;
@@ -140,7 +141,8 @@ fn point_radius(point_bits: vec4<u32>) -> f32 {
     return bitcast<f32>(((point_bits.z & 0xffffu) + RADIUS_BASE) << 12u);
 }
 
-// Corner k of the ring at a point, relative to the center: a quarter turn about the tangent each.
+// Unit direction from a ring's center to its corner k: corners are a quarter turn about the tangent
+// apart.
 fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     // Duff et al., Building an orthonormal basis, revisited, 2017.
     let sign = select(-1.0, 1.0, tangent.z >= 0.0);
@@ -148,7 +150,8 @@ fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     let b = tangent.x * tangent.y * a;
     let u = vec3<f32>(1.0 + sign * tangent.x * tangent.x * a, sign * b, -sign * tangent.x);
     let v = vec3<f32>(b, sign + tangent.y * tangent.y * a, -tangent.y);
-    // cos and sin of the angle whose quarter turns are `turn` / 256, by the tangent of its half.
+    // The upper bits of `turn` count quarter turns; the lower eight are the tangent of half the
+    // remaining angle, from which its cosine and sine follow.
     let t = f32(turn & 0xffu) / 256.0;
     let scale = 1.0 / (1.0 + t * t);
     let c = (1.0 - t * t) * scale;
@@ -169,7 +172,7 @@ fn ring_direction(tangent: vec3<f32>, turn: u32, k: u32) -> vec3<f32> {
     }
 }
 
-// A point with a ring of its own.
+// A point with an implicit ring.
 struct ImplicitRing {
     center: vec3<f32>,
     radius: f32,
@@ -179,8 +182,8 @@ struct ImplicitRing {
     role: u32,
 }
 
-// How fast the radius of a point with a ring of its own grows, as five bits: the root, and whether it
-// narrows.
+// The slope of the radius along the path at a point with an implicit ring, as five bits: the square
+// root of its absolute value, and whether the tube narrows.
 fn slope_bits(point_bits: vec4<u32>) -> u32 {
     return ((point_bits.w >> 18u) & 0xfu) | select(0u, 16u, (point_bits.y & POINT_NARROWS) != 0u);
 }
@@ -228,7 +231,7 @@ fn anchor_of(base: Base, vertex: u32) -> u32 {
     return base.anchors + 8u * (packed[base.explicit_vertices + 3u * (vertex & ~EXPLICIT) + 1u] >> 16u);
 }
 
-// A number of 16 bits from -1 to 1.
+// A number from -1 to 1, stored in 16 bits.
 fn signed16(bits: u32) -> f32 {
     return f32(bits & 0xffffu) * (2.0 / 65535.0) - 1.0;
 }
@@ -289,7 +292,7 @@ fn corner(base: Base, vertex: u32) -> Corner {
     return own_corner(base, vertex);
 }
 
-// What tells tracing points apart.
+// A number that is different for different tracing points.
 fn tracing_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
         return anchor_of(base, vertex) | EXPLICIT;
@@ -305,7 +308,7 @@ fn role_of(base: Base, vertex: u32) -> u32 {
     return select(ROLE_ORDINARY, ROLE_END, kind == POINT_END);
 }
 
-// The user's level at a vertex.
+// The level at a vertex, for LEVELS_PER_POINT.
 fn value_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
         return packed[base.explicit_vertices + 3u * (vertex & ~EXPLICIT) + 2u] >> 24u;
@@ -318,7 +321,7 @@ fn point_color_key(base: Base, point_bits: vec4<u32>) -> u32 {
     return packed[base.color_keys + (point_bits.w >> 22u)];
 }
 
-// What the renderer put beside a vertex's tracing point: its color.
+// The color key of a vertex's tracing point.
 fn color_key_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
         return packed[anchor_of(base, vertex) + 7u];

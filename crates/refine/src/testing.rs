@@ -1,4 +1,5 @@
-//! For tests of shaders: parses one, validates it, and writes it in every language that wgpu may need.
+//! For tests of shaders: parses and validates them, and translates them into all languages that
+//! wgpu may need.
 
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -8,11 +9,11 @@ use crate::wgsl::Shader;
 
 pub use naga;
 
-/// The module, after it went through SPIR-V (Vulkan), MSL (Metal), HLSL (DirectX 12) and GLSL ES 3.2, and
-/// what the validator found out about it.
+/// Parses a shader and translates it into SPIR-V (Vulkan), MSL (Metal), HLSL (DirectX 12) and GLSL
+/// ES 3.2. Returns the module and the validator's information about it.
 ///
 /// # Panics
-/// With file and line, if the shader is not valid in one of them.
+/// With file and line, if the shader is not valid in one of these languages.
 pub fn check(shader: &Shader) -> (Module, ModuleInfo) {
     let Shader { name, text, .. } = shader;
     let module = match naga::front::wgsl::parse_str(text) {

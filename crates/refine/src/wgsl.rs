@@ -1,15 +1,17 @@
 //! Shaders from files that import one another.
 //!
-//! **Theory.** WGSL has no modules and no preprocessor. A file may begin with `#import other.wgsl`, which
-//! brings that file in once, and lines between `#ifdef NAME`, `#else` and `#endif` are kept by [`Constants`].
-//! Numbers that Rust knows come from there too, so that none is written twice.
+//! **Theory.** WGSL has no modules and no preprocessor. Here a file may begin with `#import
+//! other.wgsl`, which adds that file once, before it; and lines between `#ifdef NAME`, `#else` and
+//! `#endif` are kept or left out by the flags in [`Constants`]. Numbers that Rust knows are defined
+//! there too, so that none is written twice.
 //!
-//! **Practice.** [`compose`] makes one text of all that a shader needs, with blank lines where a directive
-//! was, and knows the file and line that each line came from: [`Shader::explain`] puts them into what a
-//! compiler says of `wgsl:1234:5`.
+//! **Practice.** [`compose`] makes one text of all files that a shader needs, with blank lines in
+//! place of directives, and keeps the file and line that each line comes from: in a compiler's
+//! message, [`Shader::explain`] replaces `wgsl:1234:5` by them.
 //!
-//! Why not naga_oil? It mangles names and parses each module by itself, for which every seam between our
-//! files (a source of vertices that the shading does not know) would need a stand-in.
+//! Why not naga_oil? It mangles names and parses each module by itself: a file that calls functions
+//! which another one defines, as the shading calls those of a vertex source, would need stand-ins
+//! for them.
 
 use std::collections::BTreeSet;
 use std::fmt::{self, Write};
@@ -17,9 +19,9 @@ use std::fmt::{self, Write};
 /// A file of WGSL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WgslFile {
-    /// The name that imports have it by, such as `evaluate.wgsl`.
+    /// The name that it is imported by, such as `evaluate.wgsl`.
     pub name: &'static str,
-    /// What it says.
+    /// Its text.
     pub text: &'static str,
 }
 
@@ -58,18 +60,18 @@ impl Constants {
         self.line(format_args!("const {name} = array<u32, {count}>({list});"));
     }
 
-    /// Keeps what stands between `#ifdef name` and `#endif`.
+    /// Keeps the lines between `#ifdef name` and `#endif`.
     pub fn flag(&mut self, name: &'static str) {
         self.flags.insert(name);
     }
 
-    /// Adds those of another.
+    /// Adds the constants and flags of another.
     pub fn extend(&mut self, other: &Self) {
         self.text.push_str(&other.text);
         self.flags.extend(&other.flags);
     }
 
-    /// Whether all those of another are among these.
+    /// Whether all constants and flags of another are among these.
     pub fn contains(&self, other: &Self) -> bool {
         let mut lines = other.text.lines();
         lines.all(|line| self.text.lines().any(|ours| ours == line))
@@ -82,12 +84,12 @@ impl Constants {
     }
 }
 
-/// What a shader is made of.
+/// What a shader is composed of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShaderParts {
-    /// Files in their order; those that they import need not be here.
+    /// Files in their order, without those that they import.
     pub files: Vec<WgslFile>,
-    /// What Rust defines.
+    /// Constants and flags that Rust defines.
     pub constants: Constants,
 }
 
@@ -104,31 +106,31 @@ impl ShaderParts {
 /// A composed shader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shader {
-    /// What it is called in errors.
+    /// Its name in errors.
     pub name: &'static str,
-    /// WGSL.
+    /// The composed WGSL.
     pub text: String,
-    /// By file: its first line in the text, from 0 on.
+    /// Files, each with its first line in the text, from 0 on.
     starts: Vec<(&'static str, usize)>,
 }
 
-/// Where the constants are, in errors.
+/// Name of the constants in errors, in place of a file's.
 const CONSTANTS: &str = "constants";
 
-/// One text of all parts and what they import, each file once. `libraries` are where imports are looked up,
-/// and the parts themselves.
+/// Composes a shader of parts and all that they import, each file once. Imports are looked up in
+/// `libraries` and among the parts themselves.
 ///
 /// # Panics
-/// If an import is nowhere, or an `#ifdef` is not closed: bugs of ours.
+/// If an imported file does not exist, or an `#ifdef` is not closed: bugs in our shaders.
 pub fn compose(name: &'static str, parts: &ShaderParts, libraries: &[&[WgslFile]]) -> Shader {
     let mut shader = Shader {
         name,
         text: parts.constants.text.clone(),
         starts: vec![(CONSTANTS, 0)],
     };
-    let known = |wanted: &str| {
+    let known = |name: &str| {
         let all = libraries.iter().copied().flatten().chain(&parts.files);
-        all.copied().find(|file| file.name == wanted)
+        all.copied().find(|file| file.name == name)
     };
     let mut done = BTreeSet::new();
     for &file in &parts.files {
@@ -137,7 +139,7 @@ pub fn compose(name: &'static str, parts: &ShaderParts, libraries: &[&[WgslFile]
     shader
 }
 
-/// Adds a file after what it imports.
+/// Adds a file after those that it imports.
 fn add(
     shader: &mut Shader,
     file: WgslFile,
@@ -187,7 +189,7 @@ fn add(
 }
 
 impl Shader {
-    /// File and line, from 1 on, of a line of the text, from 1 on.
+    /// File and line (from 1 on) that a line of the text (from 1 on) comes from.
     pub fn origin(&self, line: usize) -> (&'static str, usize) {
         let at = line.saturating_sub(1);
         let next = self.starts.partition_point(|&(_, start)| start <= at);
@@ -195,7 +197,7 @@ impl Shader {
         (file, at - start + 1)
     }
 
-    /// What a compiler says, with `FILE:LINE:COLUMN` in place of `wgsl:LINE:COLUMN`.
+    /// A compiler's message with `FILE:LINE:COLUMN` in place of `wgsl:LINE:COLUMN`.
     pub fn explain(&self, message: &str) -> String {
         let mut parts = message.split("wgsl:");
         let mut explained = parts.next().unwrap_or_default().to_owned();
@@ -203,7 +205,7 @@ impl Shader {
             let digits = part
                 .find(|c: char| !c.is_ascii_digit())
                 .unwrap_or(part.len());
-            // `other.wgsl:3` has been explained already.
+            // `other.wgsl:3` names its file already.
             let named = explained.ends_with(|c: char| c.is_alphanumeric() || c == '.');
             match part[..digits].parse() {
                 Ok(line) if !named => {

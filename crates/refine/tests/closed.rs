@@ -88,8 +88,8 @@ proptest! {
     }
 }
 
-/// Sections of one or two points that branch wherever they like: forks of any number of branches, many
-/// of them crowded, beside one another.
+/// Sections of one or two points that branch wherever they like: forks of any number of branches,
+/// many of them crowded, beside one another.
 fn bush() -> impl Strategy<Value = Vec<Twig>> {
     let shoot = (
         0..60_usize,
@@ -125,7 +125,8 @@ proptest! {
     }
 }
 
-/// As many branches, or stems, as nobody has: one closed piece all the same, with nothing left behind.
+/// As many branches, or stems, as nobody has: one closed piece all the same, with nothing left
+/// behind.
 #[test]
 fn a_crowd_of_branches_is_one_closed_piece() {
     for (count, soma) in [

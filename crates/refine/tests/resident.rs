@@ -1,5 +1,5 @@
-//! The resident form holds every patch once, rounded by less than a hundredth of the radius, closed, in
-//! few bytes.
+//! The resident form holds every patch once, rounded by less than a hundredth of the radius,
+//! closed, in few bytes.
 mod common;
 
 use common::{Twig, assert_closed, grow};

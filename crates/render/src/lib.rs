@@ -1,11 +1,13 @@
 //! Pictures of coarse meshes on the GPU, without a window.
 //!
-//! A [`Gpu`] is an open device. A **camera** ([`Camera`]) is where one looks from. A **source**
-//! ([`VertexSource`]) makes vertices and decides how many: [`Adaptive`] refines a [`Scene`] as it is
-//! drawn, [`Prerefined`] keeps a refined surface in memory. A **color key** per tracing point says its
-//! color, which a [`ColorTable`](color::ColorTable) knows. [`render_still`] draws a picture of any size, tile by tile, and
-//! hands it over in **bands**; an [`Overlay`](overlay::Overlay) lays legend and scale bar over them, a [`PngWriter`]
-//! writes them.
+//! A [`Gpu`] is an open device. A **camera** ([`Camera`]) has a position, a direction and a field
+//! of view. A **vertex source** ([`VertexSource`]) makes vertices and selects how many:
+//! [`Adaptive`] refines a [`Scene`] as it is drawn, [`Prerefined`] keeps a refined surface in
+//! memory, and [`Exploration`] draws within a number of triangles. Each tracing point has a **color
+//! key**, and a [`ColorTable`](color::ColorTable) has their colors. [`render_still`] draws a
+//! picture of any size, tile by tile, and hands it over in **bands** of rows; an
+//! [`Overlay`](overlay::Overlay) draws legend and scale bar over them, and a [`PngWriter`] writes
+//! them to a file.
 //!
 //! ```text
 //! source: levels, vertices ─▶ shade.wgsl: light, lines, wireframe ─▶ occlusion.wgsl ─▶ finish.wgsl: bytes
@@ -22,7 +24,7 @@ mod view;
 #[cfg(test)]
 mod shader_tests;
 
-/// Which adapter draws: by name, and what we ask of it.
+/// Adapters: their names, how one is selected, and what a device needs.
 pub mod adapter {
     pub use crate::gpu::device::{
         ADAPTER_VARIABLE, AdapterName, adapters, device_descriptor, optional_features,
@@ -30,7 +32,7 @@ pub mod adapter {
     };
 }
 
-/// Bounding spheres of meshes, and what shows of them.
+/// Bounding spheres of meshes, and whether they are in view.
 pub mod bounds {
     pub use crate::view::bounds::{any_shows, bounds, merged};
     pub use crate::view::frustum::shows;
@@ -49,13 +51,13 @@ pub mod outline {
     pub use crate::shading::present::{HOVERED, Outlines, PICKED, SELECTED};
 }
 
-/// What lies over a picture: legends and scale bars.
+/// Drawn over a picture: legends and scale bars.
 pub mod overlay {
     pub use crate::output::legend::{Legend, nice_length, scale_bar};
     pub use crate::output::overlay::{Overlay, OverlayOptions};
 }
 
-/// What is seen at a pixel.
+/// Picking: what is drawn at a pixel.
 pub mod pick {
     pub use crate::sources::adaptive::resolver::PickResolver;
     pub use crate::sources::budgeted::{ProxyPickResolver, ProxyPickTargets};
@@ -69,7 +71,7 @@ pub mod state {
     };
 }
 
-/// What our tests and benchmarks look into: no part of the interface, and free to change.
+/// For our tests and benchmarks: not part of the interface, and may change at any time.
 #[doc(hidden)]
 pub mod testing {
     pub use crate::output::still::SAMPLES;

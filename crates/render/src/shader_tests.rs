@@ -1,4 +1,4 @@
-//! Our shaders are valid in every language, and their structs are ours.
+//! Tests that all shaders are valid in every language, and that their structs equal those of Rust.
 
 mod bindings;
 

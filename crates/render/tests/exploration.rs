@@ -15,23 +15,13 @@ use neurotess_render::testing::{LodRequest, lod_requests};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Exploration, ExplorationError, Frame, Gpu, Image, Instance,
     MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene, Template, TemplateId,
-    Templates, Tile, VertexSource, Viewpoint, render_still,
+    Templates, VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
 
 fn frame(camera: Camera, width: u32, height: u32) -> Frame {
-    Frame {
-        camera,
-        near: 1e-2,
-        size: [width, height],
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width,
-            height,
-        },
-    }
+    Frame::whole(camera, 1e-2, [width, height])
 }
 
 /// Instances of so many templates in a box of this edge (µm).
@@ -86,8 +76,8 @@ fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
                 let stats = source.stats(&gpu).expect("counted");
                 assert!(stats.triangles <= u64::from(budget), "{stats:?}");
                 assert_eq!(stats.all_instances, count as u64);
-                if stats.wanted <= u64::from(budget) {
-                    assert_eq!(stats.triangles, stats.wanted, "all that is wanted");
+                if stats.requested <= u64::from(budget) {
+                    assert_eq!(stats.triangles, stats.requested, "all that is wanted");
                 } else if budget >= 10_000 {
                     // What is left of a budget is less than the class that did not fit.
                     assert!(5 * stats.triangles >= 3 * u64::from(budget), "{stats:?}");
@@ -240,8 +230,8 @@ fn nothing_vanishes_near_or_far() {
                 "{count} at {distance}: {change:+.4} ink, {:.4} off",
                 off / all
             );
-            // As much ink, and where it was, in each 16 × 16 pixels. Measured on lavapipe: 0.024 and
-            // 0.047, both at the greatest distance.
+            // As much ink, and where it was, in each 16 × 16 pixels. Measured on lavapipe: 0.024
+            // and 0.047, both at the greatest distance.
             assert!(change.abs() < 0.03, "{count} at {distance}: {change}");
             assert!(off / all < 0.06, "{count} at {distance}: {}", off / all);
         }
@@ -343,7 +333,7 @@ fn what_passes_beside_the_eye_takes_no_budget() {
         .sum();
     let stats = source.stats(&gpu).expect("counted");
     note!("{:.3} of the ink, {stats:?}", found / all);
-    assert!(stats.wanted > 10 * stats.budget && found > 0.8 * all);
+    assert!(stats.requested > 10 * stats.budget && found > 0.8 * all);
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -1,5 +1,5 @@
-//! Bytes on the device per tracing point, on real cells where they are at hand and on one of LiveMesh's
-//! size.
+//! Bytes on the device per tracing point, on real cells where they are at hand and on one of
+//! LiveMesh's size.
 mod adapter;
 mod common;
 

@@ -57,7 +57,7 @@ fn select(
     let mut all = Vec::new();
     for batch in &plan.batches {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        refiner.choose(scene, &mut encoder, Some(batch), None);
+        refiner.select(scene, &mut encoder, Some(batch), None);
         gpu.queue.submit([encoder.finish()]);
         let selected = refiner.read_selected(gpu, scene, batch).expect("selected");
         let lists: Vec<Vec<GridPoint>> = selected.iter().map(&asked_for).collect();
@@ -121,8 +121,9 @@ fn decisions_are_the_reference_s() {
     }
     note!("{patches} decisions, {culled} culled, {differing} differing");
     assert!(culled > patches / 10 && culled < patches * 9 / 10);
-    // The two devices round the last bits of distances differently: where a sphere touches a plane or a
-    // level is about to change, one may fall to the other side. Measured on lavapipe: 8 of 195,984.
+    // The two devices round the last bits of distances differently: where a sphere touches a plane
+    // or a level is about to change, one may fall to the other side. Measured on lavapipe: 8 of
+    // 195,984.
     assert!(
         differing * 20_000 <= patches,
         "{differing} of {patches} differ"
@@ -159,8 +160,8 @@ fn vertices_are_the_reference_s() {
         let mesh = cell(seed, 16);
         let values = random_values(&mesh, seed);
         let (middle, reach) = extent(&mesh);
-        // The device refines what it holds: positions and directions rounded, by less than a hundredth
-        // of the radius (refine's tests say).
+        // The device refines what it holds: positions and directions rounded, by less than a
+        // hundredth of the radius (refine's tests say).
         let rounded = dequantized(&mesh, &pack(&mesh, &[], &values, 1 << 20));
         let scene = scene(&gpu, &mesh, &values, &[Placement::default()]);
         // From the origin of the mesh nothing is rounded by the camera.
@@ -221,8 +222,9 @@ fn vertices_are_the_reference_s() {
     }
     note!("{count} vertices ({kinds:?}): {most:e} of the extent, normals {most_normal:e}");
     assert!(kinds.iter().all(|&n| n > 100), "{kinds:?}");
-    // Measured on lavapipe: 2.7e-6 and 2.2e-3. Corners are relative to an eye five extents away, where an
-    // f32 is rounded to 3e-7 of the extent, and some terms are added; both fall with the distance.
+    // Measured on lavapipe: 2.7e-6 and 2.2e-3. Corners are relative to an eye five extents away,
+    // where an f32 is rounded to 3e-7 of the extent, and some terms are added; both fall with the
+    // distance.
     assert!(most < 4e-6, "{most:e} of the extent");
     assert!(most_normal < 5e-3, "{most_normal:e}");
 }

@@ -15,7 +15,7 @@ use renderer::{SIZE, picks, renderer, source, view};
 
 /// Whether it is a soma.
 fn is_soma(mesh: &CoarseMesh, hit: &PickHit) -> bool {
-    match hit.spot {
+    match hit.target {
         PickTarget::Patch(patch) => mesh.patches[patch as usize].kind == PatchKind::Soma,
         PickTarget::Vertex(vertex) => {
             let tracing = mesh.vertices[vertex as usize].tracing;
@@ -60,7 +60,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
         tubes += 1;
         let [x, y] = [pixel % SIZE[0] as usize, pixel / SIZE[0] as usize].map(|n| n as f64);
         // For a flat patch the hit is a vertex: one of its corners, however long it is.
-        let corners: Vec<_> = match hit.spot {
+        let corners: Vec<_> = match hit.target {
             PickTarget::Patch(patch) => mesh.patches[patch as usize].corners.to_vec(),
             PickTarget::Vertex(vertex) => {
                 let around = mesh.patches.iter().filter(|p| p.corners.contains(&vertex));
@@ -176,11 +176,11 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
     renderer
         .identify(&gpu, &mut explored, &view)
         .expect("drawn");
-    let resolver = explored.namer(hits.into());
+    let resolver = explored.resolver(hits.into());
     gpu.wait().expect("done");
     let (_, ids) = renderer.ids().expect("no fault").expect("arrived");
-    let chunks = ids.into_iter().map(|id| resolver.name(id));
-    let section = |hit: &PickHit| match hit.spot {
+    let chunks = ids.into_iter().map(|id| resolver.resolve(id));
+    let section = |hit: &PickHit| match hit.target {
         _ if is_soma(&mesh, hit) => 0,
         PickTarget::Point(point) | PickTarget::Soma(point) => mesh.tracing[point as usize].section,
         PickTarget::Patch(patch) => {

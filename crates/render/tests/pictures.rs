@@ -85,8 +85,8 @@ fn bounds_hold_the_refined_surface() {
                 .any(|&(center, radius)| p.distance(center) <= radius)
         );
     }
-    // Measured: 11.0 µm in the mean; 4 of 32 wider than 25, the widest 53.9, among them those whose eight
-    // patches end one neurite and begin the next, elsewhere.
+    // Measured: 11.0 µm in the mean; 4 of 32 wider than 25, the widest 53.9, among them those whose
+    // eight patches end one neurite and begin the next, elsewhere.
     let mean = spheres.iter().map(|&(_, radius)| radius).sum::<f64>() / spheres.len() as f64;
     let widest = spheres
         .iter()

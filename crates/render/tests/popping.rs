@@ -1,9 +1,9 @@
 //! Nothing pops: when the camera moves, the picture changes as that of the finest surface does.
 //!
-//! Levels are whole numbers and jump. What a jump moves on the screen is bounded by the error that was
-//! asked for, half a pixel by default: less than what shows. So there is neither hysteresis nor
-//! morphing, and a picture depends on its camera alone. Here a camera moves slowly, and what changes
-//! from frame to frame is compared with what changes on the level-64 surface.
+//! Levels are whole numbers and jump. What a jump moves on the screen is bounded by the error that
+//! was asked for, half a pixel by default: less than what shows. So there is neither hysteresis nor
+//! morphing, and a picture depends on its camera alone. Here a camera moves slowly, and what
+//! changes from frame to frame is compared with what changes on the level-64 surface.
 mod adapter;
 mod common;
 
@@ -99,8 +99,8 @@ fn a_slow_camera_sees_no_level_change() {
     note!("level 32: {reference:.3?}");
     let [half, coarse] = [0.5, 8.0].map(LodCriterion::PixelError).map(worst);
     note!("{half} {coarse}");
-    // Measured on lavapipe: 1.064, and 1.200 where the error may be eight pixels. That the measure sees
-    // popping is judged against the first: another driver changes both.
+    // Measured on lavapipe: 1.064, and 1.200 where the error may be eight pixels. That the measure
+    // sees popping is judged against the first: another driver changes both.
     assert!(half < 1.08, "{half}");
     assert!(coarse - 1.0 > 2.0 * (half - 1.0), "{coarse} {half}");
 }

@@ -1,4 +1,4 @@
-//! `neurotess check`: what a mesh is and what is wrong with it.
+//! `neurotess check`: measures of a mesh, and what is wrong with it.
 
 use std::path::PathBuf;
 
@@ -19,8 +19,8 @@ use crate::report::{Entry, Failure, Reporter, place};
 A mesh that is not closed is a verdict, not a failure: the exit code is 0 if all could be read."
 )]
 pub(crate) struct CheckArgs {
-    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs; - for standard
-    /// input, with --format
+    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs; - for
+    /// standard input, with --format
     #[arg(required = true, value_name = "MESH")]
     pub(crate) inputs: Vec<PathBuf>,
     /// Format, whatever the names say: ply, obj, stl, glb, off, vtu
@@ -100,7 +100,7 @@ fn named(file: &str, error: &ReadError) -> String {
     }
 }
 
-/// One mesh for people.
+/// The verdict on a mesh as text.
 fn text(verdict: &Verdict) -> String {
     let r = &verdict.report;
     let yes = |is: bool| if is { "yes" } else { "NO" };

@@ -1,4 +1,4 @@
-//! `neurotess completions`: what a shell completes.
+//! `neurotess completions`: completion scripts for shells.
 
 use clap_complete::Shell;
 

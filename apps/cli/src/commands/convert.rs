@@ -40,7 +40,7 @@ struct Converted {
     out: String,
     format: &'static str,
     warnings: Vec<ReaderWarning>,
-    /// What the format cannot say.
+    /// What the format cannot represent.
     lost: Vec<ReaderWarning>,
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()>
     reporter.document(&converted)
 }
 
-/// What OUT lacks: everything with --verbose, else the codes.
+/// Reports what OUT lacks: everything with --verbose, else the codes.
 fn report_losses(done: &Converted, reporter: &Reporter) {
     if done.lost.is_empty() {
         return;
@@ -107,7 +107,7 @@ fn report_losses(done: &Converted, reporter: &Reporter) {
     ));
 }
 
-/// The format that --format or OUT's extension names; SWC for a folder.
+/// The format named by --format or by OUT's extension; SWC for a folder.
 fn format(args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     let out = &args.out.out;
     let name = match &args.format {

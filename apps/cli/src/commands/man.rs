@@ -1,4 +1,4 @@
-//! `neurotess man`: manual pages, made of what --help says.
+//! `neurotess man`: manual pages with the text of --help.
 
 use crate::report::{Reporter, usage};
 

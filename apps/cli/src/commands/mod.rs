@@ -1,4 +1,4 @@
-//! What each command does.
+//! The commands.
 
 #[cfg(feature = "render")]
 pub(crate) mod bench;

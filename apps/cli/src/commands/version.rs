@@ -15,13 +15,13 @@ fn adapter() -> Result<String, String> {
     }
 }
 
-/// Pictures are not built in.
+/// The reason why there is none in builds without pictures.
 #[cfg(not(feature = "render"))]
 fn adapter() -> Result<String, String> {
     Err("this build draws no pictures: build it with the feature 'render'".into())
 }
 
-/// Prints the version; with -v what this build can do.
+/// Prints the version; with -v also formats and features of this build.
 pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
     let version = env!("CARGO_PKG_VERSION");
     let meshes = Format::ALL.map(Format::extension);

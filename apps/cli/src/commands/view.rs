@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
-use neurotess_viewer::Hears;
+use neurotess_viewer::CommandListener;
 use neurotess_viewer::document::SomaEdit;
 
 use crate::io::inputs::Inputs;
@@ -22,8 +22,8 @@ use crate::report::Reporter;
   neurotess view circuit/ --report circuit/reports/voltage.h5
   neurotess view yesterday.neurotess")]
 pub(crate) struct ViewArgs {
-    /// Morphology files, folders (searched recursively), globs, circuits, or a session that the window
-    /// saved; nothing: a window to open files in
+    /// Morphology files, folders (searched recursively), globs, circuits, or a session that the
+    /// window saved; nothing: a window to open files in
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub(crate) struct ViewArgs {
 pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let mut inputs = Vec::new();
     for input in &args.inputs {
-        // Folders and circuits are searched by the window's threads; only globs are found here.
+        // Folders and circuits are searched by the window's threads; only globs are expanded here.
         if input.exists() {
             inputs.push(input.clone());
             continue;
@@ -60,8 +60,10 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         report: args.report.clone(),
         adapter: args.adapter.clone(),
     };
-    let hears = reporter.verbose().then(|| Box::new(tell) as Hears);
-    neurotess_viewer::run(options, hears)?;
+    let listener = reporter
+        .verbose()
+        .then(|| Box::new(tell) as CommandListener);
+    neurotess_viewer::run(options, listener)?;
     Ok(())
 }
 

@@ -1,10 +1,11 @@
-//! One piece of work for every input, on all cores.
+//! The same work for every input, on all cores.
 
 use super::inputs::{Input, Inputs};
 use super::workers;
 use crate::report::{Entry, Failed, Failure, Progress, Reporter, bug};
 
-/// Does some work for all inputs in parallel, and tells of failures. Results are in order.
+/// Does some work for all inputs in parallel, and reports failures. Results are in the inputs'
+/// order.
 pub(crate) fn each<T: Send>(
     inputs: &Inputs,
     reporter: &Reporter,

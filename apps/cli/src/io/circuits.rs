@@ -11,7 +11,7 @@ pub(crate) fn partition(inputs: &[PathBuf]) -> (Vec<PathBuf>, Vec<PathBuf>) {
     inputs.iter().cloned().partition(|path| is_circuit(path))
 }
 
-/// Opens a circuit; tells of what could not be opened of it, and of what is odd.
+/// Opens a circuit; reports parts that could not be opened, and warnings.
 pub(crate) fn open(path: &Path, reporter: &Reporter) -> Result<Circuit, Failure> {
     let circuit = Circuit::open(path).map_err(|e| Failure(e.to_string()))?;
     for failure in &circuit.failures {

@@ -1,4 +1,5 @@
-//! One file, one run: a cell is claimed before it is read, and may turn out to be done already.
+//! Claims of outputs, so that several runs can share a folder: a cell is claimed before it is read,
+//! and may turn out to be done already.
 
 use std::time::Duration;
 
@@ -7,19 +8,19 @@ use super::record::{OutputRecord, Stamp};
 use super::targets::Job;
 use crate::report::Reporter;
 
-/// Between two looks whether another run is done.
+/// Time between checks whether another run is done.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// What a worker may do with a cell.
 pub(crate) enum Claim {
-    /// Make it, into this.
+    /// Write it into this output.
     Ours(Output),
-    /// Leave it: another run has made it meanwhile.
+    /// Keep it: another run has written it meanwhile.
     Done,
 }
 
-/// Claims an output. With `--resume` (`made` and `resume`) another run that has it is waited for, and
-/// what we made ourselves of other options or another input is replaced.
+/// Claims an output. With `--resume` (`made` and `resume`), waits for another run that has claimed
+/// it, and replaces outputs of ours that were made with other options or from another input.
 pub(crate) fn claim(
     job: &Job,
     force: bool,
@@ -43,7 +44,7 @@ pub(crate) fn claim(
         }
         match begin(&job.out, force || state.is_ours()) {
             Ok(output) if Stamp::of(&job.out) == before => return Ok(Claim::Ours(output)),
-            // It was finished between the look and the claim.
+            // It was finished between the check and the claim.
             Ok(_) => {}
             Err(OutputError::Taken { path }) => {
                 if !announced {

@@ -1,4 +1,4 @@
-//! Which files are meant: files, folders searched recursively, globs, standard input (`-`).
+//! Inputs: files, folders searched recursively, globs, standard input (`-`).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -21,16 +21,16 @@ pub(crate) struct Input {
     pub(crate) relative: PathBuf,
 }
 
-/// All files that are meant.
+/// All inputs of a command.
 #[derive(Debug, Default)]
 pub(crate) struct Inputs {
-    /// In the order of the arguments; those of a folder or a glob sorted. No file twice.
+    /// Files in the order of the arguments, those of a folder or a glob sorted. No file twice.
     pub(crate) files: Vec<Input>,
-    /// Arguments that gave nothing, and folders that could not be searched.
+    /// Arguments without any file, and folders that could not be searched.
     pub(crate) failures: Vec<Failure>,
     /// Whether one file, and no folder or glob, was named.
     pub(crate) one_file: bool,
-    /// HDF5 files in folders that hold something else than a morphology.
+    /// Number of HDF5 files in folders that are not morphologies.
     pub(crate) others: usize,
 }
 
@@ -53,7 +53,7 @@ impl Inputs {
         search.found
     }
 
-    /// Tells of what was not found, and of what was left out.
+    /// Reports what was not found, and what was left out.
     pub(crate) fn tell(&self, reporter: &Reporter) {
         for failure in &self.failures {
             reporter.failure(failure);
@@ -106,7 +106,7 @@ impl Search<'_> {
         for entry in WalkDir::new(folder).follow_links(true) {
             match entry {
                 Ok(entry) if entry.file_type().is_dir() || !self.is_readable(entry.path()) => {}
-                // What is no file, say a link to a device, is refused by the reader.
+                // Entries that are not files, such as links to devices, are rejected by the reader.
                 Ok(entry) => paths.push(entry.into_path()),
                 Err(e) => {
                     let at = e.path().unwrap_or(folder).to_path_buf();

@@ -1,4 +1,4 @@
-//! What is read, what is written, and by how many threads.
+//! Inputs, outputs and threads.
 
 pub(crate) mod batch;
 pub(crate) mod circuits;

@@ -11,7 +11,7 @@ use super::output::{self, OutputError, is_standard};
 use super::standard_input::standard_input;
 use crate::report::{Failure, place};
 
-/// Something odd that the reader took.
+/// A warning of the reader.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ReaderWarning {
     line: Option<u64>,
@@ -29,7 +29,7 @@ impl ReaderWarning {
         &self.message
     }
 
-    /// For people: `FILE:LINE: message (code)`.
+    /// As text: `FILE:LINE: message (code)`.
     pub(crate) fn in_file(&self, file: &str) -> String {
         let place = place(file, self.line);
         format!("{place} {} ({})", self.message, self.code)
@@ -85,7 +85,7 @@ pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Writes a morphology to a file, whole or not at all; what the format cannot say.
+/// Writes a morphology to a file, whole or not at all. Returns what the format cannot represent.
 pub(crate) fn write_morphology(
     morphology: &Morphology,
     format: Format,

@@ -1,11 +1,11 @@
-//! When a file is replaced, and what goes to standard output.
+//! Outputs: files, which are replaced only with --force, and standard output.
 
 use std::path::Path;
 
 use crate::report::Reporter;
 pub(crate) use neurotess::output::{Existing, Output, OutputError};
 
-/// Only where the user says so.
+/// Whether existing files may be replaced.
 pub(crate) fn existing(force: bool) -> Existing {
     match force {
         true => Existing::Replace,
@@ -18,7 +18,7 @@ pub(crate) fn is_standard(out: &Path) -> bool {
     out == Path::new("-")
 }
 
-/// Leaves standard output to OUT, if that is where it goes.
+/// Reserves standard output for OUT, if OUT is `-`.
 ///
 /// # Errors
 /// Wrong usage: JSON is to be printed there too.
@@ -37,7 +37,7 @@ pub(crate) fn check(out: &Path, force: bool) -> Result<(), OutputError> {
     }
 }
 
-/// Begins a file, or what goes to standard output.
+/// Begins an output: a file, or standard output.
 pub(crate) fn begin(out: &Path, force: bool) -> Result<Output, OutputError> {
     match is_standard(out) {
         true => Output::standard(),

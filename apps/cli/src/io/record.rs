@@ -1,19 +1,21 @@
-//! What a folder's files were made of, so that --resume knows which are still right.
+//! The record of what a folder's files were made from, by which --resume knows which are up to
+//! date.
 //!
 //! ```text
 //! .neurotess-made   {"out":"sub/a.ply","is":{…},"options":"9f3c…","of":{…}}   one line per file, appended
 //! ```
 //!
-//! **Theory.** A file is still right if it is the one that was recorded (length and time), was made with
-//! the same options (a hash), and its input is the one that was read (length and time).
-//! Options that change nothing in the file, like --threads, are not in the hash.
+//! **Theory.** A file is up to date if it is the one that was recorded (length and time), was made
+//! with the same options (a hash), and its input is the one that was read (length and time).
+//! Options that do not change the file, like --threads, are not in the hash.
 //!
-//! **Practice.** The line is appended before the file gets its name: a run that is killed between the two
-//! leaves a line that no file answers to, never a file whose line tells of other options. Lines of
-//! several runs and shards share one file; the one that fits counts. A line that is torn is skipped.
+//! **Practice.** The line is appended before the file gets its name: a run that is killed between
+//! the two leaves a line without a file, never a file with a line of other options. Lines of
+//! several runs and shards share one file; the one that matches counts. Incomplete lines are
+//! skipped.
 //!
-//! **Why not** within the mesh files: not all formats have room for it, and equal meshes of different
-//! inputs would differ.
+//! **Why not** within the mesh files: not all formats have room for it, and equal meshes of
+//! different inputs would differ.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
@@ -30,7 +32,7 @@ use super::targets::Job;
 /// Name of the record.
 pub(crate) const NAME: &str = ".neurotess-made";
 
-/// What tells a file from another one of the same name.
+/// Length and time, by which a file is distinguished from another one of the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Stamp {
     bytes: u64,
@@ -65,17 +67,17 @@ struct Line {
 /// What is known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OutputState {
-    /// It is not there.
+    /// It does not exist.
     Missing,
-    /// It is what would be made.
+    /// It is up to date.
     Right,
     /// It was made with other options.
     OtherOptions,
     /// Its input has changed.
     OtherInput,
-    /// Nothing is known of it but that it is newer than its input.
+    /// It has no record; it is newer than its input.
     Newer,
-    /// Nothing is known of it but that it is older than its input.
+    /// It has no record; it is older than its input.
     Older,
 }
 
@@ -94,10 +96,10 @@ impl OutputState {
 /// The record of a folder.
 pub(crate) struct OutputRecord {
     folder: PathBuf,
-    /// Those that matter, as text.
+    /// Options that files depend on, as text.
     options: String,
     known: Mutex<HashMap<String, Vec<Line>>>,
-    /// Opened with the first line.
+    /// The file, which is opened when the first line is written.
     file: Mutex<Option<File>>,
 }
 
@@ -114,7 +116,7 @@ impl OutputRecord {
         record
     }
 
-    /// Reads what other runs have added, too.
+    /// Reads it again, with the lines that other runs have added.
     pub(crate) fn read(&self) {
         let text = fs::read(self.folder.join(NAME)).unwrap_or_default();
         let mut known: HashMap<String, Vec<Line>> = HashMap::new();
@@ -125,7 +127,7 @@ impl OutputRecord {
         *self.known.lock().unwrap_or_else(PoisonError::into_inner) = known;
     }
 
-    /// What is known of an output, and whether it is still right.
+    /// Whether an output is up to date, as far as is known.
     pub(crate) fn state_of(&self, job: &Job) -> OutputState {
         let Some(is) = Stamp::of(&job.out) else {
             return OutputState::Missing;
@@ -167,13 +169,13 @@ impl OutputRecord {
             );
         }
         match &mut *file {
-            // One write, so that lines of several runs stay whole.
+            // A single write, so that lines of several runs are not mixed.
             Some(file) => file.write_all(&text),
             None => Ok(()),
         }
     }
 
-    /// Of all that the file depends on but its input, in hexadecimal.
+    /// Hash of all that the file depends on, apart from its input, in hexadecimal.
     fn hash(&self, job: &Job) -> String {
         format!(
             "{:016x}",
@@ -187,7 +189,8 @@ impl OutputRecord {
     }
 }
 
-/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): the same in all versions, unlike the standard library's.
+/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): the same in all versions, unlike the standard
+/// library's.
 fn hash(text: &str) -> u64 {
     let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
@@ -211,7 +214,7 @@ mod tests {
         fs::write(&job.out, "mesh").expect("written");
         assert_eq!(record.state_of(&job), OutputState::Newer);
         record.add(&job, &job.out).expect("recorded");
-        // A torn line and one of a run that was killed do no harm.
+        // An incomplete line, and one of a run that was killed, do no harm.
         let mut file = OpenOptions::new();
         let mut file = file
             .append(true)

@@ -1,16 +1,16 @@
-//! Standard input, read whole.
+//! Reads standard input as a whole.
 
 use std::io::{self, Read};
 
 use crate::report::Failure;
 
-/// Bytes by which it is seen whether the rest can be of use.
+/// Number of bytes that decide whether the rest is worth reading.
 const HEAD: u64 = 1 << 16;
 
 /// Most bytes of standard input.
 const MOST: u64 = 1 << 32;
 
-/// All of standard input, or its beginning if `useless` says that no more is needed to tell what is wrong.
+/// All of standard input; or only its beginning, if `useless` returns true for that.
 pub(crate) fn standard_input(useless: impl Fn(&[u8]) -> bool) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let mut input = io::stdin().lock();

@@ -1,8 +1,8 @@
 //! Which file each input becomes.
 //!
-//! One file goes to the file OUT (or into OUT, where that is a folder). Several, a folder or a glob
-//! go into the folder OUT, which repeats the structure below the input's folder, so that equal
-//! names in different folders do not meet.
+//! A single file is written to the file OUT (or into OUT, if that is a folder). Several files, a
+//! folder or a glob are written into the folder OUT, which repeats the structure below the input's
+//! folder, so that files with equal names in different folders do not collide.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,11 +20,11 @@ pub(crate) struct Job {
     pub(crate) input: PathBuf,
     /// The file to write.
     pub(crate) out: PathBuf,
-    /// Of a circuit: the instance with its placement, as text; else empty.
+    /// The instance of a circuit with its placement, as text; empty for a file.
     pub(crate) placement: String,
 }
 
-/// Whether OUT is a folder: for anything but one file, and where it is one already.
+/// Whether OUT is a folder: for anything but a single file, and if it already is one.
 pub(crate) fn is_folder(out: &Path, inputs: &Inputs) -> bool {
     !inputs.one_file || !is_standard(out) && (out.is_dir() || ends_in_separator(out))
 }
@@ -82,8 +82,8 @@ fn ends_in_separator(path: &Path) -> bool {
         .is_some_and(|&byte| std::path::is_separator(char::from(byte)))
 }
 
-/// Positions of the jobs, those with the largest files first, so that a great one does not come
-/// last and keep one core busy while the others wait.
+/// Indices of the jobs, those with the largest files first, so that none of them comes last and
+/// keeps one core busy while the others wait.
 pub(crate) fn largest_first(jobs: &[Job]) -> Vec<usize> {
     let size =
         |job: &Job| std::fs::metadata(formats::member(&job.input).0).map_or(0, |data| data.len());

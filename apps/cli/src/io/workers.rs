@@ -10,7 +10,7 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Both kinds of threads: generous, for debug builds.
+/// Stack (bytes) of all threads: large, for debug builds.
 const STACK: usize = 8 << 20;
 
 thread_local! {
@@ -62,7 +62,7 @@ pub(crate) fn run<I: Sync, T: Send>(
 fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let caught = panic::catch_unwind(AssertUnwindSafe(work));
     caught.map_err(|payload: Box<dyn Any + Send>| {
-        // A panic in another thread of the pool arrives without its place.
+        // A panic in another thread of the pool comes without its location.
         let place = PANIC.take();
         let text = payload
             .downcast_ref::<String>()

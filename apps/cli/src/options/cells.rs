@@ -1,4 +1,4 @@
-//! Circuits on the command line: which inputs are such, and which of their cells are meant.
+//! Selection of a circuit's cells on the command line.
 
 use clap::Args;
 use glam::DVec3;
@@ -39,7 +39,7 @@ struct Ids(Vec<(u64, u64)>);
 struct Region(DVec3, DVec3);
 
 impl CellArgs {
-    /// Whether any choice is made.
+    /// Whether any option is given.
     pub(crate) fn any(&self) -> bool {
         let chosen = Self {
             sample_seed: 0,
@@ -48,7 +48,7 @@ impl CellArgs {
         chosen != Self::default()
     }
 
-    /// The cells that are meant.
+    /// The selected cells.
     pub(crate) fn select(&self, circuit: &Circuit) -> Result<Vec<NodeRef>, Failure> {
         let selection = Selection {
             population: self.population.clone(),

@@ -8,24 +8,24 @@ use clap::Args;
 /// Options of first rings.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct RingArgs {
-    /// Put the first ring of a neurite somewhere between the soma's sphere (0), the first traced point
-    /// outside it (1) and as far beyond along the path (2); several times for several neurites, which
-    /// are counted from 1 in the order of the file, as in the window
+    /// Put the first ring of a neurite somewhere between the soma's sphere (0), the first traced
+    /// point outside it (1) and as far beyond along the path (2); several times for several
+    /// neurites, which are counted from 1 in the order of the file, as in the window
     #[arg(long = "ring", value_name = "NEURITE=POSITION", help_heading = "Soma")]
     rings: Vec<Ring>,
 }
 
 impl RingArgs {
-    /// As the library has them. Of several for one neurite the last.
+    /// The positions for the library. If there are several for a neurite, the last one.
     pub(crate) fn positions(&self) -> BTreeMap<u32, f64> {
         self.rings.iter().map(|r| (r.neurite, r.position)).collect()
     }
 }
 
-/// One of them.
+/// A value of `--ring`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ring {
-    /// From 0.
+    /// Number of the neurite, from 0.
     neurite: u32,
     position: f64,
 }

@@ -5,9 +5,9 @@ use std::str::FromStr;
 /// `--shard I/N`: the I-th of N parts, I counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
-    /// Which part, from 0 on.
+    /// Index of the part, from 0.
     index: usize,
-    /// How many parts.
+    /// Number of parts.
     count: usize,
 }
 

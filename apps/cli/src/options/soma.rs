@@ -17,7 +17,7 @@ pub(crate) enum SomaArg {
 }
 
 impl SomaArg {
-    /// As the library has it.
+    /// The library's value.
     pub(crate) fn method(self) -> SomaMethod {
         match self {
             Self::Fem => SomaMethod::Fem,

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use neurotess::morphology::NeuriteKind;
 
-/// What one word of `--types` keeps.
+/// The types that one word of `--types` keeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Types(pub(crate) Vec<NeuriteKind>);
 

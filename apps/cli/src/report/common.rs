@@ -11,7 +11,11 @@ pub(crate) struct Common {
     /// Say nothing but errors
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
-    /// Say more: every warning of every input; of `view`, every command that the window runs
+    #[cfg_attr(
+        feature = "view",
+        doc = "Say more: every warning of every input; of `view`, every command that the window runs"
+    )]
+    #[cfg_attr(not(feature = "view"), doc = "Say more: every warning of every input")]
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
     /// Threads to use [default: all cores]

@@ -40,7 +40,7 @@ pub(crate) enum Entry<T> {
     Failed(Failed),
 }
 
-/// The failure that stands for a panic.
+/// The failure for a panic.
 pub(crate) fn bug(file: &str, panic: &str) -> Failure {
     Failure(format!(
         "{file}: a bug of neurotess ({panic}): please report it with the file"

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 
-/// A file that lines are appended to, each before its mesh gets its name: a run that is killed between the
-/// two leaves a line too many, never one too few. Each line is one write, so that it is whole even if several
-/// runs share the file or one is killed.
+/// A file that lines are appended to, each before its mesh gets its name: a run that is killed
+/// between the two leaves a line too many, never one too few. Each line is one write, so that it is
+/// whole even if several runs share the file or one is killed.
 pub(crate) struct Log {
     path: PathBuf,
     file: Mutex<File>,
@@ -21,14 +21,14 @@ pub(crate) struct Log {
     known: BTreeSet<String>,
 }
 
-/// What is looked at of a line.
+/// The fields of a line that are read.
 #[derive(Deserialize)]
 struct Line {
     out: String,
 }
 
 impl Log {
-    /// Opens the file, or makes it.
+    /// Opens the file, or creates it.
     pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
         let before = match fs::metadata(path) {
             Ok(data) if data.is_file() => fs::read(path).unwrap_or_default(),

@@ -1,4 +1,4 @@
-//! Who hears what: results on standard output, everything else on standard error.
+//! Output of the program: results on standard output, everything else on standard error.
 
 mod common;
 mod failure;

@@ -1,4 +1,4 @@
-//! What the parser of the command line says instead of a command.
+//! Help and errors of the command line's parser.
 
 use std::io::{self, Write};
 
@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::reporter::{unwritable, write_line};
 
-/// What the command line's parser says instead of a command: help, or what is wrong. Gives the exit code;
-/// with --json, an error is a document too.
+/// Prints what the command line's parser returns instead of a command: help or an error. Returns
+/// the exit code. With --json, an error is also a document.
 pub(crate) fn report_parser_error(error: &clap::Error) -> u8 {
     let printed = error.print();
     let json = std::env::args_os()

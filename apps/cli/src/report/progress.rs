@@ -1,4 +1,4 @@
-//! A bar on a terminal for what takes longer than a second.
+//! A progress bar on a terminal, for work that takes longer than a second.
 
 use std::time::Duration;
 
@@ -6,12 +6,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::reporter::Reporter;
 
-/// Before this nothing is shown.
+/// Time before the bar is shown.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// How often the bar is drawn anew.
+/// Time between updates of the bar.
 const TICK: Duration = Duration::from_millis(200);
 
-/// Counts what is done; visible or not.
+/// Counts what is done, whether the bar is visible or not.
 pub(crate) struct Progress<'r> {
     reporter: &'r Reporter,
     bar: ProgressBar,
@@ -33,12 +33,12 @@ impl<'r> Progress<'r> {
         Self { reporter, bar }
     }
 
-    /// More to do than known before.
+    /// Adds to the number of things to do.
     pub(crate) fn expect(&self, more: usize) {
         self.bar.inc_length(more as u64);
     }
 
-    /// One is done.
+    /// Counts one thing as done.
     pub(crate) fn done(&self) {
         self.bar.inc(1);
     }

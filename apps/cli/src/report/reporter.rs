@@ -1,4 +1,4 @@
-//! Who hears what: results on standard output, everything else on standard error.
+//! The reporter: results on standard output, everything else on standard error.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -13,12 +13,13 @@ use super::common::{Color, Common};
 use super::failure::{Failure, usage};
 use super::text::plain;
 
-/// Fewest threads that are never too many.
+/// This number of threads is always allowed.
 const THREADS: usize = 16;
-/// More threads than this for a core gain nothing: each has a cell in memory.
+/// Most threads per core: more gain nothing, and each has a cell in memory.
 const PER_CORE: usize = 4;
 
-/// All messages and results go through it: one at a time, so that they never tear, and around the bar.
+/// Prints all messages and results: one at a time, so that they are not mixed, and above the
+/// progress bar.
 pub(crate) struct Reporter {
     common: Common,
     color: bool,
@@ -28,12 +29,12 @@ pub(crate) struct Reporter {
     documented: Arc<AtomicBool>,
     /// Whether a file goes to standard output, so that nothing else does.
     occupied: AtomicBool,
-    /// Whether standard output took all it got.
+    /// Whether writing to standard output failed.
     broken: AtomicBool,
 }
 
 impl Reporter {
-    /// Obeys the common options.
+    /// A reporter with these options.
     pub(crate) fn new(common: Common) -> Self {
         let color = match common.color {
             Color::Always => true,
@@ -58,7 +59,7 @@ impl Reporter {
         reporter
     }
 
-    /// Leaves standard output to a file.
+    /// Reserves standard output for a file.
     ///
     /// # Errors
     /// Wrong usage: JSON is to be printed there too.
@@ -70,7 +71,7 @@ impl Reporter {
         Ok(())
     }
 
-    /// Warns where OUT's name says another format than the one that is written.
+    /// Warns if OUT's name is that of another format than the one that is written.
     pub(crate) fn warn_of_name(&self, out: &Path, written: &str, named: Option<&str>) {
         if let Some(named) = named.filter(|&named| named != written && !out.is_dir()) {
             let out = out.display();
@@ -80,7 +81,7 @@ impl Reporter {
         }
     }
 
-    /// What to do where the program is interrupted: the JSON document is printed, unless it was.
+    /// What to do if the program is interrupted: prints the JSON document, unless that is done.
     pub(crate) fn on_interrupt(&self) -> impl Fn() + Send + use<> {
         let (json, documented) = (self.common.json, Arc::clone(&self.documented));
         move || {
@@ -113,22 +114,22 @@ impl Reporter {
             .map_or_else(cores, |threads| threads.min(most_threads()))
     }
 
-    /// Puts messages above this bar from now on, or under none.
+    /// Sets the bar that messages are printed above, or none.
     pub(crate) fn set_bar(&self, bar: Option<ProgressBar>) {
         *self.bar.lock().unwrap_or_else(PoisonError::into_inner) = bar;
     }
 
-    /// Tells of an input that failed, and counts it.
+    /// Reports an input that failed, and counts it.
     pub(crate) fn failure(&self, failure: &Failure) {
         self.error(&failure.0);
     }
 
-    /// How many errors were printed.
+    /// Number of errors that were printed.
     pub(crate) fn failures(&self) -> usize {
         self.errors().len()
     }
 
-    /// Tells of an error, and counts it.
+    /// Reports an error, and counts it.
     pub(crate) fn error(&self, message: &str) {
         self.errors().push(message.to_owned());
         self.say("error", "31", message);
@@ -138,21 +139,21 @@ impl Reporter {
         self.errors.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Tells of something odd.
+    /// Prints a warning.
     pub(crate) fn warning(&self, message: &str) {
         if !self.common.quiet {
             self.say("warning", "33", message);
         }
     }
 
-    /// Tells how it went, on standard error.
+    /// Prints a note on standard error.
     pub(crate) fn note(&self, message: &str) {
         if !self.common.quiet {
             self.print(|| drop(writeln!(io::stderr(), "{}", plain(message))));
         }
     }
 
-    /// What was done, for people; silent with --json and --quiet.
+    /// Prints what was done; nothing with --json and --quiet.
     pub(crate) fn result(&self, text: &str) {
         if self.common.quiet || self.common.json {
             return;
@@ -163,14 +164,14 @@ impl Reporter {
         self.to_stdout(&plain(text));
     }
 
-    /// What the command is for, for people: printed with --quiet too.
+    /// Prints the answer that the command is for, also with --quiet.
     pub(crate) fn answer(&self, text: &str) {
         if !self.common.json {
             self.to_stdout(&plain(text));
         }
     }
 
-    /// The one JSON document.
+    /// Prints the JSON document, of which there is only one.
     pub(crate) fn document(&self, value: &impl Serialize) -> anyhow::Result<()> {
         if self.common.json && !self.documented.swap(true, Ordering::Relaxed) {
             self.to_stdout(&serde_json::to_string_pretty(value)?);
@@ -178,13 +179,14 @@ impl Reporter {
         Ok(())
     }
 
-    /// The end: with --json, if there was no document, the errors are it.
+    /// Ends the output. With --json, if there was no document, prints the errors as one.
     pub(crate) fn close(&self) -> anyhow::Result<()> {
         let errors = self.errors().clone();
         self.document(&json!({ "errors": errors }))
     }
 
-    /// A reader that has gone away, as in `neurotess info … | head`, is no error; any other is reported once.
+    /// Prints to standard output. A closed pipe, as in `neurotess info … | head`, is no error;
+    /// other errors are reported once.
     fn to_stdout(&self, text: &str) {
         let mut failed = None;
         self.print(|| failed = write_line(text).err());
@@ -197,7 +199,7 @@ impl Reporter {
     }
 
     fn say(&self, word: &str, color: &str, message: &str) {
-        // One failure is one line, whatever a file's name or content holds.
+        // One failure is one line, whatever characters a file's name or content has.
         let line = plain(message).replace(['\n', '\t'], " ");
         let word = if self.color {
             format!("\x1b[1;{color}m{word}:\x1b[0m")

@@ -1,6 +1,6 @@
-//! Pieces of messages.
+//! Parts of messages.
 
-/// Text without what a terminal would obey: names of files may hold escape sequences.
+/// Text without control characters: names of files may contain escape sequences for terminals.
 pub(super) fn plain(text: &str) -> String {
     let safe = |c: char| !c.is_control() || c == '\n' || c == '\t';
     text.chars()
@@ -8,7 +8,7 @@ pub(super) fn plain(text: &str) -> String {
         .collect()
 }
 
-/// `FILE:LINE:`, or `FILE:` where there is no line.
+/// `FILE:LINE:`, or `FILE:` if there is no line.
 pub(crate) fn place(file: &str, line: Option<u64>) -> String {
     match line {
         Some(line) => format!("{file}:{line}:"),
@@ -16,7 +16,7 @@ pub(crate) fn place(file: &str, line: Option<u64>) -> String {
     }
 }
 
-/// A number of things, for people: `1 cell`, `3 cells`.
+/// A number of things as text: `1 cell`, `3 cells`.
 pub(crate) fn count(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {thing}{plural}")

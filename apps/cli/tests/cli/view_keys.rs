@@ -8,7 +8,7 @@ use std::thread::{sleep, spawn};
 use std::time::Duration;
 
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Ask, Listed, Toggles, listed};
+use neurotess_viewer::command::{FilePurpose, Listed, Toggles, listed};
 
 use crate::display::{Display, display, ends, start, wait_for};
 use crate::gpu;
@@ -100,7 +100,7 @@ fn every_shortcut_of_a_real_window_runs_its_command() {
     display.xdotool("key Return");
     let open = format!("{:?}", Command::Open(vec![path]));
     let ran = commands(&lines, true);
-    let dialog = format!("{:?}", Command::AskFiles(Ask::Open));
+    let dialog = format!("{:?}", Command::AskFiles(FilePurpose::Open));
     assert!(
         ran == [dialog.clone(), open.clone()] || ran == [dialog],
         "{ran:?}"

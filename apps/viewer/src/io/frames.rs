@@ -1,4 +1,4 @@
-//! Values of a recording, read before they are due on a thread of their own: the window never waits.
+//! Values of a recording, read ahead on a thread of their own, so that the window never waits.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -8,25 +8,25 @@ use neurotess::render::color::InstanceValues;
 
 use crate::io::task::caught;
 
-/// Pictures that are read ahead.
+/// Number of pictures that are read ahead.
 const AHEAD: u64 = 8;
 /// Most frames that are kept.
 const MOST: usize = 64;
 
-/// Reads until it is dropped.
+/// Reads frames of a recording until it is dropped.
 pub(crate) struct FrameReader {
     shared: Arc<Shared>,
     recording: Arc<Recording>,
 }
 
-/// What values depend on, beside the frame.
+/// What values depend on besides the frame.
 #[derive(Clone, Debug)]
 pub(crate) struct ValueInputs {
-    /// By neuron: whether it shows.
+    /// By neuron: whether it is shown.
     pub(crate) shows: Arc<[bool]>,
     /// Numbers at both ends of the color map.
     pub(crate) range: [f32; 2],
-    /// Of flashes (ms).
+    /// Decay of flashes (ms).
     pub(crate) decay: f64,
 }
 
@@ -47,7 +47,7 @@ struct Shared {
 struct Inner {
     inputs: Option<Arc<ValueInputs>>,
     frame: u64,
-    /// Frames from one picture to the next; 0: no more than one is wanted.
+    /// Frames from one picture to the next; 0: a single frame is needed.
     stride: u64,
     ready: BTreeMap<u64, Arc<InstanceValues>>,
     problem: Option<String>,
@@ -61,7 +61,7 @@ impl Shared {
 }
 
 impl FrameReader {
-    /// `wake` is called when the frame that shows is there.
+    /// Starts the thread. `wake` is called when the requested frame has been read.
     pub(crate) fn new(recording: Arc<Recording>, wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let (own, of) = (Arc::clone(&shared), Arc::clone(&recording));
@@ -69,13 +69,13 @@ impl FrameReader {
         Self { shared, recording }
     }
 
-    /// What it reads.
+    /// The recording that it reads.
     pub(crate) fn recording(&self) -> &Arc<Recording> {
         &self.recording
     }
 
-    /// The values of a frame if they are there; if not they are read next. `stride`: the frames that will
-    /// be wanted after this one; 0: none.
+    /// The values of a frame if they have been read; if not they are read next. `stride`: frames
+    /// from one picture to the next, by which later ones are read ahead; 0: none are.
     pub(crate) fn get(
         &self,
         frame: u64,
@@ -94,7 +94,7 @@ impl FrameReader {
         inner.ready.get(&frame).cloned()
     }
 
-    /// What went wrong since this was asked last.
+    /// The error since the last call, if there was one.
     pub(crate) fn problem(&self) -> Option<String> {
         self.shared.lock().problem.take()
     }
@@ -108,13 +108,13 @@ impl Drop for FrameReader {
 }
 
 impl Inner {
-    /// The frame to read next: the one that shows, then those that will.
+    /// The frame to read next: the requested one, then those ahead.
     fn next(&self, frames: u64) -> Option<(u64, Arc<ValueInputs>)> {
         let inputs = self.inputs.as_ref()?;
         let ahead = if self.stride > 0 { AHEAD } else { 0 };
         let due = (0..=ahead).map(|i| {
             let frame = self.frame + i * self.stride;
-            // It may begin again.
+            // Playback may start over at the end.
             if frame < frames {
                 frame
             } else {
@@ -127,7 +127,7 @@ impl Inner {
 
     fn keep(&mut self, frame: u64, values: InstanceValues, frames: u64) {
         self.ready.insert(frame, Arc::new(values));
-        // The one that will not be wanted for longest goes.
+        // Drops the frame that will not be needed for longest.
         let until = |&frame: &u64| (frame + frames - self.frame.min(frames)) % frames.max(1);
         if self.ready.len() > MOST
             && let Some(far) = self.ready.keys().copied().max_by_key(until)
@@ -162,7 +162,8 @@ fn read(shared: &Shared, recording: &Recording, wake: &impl Fn()) {
         });
         let (values, problem) = match values {
             Ok(values) => (values.values(inputs.range), None),
-            // Gray instead of the values of another time; it is not read again and again.
+            // Without values the neurons are gray. The empty values are kept, so that the frame is
+            // not read again and again.
             Err(why) => (none(inputs.shows.len()), Some(why)),
         };
         let mut inner = shared.lock();

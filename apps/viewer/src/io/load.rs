@@ -16,7 +16,7 @@ use crate::model::sources::{Remark, SAMPLE, SectionFacts, Source, Stale, spheres
 /// Reads a file, or grows a sample, and meshes it.
 ///
 /// # Errors
-/// What is wrong and what to do.
+/// A message that says what is wrong and what to do.
 pub(crate) fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
     let name = file.to_string_lossy();
     if let Some(kind) = name.strip_prefix(SAMPLE) {
@@ -48,7 +48,7 @@ pub(crate) fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
     Ok(made)
 }
 
-/// The reason without the file's name, which stands beside it.
+/// The reason without the file's name, which the window shows beside it.
 fn reason(file: &str, error: &formats::ReadError) -> String {
     let text = error.to_string();
     let rest = text.strip_prefix(file).unwrap_or(&text);
@@ -100,7 +100,7 @@ fn section_facts(morphology: &Morphology) -> Vec<SectionFacts> {
     (0..neurites.len()).map(facts).collect()
 }
 
-/// What has become of a source's file.
+/// Whether a source's file was changed or removed since it was read.
 pub(crate) fn stale(file: &Path, written: Option<SystemTime>) -> Option<Stale> {
     let written = written?;
     match fs::metadata(file).and_then(|m| m.modified()) {

@@ -1,4 +1,4 @@
-//! Paths that are typed, and how they may go on.
+//! Completion of paths that are typed.
 
 use std::fs;
 use std::path::{Path, PathBuf, is_separator};
@@ -10,7 +10,7 @@ pub(crate) struct Name {
     pub(crate) is_folder: bool,
 }
 
-/// A typed path as a whole: `~` is the user's own folder, what is relative starts from `folder`.
+/// The full path of a typed one: `~` is the user's home folder, relative paths start from `folder`.
 pub(crate) fn whole(typed: &Path, folder: &Path) -> PathBuf {
     match (typed.strip_prefix("~"), directories::UserDirs::new()) {
         (Ok(rest), Some(dirs)) => dirs.home_dir().join(rest),
@@ -18,13 +18,13 @@ pub(crate) fn whole(typed: &Path, folder: &Path) -> PathBuf {
     }
 }
 
-/// What is typed up to the last separator, and the name that is begun after it.
+/// The typed text up to the last separator, and the name begun after it.
 pub(crate) fn parted(typed: &str) -> (&str, &str) {
     let after = typed.rfind(is_separator).map_or(0, |at| at + 1);
     typed.split_at(after)
 }
 
-/// Whether a name goes on as it was begun. What is hidden must be asked for.
+/// Whether a name starts with the begun one. Hidden names match only if their dot was typed.
 pub(crate) fn goes_on(name: &str, begun: &str) -> bool {
     let hidden = name.starts_with('.') && !begun.starts_with('.');
     let same = |(a, b): (char, char)| a.to_lowercase().eq(b.to_lowercase());
@@ -32,7 +32,7 @@ pub(crate) fn goes_on(name: &str, begun: &str) -> bool {
     !hidden && name.chars().count() >= letters && name.chars().zip(begun.chars()).all(same)
 }
 
-/// What is typed with all that the names have in common, if that is more.
+/// The typed text, completed by what all matching names have in common, if there is any.
 pub(crate) fn completed<'a>(
     typed: &str,
     names: impl IntoIterator<Item = &'a Name>,
@@ -40,7 +40,7 @@ pub(crate) fn completed<'a>(
     let (before, begun) = parted(typed);
     let fitting = names.into_iter().filter(|n| goes_on(&n.name, begun));
     let fitting: Vec<&Name> = fitting.collect();
-    // Where letters of both sizes would do, those that were typed are meant.
+    // Names that match in upper and lower case take precedence over those that match without.
     let exact: Vec<&Name> = fitting
         .iter()
         .copied()

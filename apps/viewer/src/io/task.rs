@@ -1,5 +1,5 @@
-//! Work beside the window: one thread that says how far it is, can be canceled, and gives a result. A panic
-//! on it is a result too, with its text.
+//! Background tasks: a thread that reports its progress, can be canceled, and returns a result. A
+//! panic is an error with its text.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -7,18 +7,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// How far a task is.
+/// Progress of a task.
 #[derive(Clone, Debug)]
 pub(crate) struct Progress {
     /// What it does.
     pub(crate) what: String,
-    /// What its steps are, as in `tiles`.
+    /// The name of its steps, as in `tiles`.
     pub(crate) steps: &'static str,
-    /// Steps done.
+    /// Number of steps done.
     pub(crate) done: Arc<AtomicUsize>,
-    /// All steps, 0 where that is not known yet.
+    /// Number of all steps; 0 if that is not known yet.
     pub(crate) all: Arc<AtomicUsize>,
-    /// Set to end it.
+    /// Set to cancel it.
     pub(crate) canceled: Arc<AtomicBool>,
 }
 
@@ -33,17 +33,17 @@ impl Progress {
         }
     }
 
-    /// Asks the task to end.
+    /// Cancels the task.
     pub(crate) fn cancel(&self) {
         self.canceled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it should end.
+    /// Whether it was canceled.
     pub(crate) fn is_canceled(&self) -> bool {
         self.canceled.load(Ordering::Relaxed)
     }
 
-    /// What it does and how far it is, for people.
+    /// What it does and its progress, as text.
     pub(crate) fn text(&self) -> String {
         let (what, steps) = (&self.what, self.steps);
         match [&self.done, &self.all].map(|n| n.load(Ordering::Relaxed)) {
@@ -52,21 +52,21 @@ impl Progress {
         }
     }
 
-    /// Share done, 0 to 1.
+    /// The share that is done, 0 to 1.
     pub(crate) fn share(&self) -> f32 {
         let all = self.all.load(Ordering::Relaxed).max(1);
         self.done.load(Ordering::Relaxed) as f32 / all as f32
     }
 }
 
-/// Work under way.
+/// A background task.
 pub(crate) struct Task<T> {
     progress: Progress,
     result: Receiver<Result<T, String>>,
 }
 
 impl<T: Send + 'static> Task<T> {
-    /// Starts `work`; `wake` is called when it has ended, however it did.
+    /// Starts `work`; `wake` is called when it has ended, also by a panic.
     pub(crate) fn start(
         progress: Progress,
         wake: impl FnOnce() + Send + 'static,
@@ -75,14 +75,14 @@ impl<T: Send + 'static> Task<T> {
         let (sender, result) = channel();
         let own = progress.clone();
         std::thread::spawn(move || {
-            // Nobody waits for it if the window is closed.
+            // If the window is closed, nothing receives it.
             let _ = sender.send(caught(|| work(&own)));
             wake();
         });
         Self { progress, result }
     }
 
-    /// The result, once, when it is there.
+    /// The result, when the task has ended; returned only once.
     pub(crate) fn take(&self) -> Option<Result<T, String>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
@@ -96,7 +96,8 @@ impl<T: Send + 'static> Task<T> {
     }
 }
 
-/// What work gives; a panic is an error with its text. A bug in one cell is a failure of that cell.
+/// The result of `work`; a panic becomes an error with its text, so that a bug that one cell
+/// triggers fails that cell only.
 pub(crate) fn caught<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic_text(&*panic);

@@ -1,5 +1,5 @@
-//! Work beside the window: reading, meshing, saving. Results come back as messages; the window is told
-//! that there is one.
+//! The window's background work: reading, meshing, saving. Results come back as messages, and the
+//! window is woken for each.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,33 +17,33 @@ use crate::io::task::{Progress, Task, caught};
 use crate::model::document::{SomaEdit, SourceId};
 use crate::model::sources::{Source, Stale};
 
-/// What work gives.
+/// A result of background work.
 #[derive(Debug)]
 pub(crate) enum Message {
-    /// What was found of what was asked for.
+    /// What was found of a request.
     Found(Box<Found>),
-    /// A file that was read; the number is its place among those found of that loading.
+    /// A file that was read; the number is its index among the files that were found.
     Loaded(usize, Box<Result<Source, (PathBuf, String)>>),
     /// All files of a loading are read, or it was canceled.
     LoadingDone(Result<(), String>),
     /// A file that was read again.
     Reloaded(SourceId, Box<Result<Source, String>>),
-    /// A soma that was made again.
+    /// A cell that was meshed again with another soma.
     Soma(SourceId, SomaEdit, Box<Result<Generated, String>>),
-    /// What has become of files.
+    /// Files that were changed or removed, or are as they were read.
     Files(Vec<(SourceId, Option<Stale>)>),
-    /// Why files are no longer looked after.
+    /// Files are no longer watched, for this reason.
     NotWatched(String),
-    /// Saving ended: what to say, or what went wrong.
+    /// Saving ended: with this message, or with an error.
     Saved(Result<String, String>),
 }
 
-/// A file that is looked after, and when it was written last.
+/// A file that is watched, and when it was last written.
 pub(crate) type Watched = (SourceId, PathBuf, Option<SystemTime>);
 
 /// Starts work and takes its results.
 pub(crate) struct Worker {
-    /// What tasks tell before they end.
+    /// For messages that tasks send before they end.
     sender: Sender<Message>,
     receiver: Receiver<Message>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -56,7 +56,7 @@ pub(crate) struct Worker {
 }
 
 impl Worker {
-    /// `wake` is called when there is a message.
+    /// A worker without tasks. `wake` is called when there is a message.
     pub(crate) fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let (sender, receiver) = channel();
         Self {
@@ -74,7 +74,7 @@ impl Worker {
 
     /// Messages that have come.
     pub(crate) fn messages(&mut self) -> Vec<Message> {
-        // Before what came on the way is taken: a task tells nothing after its end.
+        // Taken before the messages, since a task sends none after its end.
         let loaded = self.loading.as_ref().and_then(Task::take);
         let watched = self.watching.as_ref().and_then(Task::take);
         let mut messages: Vec<Message> = self.receiver.try_iter().collect();
@@ -106,7 +106,7 @@ impl Worker {
         messages
     }
 
-    /// Whether anything is under way whose result will come.
+    /// Whether a task is running whose result will come.
     pub(crate) fn is_busy(&self) -> bool {
         self.loading.is_some() || self.saving.is_some() || self.remeshing.is_some()
     }
@@ -116,7 +116,7 @@ impl Worker {
         self.saving.is_some()
     }
 
-    /// How far reading and saving are.
+    /// Progress of reading and of saving.
     pub(crate) fn progress(&self) -> [Option<Progress>; 2] {
         let reading = self.loading.as_ref().map(Task::progress);
         let saving = self.saving.as_ref().map(Task::progress);
@@ -132,11 +132,11 @@ impl Worker {
         Task::start(progress, move || wake(), work)
     }
 
-    /// Tells a message on the way.
-    fn teller(&self) -> impl Fn(Message) + Send + 'static {
+    /// A function by which a task sends messages before its end.
+    fn message_sender(&self) -> impl Fn(Message) + Send + 'static {
         let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
         move |message| {
-            // Nobody listens any more: the window is closed.
+            // If the window is closed, nothing receives it.
             let _ = sender.send(message);
             wake();
         }
@@ -144,7 +144,7 @@ impl Worker {
 
     /// Reads files, folders and circuits on all cores.
     pub(crate) fn load(&mut self, request: OpenRequest) {
-        let send = self.teller();
+        let send = self.message_sender();
         let task = self.start(Progress::new("reading", "files", 0), move |progress| {
             let found = find::find(&request);
             let files = found.files.clone();
@@ -174,7 +174,8 @@ impl Worker {
                     });
                 }
                 drop(sender);
-                // In the order of the files, whoever was first: the list is the same every time.
+                // Results are passed on in the order of the files, so that the list is always the
+                // same.
                 let (mut early, mut next) = (BTreeMap::new(), 0);
                 for (index, loaded) in receiver {
                     early.insert(index, loaded);
@@ -212,7 +213,7 @@ impl Worker {
         self.remeshing = Some((id, edit, task));
     }
 
-    /// Saves something; `work` says how far it is and looks when to stop.
+    /// Starts saving; `work` reports its progress, and stops if it was canceled.
     pub(crate) fn save(
         &mut self,
         progress: Progress,
@@ -221,19 +222,19 @@ impl Worker {
         self.saving = Some(self.start(progress, work));
     }
 
-    /// Looks after these files from now on, every two seconds, on a thread of its own.
+    /// Watches these files from now on: checks them every two seconds, on a thread of its own.
     pub(crate) fn watch(&mut self, files: Vec<Watched>) {
         let any = !files.is_empty();
         *self.watched.lock().unwrap_or_else(PoisonError::into_inner) = files;
         if !any || self.watching.is_some() {
             return;
         }
-        let (watched, send) = (Arc::downgrade(&self.watched), self.teller());
+        let (watched, send) = (Arc::downgrade(&self.watched), self.message_sender());
         let task = self.start(Progress::new("watching", "files", 0), move |_| {
             let mut known: Vec<(SourceId, Option<Stale>)> = Vec::new();
             loop {
                 std::thread::sleep(Duration::from_secs(2));
-                // The window is closed, or all files are.
+                // The window was closed, or all files were.
                 let Some(watched) = watched.upgrade() else {
                     return Ok(());
                 };

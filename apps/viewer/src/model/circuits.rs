@@ -1,4 +1,4 @@
-//! Circuits that are open: what their nodes have beside shape and place.
+//! Circuits that are open, with the attributes of their nodes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,34 +11,34 @@ use crate::model::ids::{CircuitId, CircuitNode};
 /// A circuit and the file or folder that was opened.
 pub(crate) type Opened = (PathBuf, Arc<Circuit>);
 
-/// All circuits that are open or were.
+/// All circuits that were opened.
 #[derive(Clone, Debug, Default)]
 pub struct Circuits(Vec<Opened>);
 
 impl Circuits {
-    /// Adds one.
+    /// Adds a circuit.
     pub fn add(&mut self, opened: Opened) -> CircuitId {
         self.0.push(opened);
         CircuitId(self.0.len() as u32 - 1)
     }
 
-    /// The file or folder of one.
+    /// The file or folder of a circuit.
     pub fn file(&self, id: CircuitId) -> Option<&Path> {
         self.0.get(id.0 as usize).map(|(file, _)| file.as_path())
     }
 
-    /// One of them.
+    /// A circuit.
     pub fn get(&self, id: CircuitId) -> Option<&Circuit> {
         self.0.get(id.0 as usize).map(|(_, circuit)| &**circuit)
     }
 
-    /// All with their numbers.
+    /// All circuits with their ids.
     pub fn iter(&self) -> impl Iterator<Item = (CircuitId, &Circuit)> {
         let circuits = self.0.iter().map(|(_, circuit)| &**circuit);
         (0..).map(CircuitId).zip(circuits)
     }
 
-    /// A node with its circuit, as colors want it.
+    /// A node with its circuit, for coloring.
     pub fn node(&self, of: CircuitNode) -> Option<Node<'_>> {
         let (circuit, node) = (self.get(of.circuit)?, of.node);
         Some(Node { circuit, node })

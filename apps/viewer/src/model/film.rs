@@ -2,14 +2,14 @@
 
 use crate::model::view::View;
 
-/// A picture to be drawn: from where, and at which time (ms) of a recording.
+/// A picture of a film: its view, and the time (ms) of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FilmFrame {
     pub(crate) view: View,
     pub(crate) time: Option<f64>,
 }
 
-/// Number of pictures of a film along so many key views.
+/// Number of pictures of a film along this number of key views.
 pub(crate) fn length(keys: usize, frames: u32, over_time: bool) -> usize {
     let frames = frames.max(1) as usize;
     match (keys, over_time) {
@@ -19,8 +19,9 @@ pub(crate) fn length(keys: usize, frames: u32, over_time: bool) -> usize {
     }
 }
 
-/// Pictures of a film: `frames` from each key view to the next, and the last. With fewer than two key views
-/// one stays where one is (`now`), and only the time goes on.
+/// The pictures of a film: `frames` from each key view to the next, and the last key view. With
+/// fewer than two key views the camera stays at the current view (`now`), and only the time goes
+/// on.
 pub(crate) fn film_frames(
     keys: &[View],
     now: View,

@@ -1,11 +1,11 @@
-//! Undo and redo: documents before and after. They are small: meshes are elsewhere.
+//! Undo and redo: earlier and later documents. They are small, since meshes are not part of them.
 
 use crate::model::document::{Document, Neuron};
 
 /// Most edits that are kept.
 const MOST: usize = 200;
 
-/// Documents before and after the one there is.
+/// Documents before and after the current one.
 #[derive(Debug, Default)]
 pub struct History {
     before: Vec<(&'static str, Document)>,
@@ -14,7 +14,7 @@ pub struct History {
 }
 
 impl History {
-    /// Keeps the document before an edit. Edits of one name in a row that join are one.
+    /// Keeps the document before an edit. Joining edits of the same name in a row count as one.
     pub fn keep(&mut self, name: &'static str, document: Document, joins: bool) {
         self.after.clear();
         let goes_on = joins && self.joining == Some(name);
@@ -28,31 +28,31 @@ impl History {
         }
     }
 
-    /// The next edit is one of its own: a slider was let go.
+    /// The next edit does not join those before it, since a slider was released.
     pub fn end_joining(&mut self) {
         self.joining = None;
     }
 
-    /// Puts the document before the last edit in place of this one; says what was undone.
+    /// Replaces the document by that before the last edit; returns the edit's name.
     pub fn undo(&mut self, document: &mut Document) -> Option<&'static str> {
         let (name, before) = self.before.pop()?;
         self.after.push((name, std::mem::replace(document, before)));
         Some(name)
     }
 
-    /// Takes the last undo back.
+    /// Reverts the last undo; returns the edit's name.
     pub fn redo(&mut self, document: &mut Document) -> Option<&'static str> {
         let (name, after) = self.after.pop()?;
         self.before.push((name, std::mem::replace(document, after)));
         Some(name)
     }
 
-    /// What an undo and a redo would concern.
+    /// Names of the edits that an undo and a redo would concern.
     pub fn names(&self) -> [Option<&'static str>; 2] {
         [&self.before, &self.after].map(|list| list.last().map(|(name, _)| *name))
     }
 
-    /// A neuron that was opened is in all documents: an undo does not close it.
+    /// Adds a neuron that was opened to all documents, so that an undo does not close it.
     pub fn opened(&mut self, neuron: &Neuron) {
         for (_, document) in self.before.iter_mut().chain(&mut self.after) {
             document.neurons.push(neuron.clone());

@@ -1,4 +1,4 @@
-//! Numbers that name what is open.
+//! Ids of open tracings and circuits.
 
 use neurotess::circuit::NodeRef;
 use serde::{Deserialize, Serialize};

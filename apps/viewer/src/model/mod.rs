@@ -1,5 +1,5 @@
-//! What is open and how it shows: values and the commands that change them. No threads, no device, no
-//! widgets.
+//! What is open and how it is shown: values, and the commands that change them. No threads, no
+//! device, no widgets.
 
 pub(crate) mod circuits;
 pub mod command;

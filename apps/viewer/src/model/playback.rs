@@ -1,22 +1,22 @@
-//! Where a recording is: its time, and how that goes on.
+//! Playback of a recording: its time, and how fast it is played.
 
 use neurotess::circuit::TimeAxis;
 use serde::{Deserialize, Serialize};
 
-/// How long (s) a whole recording takes unless a speed is chosen.
+/// Time (s) in which a whole recording is played unless a speed is set.
 const WHOLE: f64 = 10.0;
-/// Pictures in a second, at most: what lies between is left out.
+/// Most pictures in a second: frames between them are left out.
 const PICTURES: f64 = 30.0;
 
-/// What a session keeps of it.
+/// Time and speed, which are saved in a session.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Pace {
     /// Time of the recording (ms).
     pub time: f64,
-    /// Milliseconds of it in a second; 0: as fits.
+    /// Milliseconds of the recording in a second; 0: so that the whole recording takes 10 s.
     pub speed: f64,
-    /// From the end to the beginning.
+    /// Whether it starts over at the end.
     pub loops: bool,
 }
 
@@ -30,7 +30,7 @@ impl Default for Pace {
     }
 }
 
-/// What is known of the recording that shows.
+/// What is known of the recording that is shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facts {
     /// Its name.
@@ -39,27 +39,27 @@ pub struct Facts {
     pub unit: String,
     /// Times (ms).
     pub time: TimeAxis,
-    /// Whether it is of spikes.
+    /// Whether it holds spikes.
     pub spikes: bool,
     /// Numbers at both ends of the color map.
     pub range: [f32; 2],
-    /// Neurons that have no values, and all.
+    /// Number of neurons that have no values, and of all.
     pub without: [usize; 2],
 }
 
 /// A recording that is played.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Playback {
-    /// Time, speed, whether it begins again.
+    /// Time and speed.
     pub pace: Pace,
-    /// Whether the time goes on.
+    /// Whether it is playing.
     pub playing: bool,
-    /// What is known once it is open.
+    /// What is known of it, once it is open.
     pub facts: Option<Facts>,
 }
 
 impl Playback {
-    /// Another recording is open, or none.
+    /// Notes that another recording is open, or none.
     pub fn set_facts(&mut self, facts: Option<Facts>) {
         self.facts = facts;
         let Some(Facts { time, .. }) = &self.facts else {
@@ -81,7 +81,7 @@ impl Playback {
         }
     }
 
-    /// Goes on by the clock (s).
+    /// Advances by a time of the clock (s).
     pub fn advance(&mut self, seconds: f64) {
         let Some(axis) = self.axis().filter(|_| self.playing) else {
             return;
@@ -97,7 +97,7 @@ impl Playback {
         }
     }
 
-    /// Plays from here, or from the beginning if this is the end.
+    /// Plays or pauses. At the end it starts over.
     pub fn play(&mut self, playing: bool) {
         self.playing = playing && self.facts.is_some();
         if let Some(axis) = self.axis().filter(|_| self.playing)
@@ -107,7 +107,7 @@ impl Playback {
         }
     }
 
-    /// Goes by frames.
+    /// Goes a number of frames forwards or backwards.
     pub fn step(&mut self, frames: i64) {
         if let (Some(axis), Some(frame)) = (self.axis(), self.frame()) {
             self.playing = false;
@@ -115,10 +115,10 @@ impl Playback {
         }
     }
 
-    /// The frame that shows.
+    /// The frame that is shown.
     pub fn frame(&self) -> Option<u64> {
         let frame = self.axis()?.frame_at(self.pace.time)?;
-        // The same ones in every round, so that they are there before they are due.
+        // The same frames each time it is played over, so that they have been read already.
         Some(frame - frame % self.stride())
     }
 
@@ -142,13 +142,13 @@ impl Playback {
     }
 }
 
-/// The time (ms) of the frame that shows at a time, for people.
+/// The time (ms) of the frame that is shown at a time, as text.
 pub(crate) fn said(axis: &TimeAxis, time: f64) -> String {
     let frame = axis.frame_at(time).map_or(time, |f| axis.time_of(f));
     format!("{frame:.*} ms", digits(axis.step))
 }
 
-/// Digits behind the point that tell frames apart.
+/// Number of decimals that distinguish frames.
 pub(crate) fn digits(step: f64) -> usize {
     let rounded = |digits: usize| {
         let unit = 10f64.powi(digits as i32);
@@ -157,7 +157,7 @@ pub(crate) fn digits(step: f64) -> usize {
     (0..6).find(|&digits| rounded(digits)).unwrap_or(6)
 }
 
-/// The nearest of 1, 2, 5, 10, 20 and so on.
+/// The nearest of the numbers 1, 2, 5, 10, 20 and so on.
 fn nice(number: f64) -> f64 {
     let unit = 10f64.powf(number.log10().floor());
     let near = |a: &&f64, b: &&f64| {

@@ -1,5 +1,5 @@
-//! Stamps of contents: equal stamps, equal contents. What is derived from something keeps its stamp and
-//! need not look at it again until that is another one.
+//! Revisions: equal revisions mean equal contents. Whatever is derived from a content keeps its
+//! revision, and is derived again only when that has changed.
 
 use std::cell::{Cell, RefCell};
 use std::ops::{Deref, DerefMut};
@@ -8,19 +8,19 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The stamp of a content. A copy of the content has the same one, so an undo brings the old stamp back.
-/// The default is that of what is empty.
+/// The revision of a content. A copy has the same revision, so an undo brings the old one back. The
+/// default is the revision of an empty content.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Revision(u64);
 
 impl Revision {
-    /// One that nothing has had before.
+    /// A revision that has not been used before.
     pub fn next() -> Self {
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 }
 
-/// A value whose stamp changes whenever it may have been changed.
+/// A value whose revision changes whenever the value may have been changed.
 #[derive(Clone, Debug, Default)]
 pub struct Tracked<T> {
     value: T,
@@ -28,7 +28,7 @@ pub struct Tracked<T> {
 }
 
 impl<T> Tracked<T> {
-    /// The stamp of the value.
+    /// The revision of the value.
     pub fn revision(&self) -> Revision {
         self.revision
     }
@@ -55,7 +55,7 @@ impl<T: PartialEq> PartialEq for Tracked<T> {
     }
 }
 
-/// Something derived, kept until what it is derived from has another stamp.
+/// A derived value, kept until its key (the revisions that it is derived from) changes.
 #[derive(Debug)]
 pub(crate) struct Memo<K, V> {
     kept: RefCell<Option<(K, Arc<V>)>>,
@@ -72,7 +72,7 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: PartialEq, V> Memo<K, V> {
-    /// What is derived from `key`.
+    /// The value for `key`; `derive` is called if the last one was for another key.
     pub(crate) fn get(&self, key: K, derive: impl FnOnce() -> V) -> Arc<V> {
         if let Some((known, value)) = &*self.kept.borrow()
             && *known == key
@@ -85,7 +85,7 @@ impl<K: PartialEq, V> Memo<K, V> {
         value
     }
 
-    /// How often it was derived.
+    /// How many times it was derived.
     pub(crate) fn derived(&self) -> u64 {
         self.derived.get()
     }

@@ -1,4 +1,4 @@
-//! What is to be saved, and how: meshes, pictures, films.
+//! Options of saving meshes, pictures and films.
 
 use std::path::PathBuf;
 
@@ -7,24 +7,24 @@ use neurotess::refine::LodCriterion;
 
 use crate::model::settings::Settings;
 
-/// How finely a mesh is written.
+/// The level of detail that a mesh is written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshLod {
-    /// By the panel's level of detail, from the present view where it depends on that.
+    /// The panel's level of detail, in the current view if it depends on that.
     #[default]
     AsShown,
-    /// By a criterion that needs no view; none: the coarse quads.
+    /// A criterion that needs no view; none: the coarse quads.
     Fixed(Option<LodCriterion>),
 }
 
-/// What is to be written.
+/// What is to be saved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SaveRequest {
     /// The session.
     Session(PathBuf),
     /// Meshes of neurons.
     Meshes(MeshOptions),
-    /// A picture of the present view.
+    /// A picture of the current view.
     Picture(PictureFile),
     /// Pictures along views or through time.
     Film(FilmOptions),
@@ -33,21 +33,21 @@ pub enum SaveRequest {
 /// How meshes are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshOptions {
-    /// A file for one, a folder for several.
+    /// A file for one mesh, a folder for several.
     pub out: PathBuf,
-    /// What kind of file.
+    /// Format of the files.
     pub format: Format,
-    /// How finely.
+    /// The level of detail.
     pub lod: MeshLod,
-    /// Quads instead of triangles.
+    /// Whether there are quads instead of triangles.
     pub quads: bool,
-    /// Straight between points.
+    /// Whether the path between points is straight.
     pub linear: bool,
-    /// Disks at the ends.
+    /// Whether neurites end in disks instead of half spheres.
     pub flat: bool,
-    /// Where neurons are in the window instead of where they were traced.
+    /// Whether neurons are where the window shows them instead of where they were traced.
     pub placed: bool,
-    /// All that is shown instead of what is selected.
+    /// Whether all neurons that are shown are written instead of the selected ones.
     pub all: bool,
     /// Whether files may be replaced.
     pub replace: bool,
@@ -62,7 +62,7 @@ pub struct PictureFile {
     pub size: [u32; 2],
     /// Samples of a pixel.
     pub samples: u32,
-    /// Without a background.
+    /// Whether the background is transparent.
     pub transparent: bool,
     /// Whether the file may be replaced.
     pub replace: bool,
@@ -73,36 +73,36 @@ pub struct PictureFile {
 pub struct FilmOptions {
     /// Name of the pictures; a number is added.
     pub picture: PictureFile,
-    /// Pictures from one key view to the next; of a film from one view, all.
+    /// Number of pictures from one key view to the next; or of all, if the view stays the same.
     pub frames: u32,
-    /// Times (ms) of a recording at the beginning and the end; none: as it is now.
+    /// Times (ms) of a recording at the beginning and the end; none: the current time.
     pub time: Option<[f64; 2]>,
-    /// Also a video, by ffmpeg.
+    /// Whether ffmpeg makes a video of them.
     pub video: bool,
 }
 
-/// What the panel holds.
+/// The inputs of the panel.
 #[derive(Clone, Debug)]
 pub struct SaveForm {
-    /// As typed.
+    /// Typed path of meshes.
     pub mesh_out: String,
-    /// As chosen.
+    /// Options of meshes.
     pub mesh: MeshOptions,
-    /// As typed.
+    /// Typed path of a picture.
     pub picture_out: String,
-    /// As chosen.
+    /// Options of a picture.
     pub picture: PictureFile,
-    /// As typed.
+    /// Typed path of a film.
     pub film_out: String,
-    /// Pictures from one key view to the next.
+    /// Number of pictures from one key view to the next.
     pub frames: u32,
-    /// Whether a recording's time goes on meanwhile.
+    /// Whether a recording's time goes on during the film.
     pub over_time: bool,
-    /// From and to (ms).
+    /// First and last time (ms) of the recording.
     pub time: [f64; 2],
-    /// Also a video.
+    /// Whether ffmpeg makes a video of the film.
     pub video: bool,
-    /// Whether ffmpeg is there; asked once.
+    /// Whether ffmpeg is installed, once that is known.
     pub ffmpeg: Option<bool>,
 }
 

@@ -17,10 +17,11 @@ use crate::model::view::View;
 
 /// Extension of sessions.
 pub const EXTENSION: &str = "neurotess";
-/// What stands in the file.
+/// Version of the file format.
 const VERSION: u32 = 1;
 
-/// Why a session cannot be read. Displays without the file's name, which stands beside it in the window.
+/// Why a session cannot be read. Displays without the file's name, which the window shows beside
+/// it.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}{why}", .line.map_or(String::new(), |line| format!("line {line}: ")))]
 pub struct SessionError {
@@ -36,25 +37,25 @@ impl SessionError {
     }
 }
 
-/// All that a session keeps.
+/// A session as it is stored in its file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Session {
-    /// Of the format.
+    /// Version of the file format.
     pub version: u32,
-    /// Side by side.
+    /// Whether neurons are side by side.
     #[serde(default)]
     pub grid: bool,
-    /// y runs down.
+    /// Whether y points down.
     #[serde(default)]
     pub y_down: bool,
-    /// From where.
+    /// The camera.
     #[serde(default)]
     pub view: View,
     /// Colors and light.
     #[serde(default)]
     pub look: Look,
-    /// How finely.
+    /// The level of detail.
     #[serde(default)]
     pub detail: Detail,
     /// Views of a film.
@@ -63,16 +64,16 @@ pub struct Session {
     /// The recording whose values can be shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<PathBuf>,
-    /// Time and speed of it.
+    /// Its time and speed.
     #[serde(default)]
     pub playback: Pace,
-    /// Circuits that neurons are of.
+    /// Circuits that neurons belong to.
     #[serde(default)]
     pub circuit: Vec<CircuitEntry>,
     /// Tracings.
     #[serde(default)]
     pub file: Vec<FileEntry>,
-    /// What is shown of them.
+    /// Neurons.
     #[serde(default)]
     pub neuron: Vec<NeuronEntry>,
 }
@@ -89,11 +90,11 @@ pub struct CircuitEntry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodeEntry {
-    /// Place of the circuit in the list, from 0.
+    /// Index of the circuit in the list, from 0.
     pub circuit: usize,
     /// The population's name.
     pub population: String,
-    /// Its id there.
+    /// The node's id in its population.
     pub id: u64,
 }
 
@@ -103,7 +104,7 @@ pub struct NodeEntry {
 pub struct FileEntry {
     /// Relative to the session's folder where it can be.
     pub path: PathBuf,
-    /// How its soma is made; nothing: as usual.
+    /// How its soma is generated; none: in the default way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub soma: Option<SomaEdit>,
 }
@@ -114,18 +115,18 @@ pub struct FileEntry {
 pub struct NeuronEntry {
     /// Name in the list.
     pub name: String,
-    /// Place of its tracing in the list of files, from 0.
+    /// Index of its tracing in the list of files, from 0.
     pub file: usize,
-    /// Not drawn.
+    /// Whether it is hidden.
     #[serde(default, skip_serializing_if = "is_false")]
     pub hidden: bool,
-    /// Selected.
+    /// Whether it is selected.
     #[serde(default, skip_serializing_if = "is_false")]
     pub selected: bool,
-    /// What it is in its circuit; nothing: it is of none.
+    /// Its node, if it belongs to a circuit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub node: Option<NodeEntry>,
-    /// Where it stands; nothing: where it was traced.
+    /// Its placement; none: where it was traced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) place: Option<PlacementEntry>,
 }
@@ -146,14 +147,14 @@ fn is_false(value: &bool) -> bool {
     !value
 }
 
-/// Whether a file is named as sessions are.
+/// Whether a file has the extension of sessions.
 pub fn is_session(path: &Path) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION))
 }
 
 impl Session {
-    /// What is there now. `folder`: where the session will lie.
+    /// The session of the current state. `folder`: the folder that it will be saved in.
     pub fn of(state: &State, folder: &Path) -> Self {
         let document = &state.document;
         let mut used: Vec<_> = document.neurons.iter().map(|n| n.source).collect();
@@ -211,10 +212,10 @@ impl Session {
         }
     }
 
-    /// Reads a session; paths come back absolute or relative to where the program runs.
+    /// Reads a session. Its paths are made absolute, or relative to the working directory.
     ///
     /// # Errors
-    /// What is wrong, with its line, and what to do.
+    /// The file cannot be read or is invalid: with the line, and what to do.
     pub fn read(path: &Path) -> Result<Self, SessionError> {
         let whole = |why: String| SessionError { line: None, why };
         let text = read_regular(path).map_err(|e| whole(format!("cannot be read: {e}")))?;
@@ -250,7 +251,7 @@ impl Session {
         Ok(session)
     }
 
-    /// The node that a neuron is, if its circuit is open.
+    /// The node of a neuron, if its circuit is open.
     pub(crate) fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<CircuitNode> {
         let said = entry.node.as_ref()?;
         let file = self.circuit.get(said.circuit)?.path.as_path();
@@ -260,10 +261,10 @@ impl Session {
         Some(CircuitNode { circuit, node })
     }
 
-    /// Writes it.
+    /// Writes the session to a file.
     ///
     /// # Errors
-    /// What went wrong and what to do.
+    /// A message that says what went wrong and what to do.
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let text = toml::to_string_pretty(self).map_err(|e| e.to_string())?;
         write_whole(path, Existing::Replace, |to| {
@@ -278,7 +279,7 @@ impl Session {
     }
 }
 
-/// A path as a session keeps it: relative to its folder if it lies below, so that both can be moved.
+/// A path for a session's file: relative to its folder if it is inside, so that both can be moved.
 fn relative(path: &Path, folder: &Path) -> PathBuf {
     if path.to_string_lossy().starts_with("sample:") {
         return path.to_path_buf();

@@ -1,4 +1,4 @@
-//! What is remembered between starts: a file in the user's configuration folder.
+//! Settings, which are kept between starts in a file in the user's configuration folder.
 
 use std::fs;
 use std::io::Write;
@@ -13,19 +13,19 @@ use crate::model::document::{ColorBy, Detail, Look};
 
 /// Most files in the recent list.
 const RECENT: usize = 12;
-/// What is to be remembered and is not yet written.
+/// Settings that are not written yet.
 static UNWRITTEN: Mutex<Option<Settings>> = Mutex::new(None);
 
-/// Environment variable that names another folder for it.
+/// Environment variable that names another folder for the file.
 pub const FOLDER_VARIABLE: &str = "NEUROTESS_CONFIG";
 
-/// What is remembered.
+/// Settings that are kept between starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Dark theme.
+    /// Whether the theme is dark.
     pub dark: bool,
-    /// y runs down.
+    /// Whether y points down.
     pub y_down: bool,
     /// Folder of the last file.
     pub folder: PathBuf,
@@ -37,7 +37,7 @@ pub struct Settings {
     pub zoom: f32,
     /// Colors and light.
     pub look: Look,
-    /// How finely.
+    /// The level of detail.
     pub detail: Detail,
 }
 
@@ -57,7 +57,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Those of the last start; the usual ones where there are none or they cannot be understood, with
+    /// Reads the settings. If there are none, or if they are invalid, the default ones; then with
     /// the reason.
     pub fn load() -> (Self, Option<String>) {
         let Some(file) = file() else {
@@ -68,10 +68,10 @@ impl Settings {
         };
         match toml::from_str::<Self>(&text) {
             Ok(mut settings) => {
-                // A cut of another scene would hide half of this one.
+                // A cut that was made for another scene might hide half of this one.
                 settings.look.cut = None;
                 settings.look.ghost_others = false;
-                // So would colors of another circuit be.
+                // Nor do colors that were chosen for another circuit fit.
                 settings.look.range = None;
                 if !settings.look.color_by.is_of_tracings() {
                     settings.look.color_by = ColorBy::default();
@@ -89,10 +89,10 @@ impl Settings {
         }
     }
 
-    /// Writes them.
+    /// Writes the settings to their file.
     ///
     /// # Errors
-    /// Why that did not work.
+    /// The reason, if that fails.
     pub fn save(&self) -> Result<(), String> {
         let Some(file) = file() else {
             return Ok(());
@@ -102,7 +102,8 @@ impl Settings {
             .map_err(|e| e.to_string())
     }
 
-    /// Notes them for whoever ends the program before the window closes.
+    /// Keeps the settings to be written by [`write_noted`] if the program ends before the window
+    /// closes.
     pub(crate) fn note(&self) {
         *UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.clone());
     }
@@ -121,10 +122,10 @@ impl Settings {
     }
 }
 
-/// Writes what is not yet written: for a program that is asked to end, from any thread.
+/// Writes settings that are not written yet, when the program is interrupted. From any thread.
 ///
 /// # Errors
-/// Why that did not work.
+/// The reason, if that fails.
 pub fn write_noted() -> Result<(), String> {
     let noted = UNWRITTEN
         .lock()
@@ -133,7 +134,7 @@ pub fn write_noted() -> Result<(), String> {
     noted.map_or(Ok(()), |settings| settings.save())
 }
 
-/// The folder of what is remembered.
+/// The folder of the settings' file.
 pub fn folder() -> Option<PathBuf> {
     if let Some(folder) = std::env::var_os(FOLDER_VARIABLE) {
         return Some(PathBuf::from(folder));

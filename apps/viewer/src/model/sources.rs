@@ -1,4 +1,5 @@
-//! Tracings that are open: read, meshed, measured. They stay while an undo could want them.
+//! Tracings that were opened: read, meshed, measured. They are kept, since an undo may bring them
+//! back.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,10 +17,11 @@ use crate::model::document::SomaEdit;
 use crate::model::ids::SourceId;
 use crate::model::revision::Revision;
 
-/// Balls of a neuron in scenes of many: 1,000 neurons of 1,000 balls would take every frame 10 ms.
+/// Most bounding spheres of a neuron in scenes with many: 1,000 neurons with 1,000 spheres each
+/// would take 10 ms in every frame.
 const FEW_SPHERES: usize = 48;
 
-/// Before the name of a built-in sample.
+/// Prefix of the path of a built-in sample.
 pub(crate) const SAMPLE: &str = "sample:";
 
 /// An open tracing.
@@ -27,36 +29,36 @@ pub(crate) const SAMPLE: &str = "sample:";
 pub struct Source {
     /// Its file, or `sample:KIND`.
     pub file: PathBuf,
-    /// Name for people.
+    /// Name in the window.
     pub name: String,
     /// The tracing.
     pub morphology: Arc<Morphology>,
     /// Its coarse mesh with the soma's figures.
     pub generated: Arc<Generated>,
-    /// What the mesh was made with.
+    /// How the soma of the mesh was generated.
     pub soma: SomaEdit,
     /// Morphometrics.
     pub measures: Arc<Measures>,
-    /// What was odd in the file, and what was mended in the mesh.
+    /// Warnings about the file, and about repairs of the mesh.
     pub warnings: Vec<Remark>,
-    /// When the file was written last; none: a sample.
+    /// When the file was last written; none for samples.
     pub written: Option<SystemTime>,
-    /// Bounding spheres around the mesh (µm).
+    /// Bounding spheres of the mesh (µm).
     pub spheres: Vec<BoundingSphere>,
-    /// A few that hold them, for scenes of many neurons.
+    /// A few spheres that hold them, for scenes of many neurons.
     pub few_spheres: Vec<BoundingSphere>,
-    /// Its file has changed since, or is gone.
+    /// Whether its file was changed or removed since.
     pub stale: Option<Stale>,
     /// By section: length (µm) and branch order.
     pub sections: Arc<Vec<SectionFacts>>,
 }
 
-/// Something that was odd or was mended.
+/// A warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// For people, with its line if it has one.
+    /// Its text, with the line of the file if there is one.
     pub text: String,
-    /// Whether somebody should look into it: something is missing or was guessed.
+    /// Whether the user should look into it: something is missing or was guessed.
     pub concerns: bool,
 }
 
@@ -67,8 +69,8 @@ impl Remark {
     }
 }
 
-/// Names of what somebody should look into. What else readers and the generator tell of is the daily work of
-/// making a mesh: points closer together than they are thick, say, of which nearly every tracing has some.
+/// Codes of warnings that the user should look into. Others are about usual repairs: nearly every
+/// tracing has points that are closer together than they are thick, for example.
 const CONCERNS: [&str; 18] = [
     "disconnected",
     "far_from_soma",
@@ -90,12 +92,12 @@ const CONCERNS: [&str; 18] = [
     "zero_radius",
 ];
 
-/// What a file has become.
+/// What happened to a file after it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stale {
-    /// Something else is in it.
+    /// It was changed.
     Changed,
-    /// It is gone.
+    /// It was removed.
     Gone,
 }
 
@@ -104,15 +106,15 @@ pub enum Stale {
 pub struct SectionFacts {
     /// Length (µm).
     pub length: f64,
-    /// Forks between the neurite's start and it.
+    /// Number of forks between the neurite's start and the section.
     pub order: u32,
-    /// Distance along the path (µm) from the neurite's start to its end.
+    /// Path distance (µm) from the neurite's start to the section's end.
     pub path: f64,
     /// Number of the neurite, from 0.
     pub neurite: u32,
 }
 
-/// All tracings that are open or were.
+/// All tracings that were opened.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     list: Vec<Source>,
@@ -120,7 +122,7 @@ pub struct Sources {
     geometry: Revision,
 }
 
-/// All balls around a mesh, and a few that hold them.
+/// The bounding spheres of a mesh, and a few spheres that hold them.
 pub(crate) fn spheres(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSphere>) {
     let all = bounds(mesh);
     let few = merged(&all, FEW_SPHERES);
@@ -140,22 +142,22 @@ impl Sources {
         self.list.get(id.0 as usize)
     }
 
-    /// All with their numbers.
+    /// All tracings with their ids.
     pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Source)> {
         (0..).map(SourceId).zip(&self.list)
     }
 
-    /// The stamp of tracings and meshes.
+    /// The revision of tracings and meshes.
     pub fn geometry(&self) -> Revision {
         self.geometry
     }
 
-    /// Number of tracings whose files changed or are gone.
+    /// Number of tracings whose files were changed or removed.
     pub fn stale(&self) -> usize {
         self.stale
     }
 
-    /// Puts a tracing that was read again in place of what was read before.
+    /// Replaces a tracing that was read again.
     pub(crate) fn replace(&mut self, id: SourceId, source: Source) {
         if let Some(there) = self.list.get_mut(id.0 as usize) {
             *there = source;
@@ -164,7 +166,8 @@ impl Sources {
         }
     }
 
-    /// Another soma for a tracing; `generated`: the mesh with it, unless it leaves nothing to draw.
+    /// Sets how a tracing's soma is generated; `generated`: the mesh with it, unless nothing is
+    /// left to draw.
     pub(crate) fn set_soma(&mut self, id: SourceId, edit: SomaEdit, generated: Option<Generated>) {
         let Some(source) = self.list.get_mut(id.0 as usize) else {
             return;
@@ -177,7 +180,7 @@ impl Sources {
         self.geometry = Revision::next();
     }
 
-    /// What has become of a tracing's file.
+    /// Notes whether a tracing's file was changed or removed.
     pub(crate) fn set_stale(&mut self, id: SourceId, stale: Option<Stale>) {
         if let Some(source) = self.list.get_mut(id.0 as usize) {
             source.stale = stale;
@@ -195,7 +198,7 @@ pub fn sample(kind: Kind) -> PathBuf {
     PathBuf::from(format!("{SAMPLE}{kind}"))
 }
 
-/// Corners of the box (µm) around balls.
+/// Corners of the bounding box (µm) of spheres.
 pub fn extent(spheres: &[BoundingSphere]) -> (DVec3, DVec3) {
     let corners = spheres.iter().map(|&(c, r)| (c - r, c + r));
     corners

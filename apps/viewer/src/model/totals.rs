@@ -9,11 +9,11 @@ use crate::model::sources::{Source, Sources};
 /// Sums over neurons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Totals {
-    /// µm.
+    /// Length (µm).
     pub(crate) length: f64,
-    /// µm².
+    /// Area (µm²).
     pub(crate) area: f64,
-    /// µm³.
+    /// Volume (µm³).
     pub(crate) volume: f64,
     pub(crate) neurites: usize,
     pub(crate) sections: usize,

@@ -1,21 +1,22 @@
-//! From where one looks, and how one gets elsewhere. Angles are radians, lengths µm.
+//! Views, and how they are moved. Angles are radians, lengths µm.
 
 use glam::{DMat3, DQuat, DVec3};
 use neurotess::render::{BoundingSphere, Camera, DEFAULT_FOV, Side};
 use serde::{Deserialize, Serialize};
 
-/// Free on each side of what is fitted, of the picture's width and height: as `neurotess render` has it.
+/// Margin around a scene that is fitted into the picture, as a share of its width and height: the
+/// same as that of `neurotess render`.
 const MARGIN: f64 = 0.04;
 
-/// An eye and what it looks at.
+/// A camera's position and target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct View {
     /// Position of the eye.
     pub eye: [f64; 3],
-    /// What it looks at, and turns around.
+    /// The point that it looks at and turns around.
     pub target: [f64; 3],
-    /// Upwards in the picture.
+    /// Direction upwards in the picture.
     pub up: [f64; 3],
     /// Vertical angle of view (degrees).
     pub fov: f64,
@@ -44,7 +45,7 @@ impl From<Camera> for View {
 }
 
 impl View {
-    /// The camera; if the numbers make none, the usual one.
+    /// The camera; a default one if the numbers are invalid.
     pub fn camera(&self) -> Camera {
         let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from_array);
         let made = Camera::new(eye, target, up, self.fov.to_radians());
@@ -66,8 +67,8 @@ impl View {
         }
     }
 
-    /// Goes around the target: `right` about what is upwards in the world, `up` over the top, but not
-    /// beyond it.
+    /// Moves around the target: `right` about the world's upwards direction, `up` towards the top,
+    /// but not beyond it.
     #[must_use]
     pub fn orbited(&self, right: f64, up: f64, upwards: DVec3) -> Self {
         let camera = self.camera();
@@ -80,7 +81,7 @@ impl View {
         self.with(camera.target() + offset, camera.target(), upwards)
     }
 
-    /// Moves everything by so many pixels in a picture of this height.
+    /// Moves the scene by this number of pixels in a picture of this height.
     #[must_use]
     pub fn panned(&self, right: f64, down: f64, height: f64) -> Self {
         let camera = self.camera();
@@ -90,7 +91,7 @@ impl View {
         self.with(camera.eye() + way, camera.target() + way, up)
     }
 
-    /// Comes nearer by a factor below 1, so that `place` stays where it is in the picture.
+    /// Multiplies the distance by a factor, with `place` staying where it is in the picture.
     #[must_use]
     pub fn zoomed(&self, factor: f64, place: DVec3) -> Self {
         let camera = self.camera();
@@ -104,7 +105,7 @@ impl View {
         )
     }
 
-    /// Flies: right, up and forward (µm), the target with it.
+    /// Moves the eye and the target right, up and forward (µm).
     #[must_use]
     pub fn flown(&self, right: f64, up: f64, forward: f64) -> Self {
         let camera = self.camera();
@@ -113,7 +114,7 @@ impl View {
         self.with(camera.eye() + way, camera.target() + way, upwards)
     }
 
-    /// Looks at a ball from where one looks now, as near as it fits with some room.
+    /// Looks at a sphere from the same direction, as near as it fits with some margin.
     #[must_use]
     pub fn focused(&self, (center, radius): BoundingSphere) -> Self {
         let camera = self.camera();
@@ -122,7 +123,7 @@ impl View {
         self.with(center + backward * distance, center, up)
     }
 
-    /// From a side, all in the picture.
+    /// The view from a side with all spheres in the picture.
     #[must_use]
     pub fn fitted(
         &self,
@@ -140,21 +141,22 @@ impl View {
         self.with(camera.eye(), middle(&camera, spheres), up)
     }
 
-    /// In a picture of another form (width by height), as much along its shorter side.
+    /// The view for another aspect ratio (width by height), with the same extent along the shorter
+    /// side.
     #[must_use]
     pub fn reshaped(&self, before: f64, after: f64) -> Self {
         let factor = before.min(1.0) / after.min(1.0);
         self.zoomed(factor, self.camera().target())
     }
 
-    /// The point at the target's depth that is seen at a place of the picture (pixels).
+    /// The point at the target's depth that is at this position in the picture (pixels).
     pub fn under(&self, [x, y]: [f64; 2], size: [f64; 2]) -> DVec3 {
         let camera = self.camera();
         let depth = camera.depth(camera.target());
         self.at_depth([x, y], size, depth)
     }
 
-    /// The point at a depth that is seen at a place of the picture (pixels).
+    /// The point at this depth that is at this position in the picture (pixels).
     pub fn at_depth(&self, [x, y]: [f64; 2], size: [f64; 2], depth: f64) -> DVec3 {
         let camera = self.camera();
         let [side, up, backward] = camera.axes();
@@ -163,7 +165,8 @@ impl View {
         camera.eye() + (side * right + up * above) * pixel - backward * depth
     }
 
-    /// A view between two: 0 is this one, 1 the other. Turns evenly around what moves evenly.
+    /// A view between two: this one at 0, the other at 1. Target and direction are interpolated
+    /// evenly.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
         let (a, b) = (self.camera(), other.camera());
@@ -173,7 +176,7 @@ impl View {
         };
         let turned = rotation(&a).slerp(rotation(&b), t);
         let away = |camera: &Camera| camera.eye().distance(camera.target());
-        // Distances by their ratio: zooming looks even.
+        // The distance changes by equal ratios, so that zooming looks even.
         let distance = away(&a).powf(1.0 - t) * away(&b).powf(t);
         let target = a.target().lerp(b.target(), t);
         let mut view = self.with(
@@ -186,7 +189,7 @@ impl View {
     }
 }
 
-/// The side whose picture, turned upside down, is this one's with y downwards.
+/// With y downwards, the side that shows what this side shows with y upwards, upside down.
 fn below(side: Side) -> Side {
     match side {
         Side::Front => Side::Back,
@@ -197,7 +200,8 @@ fn below(side: Side) -> Side {
     }
 }
 
-/// A fitted camera turns around the middle of what it sees, not around what happens to lie nearest.
+/// The target of a fitted camera: the middle of all spheres along its direction, not the nearest
+/// sphere.
 fn middle(camera: &Camera, spheres: &[BoundingSphere]) -> DVec3 {
     let depths = spheres
         .iter()

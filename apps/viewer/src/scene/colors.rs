@@ -1,4 +1,4 @@
-//! What colors tell in the window: of tracings, of a circuit's nodes, of a recording.
+//! Colors in the window: by tracings, by a circuit's nodes, by a recording.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,23 +19,23 @@ use crate::scene::templates::SceneTemplate;
 /// What colors depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColorInputs {
-    /// What they show, and of which neurons.
+    /// What neurons are colored by, and which neurons.
     pub(crate) subject: ColorSubject,
-    /// Which they are.
+    /// The colors that are used.
     pub(crate) style: ColorStyle,
 }
 
-/// What colors show, and of which neurons.
+/// What neurons are colored by, and which neurons.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColorSubject {
     by: ColorBy,
     attribute: String,
     report: Option<PathBuf>,
-    /// Stamp of the neurons, where colors differ among those of one tracing.
+    /// Revision of the neurons, if colors differ among those of one tracing.
     members: Option<Revision>,
 }
 
-/// The colors themselves.
+/// The colors that are used.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColorStyle {
     palette: Palette,
@@ -73,7 +73,7 @@ impl ColorInputs {
     }
 }
 
-/// The colors to choose from.
+/// The colors that the panel has set.
 pub(crate) fn color_scheme(look: &Look) -> ColorScheme {
     let background = Some(look.background);
     ColorScheme {
@@ -87,25 +87,25 @@ pub(crate) fn color_scheme(look: &Look) -> ColorScheme {
     }
 }
 
-/// All that colors are made of, free of the window.
+/// All that a coloring is computed from, for another thread.
 #[derive(Clone, Debug)]
 pub(crate) struct ColorRequest {
     look: Look,
     report: Option<PathBuf>,
-    /// Time (ms) of the recording that shows.
+    /// Time (ms) of the recording.
     time: f64,
     circuits: Circuits,
-    /// Place of the source, name and node of each neuron.
+    /// Index of the source, name and node of each neuron.
     neurons: Vec<(usize, String, Option<CircuitNode>)>,
 }
 
-/// Colors, and what they were made from.
+/// A coloring, and the recording that it shows.
 #[derive(Clone, Debug)]
 pub(crate) struct ColorResult {
     pub(crate) coloring: Coloring,
     /// A recording with the range of its values.
     pub(crate) recording: Option<(Arc<Recording>, [f32; 2])>,
-    /// What colors could not show, and why.
+    /// What could not be colored, and why.
     pub(crate) problem: Option<(String, String)>,
 }
 
@@ -136,8 +136,9 @@ impl ColorRequest {
         }
     }
 
-    /// The templates with a point at the middle of each compartment of the report, if its values show: a dendrite of
-    /// two traced points has room for all its compartments then. What cannot be meshed so stays as it is.
+    /// The templates with a point at the middle of each compartment of the report, if its values
+    /// are shown, so that also a dendrite of two traced points shows all its compartments. A
+    /// template that cannot be meshed like this stays as it is.
     pub(crate) fn cut(&self, mut sources: Vec<SceneTemplate>) -> Vec<SceneTemplate> {
         let report = self.report.as_ref();
         let Some(report) = report.filter(|_| self.look.color_by == ColorBy::Value) else {
@@ -150,7 +151,7 @@ impl ColorRequest {
                 Some((*source, node))
             });
             let nodes_of_cells: Vec<_> = nodes_of_cells.collect();
-            // What is wrong with the report comes up with its colors.
+            // Errors of the report are noted when its colors are computed.
             cuts = coloring::cuts(report, circuit, &nodes_of_cells).unwrap_or_default();
             if !cuts.is_empty() {
                 break;
@@ -182,7 +183,7 @@ impl ColorRequest {
         ids.into_iter().rev().filter_map(known)
     }
 
-    /// The colors; where they cannot be had, those of types.
+    /// The coloring; by types if the requested one is not possible.
     pub(crate) fn colors(&self, sources: &[SceneTemplate]) -> ColorResult {
         let cells: Vec<Cell<'_>> = sources
             .iter()
@@ -233,7 +234,7 @@ impl ColorRequest {
             .map_err(|e| (what(), e.to_string()))
     }
 
-    /// Of the first circuit that the recording fits.
+    /// A coloring by the recording's values, with the first circuit that the recording fits.
     fn by_value(
         &self,
         cells: &[Cell<'_>],
@@ -286,7 +287,7 @@ impl ColorRequest {
     }
 }
 
-/// A reason without the file's name, which stands beside it.
+/// A reason without the file's name, which the window shows beside it.
 fn without(file: &str, text: &str) -> String {
     let rest = text.strip_prefix(file).unwrap_or(text);
     rest.trim_start_matches([':', ' ']).to_owned()

@@ -1,4 +1,4 @@
-//! What is on the device: templates, instances, colors.
+//! The scene on the device: templates, instances, colors.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::scene::templates::SceneTemplate;
 
 /// Width (pixels) of a wireframe's lines.
 const WIRE: f32 = 1.0;
-/// Color of what is selected.
+/// Color of selected neurons.
 pub(crate) const SELECTION: [u8; 3] = [255, 140, 0];
 
 /// Why there is no scene.
@@ -34,16 +34,16 @@ pub(crate) enum BuildError {
     Scene(#[from] SceneError),
 }
 
-/// What a scene is made of.
+/// Templates, instances and colors of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneContent {
-    /// Stamp of meshes and color keys, so of what is uploaded of templates.
+    /// Revision of meshes and color keys, which are uploaded as templates.
     pub(crate) revision: Revision,
     pub(crate) sources: Vec<SceneTemplate>,
     pub(crate) instances: Vec<SceneInstance>,
-    /// What points say on the device.
+    /// Color keys, which are on the device.
     pub(crate) coloring: Arc<Coloring>,
-    /// What that means now.
+    /// The current colors of the keys.
     pub(crate) table: ColorTable,
     pub(crate) legend: Legend,
     /// A recording, with the range of all its values.
@@ -90,7 +90,7 @@ pub(crate) struct InstancesKey {
 }
 
 impl InstancesKey {
-    /// Of instances of now. `content`: stamp of the templates.
+    /// The key of the current instances. `content`: revision of the templates.
     pub(crate) fn new(state: &State, content: Revision) -> Self {
         Self {
             placements: state.placements_key(),
@@ -99,7 +99,7 @@ impl InstancesKey {
         }
     }
 
-    /// The same instances of other content.
+    /// The key of the same instances with other templates.
     pub(crate) fn of_content(self, content: Revision) -> Self {
         Self { content, ..self }
     }
@@ -128,7 +128,7 @@ impl StatesKey {
     }
 }
 
-/// A neuron: which source, where, and whether it is drawn.
+/// An instance: the source and the placement of a neuron, and whether it is hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SceneInstance {
     pub(crate) source: usize,
@@ -145,14 +145,14 @@ pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneIn
         SceneInstance {
             source: source.unwrap_or(0),
             placement,
-            // What is not there yet is not drawn, but keeps its place.
+            // A neuron without a template yet is not drawn, but keeps its index.
             hidden: neuron.hidden || source.is_err(),
         }
     });
     instances.collect()
 }
 
-/// Uploads all sources; their numbers are their places.
+/// Uploads all sources; the ids of templates are their indices.
 pub(crate) fn templates(
     gpu: &Gpu,
     sources: &[SceneTemplate],
@@ -200,7 +200,7 @@ pub(crate) fn adaptive(
     )?)
 }
 
-/// States of all neurons, as the shading wants them.
+/// States of all neurons, for the shading.
 pub(crate) fn states(document: &Document) -> Vec<u32> {
     let look = &document.look;
     let any = !document.neurons.selected().is_empty();
@@ -237,7 +237,7 @@ pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
     }
 }
 
-/// The plane of the cut through what shows.
+/// The plane of the cut through the scene.
 pub(crate) fn clip(look: &Look, spheres: &[BoundingSphere]) -> Option<Clip> {
     let cut = look.cut?;
     let (low, high) = extent(spheres);

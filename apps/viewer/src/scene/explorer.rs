@@ -1,5 +1,6 @@
-//! What draws while something moves: proxies of all templates, whose frames have a bounded number of
-//! triangles whatever there is. It is made beside; until it is there, the adaptive source draws coarsely.
+//! Draws while something moves, in exploration mode: a frame has a limited number of triangles,
+//! whatever the scene. The proxies of templates that it needs are computed in the background; until
+//! then, the adaptive source draws coarsely.
 
 use std::sync::Arc;
 
@@ -15,12 +16,12 @@ use crate::scene::content::{self, InstancesKey, SceneContent};
 /// Fewest triangles of a frame, however slow the device.
 const LEAST_BUDGET: u32 = 12_500;
 
-/// Proxies of what is shown, once they are made.
+/// Proxies of the scene's templates, once they are computed.
 #[derive(Default)]
 pub(crate) struct Explorer {
     built: Option<BuiltScene>,
     making: Option<(Revision, Task<ProxyResult>)>,
-    /// Content that proxies could not be made of; it is not tried again.
+    /// Content whose proxies do not fit the device; they are not tried again.
     refused: Option<Revision>,
     budget: Option<u32>,
     builds: u64,
@@ -30,15 +31,15 @@ type ProxyResult = Result<(Exploration, Arc<[ProxyPickTargets]>), DeviceError>;
 
 struct BuiltScene {
     exploration: Exploration,
-    names: Arc<[ProxyPickTargets]>,
-    /// Stamp of the content it was made of.
+    targets: Arc<[ProxyPickTargets]>,
+    /// Revision of the content that it was computed from.
     content: Revision,
-    /// Stamp of the instances it has.
+    /// Key of its instances.
     instances: Option<InstancesKey>,
 }
 
 impl Explorer {
-    /// Takes what was made and begins what is not there yet.
+    /// Takes proxies that were computed, and starts to compute those that are missing.
     pub(crate) fn update(
         &mut self,
         gpu: &Arc<Gpu>,
@@ -51,10 +52,10 @@ impl Explorer {
             let key = *key;
             self.making = None;
             match built {
-                Ok(Ok((exploration, names))) => {
+                Ok(Ok((exploration, targets))) => {
                     self.built = Some(BuiltScene {
                         exploration,
-                        names,
+                        targets,
                         content: key,
                         instances: None,
                     });
@@ -99,8 +100,8 @@ impl Explorer {
         self.making = Some((content.revision, task));
     }
 
-    /// The vertex source of proxies of just this content, with all its instances.
-    /// `budget`: its triangles.
+    /// The vertex source of exploration mode for exactly this content, with all its instances.
+    /// `budget`: most triangles.
     pub(crate) fn exploration(
         &mut self,
         gpu: &Gpu,
@@ -121,14 +122,14 @@ impl Explorer {
         Some(&mut built.exploration)
     }
 
-    /// Whether there are proxies of just this content.
+    /// Whether there are proxies of exactly this content.
     pub(crate) fn fits(&self, content: &SceneContent) -> bool {
         self.built
             .as_ref()
             .is_some_and(|built| built.content == content.revision)
     }
 
-    /// Whether proxies are being made.
+    /// Whether proxies are being computed.
     pub(crate) fn is_making(&self) -> bool {
         self.making.is_some()
     }
@@ -136,10 +137,10 @@ impl Explorer {
     /// Resolves ids of pictures that were drawn from proxies.
     pub(crate) fn resolver(&self) -> Option<ProxyPickResolver> {
         let built = self.built.as_ref()?;
-        Some(built.exploration.namer(Arc::clone(&built.names)))
+        Some(built.exploration.resolver(Arc::clone(&built.targets)))
     }
 
-    /// Frames have fewer triangles where they take too long, and more where there is time.
+    /// Adapts the budget: fewer triangles if frames take too long, more if there is time.
     pub(crate) fn keep_up(&mut self, took_ms: f64, most_ms: f64) {
         let budget = self.budget.unwrap_or(DEFAULT_BUDGET);
         if took_ms > 1.5 * most_ms {
@@ -149,12 +150,12 @@ impl Explorer {
         }
     }
 
-    /// How often proxies were made.
+    /// How many times proxies were computed.
     pub(crate) fn builds(&self) -> u64 {
         self.builds
     }
 
-    /// Triangles of a frame.
+    /// Most triangles of a frame.
     pub(crate) fn budget(&self) -> u32 {
         self.budget.unwrap_or(DEFAULT_BUDGET)
     }

@@ -19,7 +19,7 @@ use crate::scene::content::{self, SceneContent};
 use crate::scene::pictures::{StillScene, pictures};
 use crate::scene::templates;
 
-/// A picture that was drawn, and what failed of the session.
+/// The result of drawing a session: what is in the picture, and what failed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SessionPicture {
     /// Number of neurons that the picture shows.
@@ -31,7 +31,8 @@ pub struct SessionPicture {
 /// Draws a session as the window would save it.
 ///
 /// # Errors
-/// What is wrong with the session, the adapter or the file to write, and what to do.
+/// A message that says what is wrong with the session, the adapter or the file to write, and what
+/// to do.
 pub fn draw_session(
     file: &Path,
     picture: &PictureFile,

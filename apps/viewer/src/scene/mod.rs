@@ -1,4 +1,4 @@
-//! What stands in the picture, and the pictures of it: in the window, in files.
+//! The scene in the window, and its pictures: in the window and in files.
 
 mod colors;
 pub(crate) mod content;

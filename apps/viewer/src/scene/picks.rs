@@ -1,4 +1,4 @@
-//! What is seen at each pixel of a picture, and the mask of its outlines.
+//! Which part of which neuron is at each pixel of a picture, and the mask of outlines.
 
 use std::collections::HashMap;
 
@@ -12,41 +12,41 @@ use crate::model::document::Document;
 use crate::model::sources::SectionFacts;
 use crate::model::state::{CellPart, Picked};
 
-/// Pixels around the cursor in which something thin is still meant.
+/// Pixels around the cursor within which something thin counts as hit.
 const REACH: i64 = 4;
 
-/// What is seen.
+/// What is under the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorHit {
-    /// Which piece of which neuron.
+    /// The part of a neuron.
     pub picked: Picked,
-    /// The middle of the patch (µm, in the world).
+    /// The center of the patch (µm, in the world).
     pub place: DVec3,
 }
 
-/// By pixel.
+/// What is at each pixel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Picks {
     size: [u32; 2],
-    /// By pixel: 0 where nothing is, else one more than the place in `seen`.
+    /// By pixel: 0 if nothing is there, else 1 + the index in `seen`.
     index: Vec<u32>,
     seen: Vec<CursorHit>,
 }
 
 impl Picks {
-    /// `name` tells what an id means.
+    /// `resolve` returns what is drawn at a pixel with an id.
     pub(crate) fn new(
         size: [u32; 2],
         ids: &[PickId],
-        mut name: impl FnMut(PickId) -> Option<CursorHit>,
+        mut resolve: impl FnMut(PickId) -> Option<CursorHit>,
     ) -> Self {
         let mut seen = Vec::new();
         let mut known: HashMap<PickId, u32> = HashMap::from([([0; 2], 0)]);
         let mut last = ([0; 2], 0);
         let index = ids.iter().map(|&id| {
-            // Neighbors are mostly alike.
+            // Neighboring pixels mostly have the same id.
             if last.0 != id {
-                let index = *known.entry(id).or_insert_with(|| match name(id) {
+                let index = *known.entry(id).or_insert_with(|| match resolve(id) {
                     Some(found) => {
                         seen.push(found);
                         seen.len() as u32
@@ -87,8 +87,8 @@ impl Picks {
         self.seen.get(index.checked_sub(1)? as usize).copied()
     }
 
-    /// Bits of the outlines by pixel: around selected neurons, around what is hovered, and around the
-    /// piece that was clicked.
+    /// Mask of outlines, with bits by pixel: selected neurons, the part under the cursor, and the
+    /// part that was clicked.
     pub(crate) fn mask(
         &self,
         document: &Document,
@@ -108,7 +108,7 @@ impl Picks {
                 0
             };
             let hovered = if within(hovered, seen) { HOVERED } else { 0 };
-            // Of a neuron that is no longer selected nothing stays marked.
+            // The clicked part has an outline only while its neuron is selected.
             let picked = selected != 0 && within(picked, seen);
             selected | hovered | if picked { PICKED } else { 0 }
         }));
@@ -119,7 +119,7 @@ impl Picks {
     }
 }
 
-/// Whether a part holds what is seen.
+/// Whether a part contains another one.
 fn covers(
     part: Picked,
     seen: Picked,
@@ -136,14 +136,15 @@ fn covers(
     }
 }
 
-/// What a named patch is.
-pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<CursorHit> {
-    let (middle, tracing, soma) = match named.spot {
+/// The part of a neuron that was hit, and where.
+pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Option<CursorHit> {
+    let (middle, tracing, soma) = match hit.target {
         PickTarget::Patch(patch) => {
             let patch = mesh.patches.get(patch as usize)?;
             let corners = patch.corners.map(|v| &mesh.vertices[v as usize]);
             let sum: DVec3 = corners.iter().map(|v| v.position.as_dvec3()).sum();
-            // The child's ring: a lateral patch belongs to the section that it leads to.
+            // Corner 2 is on the child's ring: a lateral patch belongs to the section that it leads
+            // to.
             (sum / 4.0, corners[2].tracing, patch.kind == PatchKind::Soma)
         }
         PickTarget::Vertex(vertex) => {
@@ -152,7 +153,7 @@ pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> 
         }
         PickTarget::Point(point) | PickTarget::Soma(point) => {
             let traced = mesh.tracing.get(point as usize)?;
-            let soma = matches!(named.spot, PickTarget::Soma(_));
+            let soma = matches!(hit.target, PickTarget::Soma(_));
             (traced.center.as_dvec3(), point, soma)
         }
     };
@@ -164,7 +165,7 @@ pub(crate) fn seen(named: PickHit, mesh: &CoarseMesh, placement: &Placement) -> 
     };
     Some(CursorHit {
         picked: Picked {
-            neuron: named.instance as usize,
+            neuron: hit.instance as usize,
             part,
         },
         place: placement.world_from_cell(mesh.origin + middle),
@@ -220,7 +221,7 @@ mod tests {
         assert_eq!(mask, [0, 0, 0, 3, 1, 1, 0, 0, 0, 0]);
         let mask = picks().mask(&document, hovered(CellPart::Soma), None, facts);
         assert_eq!(mask, [0, 0, 0, 1, 3, 3, 0, 0, 0, 0]);
-        // What was clicked stays marked while the neuron is selected.
+        // The clicked part keeps its outline while the neuron is selected.
         let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
         assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
         document.neurons.set_states(|_, _| (false, false));

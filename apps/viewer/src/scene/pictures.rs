@@ -1,4 +1,4 @@
-//! Pictures of what shows.
+//! Saves pictures of the scene.
 
 use std::io::BufWriter;
 use std::path::PathBuf;
@@ -23,10 +23,10 @@ use crate::model::save::PictureFile;
 use crate::scene::colors::color_scheme;
 use crate::scene::content::{self, SceneContent};
 
-/// All that pictures need to know, free of the window.
+/// All that pictures are drawn from, for another thread.
 pub(crate) struct StillScene {
     pub(crate) gpu: Arc<Gpu>,
-    /// Whether a window draws with it, too.
+    /// Whether a window draws with the same device.
     pub(crate) shared: bool,
     pub(crate) content: SceneContent,
     pub(crate) look: Look,
@@ -35,7 +35,7 @@ pub(crate) struct StillScene {
 }
 
 impl StillScene {
-    /// Table and legend of a picture, at its time of a recording if one shows.
+    /// Color table and legend of a picture, at its time of the recording if there is one.
     fn colors(&self, time: Option<f64>) -> Result<(ColorTable, Legend), String> {
         let (table, legend) = (&self.content.table, &self.content.legend);
         let (Some((recording, all)), Some(time)) = (&self.content.recording, time) else {
@@ -55,7 +55,7 @@ impl StillScene {
         Ok((table, legend.clone().noted(&said(&recording.time, time))))
     }
 
-    /// What stands in the corners, the same ones for all pictures.
+    /// Legend and scale bar, in the same corners for all pictures.
     fn overlay(&self, film_frames: &[FilmFrame], options: &PictureFile) -> Result<Overlay, String> {
         let cameras: Vec<Camera> = film_frames
             .iter()
@@ -151,7 +151,7 @@ pub(crate) fn pictures(
         match drawn {
             Ok(_) => {}
             Err(PictureError::Stopped) => {
-                // The device ends its tile before it goes; nobody waits for that.
+                // Dropping the device waits for its current tile: done on another thread.
                 std::thread::spawn(move || drop((renderer, adaptive, own)));
                 return Err(stopped());
             }
@@ -163,9 +163,10 @@ pub(crate) fn pictures(
     Ok(files)
 }
 
-/// In software, a device of its own: what is given to the window's would hold the window up for as long as
-/// a tile takes. Tiles that were small enough for that are mostly margins: 850 of 640 sub-pixels instead of
-/// 12 for a picture of 1920 × 1440 with 16 samples, twelve times the work.
+/// The device for pictures: in software rendering another one than the window's, since the window
+/// would have to wait for each tile. Tiles small enough not to be noticed would be mostly margins:
+/// 850 of 640 sub-pixels instead of 12 for a picture of 1920 × 1440 with 16 samples, twelve times
+/// the work.
 fn own_gpu(still_scene: &StillScene) -> Result<Arc<Gpu>, String> {
     let gpu = &still_scene.gpu;
     if !still_scene.shared || !gpu.adapter.software {

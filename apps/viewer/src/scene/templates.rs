@@ -15,9 +15,10 @@ pub(crate) struct SceneTemplate {
     pub(crate) name: String,
     pub(crate) morphology: Arc<Morphology>,
     pub(crate) generated: Arc<Generated>,
-    /// As the tracing was meshed; another one than `generated` where a report has made room for its values.
+    /// The mesh of the tracing itself; it differs from `generated` if points were inserted for a
+    /// report's values.
     pub(crate) traced: Arc<Generated>,
-    /// Of its mesh.
+    /// Options of its mesh.
     pub(crate) options: GenerateOptions,
 }
 

@@ -1,5 +1,5 @@
-//! The panel that asks for files: folders to walk through, and a line to type or paste a path into. It
-//! needs nothing of the desktop, so it is the same everywhere.
+//! The file dialog: folders to walk through, and a line to type or paste a path into. It does not
+//! use the desktop's own dialog, so it is the same everywhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,18 +8,18 @@ use eframe::egui::{self, Key, RichText, ScrollArea};
 
 use crate::io::find;
 use crate::io::paths::{self, Name, completed, goes_on, parted};
-use crate::model::command::{Ask, Command, Edit};
+use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::session;
 use crate::ui::path_line;
 
-/// Where one is, and what is typed.
+/// State of the file dialog: the folder, and what is typed.
 #[derive(Clone, Debug)]
 pub(crate) struct FilePanel {
-    ask: Ask,
+    purpose: FilePurpose,
     folder: PathBuf,
     entries: Vec<Entry>,
     typed: String,
-    /// The name that is being typed: others are not listed.
+    /// The name that is being typed; only names that begin with it are listed.
     begun: String,
     chosen: Vec<PathBuf>,
     said: String,
@@ -35,18 +35,18 @@ struct Entry {
 }
 
 impl FilePanel {
-    /// In a folder; `session`: where the session was saved last.
-    pub(crate) fn new(ask: Ask, folder: &Path, session: Option<&Path>) -> Self {
-        let typed = match (ask, session) {
-            (Ask::SaveSession, Some(session)) => session.display().to_string(),
-            (Ask::SaveSession, None) => {
+    /// A dialog that shows a folder. `session`: the file that the session was last saved to.
+    pub(crate) fn new(purpose: FilePurpose, folder: &Path, session: Option<&Path>) -> Self {
+        let typed = match (purpose, session) {
+            (FilePurpose::SaveSession, Some(session)) => session.display().to_string(),
+            (FilePurpose::SaveSession, None) => {
                 let name = format!("session.{}", session::EXTENSION);
                 folder.join(name).display().to_string()
             }
-            (Ask::Open | Ask::Report, _) => String::new(),
+            (FilePurpose::Open | FilePurpose::Report, _) => String::new(),
         };
         let mut panel = Self {
-            ask,
+            purpose,
             folder: PathBuf::new(),
             entries: Vec::new(),
             typed,
@@ -59,9 +59,9 @@ impl FilePanel {
         panel
     }
 
-    /// Whether it asks for this.
-    pub(crate) fn is_for(&self, ask: Ask) -> bool {
-        self.ask == ask
+    /// Whether it is for this purpose.
+    pub(crate) fn is_for(&self, purpose: FilePurpose) -> bool {
+        self.purpose == purpose
     }
 
     fn enter(&mut self, folder: &Path) {
@@ -94,10 +94,12 @@ impl FilePanel {
         let json = path
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("json"));
-        let wanted = match self.ask {
-            Ask::Open => is_folder || find::is_readable(path) || session::is_session(path) || json,
-            Ask::Report => is_folder || find::is_hdf5(path),
-            Ask::SaveSession => is_folder || session::is_session(path),
+        let wanted = match self.purpose {
+            FilePurpose::Open => {
+                is_folder || find::is_readable(path) || session::is_session(path) || json
+            }
+            FilePurpose::Report => is_folder || find::is_hdf5(path),
+            FilePurpose::SaveSession => is_folder || session::is_session(path),
         };
         wanted.then(|| Entry {
             path: path.to_path_buf(),
@@ -107,12 +109,13 @@ impl FilePanel {
         })
     }
 
-    /// Shows the panel; gives what to do, or nothing; `open` is cleared when it is to be closed.
+    /// Shows the dialog. Returns the command to run, if there is one; clears `open` when it must be
+    /// closed.
     pub(crate) fn show(&mut self, ctx: &egui::Context, open: &mut bool) -> Option<Command> {
-        let title = match self.ask {
-            Ask::Open => "Open tracings, folders, circuits or a session",
-            Ask::Report => "Open a report or spikes of a simulation",
-            Ask::SaveSession => "Save the session",
+        let title = match self.purpose {
+            FilePurpose::Open => "Open tracings, folders, circuits or a session",
+            FilePurpose::Report => "Open a report or spikes of a simulation",
+            FilePurpose::SaveSession => "Save the session",
         };
         let mut done = None;
         let mut stays = *open;
@@ -158,18 +161,18 @@ impl FilePanel {
         }
     }
 
-    /// The line goes along to another folder: a session keeps its name.
+    /// Sets the typed path to the current folder. A session keeps its name.
     fn type_here(&mut self) {
-        match (self.ask, Path::new(&self.typed).file_name()) {
-            (Ask::SaveSession, Some(name)) => {
+        match (self.purpose, Path::new(&self.typed).file_name()) {
+            (FilePurpose::SaveSession, Some(name)) => {
                 self.typed = self.folder.join(name).display().to_string();
             }
             _ => self.typed.clear(),
         }
     }
 
-    /// The list goes along with what is typed: its folder, and names that begin so. Whether that made the
-    /// text another one.
+    /// Lists what fits the typed path: its folder, and names that begin with its last part. True if
+    /// that has changed the typed path.
     fn follow(&mut self) -> bool {
         let (before, begun) = parted(&self.typed);
         let begun = begun.to_owned();
@@ -178,7 +181,7 @@ impl FilePanel {
         let mut rewritten = false;
         if other && folder.is_dir() {
             if !Path::new(before).is_absolute() && !before.starts_with('~') {
-                // From the folder of before, which no longer shows.
+                // The typed path was relative to the folder before, which is no longer shown.
                 self.typed = folder.join(&begun).display().to_string();
                 rewritten = true;
             }
@@ -196,10 +199,12 @@ impl FilePanel {
         let entries = entries.filter(|entry| goes_on(&entry.name, &self.begun));
         let entries: Vec<Entry> = entries.cloned().collect();
         if entries.is_empty() {
-            let says = match (self.begun.is_empty(), self.ask) {
+            let says = match (self.begun.is_empty(), self.purpose) {
                 (false, _) => "No name here begins like that",
-                (true, Ask::SaveSession) => "No folder and no session here yet",
-                (true, Ask::Open | Ask::Report) => "No folder and no file to open here",
+                (true, FilePurpose::SaveSession) => "No folder and no session here yet",
+                (true, FilePurpose::Open | FilePurpose::Report) => {
+                    "No folder and no file to open here"
+                }
             };
             ui.allocate_ui([ui.available_width(), height].into(), |ui| {
                 ui.centered_and_justified(|ui| ui.weak(says));
@@ -223,7 +228,7 @@ impl FilePanel {
                         if response.double_clicked()
                             || (response.clicked()
                                 && entry.is_folder
-                                && self.ask == Ask::SaveSession)
+                                && self.purpose == FilePurpose::SaveSession)
                         {
                             enter = Some(entry.clone());
                         } else if response.clicked() {
@@ -265,10 +270,10 @@ impl FilePanel {
         let entered = line.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
         ui.horizontal(|ui| {
             let many = self.chosen.len();
-            let name = match (self.ask, many) {
-                (Ask::SaveSession, _) => "Save".to_owned(),
-                (Ask::Open, 0 | 1) | (Ask::Report, _) => "Open".to_owned(),
-                (Ask::Open, many) => format!("Open {many}"),
+            let name = match (self.purpose, many) {
+                (FilePurpose::SaveSession, _) => "Save".to_owned(),
+                (FilePurpose::Open, 0 | 1) | (FilePurpose::Report, _) => "Open".to_owned(),
+                (FilePurpose::Open, many) => format!("Open {many}"),
             };
             let typed = PathBuf::from(self.typed.trim());
             let enabled = many > 1 || !typed.as_os_str().is_empty();
@@ -279,13 +284,13 @@ impl FilePanel {
                 } else {
                     vec![paths::whole(&typed, &self.folder)]
                 };
-                let saves = self.ask == Ask::SaveSession;
+                let saves = self.purpose == FilePurpose::SaveSession;
                 match paths.iter().find(|p| !saves && !p.exists()) {
                     Some(missing) => self.said = format!("There is no {}", missing.display()),
                     None => *done = Some(self.command(paths)),
                 }
             }
-            if self.ask == Ask::Open && ui.button("Open this whole folder").clicked() {
+            if self.purpose == FilePurpose::Open && ui.button("Open this whole folder").clicked() {
                 *done = Some(self.command(vec![self.folder.clone()]));
             }
             ui.colored_label(ui.visuals().warn_fg_color, &self.said);
@@ -293,10 +298,10 @@ impl FilePanel {
     }
 
     fn command(&self, mut paths: Vec<PathBuf>) -> Command {
-        match self.ask {
-            Ask::Open => Command::Open(paths),
-            Ask::Report => Edit::SetReport(paths.pop()).into(),
-            Ask::SaveSession => {
+        match self.purpose {
+            FilePurpose::Open => Command::Open(paths),
+            FilePurpose::Report => Edit::SetReport(paths.pop()).into(),
+            FilePurpose::SaveSession => {
                 let path = paths.pop().unwrap_or_default();
                 let named = if session::is_session(&path) {
                     path
@@ -323,7 +328,7 @@ fn choose(chosen: &mut Vec<PathBuf>, path: &Path, adds: bool) {
     }
 }
 
-/// Bytes for people.
+/// A number of bytes as text.
 pub(crate) fn size(bytes: u64) -> String {
     let b = bytes as f64;
     match bytes {

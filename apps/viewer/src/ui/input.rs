@@ -1,76 +1,77 @@
-//! Keys and mouse in the order in which they came, whatever the frame rate.
+//! Handles events of keys and mouse in their order, whatever the frame rate.
 //!
-//! One slow frame may bring a whole drag, or a shortcut and the text that was typed after it. The toolkit
-//! looks at such a frame as at one moment: the drag is lost, and the text goes where the keyboard went
-//! before. So events wait in a queue, and a frame gets those up to the next one that changes what the
-//! others mean: a button of the mouse, a shortcut that opens a dialog, Enter in a line of text.
+//! During one slow frame there may be a whole drag, or a shortcut and the text that was typed after
+//! it. egui handles all events of a frame as if they were simultaneous: the drag would be lost, and
+//! the text would go to what had the keyboard before. So events wait in a queue, and a frame gets
+//! those up to the next one that changes the meaning of later ones: a mouse button, a shortcut that
+//! opens a dialog, Enter in a line of text.
 //!
-//! Shortcuts are found here too. They must fit exactly: Ctrl+Shift+Z is not Ctrl+Z.
+//! Shortcuts are found here too. They must match exactly: Ctrl+Shift+Z is not Ctrl+Z.
 
 use std::collections::VecDeque;
 
 use eframe::egui::{self, Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
 
 use crate::model::command::{Command, Toggles, listed};
-use crate::model::state::Over;
+use crate::model::state::Dialog;
 
-/// A frame that is made of waiting events alone lasts so long (s): less than the time between two clicks,
-/// enough to fly by a tap.
-const MOMENT: f64 = 1.0 / 60.0;
-/// So many frames keys wait for a dialog's line of text to come.
+/// Time (s) of a frame that consists of waiting events only: less than the time between two clicks,
+/// but enough for a tap on a key that flies.
+const EVENT_FRAME: f64 = 1.0 / 60.0;
+/// Number of frames for which keys wait until a dialog's line of text has the keyboard.
 const PATIENCE: u32 = 6;
 
-/// What is open over the window.
+/// The kind of dialog that is open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Open {
     #[default]
     Nothing,
-    /// Something to read.
+    /// A text to read.
     Sheet,
-    /// The list of commands.
+    /// The palette of commands.
     Palette,
-    /// A question, or files to choose.
+    /// A question, or the file dialog.
     Question,
 }
 
-impl From<&Over> for Open {
-    fn from(over: &Over) -> Self {
-        match over {
-            Over::Nothing => Self::Nothing,
-            Over::Keys | Over::Problems => Self::Sheet,
-            Over::Palette(..) => Self::Palette,
-            Over::Files(_) | Over::Replace(..) => Self::Question,
+impl From<&Dialog> for Open {
+    fn from(dialog: &Dialog) -> Self {
+        match dialog {
+            Dialog::Nothing => Self::Nothing,
+            Dialog::Keys | Dialog::Problems => Self::Sheet,
+            Dialog::Palette(..) => Self::Palette,
+            Dialog::Files(_) | Dialog::Replace(..) => Self::Question,
         }
     }
 }
 
 impl Open {
-    /// Whether it must be answered first.
-    fn asks(self) -> bool {
+    /// Whether it must be answered before anything else.
+    fn is_modal(self) -> bool {
         matches!(self, Self::Palette | Self::Question)
     }
 }
 
-/// Who hears the keys.
+/// What gets the keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Hears {
-    /// A line of text has the keyboard.
+struct KeyFocus {
+    /// Whether a line of text has the keyboard.
     text: bool,
-    /// Some control has it.
+    /// Whether any control has it.
     control: bool,
-    /// A menu is open.
+    /// Whether a menu is open.
     menu: bool,
 }
 
 /// The queue of events.
 #[derive(Default)]
 pub(crate) struct Input {
-    /// With the times (s) at which they came.
+    /// Events with their times (s).
     waiting: VecDeque<(f64, Event)>,
     /// Shortcuts of this frame, in their order.
     pressed: Vec<KeyboardShortcut>,
     open: Open,
-    /// Frames for which keys still wait for a dialog's text.
+    /// Number of frames for which keys still wait for a dialog's line of text.
     patience: u32,
     /// The time (s) of the last frame.
     time: f64,
@@ -94,9 +95,9 @@ impl Input {
         std::mem::take(&mut self.pressed)
     }
 
-    /// Tells what is open from now on.
+    /// Sets the kind of dialog that is open.
     pub(crate) fn set_open(&mut self, open: Open) {
-        if open != self.open && open.asks() {
+        if open != self.open && open.is_modal() {
             self.patience = PATIENCE;
         }
         self.open = open;
@@ -107,21 +108,21 @@ impl Input {
         !self.waiting.is_empty()
     }
 
-    /// The next events that mean one thing; `time`: now.
-    fn next(&mut self, hears: Hears, events: Vec<Event>, time: f64) -> (Vec<Event>, f64) {
+    /// The events of the next frame, and its time; `time`: the current one.
+    fn next(&mut self, focus: KeyFocus, events: Vec<Event>, time: f64) -> (Vec<Event>, f64) {
         self.waiting
             .extend(events.into_iter().map(|event| (time, event)));
         let mut batch = Batch::default();
-        let (mut came, waits) = (time, self.waits_for_text(hears));
+        let (mut came, waits) = (time, self.waits_for_text(focus));
         while let Some((_, event)) = self.waiting.front() {
-            if (waits && is_typed(event)) || batch.ends_before(event, hears) {
+            if (waits && is_typed(event)) || batch.ends_before(event, focus) {
                 break;
             }
             let Some((at, event)) = self.waiting.pop_front() else {
                 break;
             };
             came = at;
-            if let Some((keys, command)) = self.shortcut(&event, hears) {
+            if let Some((keys, command)) = self.shortcut(&event, focus) {
                 self.pressed.push(keys);
                 self.drop_twin(&event);
                 if command.moves_keyboard() {
@@ -129,31 +130,31 @@ impl Input {
                 }
                 continue;
             }
-            let ends = ends_after(&event, hears);
+            let ends = ends_after(&event, focus);
             batch.add(event);
             if ends {
                 break;
             }
         }
-        // As late as it came, so that two clicks that waited are still a double click.
-        self.time = came.max(self.time + MOMENT).min(time).max(self.time);
+        // The time of the last event, so that two clicks that waited are still a double click.
+        self.time = came.max(self.time + EVENT_FRAME).min(time).max(self.time);
         (batch.events, self.time)
     }
 
-    /// Whether keys wait for a dialog that opens: its line of text is not there yet. In its first frame
-    /// what had the keyboard before may still have it.
-    fn waits_for_text(&mut self, hears: Hears) -> bool {
+    /// Whether keys wait for a dialog that is opening, whose line of text does not have the
+    /// keyboard yet. In the first frame the keyboard may still be where it was before.
+    fn waits_for_text(&mut self, focus: KeyFocus) -> bool {
         let waits = match self.patience {
             0 => false,
             PATIENCE => true,
-            _ => self.open.asks() && !hears.text,
+            _ => self.open.is_modal() && !focus.text,
         };
         self.patience = if waits { self.patience - 1 } else { 0 };
         waits
     }
 
-    /// The shortcut that an event is, if somebody listens to it.
-    fn shortcut(&self, event: &Event, hears: Hears) -> Option<(KeyboardShortcut, Command)> {
+    /// The shortcut of an event, unless the event is for something that has the keyboard.
+    fn shortcut(&self, event: &Event, focus: KeyFocus) -> Option<(KeyboardShortcut, Command)> {
         let (key, modifiers) = match event {
             Event::Key {
                 key,
@@ -161,24 +162,24 @@ impl Input {
                 modifiers,
                 ..
             } => (*key, *modifiers),
-            // Some keyboards send it as a text only.
+            // With some keyboards it comes as text only.
             Event::Text(text) if text == "?" => (Key::Questionmark, Modifiers::NONE),
             _ => return None,
         };
         let fits = |keys: &KeyboardShortcut| fits(keys, key, modifiers);
         let (keys, command) = self.shortcuts.iter().find(|(keys, _)| fits(keys))?;
         let heard = match (command, key) {
-            // The palette's own keys close it again.
+            // The palette's shortcut also closes it.
             (Command::TogglePalette, _) => self.open != Open::Question,
-            _ if hears.text || self.open.asks() => false,
-            (_, Key::Tab | Key::Space) => !hears.control,
-            (_, Key::Escape) => !hears.control && !hears.menu && self.open == Open::Nothing,
+            _ if focus.text || self.open.is_modal() => false,
+            (_, Key::Tab | Key::Space) => !focus.control,
+            (_, Key::Escape) => !focus.control && !focus.menu && self.open == Open::Nothing,
             _ => true,
         };
         heard.then(|| (*keys, command.clone()))
     }
 
-    /// The text of a key that was a shortcut is no text.
+    /// Drops the text event of a key that was a shortcut.
     fn drop_twin(&mut self, event: &Event) {
         let types = matches!(event, Event::Key { modifiers, .. } if !modifiers.command);
         if types && matches!(self.waiting.front(), Some((_, Event::Text(_)))) {
@@ -193,14 +194,14 @@ impl Plugin for Input {
     }
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
-        let hears = Hears {
+        let focus = KeyFocus {
             text: ctx.text_edit_focused(),
             control: ctx.egui_wants_keyboard_input(),
             menu: egui::Popup::is_any_open(ctx),
         };
         let events = std::mem::take(&mut input.events);
-        let now = input.time.unwrap_or(self.time + MOMENT);
-        let (events, time) = self.next(hears, events, now);
+        let now = input.time.unwrap_or(self.time + EVENT_FRAME);
+        let (events, time) = self.next(focus, events, now);
         input.events = events;
         input.time = input.time.map(|_| time);
     }
@@ -226,31 +227,31 @@ impl Batch {
         self.events.push(event);
     }
 
-    /// Whether an event must come in another frame than those before it.
-    fn ends_before(&self, event: &Event, hears: Hears) -> bool {
+    /// Whether an event must be in a later frame than those before it.
+    fn ends_before(&self, event: &Event, focus: KeyFocus) -> bool {
         match event {
-            // What was moved with the button down is moved before it is let go.
+            // A drag must be handled before the button is released.
             Event::PointerButton { pressed: false, .. } => self.moved,
-            // A key that flies is down in one frame at least.
+            // A key that flies must be down for at least one frame.
             Event::Key {
                 key,
                 pressed: false,
                 ..
-            } => !hears.text && self.pressed.contains(key),
+            } => !focus.text && self.pressed.contains(key),
             _ => false,
         }
     }
 }
 
-/// Whether what comes after an event may mean something else.
-fn ends_after(event: &Event, hears: Hears) -> bool {
+/// Whether an event may change the meaning of those after it.
+fn ends_after(event: &Event, focus: KeyFocus) -> bool {
     match event {
         Event::PointerButton { .. } => true,
         Event::Key {
             key: Key::Enter | Key::Escape | Key::Tab,
             pressed: true,
             ..
-        } => hears.text || hears.control || hears.menu,
+        } => focus.text || focus.control || focus.menu,
         _ => false,
     }
 }
@@ -262,8 +263,8 @@ fn is_typed(event: &Event) -> bool {
     )
 }
 
-/// Whether keys are those of a shortcut, and no others. Signs and digits may need Shift or Alt to be typed
-/// at all.
+/// Whether keys are exactly those of a shortcut. Signs and digits may be typed with Shift or Alt,
+/// which some keyboards need for them.
 fn fits(keys: &KeyboardShortcut, key: Key, modifiers: Modifiers) -> bool {
     if keys.logical_key != key {
         return false;
@@ -284,12 +285,12 @@ mod tests {
     use super::*;
     use eframe::egui::{PointerButton, Pos2};
 
-    const WINDOW: Hears = Hears {
+    const WINDOW: KeyFocus = KeyFocus {
         text: false,
         control: false,
         menu: false,
     };
-    const TEXT: Hears = Hears {
+    const TEXT: KeyFocus = KeyFocus {
         text: true,
         control: true,
         menu: false,
@@ -363,7 +364,7 @@ mod tests {
         assert_eq!(input.next(WINDOW, events, 0.0).0, []);
         assert_eq!(commands(&mut input).len(), 1);
         input.set_open(Open::Question);
-        // The dialog shows, its line does not yet have the keyboard.
+        // The dialog is shown, but its line of text does not have the keyboard yet.
         assert_eq!(input.next(WINDOW, vec![], 0.1).0, []);
         let (there, _) = input.next(TEXT, vec![], 0.2);
         assert_eq!(there, typed("/home"));
@@ -399,7 +400,7 @@ mod tests {
         assert_eq!(sizes, [2, 2, 1, 0]);
         let joined: Vec<Event> = frames.iter().flat_map(|(e, _)| e.clone()).collect();
         assert_eq!(joined, all);
-        // Two clicks that came together stay together in time.
+        // Two clicks that are close in time stay close.
         assert!(
             frames[2].1 - frames[0].1 < 0.1 && frames[3].1 > 3.0,
             "{frames:?}"

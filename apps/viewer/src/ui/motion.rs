@@ -1,4 +1,5 @@
-//! How the camera moves: by hand, on its way to another view, and with the window's shape.
+//! How the camera moves: by mouse and keys, in a flight to another view, and when the window
+//! changes size.
 
 use std::time::{Duration, Instant};
 
@@ -7,12 +8,12 @@ use eframe::egui::Vec2;
 use crate::model::state::State;
 use crate::model::view::View;
 
-/// How long the way to another view takes.
+/// Duration of a flight to another view.
 const FLIGHT: Duration = Duration::from_millis(260);
 
-/// The camera's way to another view, and what it takes to follow the window's shape.
+/// The camera's flight, and the window's size.
 pub(crate) struct Motion {
-    /// Whether views change gradually; tests want them at once.
+    /// Whether views change gradually; in tests they change at once.
     smooth: bool,
     flight: Option<Flight>,
     /// Size of the window, once it is known.
@@ -43,19 +44,19 @@ impl Motion {
         self.flight.is_some()
     }
 
-    /// Ends the flight where it is.
+    /// Ends the flight at the current view.
     pub(crate) fn stop(&mut self) {
         self.flight = None;
     }
 
-    /// Moves the camera by hand.
+    /// Moves the camera by mouse or keys, which ends a flight.
     pub(crate) fn steer(&mut self, state: &mut State, view: View) {
         self.flight = None;
         state.fitted = None;
         state.view = view;
     }
 
-    /// Goes to a view: gradually, if there is anything to see on the way.
+    /// Goes to a view: gradually, if there is anything to see meanwhile.
     pub(crate) fn fly(&mut self, state: &mut State, to: View) {
         if self.smooth && !state.document.neurons.is_empty() {
             self.flight = Some(Flight {
@@ -73,7 +74,7 @@ impl Motion {
         state.view = to;
     }
 
-    /// Lets a flight go on by the clock; whether there is one.
+    /// Advances a flight by the clock. True if there is one.
     pub(crate) fn advance(&mut self, state: &mut State) -> bool {
         let Some(Flight { from, to, begun }) = self.flight else {
             return false;
@@ -87,8 +88,9 @@ impl Motion {
         true
     }
 
-    /// The picture has this shape (width by height) in a window of this size. A view that fits everything
-    /// does so in any shape; another one changes with the window's size only, not with panels.
+    /// Adapts the view to the picture's aspect ratio (width by height), in a window of this size. A
+    /// view that fits everything still does; another one changes only with the window's size, not
+    /// with panels.
     pub(crate) fn reshape(&mut self, state: &mut State, aspect: f64, window: Vec2) {
         let before = self.window.replace(window);
         let resized = before.is_some_and(|before| before != window);
@@ -98,7 +100,7 @@ impl Motion {
         };
         match &mut self.flight {
             Some(flight) if fitted => flight.to = view,
-            // What is on its way goes where it was sent.
+            // A flight goes on to its destination.
             Some(_) => {}
             None if fitted || resized => state.view = view,
             None => {}

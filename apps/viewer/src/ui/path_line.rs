@@ -1,4 +1,5 @@
-//! Lines for paths, which complete what is typed: Tab adds all that is certain, a list shows what is not.
+//! Lines for paths with completion: Tab adds what all matching names have in common, and a list
+//! shows the matching names.
 
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,7 @@ pub(crate) fn line(
     response
 }
 
-/// Puts the cursor behind the text.
+/// Moves the text cursor to the end.
 pub(crate) fn to_end(id: Id, text: &str, ui: &Ui) {
     if let Some(mut state) = TextEdit::load_state(ui.ctx(), id) {
         let end = CCursorRange::one(CCursor::new(text.chars().count()));
@@ -42,7 +43,8 @@ pub(crate) fn to_end(id: Id, text: &str, ui: &Ui) {
     }
 }
 
-/// A line for a path with a list of its own, from `folder`; files that are listed have this extension.
+/// A line for a path with a list below it. Relative paths start from `folder`; the list has files
+/// with this extension.
 pub(crate) fn listing_line(text: &mut String, extension: &str, folder: &Path, ui: &mut Ui) {
     let id = ui.next_auto_id().with("names");
     let whole_folder = whole(Path::new(parted(text).0), folder);
@@ -55,7 +57,8 @@ pub(crate) fn listing_line(text: &mut String, extension: &str, folder: &Path, ui
     );
     let begun = parted(text).1;
     let fitting: Vec<&Name> = names.iter().filter(|n| goes_on(&n.name, begun)).collect();
-    // A click on the list takes the keyboard from the line first.
+    // The list is shown in the frame in which the line loses the keyboard too, so that it can be
+    // clicked.
     let looks = response.has_focus() || response.lost_focus();
     let is_whole = matches!(&fitting[..], [one] if one.name == begun);
     if !looks || fitting.is_empty() || is_whole {
@@ -86,7 +89,7 @@ pub(crate) fn listing_line(text: &mut String, extension: &str, folder: &Path, ui
     }
 }
 
-/// Names in a folder, read again when it is another one or the line is entered.
+/// Names in a folder, read again for another folder and when the line gets the keyboard.
 fn names_in(folder: &Path, extension: &str, id: Id, ui: &Ui) -> Vec<Name> {
     type Kept = (PathBuf, Vec<Name>);
     let known: Option<Kept> = ui.data(|data| data.get_temp(id));

@@ -1,4 +1,4 @@
-//! The frame of the desktop around the viewer.
+//! The desktop's window around the viewer.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook, take_hook};
 use std::path::PathBuf;
@@ -14,14 +14,14 @@ use thiserror::Error;
 use crate::model::command::{Command, Edit};
 use crate::model::document::SomaEdit;
 use crate::model::settings::Settings;
-use crate::ui::app::{Hears, Viewer, lost};
+use crate::ui::app::{CommandListener, Viewer, lost};
 
-/// What to begin with.
+/// What the window starts with.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Files, folders, circuits or a session to open.
     pub inputs: Vec<PathBuf>,
-    /// How their somata are made, but those of a session.
+    /// How their somata are generated, except those of a session.
     pub soma: SomaEdit,
     /// A report or spikes to show on them.
     pub report: Option<PathBuf>,
@@ -38,7 +38,7 @@ pub enum ViewError {
          neurotess render"
     )]
     NoDisplay(String),
-    /// No adapter, or its driver refuses.
+    /// There is no adapter, or its driver reports an error.
     #[error("{0}")]
     NoAdapter(String),
     /// The device was lost.
@@ -46,11 +46,12 @@ pub enum ViewError {
     Lost(String),
 }
 
-/// Opens the window and returns when it is closed. `hears` gets every command before it runs.
+/// Opens the window and returns when it is closed. `listener` is called with every command before
+/// it runs.
 ///
 /// # Errors
-/// Why it cannot be opened, or why it had to close.
-pub fn run(options: Options, hears: Option<Hears>) -> Result<(), ViewError> {
+/// The window cannot be opened, or had to be closed.
+pub fn run(options: Options, listener: Option<CommandListener>) -> Result<(), ViewError> {
     if !has_display() {
         let why = "neither DISPLAY nor WAYLAND_DISPLAY is set";
         return Err(ViewError::NoDisplay(why.into()));
@@ -73,12 +74,12 @@ pub fn run(options: Options, hears: Option<Hears>) -> Result<(), ViewError> {
     };
     let out = Arc::clone(&fatal);
     quiet_once_fatal(&fatal);
-    // Whoever draws the panels panics where the device is lost.
+    // eframe panics if the device is lost while it draws the panels.
     let ended = catch_unwind(AssertUnwindSafe(|| {
         eframe::run_native(
             "neurotess",
             native,
-            Box::new(move |context| Ok(Box::new(Window::new(context, options, hears, out)?))),
+            Box::new(move |context| Ok(Box::new(Window::new(context, options, listener, out)?))),
         )
     }));
     drop(take_hook());
@@ -100,7 +101,7 @@ fn taken(slot: &Mutex<Option<String>>) -> Option<String> {
     slot.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-/// What panics once it is known why the program ends has nothing to add.
+/// Silences panics once the error that ends the program is known.
 fn quiet_once_fatal(fatal: &Arc<Mutex<Option<String>>>) {
     let (fatal, usual) = (Arc::clone(fatal), take_hook());
     set_hook(Box::new(move |panic| {
@@ -118,7 +119,8 @@ fn has_display() -> bool {
     desktop || set("DISPLAY") || set("WAYLAND_DISPLAY")
 }
 
-/// The device that the renderer needs, shared with the window. Why none will do is left in `refused`.
+/// Sets eframe up to open the device that the renderer needs. If no adapter fits, the reason is
+/// stored in `refused`.
 pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -> WgpuSetup {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
     setup.instance_descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
@@ -135,10 +137,10 @@ pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -
     WgpuSetup::CreateNew(setup)
 }
 
-/// Environment variable for tests: once the file that it names is there, the device is lost.
+/// Environment variable for tests: once the file that it names exists, the device is lost.
 const LOSE: &str = "NEUROTESS_TEST_LOSE_DEVICE";
 
-/// Times that a device is asked whether it is lost, every 10 ms.
+/// How many times a device is checked for being lost, every 10 ms.
 const LOST_POLLS: usize = 100;
 
 struct Window {
@@ -151,7 +153,7 @@ impl Window {
     fn new(
         context: &eframe::CreationContext<'_>,
         options: Options,
-        hears: Option<Hears>,
+        listener: Option<CommandListener>,
         fatal: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
         let render = context
@@ -161,8 +163,8 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
-        if let Some(hears) = hears {
-            viewer = viewer.with_hearing(hears);
+        if let Some(listener) = listener {
+            viewer = viewer.with_listener(listener);
         }
         if let Some(said) = said {
             viewer.state.problem("settings", said);
@@ -199,20 +201,20 @@ impl eframe::App for Window {
 }
 
 impl Drop for Window {
-    /// Where the panels cannot be drawn any more, the frame panics: what is there is saved.
+    /// If eframe panics because panels cannot be drawn any more, the session is saved.
     fn drop(&mut self) {
         let mut fatal = self.fatal.lock().unwrap_or_else(PoisonError::into_inner);
         if !std::thread::panicking() || fatal.is_some() {
             return;
         }
         let gpu = self.viewer.stage.gpu();
-        // Tells what has become of the device, once its work under way has ended.
+        // Errors of the device, once its running work has ended.
         let mut faults = (0..LOST_POLLS).filter_map(|_| {
             std::thread::sleep(Duration::from_millis(10));
             let _ = gpu.device.poll(wgpu::PollType::Poll);
             gpu.check().err()
         });
-        // What a lost device complains of besides is no reason.
+        // Other errors of a lost device do not explain anything.
         let why = faults.find_map(|fault| match fault {
             DeviceError::Lost(why) => Some(lost(&why)),
             _ => None,

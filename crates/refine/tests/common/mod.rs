@@ -1,5 +1,5 @@
 //! Random trees, and a judge of closedness that shares nothing with the code under test.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test program uses some of it")]
 
 use std::collections::{HashMap, HashSet};
 

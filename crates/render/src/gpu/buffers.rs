@@ -5,7 +5,7 @@ use bytemuck::Pod;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 
-/// A buffer, of 16 bytes at least.
+/// A buffer of at least 16 bytes.
 pub(crate) fn make(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
@@ -76,7 +76,7 @@ pub(crate) fn read_back<T: Pod>(
     Ok(bytemuck::pod_collect_to_vec(&view))
 }
 
-/// A plain texture.
+/// A texture without mip levels or multisampling.
 pub(crate) fn texture(
     gpu: &Gpu,
     [width, height]: [u32; 2],
@@ -146,7 +146,7 @@ pub(crate) fn group_layout(
     })
 }
 
-/// Samples that are loaded one by one.
+/// Type of textures that shaders load from without filtering.
 pub(crate) const UNFILTERED: wgpu::TextureSampleType =
     wgpu::TextureSampleType::Float { filterable: false };
 

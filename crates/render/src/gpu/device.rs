@@ -1,7 +1,7 @@
-//! The GPU without a window: which adapter, with which limits, and what it complained of.
+//! The GPU without a window: its adapter, its limits and its errors.
 //!
-//! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until somebody asks:
-//! [`Gpu::check`] after making resources, [`Gpu::wait`] after submitting work.
+//! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until they are
+//! taken: by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -9,33 +9,33 @@ use wgpu::{Adapter, Backends, DeviceType, Features, Limits};
 
 use crate::gpu::error::DeviceError;
 
-/// Environment variable that names the adapter where nobody else does.
+/// Environment variable that names the adapter if nothing else does.
 pub const ADAPTER_VARIABLE: &str = "NEUROTESS_ADAPTER";
 
 /// An open device with its queue.
 #[derive(Debug)]
 pub struct Gpu {
-    /// Makes resources.
+    /// The device, which makes resources.
     pub device: wgpu::Device,
-    /// Takes work.
+    /// The queue, which takes work.
     pub queue: wgpu::Queue,
-    /// Which adapter it is.
+    /// The adapter's name.
     pub adapter: AdapterName,
     fault: Fault,
 }
 
-/// What an adapter is called.
+/// Name of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterName {
     /// Name and driver, as in `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6`.
     pub name: String,
     /// `vulkan`, `metal`, `dx12` or `gl`.
     pub backend: String,
-    /// Whether the processor does the work.
+    /// Whether it draws on the CPU.
     pub software: bool,
 }
 
-/// The first complaint that nobody has asked for yet.
+/// The first error since the last check.
 #[derive(Clone, Debug, Default)]
 struct Fault(Arc<Mutex<Option<DeviceError>>>);
 
@@ -45,7 +45,7 @@ impl Fault {
         kept.get_or_insert(error);
     }
 
-    /// Puts the driver's words into those of `explain`.
+    /// Rewrites the driver's message by `explain`.
     fn explain(&self, explain: impl Fn(&str) -> String) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(DeviceError::Driver(message)) = &mut *kept {
@@ -66,17 +66,19 @@ pub fn adapters() -> Vec<AdapterName> {
 }
 
 impl Gpu {
-    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (letter
-    /// case aside). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (in
+    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
     ///
-    /// The device has the adapter's own limits, and those of [`optional_features`] that it knows.
+    /// The device has the adapter's own limits, and those of [`optional_features`] that it
+    /// supports.
     ///
     /// # Errors
-    /// No such adapter, or its driver refuses.
+    /// There is no such adapter, or its driver reports an error.
     pub fn open(wanted: Option<&str>) -> Result<Self, DeviceError> {
         let variable = std::env::var(ADAPTER_VARIABLE).ok();
         let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
-        // OpenGL last and only if need be: without a display its start-up prints of its own accord.
+        // OpenGL last and only if needed, since without a display it prints messages when it
+        // starts.
         let mut adapters = found(Backends::PRIMARY);
         if choose(&adapters, wanted).is_err() {
             adapters.extend(found(Backends::SECONDARY));
@@ -93,13 +95,13 @@ impl Gpu {
         Ok(Self::share(adapter, device, queue))
     }
 
-    /// A device that somebody else opened as [`device_descriptor`] asks for, to be shared with them:
-    /// whatever goes wrong on it from now on is told to [`Gpu::check`].
+    /// Shares a device that was opened elsewhere by [`device_descriptor`]. From now on
+    /// [`Gpu::check`] returns its errors.
     pub fn share(adapter: &Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let fault = Fault::default();
         let (of_work, of_device) = (fault.clone(), fault.clone());
         device.on_uncaptured_error(Arc::new(move |error| of_work.keep(complaint(error))));
-        // Destroyed is lost too: a program that ends by itself does not ask any more.
+        // Called also when the device is destroyed; then nothing checks for errors any more.
         device.set_device_lost_callback(move |_, message| {
             of_device.keep(DeviceError::Lost(one_line(&message)));
         });
@@ -111,15 +113,15 @@ impl Gpu {
         }
     }
 
-    /// What the device complained of since the last call.
+    /// Whether the device has reported an error since the last call.
     ///
     /// # Errors
-    /// The first complaint.
+    /// The first error.
     pub fn check(&self) -> Result<(), DeviceError> {
         self.fault.take().map_or(Ok(()), Err)
     }
 
-    /// Puts what the driver said last, if nobody has asked for it yet, into other words.
+    /// Rewrites the message of the driver's error that is still to be taken, if there is one.
     pub(crate) fn explain_fault(&self, explain: impl Fn(&str) -> String) {
         self.fault.explain(explain);
     }
@@ -127,7 +129,7 @@ impl Gpu {
     /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// What the device complained of.
+    /// The device reports an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
         let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
         self.check()?;
@@ -136,7 +138,7 @@ impl Gpu {
             .map_err(|e| DeviceError::Lost(one_line(&e.to_string())))
     }
 
-    /// Most bytes of a buffer that a shader can be given in one piece.
+    /// Most bytes of a buffer that can be bound as a whole.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
         limits
@@ -150,17 +152,17 @@ impl Gpu {
     }
 }
 
-/// What is used where it exists and done without elsewhere.
+/// Features that are used where an adapter supports them.
 pub fn optional_features() -> Features {
     Features::TIMESTAMP_QUERY
 }
 
-/// The adapter's own limits: those by default hold a fraction of what it can.
+/// The adapter's own limits: wgpu's defaults are a fraction of them.
 fn limits(adapter: &Adapter) -> Limits {
     adapter.limits()
 }
 
-/// What we ask of a device: all that the adapter can hold.
+/// How devices are opened: with all that the adapter allows.
 pub fn device_descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
     wgpu::DeviceDescriptor {
         label: Some("neurotess"),

@@ -1,8 +1,8 @@
-//! What can go wrong between us and a GPU.
+//! Errors of the GPU.
 
 use thiserror::Error;
 
-/// Why no device can be had, or why it stopped working: `what: what to do`.
+/// Why a device cannot be opened or stopped working. Messages have the form `what: what to do`.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum DeviceError {
     /// The machine has no adapter that can compute.
@@ -11,30 +11,30 @@ pub enum DeviceError {
          (Debian: apt-get install mesa-vulkan-drivers libvulkan1; or cargo xtask setup)"
     )]
     NoAdapter,
-    /// None has the wanted name.
+    /// No adapter has the requested name.
     #[error("no adapter is called '{wanted}': choose from {}", list(.there))]
     UnknownAdapter {
-        /// The name, or a part of it.
+        /// The requested name, or a part of it.
         wanted: String,
-        /// What there is.
+        /// Names of the adapters that exist.
         there: Vec<String>,
     },
     /// The driver did not open the adapter.
     #[error("{adapter} cannot be opened ({reason}): choose another adapter")]
     Refused {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
-        /// In the driver's words.
+        /// The driver's message.
         reason: String,
     },
-    /// One thing is larger than the adapter can hold in a piece.
+    /// A buffer is larger than the adapter can bind.
     #[error("{what} needs {bytes} bytes in one piece, the adapter has {most}: lower the level")]
     TooLarge {
-        /// The thing.
+        /// What the buffer holds.
         what: &'static str,
-        /// What it needs.
+        /// Bytes that it needs.
         bytes: u64,
-        /// What there can be.
+        /// Most bytes that the adapter can bind.
         most: u64,
     },
     /// The adapter's memory is used up.
@@ -43,7 +43,7 @@ pub enum DeviceError {
     /// The device is gone.
     #[error("the graphics device was lost ({0}): try again, or choose another adapter")]
     Lost(String),
-    /// The driver or wgpu objects to what we do: a bug of ours or theirs.
+    /// The driver or wgpu rejected a call: a bug in neurotess, wgpu or the driver.
     #[error("the graphics driver objects ({0}): please report this as a bug")]
     Driver(String),
 }

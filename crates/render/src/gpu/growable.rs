@@ -6,7 +6,7 @@ use wgpu::BufferUsages;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 
-/// A list on the device.
+/// A buffer on the device that grows as elements are appended.
 #[derive(Debug)]
 pub(crate) struct GrowableBuffer {
     what: &'static str,
@@ -16,7 +16,7 @@ pub(crate) struct GrowableBuffer {
 }
 
 impl GrowableBuffer {
-    /// With room for so many bytes.
+    /// An empty buffer with room for this many bytes.
     pub(crate) fn new(gpu: &Gpu, what: &'static str, bytes: u64) -> Self {
         Self {
             what,
@@ -30,10 +30,10 @@ impl GrowableBuffer {
         self.used
     }
 
-    /// Appends; true if the buffer is another one now.
+    /// Appends elements. True if the buffer was replaced by a larger one.
     ///
     /// # Errors
-    /// More than the device binds in one piece.
+    /// The buffer would be larger than the device can bind, or the device reports another error.
     pub(crate) fn append<T: Pod>(&mut self, gpu: &Gpu, data: &[T]) -> Result<bool, DeviceError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let grown = self.reserve(gpu, self.used + bytes.len() as u64)?;
@@ -44,7 +44,7 @@ impl GrowableBuffer {
         Ok(grown)
     }
 
-    /// Replaces everything; true if the buffer is another one now.
+    /// Replaces all elements. True if the buffer was replaced by a larger one.
     ///
     /// # Errors
     /// As [`GrowableBuffer::append`].
@@ -53,14 +53,14 @@ impl GrowableBuffer {
         self.append(gpu, data)
     }
 
-    /// Overwrites elements from one on.
+    /// Overwrites elements from this index on.
     pub(crate) fn write<T: Pod>(&self, gpu: &Gpu, first: usize, data: &[T]) {
         let at = (first * size_of::<T>()) as u64;
         gpu.queue
             .write_buffer(&self.buffer, at, bytemuck::cast_slice(data));
     }
 
-    /// Makes room for so many bytes in all; true if the buffer is another one now.
+    /// Makes room for this many bytes in all. True if the buffer was replaced by a larger one.
     ///
     /// # Errors
     /// As [`GrowableBuffer::append`].
@@ -72,7 +72,8 @@ impl GrowableBuffer {
         if bytes > most {
             return Err(DeviceError::TooLarge { what, bytes, most });
         }
-        // By a fourth more, so that a scene that grows does not copy everything every time.
+        // A fourth more than needed, so that not every addition to a growing scene copies
+        // everything.
         let larger = make(gpu, what, (bytes + bytes / 4).min(most / 4 * 4));
         if self.used > 0 {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -1,4 +1,4 @@
-//! Our shaders: the files, and modules composed of them.
+//! The shaders of this crate: their files, and the modules composed of them.
 
 use neurotess_refine::gpu;
 use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile, compose};
@@ -47,22 +47,22 @@ pub(crate) const FILES: [WgslFile; 28] = [
     file!("output", "ids.wgsl"),
 ];
 
-/// One of our files.
+/// A shader file of this crate.
 ///
 /// # Panics
-/// If there is none of that name: a bug.
+/// If there is no file of that name: a bug.
 pub(crate) fn file(name: &str) -> WgslFile {
     let found = FILES.iter().find(|file| file.name == name);
     *found.unwrap_or_else(|| panic!("no shader file {name}"))
 }
 
-/// A shader of these parts and what they import.
+/// A shader composed of these parts and all that they import.
 pub(crate) fn shader(name: &'static str, parts: &ShaderParts) -> Shader {
     compose(name, parts, &[&FILES, &gpu::FILES])
 }
 
 impl Gpu {
-    /// Compiles a shader. What the compiler says of it, which [`Gpu::check`] tells, names files and lines.
+    /// Compiles a shader. Errors of the compiler, which [`Gpu::check`] returns, name file and line.
     pub(crate) fn shader_module(&self, shader: &Shader) -> wgpu::ShaderModule {
         let module = self
             .device

@@ -1,20 +1,20 @@
-//! How long passes take on the GPU, where it can tell.
+//! How long passes take on the GPU, if it supports timestamps.
 
 use crate::gpu::buffers::read_mapped;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 
-/// The passes of a tile. Of a scene that is drawn in several rounds the last is timed.
+/// The passes of a tile. If a scene is drawn in several rounds, the last one is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
-    Choose,
+    Select,
     Draw,
     Occlude,
     Blur,
     Gather,
 }
 
-/// Their names, in their order.
+/// Names of the passes in statistics, in the order of [`Pass`].
 pub(crate) const PASSES: [&str; 5] = ["choose", "draw", "occlude", "blur", "gather"];
 
 const COUNT: u32 = 2 * PASSES.len() as u32;
@@ -30,7 +30,7 @@ struct Queries {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     read: wgpu::Buffer,
-    /// Nanoseconds.
+    /// Nanoseconds per tick.
     period: f64,
 }
 
@@ -119,7 +119,7 @@ impl Timer {
         self.milliseconds = [0.0; PASSES.len()];
     }
 
-    /// Milliseconds of all tiles by pass; none where the GPU cannot tell.
+    /// Milliseconds of all tiles by pass; none if the GPU does not support timestamps.
     pub(crate) fn milliseconds(&self) -> Option<[f64; PASSES.len()]> {
         self.queries.as_ref().map(|_| self.milliseconds)
     }

@@ -1,4 +1,5 @@
-//! The pass that draws ids instead of colors, and the way back to the host. Its text: ids.wgsl.
+//! The pass that draws picking ids instead of colors, with ids.wgsl; and their way back to the
+//! host.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -41,7 +42,7 @@ const UNDER_WAY: u8 = 1;
 const THERE: u8 = 2;
 const FAILED: u8 = 3;
 
-/// The shader for what a source defines, and how it says what it draws.
+/// The shader for a source's vertices and its `surface_id`.
 pub(crate) fn ids_shader(source: &ShaderParts, id: WgslFile) -> Shader {
     let mut parts = source.clone();
     parts.files.extend([id, shader::file("ids.wgsl")]);
@@ -56,7 +57,7 @@ pub(crate) fn ids_shader(source: &ShaderParts, id: WgslFile) -> Shader {
 }
 
 impl Identifier {
-    /// None where the source cannot tell what it draws.
+    /// None if the source does not support picking.
     pub(crate) fn new(
         gpu: &Gpu,
         renderer: &TileRenderer,
@@ -110,7 +111,7 @@ impl Identifier {
         self.key == renderer.key()
     }
 
-    /// Draws a whole frame and sends it on its way to the host.
+    /// Draws the ids of a frame and starts to copy them to the host.
     pub(crate) fn draw(
         &mut self,
         gpu: &Gpu,
@@ -136,7 +137,7 @@ impl Identifier {
             gpu.queue
                 .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            source.choose(round, &mut encoder, None);
+            source.select(round, &mut encoder, None);
             self.round(source, round, canvas, &group, &mut encoder);
             if round + 1 == rounds {
                 canvas.copy(&mut encoder);
@@ -208,11 +209,11 @@ impl Identifier {
         }
         let range = canvas.read.slice(..).get_mapped_range();
         let range = range.map_err(|e| DeviceError::Lost(e.to_string()))?;
-        let wanted = BYTES * canvas.size[0] as usize;
+        let row_bytes = BYTES * canvas.size[0] as usize;
         let mut ids = Vec::with_capacity(canvas.size[0] as usize * canvas.size[1] as usize);
         for row in range.chunks(canvas.row as usize) {
             ids.extend(
-                row[..wanted]
+                row[..row_bytes]
                     .chunks_exact(BYTES)
                     .map(bytemuck::pod_read_unaligned::<PickId>),
             );

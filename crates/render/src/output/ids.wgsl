@@ -1,5 +1,6 @@
-// What is drawn at a pixel: 1 + a batch with what `surface_id` says first, and what it says second; 0 where
-// nothing is. Comes after shade.wgsl and the source's `surface_id`. Called by ids.rs.
+// Draws picking ids: first the batch and the first component of `surface_id`, plus 1; second the
+// other component; zeros where nothing is drawn. A source's file must define `surface_id`. Called
+// by ids.rs.
 
 #import shade.wgsl
 

@@ -16,7 +16,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// All transparent.
+    /// A transparent image.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -28,23 +28,27 @@ impl Image {
     /// A pixel.
     ///
     /// # Panics
-    /// If it lies outside.
+    /// If it is outside the image.
     pub fn at(&self, x: u32, y: u32) -> [u8; 4] {
         let i = self.index(x, y);
         [0, 1, 2, 3].map(|k| self.pixels[i + k])
     }
 
-    /// Copies the rows of a tile to column `left` on; what does not fit is left out.
+    /// Copies the rows of a tile from column `left` on, as far as they fit.
     pub(crate) fn copy_from(&mut self, left: u32, tile: &[u8], tile_width: u32) {
         let row = 4 * self.width as usize;
-        let (start, wanted) = (4 * left as usize, 4 * tile_width as usize);
-        let length = wanted.min(row - start);
-        for (to, from) in self.pixels.chunks_mut(row).zip(tile.chunks(wanted.max(1))) {
+        let (start, tile_row) = (4 * left as usize, 4 * tile_width as usize);
+        let length = tile_row.min(row - start);
+        for (to, from) in self
+            .pixels
+            .chunks_mut(row)
+            .zip(tile.chunks(tile_row.max(1)))
+        {
             to[start..start + length].copy_from_slice(&from[..length]);
         }
     }
 
-    /// Lays a color over a pixel, if it lies inside. `alpha`: 0 to 1.
+    /// Blends a color over a pixel, if it is inside the image. `alpha`: 0 to 1.
     pub fn blend(&mut self, x: i64, y: i64, rgb: Rgb, alpha: f32) {
         let inside = |v: i64, n: u32| (0..i64::from(n)).contains(&v);
         if alpha <= 0.0 || !inside(x, self.width) || !inside(y, self.height) {
@@ -62,7 +66,7 @@ impl Image {
         self.pixels[i + 3] = (sum * 255.0 + 0.5) as u8;
     }
 
-    /// Lays another image over this one, its upper left corner at (x, y).
+    /// Blends another image over this one, with its upper left corner at (x, y).
     pub fn lay(&mut self, x: i64, y: i64, over: &Self) {
         for row in 0..over.height {
             for column in 0..over.width {
@@ -78,7 +82,7 @@ impl Image {
     }
 }
 
-/// A PNG file that is written as bands come.
+/// A PNG file that is written band by band.
 pub struct PngWriter<W: Write + 'static> {
     stream: png::StreamWriter<'static, W>,
     alpha: bool,

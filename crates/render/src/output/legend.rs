@@ -1,4 +1,4 @@
-//! What colors and lengths mean: legends and scale bars, drawn as images to lay over pictures.
+//! Legends and scale bars, drawn as images to be blended over pictures.
 
 use crate::output::image::Image;
 use crate::output::text::Text;
@@ -14,7 +14,7 @@ pub struct Legend {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// A disc and a name each.
+    /// Colors with names: a disc for each.
     Swatches(Vec<(Rgb, String)>),
     /// A bar with numbers beside it.
     Bar {
@@ -54,14 +54,14 @@ impl Legend {
         matches!(self.kind, Kind::Bar { .. })
     }
 
-    /// With a line below: the time of a picture.
+    /// Adds a line below, such as the time of a picture.
     #[must_use]
     pub fn noted(mut self, note: &str) -> Self {
         note.clone_into(&mut self.note);
         self
     }
 
-    /// Draws it on nothing, in lines of this height (pixels).
+    /// Draws it on a transparent image, with lines of this height (pixels).
     pub fn draw(&self, line: f32, ink: Rgb) -> Image {
         let text = Text::new(line);
         let title = if self.title.is_empty() {
@@ -146,9 +146,9 @@ fn bar(
     }
 }
 
-/// Round numbers beside a bar, by their share of its height. `more`: the upper end is one of them, whatever
-/// it is, and says that it stands for all above. None comes nearer to another than `line`, a share of the
-/// height: they would be written over one another.
+/// Round numbers beside a bar, with their position as a share of its height. `more`: the upper end
+/// is one of them, round or not, marked as standing for all above. They are at least `line`, a
+/// share of the height, apart, so that they do not overlap.
 fn ticks([low, high]: [f32; 2], more: bool, line: f32) -> Vec<(f32, String)> {
     let [low, high] = [low, high].map(f64::from);
     let step = nice_step((high - low) / 5.0);
@@ -168,7 +168,8 @@ fn ticks([low, high]: [f32; 2], more: bool, line: f32) -> Vec<(f32, String)> {
     ticks
 }
 
-/// A bar of a length in µm with its name above, in lines of this height (pixels).
+/// A scale bar `length` pixels long, with `length_um` written above in a line of this height
+/// (pixels).
 pub fn scale_bar(length_um: f64, length: f32, line: f32, ink: Rgb) -> Image {
     let text = Text::new(line);
     let name = format!("{} µm", number(length_um, length_um));
@@ -213,7 +214,7 @@ fn nice_step(length: f64) -> f64 {
         .unwrap_or(below * 2.0)
 }
 
-/// As many digits as steps of this size need.
+/// A number with as many digits as steps of this size need.
 fn number(value: f64, step: f64) -> String {
     let digits = (-step.log10()).ceil().clamp(0.0, 6.0) as usize;
     format!("{value:.digits$}")

@@ -1,5 +1,5 @@
-//! A stopwatch for frames: they are chosen and drawn as a viewer's would be, one sample a pixel, and
-//! neither finished nor read back.
+//! Measures the time of frames: they are selected and drawn as in a window, with one sample a
+//! pixel, but neither finished nor read back.
 
 use std::time::Instant;
 
@@ -12,36 +12,36 @@ use crate::shading::shade::{Look, PipelineKey};
 use crate::sources::VertexSource;
 use crate::view::frame::Frame;
 
-/// What a frame took.
+/// The time that a frame took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameTime {
-    /// Milliseconds from the first thing done on the processor until the GPU had finished.
+    /// Milliseconds from the start on the CPU until the GPU had finished.
     pub waited_ms: f64,
-    /// Milliseconds of the passes that choose and that draw, where the GPU can tell: not of scenes so
-    /// large that they are drawn in several rounds, and not in software, whose clock stops before its
-    /// threads do.
+    /// Milliseconds of the pass that selects and the pass that draws, if the GPU supports
+    /// timestamps. None for scenes so large that they are drawn in several rounds, and none in
+    /// software rendering, where timestamps are taken before all threads have finished.
     pub gpu_ms: Option<[f64; 2]>,
 }
 
 impl FrameTime {
-    /// The GPU's milliseconds where it can tell, else those waited.
+    /// The GPU's milliseconds if they are known, else those waited.
     pub fn best_ms(&self) -> f64 {
         self.gpu_ms
-            .map_or(self.waited_ms, |[choose, draw]| choose + draw)
+            .map_or(self.waited_ms, |[select, draw]| select + draw)
     }
 }
 
-/// Times frames of one source.
+/// Measures the frames of one source.
 pub struct Meter<'g> {
     gpu: &'g Gpu,
     renderer: TileRenderer,
 }
 
 impl<'g> Meter<'g> {
-    /// Makes what all frames of a source share.
+    /// Makes the pipelines for a source.
     ///
     /// # Errors
-    /// What the device cannot do.
+    /// The device reports an error.
     pub fn new(
         gpu: &'g Gpu,
         source: &dyn VertexSource,
@@ -63,7 +63,7 @@ impl<'g> Meter<'g> {
     /// Draws a frame and waits for it.
     ///
     /// # Errors
-    /// What the device cannot do.
+    /// The device reports an error.
     pub fn time(
         &mut self,
         source: &mut dyn VertexSource,
@@ -76,12 +76,12 @@ impl<'g> Meter<'g> {
             .draw_only(self.gpu, source, frame, &Look::default())?;
         let waited_ms = clock.elapsed().as_secs_f64() * 1e3;
         self.renderer.timer.read(self.gpu)?;
-        // Of several rounds the queries hold the last one's times.
-        let tells = rounds == 1 && !self.gpu.adapter.software;
-        let gpu_ms = self.renderer.timer.milliseconds().filter(|_| tells);
+        // With several rounds, the queries hold only the last one's times.
+        let measured = rounds == 1 && !self.gpu.adapter.software;
+        let gpu_ms = self.renderer.timer.milliseconds().filter(|_| measured);
         Ok(FrameTime {
             waited_ms,
-            gpu_ms: gpu_ms.map(|ms| [ms[Pass::Choose as usize], ms[Pass::Draw as usize]]),
+            gpu_ms: gpu_ms.map(|ms| [ms[Pass::Select as usize], ms[Pass::Draw as usize]]),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures: drawn in tiles for a file, or step by step for a window; what lies over them.
+//! Pictures: drawn in tiles for a file, or step by step for a window; overlays; picking ids.
 
 pub(crate) mod ids;
 pub(crate) mod image;

@@ -6,19 +6,19 @@ use crate::scene::color::{Rgb, is_dark};
 use crate::view::camera::Camera;
 use crate::view::frustum::BoundingSphere;
 
-/// Images to lay over a picture, each in its place.
+/// Images to be blended over a picture, with their positions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlay {
     pieces: Vec<(i64, i64, Image)>,
     kept: Option<Kept>,
-    /// Whether the legend found no place.
+    /// Whether there is no room for the legend.
     pub legend_left_out: bool,
-    /// Where the legend covers something: the share of the picture's width, on the left (negative)
-    /// or the right, that would have to be free for it.
+    /// If the legend covers a part of the scene: the share of the picture's width, on the left
+    /// (negative) or on the right, that would have to be free for it.
     pub covering: Option<f64>,
 }
 
-/// What pictures of a series have in common.
+/// What the pictures of a series have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kept {
     size: [u32; 2],
@@ -26,26 +26,27 @@ struct Kept {
     background: Option<Rgb>,
     /// Corner of the legend, and whether it covers something.
     legend: Option<(usize, bool)>,
-    /// Corner of the scale bar, its length (µm), 0: what fits, and whether it covers something.
+    /// Corner of the scale bar, its length (µm; 0: as long as fits), and whether it covers
+    /// something.
     bar: Option<(usize, f64, bool)>,
 }
 
-/// What to write into the corners.
+/// What is drawn into the corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlayOptions {
-    /// What colors mean.
+    /// The legend.
     pub legend: Option<Legend>,
-    /// A scale bar of this length (µm), 0: what fits.
+    /// A scale bar of this length (µm; 0: as long as fits).
     pub scale_bar: Option<f64>,
     /// Color behind everything; none: transparent.
     pub background: Option<Rgb>,
 }
 
-/// Height of a line, of the picture's.
+/// Height of a line, as a share of the picture's.
 const LINE: f32 = 0.023;
 
 impl Overlay {
-    /// Chooses places: the corners in which least is seen, of all cameras together.
+    /// Selects the corners that cover least of the scene, for all cameras together.
     pub fn new(
         options: &OverlayOptions,
         size: [u32; 2],
@@ -95,7 +96,8 @@ impl Overlay {
         overlay
     }
 
-    /// The same for another picture of a series: its legend and scale bar, in the same corners.
+    /// The overlay of another picture of the series: with its legend and scale bar, in the same
+    /// corners.
     #[must_use]
     pub fn again(&self, legend: Option<&Legend>, camera: &Camera) -> Self {
         let mut overlay = self.clone();
@@ -105,7 +107,7 @@ impl Overlay {
         overlay
     }
 
-    /// Lays what belongs there over a band of the picture, whose first row is `top`.
+    /// Blends the images over a band of the picture, whose first row is `top`.
     pub fn lay_on(&self, top: u32, band: &mut Image) {
         for (x, y, image) in &self.pieces {
             band.lay(*x, y - i64::from(top), image);
@@ -141,7 +143,7 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
     pieces
 }
 
-/// A scale bar of this length (µm), 0: what fits.
+/// A scale bar of this length (µm; 0: as long as fits).
 fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Image {
     let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(camera.target());
     let length = match length {
@@ -151,7 +153,7 @@ fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Ima
     scale_bar(length, (length / pixel) as f32, line, ink)
 }
 
-/// Black on light, white on dark; black on nothing.
+/// Color of text: black on a light or transparent background, white on a dark one.
 fn ink(background: Option<Rgb>) -> Rgb {
     if background.is_some_and(is_dark) {
         [240; 3]
@@ -160,7 +162,7 @@ fn ink(background: Option<Rgb>) -> Rgb {
     }
 }
 
-/// Where an image stands in a corner: 0 upper left, 1 upper right, 2 lower left, 3 lower right.
+/// Position of an image in a corner: 0 upper left, 1 upper right, 2 lower left, 3 lower right.
 fn place(corner: usize, size: [u32; 2], image: &Image, line: f32) -> [i64; 2] {
     let gap = line.ceil() as i64;
     let far = [
@@ -187,14 +189,14 @@ fn panel(image: &Image, background: Rgb) -> Image {
     panel
 }
 
-/// Where spheres are seen (pixels).
+/// Spheres in the picture (pixels).
 struct Seen {
     size: [u32; 2],
-    /// Place and radius.
+    /// Center and radius of each.
     places: Vec<([f64; 2], f64)>,
 }
 
-/// Most places that are looked at: a picture's corners are judged well enough by them.
+/// Most spheres that are considered: enough to see which corners are empty.
 const MOST_PLACES: usize = 200_000;
 
 impl Seen {
@@ -214,7 +216,7 @@ impl Seen {
         }
     }
 
-    /// The corner, of these, with fewest places under an image; and how many.
+    /// The one of these corners where an image covers fewest spheres, and how many it covers.
     fn emptiest(&self, image: &Image, line: f32, corners: &[usize]) -> (usize, usize) {
         let count = |corner: usize| {
             let [x, y] = place(corner, self.size, image, line).map(|n| n as f64);

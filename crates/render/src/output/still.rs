@@ -1,8 +1,8 @@
 //! Pictures of any size, tile by tile, band by band.
 //!
-//! A picture is drawn in **tiles** that fit the device and comes out in **bands**, the rows that one
-//! row of tiles makes. Memory is for one tile and one band, whatever the picture's size. Tiles
-//! overlap by what ambient occlusion looks at, so that they fit together.
+//! A picture is drawn in **tiles** that fit the device and handed over in **bands**: the rows of
+//! pixels that one row of tiles covers. Memory is for one tile and one band, whatever the picture's
+//! size. Tiles overlap by the reach of ambient occlusion, so that they fit together.
 
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ use crate::sources::VertexSource;
 use crate::view::camera::Camera;
 use crate::view::frame::{Frame, Tile};
 
-/// How a picture is made.
+/// How a picture is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureOptions {
     /// Width and height (pixels), from 1 on.
@@ -32,7 +32,7 @@ pub struct PictureOptions {
     pub background: Option<Rgb>,
     /// Light and wireframe.
     pub look: Look,
-    /// How far corners darken one another.
+    /// Ambient occlusion, which darkens corners.
     pub occlusion: Occlusion,
     /// Greatest width and height of a tile (sub-pixels).
     pub tile: u32,
@@ -51,8 +51,8 @@ pub enum Occlusion {
 }
 
 impl Occlusion {
-    /// How far it looks in a picture of this height (sub-pixels): µm, and most sub-pixels. The same
-    /// whatever the tiles are: they must fit together.
+    /// Radius of occlusion in a picture of this height (sub-pixels): µm, and the most sub-pixels.
+    /// It does not depend on tiles, so that they fit together.
     pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
         let height = f64::from(height);
         let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
@@ -79,11 +79,13 @@ impl Default for PictureOptions {
     }
 }
 
-/// With four samples, 104 bytes a sub-pixel: 240 MiB.
+/// Greatest width and height of a tile by default: with four samples of a sub-pixel, which take 104
+/// bytes, 240 MiB.
 const TILE: u32 = 1536;
-/// Farthest that ambient occlusion looks (sub-pixels): more would leave little of a tile.
+/// Greatest reach (sub-pixels) of ambient occlusion: with more, margins would take up most of a
+/// tile.
 const MOST_MARGIN: f64 = 360.0;
-/// Sample numbers that there are.
+/// Numbers of samples that a pixel can have.
 pub const SAMPLES: [u32; 5] = [1, 4, 16, 36, 64];
 /// Greatest width or height of a picture: positions are f32 and keep 1/256 of a sub-pixel.
 pub const LARGEST: u32 = 32_768;
@@ -91,31 +93,31 @@ pub const LARGEST: u32 = 32_768;
 /// Why a picture was not made.
 #[derive(Debug, Error)]
 pub enum PictureError<E> {
-    /// The GPU's side.
+    /// The device reports an error.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// What takes the bands.
+    /// The function that takes the bands returned an error.
     #[error("{0}")]
     Sink(E),
-    /// A [`Watch`] has stopped it.
+    /// It was stopped by a [`Watch`].
     #[error("stopped")]
     Stopped,
 }
 
-/// What a picture cost.
+/// The time and memory that a picture took.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cost {
     /// Milliseconds from the first command to the last byte.
     pub cpu_ms: f64,
-    /// Milliseconds by pass, where the GPU can tell.
+    /// Milliseconds by pass, if the GPU supports timestamps.
     pub gpu_ms: Option<Vec<(&'static str, f64)>>,
     /// Number of tiles.
     pub tiles: usize,
-    /// Bytes of textures and buffers that the picture passes through.
+    /// Bytes of the textures and buffers that a tile is drawn into and finished in.
     pub target_bytes: u64,
 }
 
-/// How a picture is parted.
+/// How a picture is divided into tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Parting {
     /// Sub-pixels per pixel along a side.
@@ -131,13 +133,14 @@ struct Parting {
 }
 
 impl PictureOptions {
-    /// The samples of a pixel that are taken: the most that there are, not above those asked for.
+    /// Number of samples that a pixel gets: the greatest possible number that is not above
+    /// `samples`.
     pub fn samples_taken(&self) -> u32 {
         let most = SAMPLES.into_iter().rfind(|&n| n <= self.samples);
         most.unwrap_or(1)
     }
 
-    /// Sub-pixels of a pixel, along a side.
+    /// Number of sub-pixels along a pixel's side.
     pub fn sub_pixels(&self, gpu: &Gpu) -> u32 {
         let in_each = f64::from(samples_in_sub_pixel(gpu, self.samples_taken()));
         ((f64::from(self.samples_taken()) / in_each).sqrt() as u32).max(1)
@@ -151,7 +154,7 @@ impl PictureOptions {
     }
 
     fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
-        let wanted = self.samples_taken();
+        let samples = self.samples_taken();
         let scale = self.sub_pixels(gpu);
         let height = self.size[1] * scale;
         let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);
@@ -162,7 +165,7 @@ impl PictureOptions {
         let inner = (largest.saturating_sub(2 * margin) / scale).max(32);
         Parting {
             scale,
-            samples: samples_in_sub_pixel(gpu, wanted),
+            samples: samples_in_sub_pixel(gpu, samples),
             margin,
             step: self.size.map(|n| inner.min(n.max(1))),
             occlusion,
@@ -170,8 +173,8 @@ impl PictureOptions {
     }
 }
 
-/// Four, or one: where that is all there is, and on OpenGL, for which naga 30 writes the mask of samples
-/// wrongly.
+/// Number of samples of a sub-pixel: four; or one if a pixel has only one sample, and on OpenGL,
+/// for which naga 30 translates sample masks wrongly.
 pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
     if samples == 1 || gpu.adapter.backend == "gl" {
         1
@@ -183,7 +186,7 @@ pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
 /// Draws one picture: see [`StillRenderer::render`].
 ///
 /// # Errors
-/// What the device cannot do, and what `take` returns.
+/// The device reports an error, or `take` returns one.
 pub fn render_still<E>(
     gpu: &Gpu,
     source: &mut dyn VertexSource,
@@ -195,7 +198,7 @@ pub fn render_still<E>(
     StillRenderer::new().render(gpu, source, view, table, options, take)
 }
 
-/// From where a picture is drawn.
+/// The view that a picture is drawn from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
     /// The camera.
@@ -204,8 +207,8 @@ pub struct Viewpoint {
     pub near: f64,
 }
 
-/// What pictures share: pipelines, by the kind of source and the samples, and targets. For series of
-/// pictures, whose pipelines are made once.
+/// Draws pictures one after the other. Keeps pipelines and targets, so that a series of pictures
+/// makes them once.
 #[derive(Default)]
 pub struct StillRenderer {
     renderers: Vec<TileRenderer>,
@@ -214,17 +217,18 @@ pub struct StillRenderer {
 }
 
 impl StillRenderer {
-    /// Nothing made yet.
+    /// A renderer without pipelines: the first picture makes them.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and so on; 0 beyond the end.
+    /// States of instances in the scene's order, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and so
+    /// on; 0 for instances beyond the end.
     pub fn set_states(&mut self, states: &[u32]) {
         self.states = states.to_vec();
     }
 
-    /// Shows how far pictures are, and can end them.
+    /// Sets the watch that counts finished tiles, and by which pictures can be stopped.
     pub fn set_watch(&mut self, watch: Watch) {
         self.watch = Some(watch);
     }
@@ -247,10 +251,11 @@ impl StillRenderer {
         Ok(renderer)
     }
 
-    /// Draws a picture and hands it over in bands from the top: the first row of each, and its pixels.
+    /// Draws a picture and calls `take` with its bands from the top: the first row of each, and its
+    /// pixels.
     ///
     /// # Errors
-    /// What the device cannot do, and what `take` returns.
+    /// The device reports an error, `take` returns one, or the watch has stopped the picture.
     pub fn render<E>(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Words in pictures.
+//! Text in pictures.
 
 use ab_glyph::{Font, FontRef, Glyph, ScaleFont, point};
 
@@ -13,7 +13,7 @@ pub(crate) struct Text {
 }
 
 impl Text {
-    /// Ubuntu Light at a height of lines (pixels).
+    /// Ubuntu Light with lines of this height (pixels).
     pub(crate) fn new(size: f32) -> Self {
         let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT);
         Self {
@@ -27,9 +27,9 @@ impl Text {
         self.glyphs(line).1
     }
 
-    /// Draws a line; (x, y) is the left end of its middle, between the tops and feet of capitals.
+    /// Draws a line of text. (x, y) is its left end, at half the height of its capital letters.
     pub(crate) fn draw(&self, image: &mut Image, x: f32, y: f32, line: &str, ink: Rgb) {
-        // Capitals of the font are 0.69 of the em, which is 0.87 of a line.
+        // The font's capitals are 0.69 of the em, which is 0.87 of a line: half of that is 0.3.
         let base = y + 0.3 * self.size;
         for mut glyph in self.glyphs(line).0 {
             glyph.position.x += x;
@@ -38,7 +38,7 @@ impl Text {
                 let corner = outline.px_bounds().min;
                 outline.draw(|column, row, coverage| {
                     let (x, y) = (corner.x as i64, corner.y as i64);
-                    // A light face: a little more ink reads better.
+                    // The font is light: a little darker it reads better.
                     let alpha = coverage.powf(0.75);
                     image.blend(x + i64::from(column), y + i64::from(row), ink, alpha);
                 });

@@ -1,4 +1,4 @@
-//! Tiles: from a frame to bytes.
+//! Draws tiles: from a frame to bytes.
 //!
 //! ```text
 //! source.prepare ─▶ draw: color, normals, depth ─▶ occlude ─▶ blur ─▶ gather: bytes ─▶ read back
@@ -27,16 +27,16 @@ use crate::view::frame::Frame;
 pub(crate) struct Finishing {
     /// Sub-pixels per pixel along a side.
     pub(crate) scale: u32,
-    /// Sub-pixels around what is kept.
+    /// Sub-pixels around the part of the tile that is kept.
     pub(crate) margin: u32,
-    /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may be.
+    /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may reach.
     pub(crate) occlusion: Option<(f32, f32)>,
     /// Color behind everything; none: transparent.
     pub(crate) background: Option<Rgb>,
 }
 
 impl Finishing {
-    /// What is kept of a tile.
+    /// The frame of the part of the tile that is kept.
     fn without_margin(&self, frame: &Frame) -> Frame {
         let mut kept = *frame;
         kept.tile.x += self.margin as i32;
@@ -47,17 +47,17 @@ impl Finishing {
     }
 }
 
-/// What is drawn in one pass over the targets.
+/// A render pass over the targets.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TilePass {
     pub(crate) round: usize,
-    /// Which of the source's shaders draw.
+    /// Those of the source's shaders that draw.
     pub(crate) shaders: Range<usize>,
     /// Whether the targets are cleared before.
     pub(crate) first: bool,
-    /// Whether nothing more comes, so that samples become sub-pixels.
+    /// Whether it is the last pass of the tile, which resolves samples to sub-pixels.
     pub(crate) last: bool,
-    /// Left, top, width and height of what is drawn to; none: all.
+    /// Left, top, width and height of the rectangle that is drawn to; none: the whole target.
     pub(crate) within: Option<[u32; 4]>,
 }
 
@@ -73,7 +73,7 @@ impl TilePass {
     }
 }
 
-/// Paints tiles of sources of one kind.
+/// Draws tiles, with pipelines for one kind of source.
 pub(crate) struct TileRenderer {
     key: PipelineKey,
     pub(crate) shader: Shader,
@@ -83,7 +83,7 @@ pub(crate) struct TileRenderer {
     table: wgpu::Buffer,
     states: wgpu::Buffer,
     pub(crate) sizes: TableSizes,
-    /// Number of the table that it holds, where somebody counts them.
+    /// Number of the color table that it holds, for a caller that numbers its tables.
     pub(crate) holds: u64,
     samples: u32,
     targets: Option<Targets>,
@@ -121,12 +121,12 @@ impl TileRenderer {
         self.key
     }
 
-    /// Whether it can draw what the source makes, in that way.
+    /// Whether its pipelines are those of this key.
     pub(crate) fn fits(&self, key: PipelineKey) -> bool {
         self.key == key
     }
 
-    /// The colors from now on.
+    /// Sets the colors.
     pub(crate) fn set_table(&mut self, gpu: &Gpu, table: &ColorTable) {
         let (entries, colors) = table.entries();
         self.sizes = TableSizes {
@@ -137,19 +137,19 @@ impl TileRenderer {
         upload(gpu, &mut self.table, bytemuck::cast_slice(&entries));
     }
 
-    /// The states of instances from now on, in the scene's order.
+    /// Sets the states of instances, in the scene's order.
     pub(crate) fn set_states(&mut self, gpu: &Gpu, states: &[u32]) {
         let states = if states.is_empty() { &[0] } else { states };
         upload(gpu, &mut self.states, bytemuck::cast_slice(states));
     }
 
-    /// Bytes of the textures and buffers that pictures pass through.
+    /// Bytes of the textures and buffers that a tile is drawn into and finished in.
     pub(crate) fn target_bytes(&self) -> u64 {
         self.targets.as_ref().map_or(0, |targets| targets.bytes)
     }
 
-    /// Paints a tile, without its margins: four bytes a pixel, straight alpha, sRGB; nothing if it is not
-    /// wanted any more.
+    /// Draws a tile. Returns its pixels without the margins: four bytes a pixel, straight alpha,
+    /// sRGB; nothing if the watch has stopped the picture.
     pub(crate) fn render(
         &mut self,
         gpu: &Gpu,
@@ -195,13 +195,13 @@ impl TileRenderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
-            let timestamps = self.timer.compute(Pass::Choose);
-            source.choose(round, &mut encoder, timestamps);
+            let timestamps = self.timer.compute(Pass::Select);
+            source.select(round, &mut encoder, timestamps);
             let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }
         let over = |n: u32| n.div_ceil(8);
-        // Nothing to do is still a pass: its times are read.
+        // Without occlusion the passes are empty, since their times are read.
         let all = |n: u32| if radius > 0.0 { over(n) } else { 0 };
         let (occlude, blur) = (&self.finisher.occlude, &self.finisher.blur);
         for (pipeline, name) in [(occlude, Pass::Occlude), (blur, Pass::Blur)] {
@@ -220,7 +220,8 @@ impl TileRenderer {
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
         let Some(pixels) = read_watched(gpu, &targets.read, bytes, watch)? else {
-            // What is read is not there yet, so that it cannot be drawn to again.
+            // The device may still be copying into the buffer that is read, so it cannot be used
+            // again.
             self.targets = None;
             return Ok(None);
         };
@@ -228,8 +229,8 @@ impl TileRenderer {
         Ok(Some(pixels))
     }
 
-    /// Chooses and draws a frame, waits for it, and leaves it where it is: for stopwatches. Gives the
-    /// number of rounds.
+    /// Selects and draws a frame and waits for it, without reading it back: for measurements.
+    /// Returns the number of rounds.
     pub(crate) fn draw_only(
         &mut self,
         gpu: &Gpu,
@@ -249,11 +250,11 @@ impl TileRenderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
-            source.choose(round, &mut encoder, self.timer.compute(Pass::Choose));
+            source.select(round, &mut encoder, self.timer.compute(Pass::Select));
             let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }
-        // Passes that do nothing: their times are read with the others'.
+        // Empty passes, since their times are read with the others'.
         let idle = [
             (&self.finisher.occlude, Pass::Occlude),
             (&self.finisher.blur, Pass::Blur),
@@ -290,7 +291,7 @@ impl TileRenderer {
         (shade, finish)
     }
 
-    /// Group 1 of whatever draws with our uniforms.
+    /// Group 1 of the pipelines that draw.
     pub(crate) fn shade_group(&self, gpu: &Gpu) -> wgpu::BindGroup {
         let buffers = [&self.shade, &self.table, &self.states];
         let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
@@ -316,7 +317,7 @@ impl TileRenderer {
         Ok(())
     }
 
-    /// Draws what the source chose last.
+    /// Draws what the source selected last.
     pub(crate) fn draw(
         &self,
         source: &dyn VertexSource,
@@ -360,7 +361,7 @@ impl TileRenderer {
                         true => wgpu::LoadOp::Clear(0.0),
                         false => wgpu::LoadOp::Load,
                     },
-                    // The next round hides what lies behind this one.
+                    // The next round needs the depths of this one.
                     store: kept,
                 }),
                 stencil_ops: None,
@@ -400,7 +401,7 @@ impl TileRenderer {
     }
 }
 
-/// Writes to a buffer, which is made anew where it is too small or far too large.
+/// Writes to a buffer, which is replaced if it has another size.
 fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
     let size = (bytes.len() as u64).max(16);
     if buffer.size() != size {
@@ -410,7 +411,8 @@ fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
     gpu.queue.write_buffer(buffer, 0, bytes);
 }
 
-/// The same; nothing if it is not wanted any more.
+/// Waits for the device and copies the first bytes of a buffer; nothing if the watch has stopped
+/// the picture.
 fn read_watched(
     gpu: &Gpu,
     buffer: &wgpu::Buffer,
@@ -419,9 +421,9 @@ fn read_watched(
 ) -> Result<Option<Vec<u8>>, DeviceError> {
     let slice = buffer.slice(..bytes);
     let mapped = Arc::new(AtomicBool::new(false));
-    let tells = Arc::clone(&mapped);
+    let done = Arc::clone(&mapped);
     slice.map_async(wgpu::MapMode::Read, move |_| {
-        tells.store(true, Ordering::Release);
+        done.store(true, Ordering::Release);
     });
     match watch {
         Some(watch) if !watch.wait(gpu, &mapped)? => return Ok(None),

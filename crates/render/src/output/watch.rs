@@ -1,4 +1,4 @@
-//! How far a picture is, and whether it is still wanted, for a thread that waits for it.
+//! Progress of a picture, and a way to stop it, for another thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,10 +7,10 @@ use std::time::Duration;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 
-/// How often a picture that is watched is asked whether it is still wanted.
-const ASKS: Duration = Duration::from_millis(4);
+/// Time between checks whether the picture was stopped.
+const CHECK_INTERVAL: Duration = Duration::from_millis(4);
 
-/// Shared by the thread that draws and the one that waits.
+/// Shared by the thread that draws and another one.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     /// Tiles that are done.
@@ -28,7 +28,7 @@ impl Watch {
         self.tiles.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Waits until what was given to the device is `done`; whether the picture is still wanted then.
+    /// Waits until the device has set `done`. False if the picture was stopped before.
     pub(crate) fn wait(&self, gpu: &Gpu, done: &AtomicBool) -> Result<bool, DeviceError> {
         while !done.load(Ordering::Acquire) {
             if self.is_stopped() {
@@ -37,7 +37,7 @@ impl Watch {
             let polled = gpu.device.poll(wgpu::PollType::Poll);
             gpu.check()?;
             polled.map_err(|e| DeviceError::Lost(e.to_string()))?;
-            std::thread::sleep(ASKS);
+            std::thread::sleep(CHECK_INTERVAL);
         }
         Ok(true)
     }

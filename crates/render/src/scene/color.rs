@@ -1,55 +1,55 @@
-//! What colors things have: color keys, the table that they are looked up in, palettes and color maps.
+//! Colors: color keys, the table that they are looked up in, palettes and color maps.
 //!
-//! A tracing point has a **color key**. It is a **category**, or a fraction of a **scale**. The table has
-//! the colors of the scale, then those of the categories; so a map or a palette changes without
-//! touching the color_keys.
+//! A tracing point has a **color key**. It is a **category**, or a fraction of a **scale**. The
+//! table has the colors of the scale, then those of the categories, so that another color map or
+//! palette leaves the color keys as they are.
 
 use std::str::FromStr;
 
-/// A color as pictures and people have it: sRGB.
+/// An sRGB color.
 pub type Rgb = [u8; 3];
 
 /// Set in the color key of a category.
 pub const CATEGORY_BIT: u32 = 1 << 31;
 
-/// Word of a category.
+/// Color key of a category.
 pub fn category(index: u32) -> u32 {
     CATEGORY_BIT | (index & (CATEGORY_BIT - 1))
 }
 
-/// Word of a place on the scale, clamped to 0 to 1; no number is 0.
+/// Color key of a fraction of the scale, clamped to 0 to 1; NaN counts as 0.
 pub fn fraction(value: f32) -> u32 {
-    // Rounded to what f32 holds below 2³¹.
+    // 2³¹ − 128 is the greatest f32 below 2³¹.
     (value.clamp(0.0, 1.0).max(0.0) * (CATEGORY_BIT - 128) as f32) as u32
 }
 
-/// What color keys mean.
+/// The colors of color keys.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColorTable {
     /// Colors of fractions, evenly spaced.
     pub scale: Vec<Rgb>,
-    /// Colors of categories; the last also of all that follow.
+    /// Colors of categories. Categories beyond the end have the last color.
     pub categories: Vec<Rgb>,
-    /// If there are any, color keys that are no category are places among an instance's values.
+    /// If there are any, color keys that are not categories are indices of an instance's values.
     pub values: InstanceValues,
 }
 
-/// Values that differ from instance to instance of one template: those of a simulation.
+/// Values that differ between instances of one template, such as those of a simulation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InstanceValues {
-    /// By instance: its first four values.
+    /// By instance: the index of its first four values.
     first: Vec<u32>,
     fours: Vec<[f32; 4]>,
 }
 
 impl InstanceValues {
-    /// Adds the values of the next instance: fractions of the scale, 0 to 1. What is not a number has the
-    /// color of the first category, and so has all of an instance without values.
+    /// Adds the values of the next instance: fractions of the scale, 0 to 1. NaN has the color of
+    /// the first category, and so has an instance without values.
     pub fn push(&mut self, values: &[f32]) {
         let first = self.fours.len() as u32;
         self.first
             .push(if values.is_empty() { NOWHERE } else { first });
-        // Shaders need not know what is not a number.
+        // Shaders cannot rely on NaN, so there is a value that stands for it.
         let value = |value: &f32| {
             if value.is_nan() {
                 NO_VALUE
@@ -73,7 +73,8 @@ impl InstanceValues {
 }
 
 const NO_VALUE: f32 = -1.0;
-/// Where the values of an instance begin that has none: beyond all, so that shaders take the last entry.
+/// Index of the first values of an instance that has none: beyond the end, so that shaders take the
+/// last entry.
 const NOWHERE: u32 = 1 << 24;
 
 impl ColorTable {
@@ -87,13 +88,13 @@ impl ColorTable {
         entries
     }
 
-    /// All that shaders look colors up in, with the number of colors: these, then where each instance's
-    /// values begin, then the values, four to an entry.
+    /// The buffer that shaders look colors up in, and the number of colors. The colors come first,
+    /// then the index of each instance's first values, then the values, four to an entry.
     pub(crate) fn entries(&self) -> (Vec<[f32; 4]>, u32) {
         let mut entries = self.linear();
         let colors = entries.len() as u32;
         let InstanceValues { first, fours } = &self.values;
-        // Whole numbers up to 2²⁴ are exact: 67 million values.
+        // An index is stored as an f32, which is exact up to 2²⁴: enough for 67 million values.
         let behind = first.len().div_ceil(4) as u32 + colors;
         entries.extend(first.chunks(4).map(|chunk| {
             let mut entry = [0.0; 4];
@@ -130,7 +131,7 @@ pub fn linear(rgb: Rgb) -> [f32; 3] {
     })
 }
 
-/// Whether light things are seen better before this color than dark ones.
+/// Whether light things stand out better than dark ones against this background.
 pub fn is_dark(rgb: Rgb) -> bool {
     luminance(rgb) < 0.2
 }
@@ -144,7 +145,7 @@ pub(crate) fn luminance(rgb: Rgb) -> f32 {
 /// Entries of a scale: neighbors differ by less than a step of 8 bits.
 pub const SCALE_ENTRIES: usize = 256;
 
-/// Perceptually uniform color maps, dark to light: as matplotlib has them, by the crate `colorous`.
+/// Perceptually uniform color maps, dark to light: those of matplotlib, from the crate `colorous`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorMap {
     /// Blue, green, yellow.
@@ -193,13 +194,13 @@ impl ColorMap {
         map.eval_continuous(fraction.clamp(0.0, 1.0)).as_array()
     }
 
-    /// All of it, evenly spaced: the colors that everyone knows. What would not be seen before a background
-    /// has edges in pictures, see [`Look::contrast`](crate::Look::contrast).
+    /// The whole map, evenly spaced. Colors close to the background's stand out by the edges that
+    /// [`Look::contrast`](crate::Look::contrast) draws.
     pub fn scale(self) -> Vec<Rgb> {
         self.spaced(0.0, 1.0)
     }
 
-    /// Without the end that would not be seen before this background; the rest stays uniform.
+    /// The map without the end that is close to this background's color; the rest stays uniform.
     pub fn scale_before(self, background: Rgb) -> Vec<Rgb> {
         match is_dark(background) {
             true => self.spaced(0.15, 1.0),
@@ -252,8 +253,8 @@ impl Palette {
 
     /// Undefined, soma, axon, basal and apical dendrites.
     ///
-    /// Pure primaries leave light no room to shade; so blue, red and purple are those of print, and
-    /// black is the darkest gray on which light still shows a shape.
+    /// Shading does not show on pure primaries, so blue, red and purple are those used in print,
+    /// and black is the darkest gray on which shading still shows a shape.
     fn types(self) -> [Rgb; 5] {
         match self {
             Self::NeuroM => [
@@ -280,7 +281,7 @@ impl Palette {
         }
     }
 
-    /// Color of an SWC type; 5 and above have their own, and repeat after eight.
+    /// Color of an SWC type. Types from 5 on have eight colors, which repeat.
     pub fn of_type(self, kind: i32) -> Rgb {
         match usize::try_from(kind) {
             Ok(kind @ 0..=4) => self.types()[kind],
@@ -289,7 +290,7 @@ impl Palette {
         }
     }
 
-    /// Color of somata before this background: black before black is light gray.
+    /// Color of somata on this background: light gray where a dark soma would not show.
     pub fn of_soma(self, background: Option<Rgb>) -> Rgb {
         let soma = self.of_type(1);
         if background.is_some_and(is_dark) && is_dark(soma) && self != Self::NeuroMorpho {
@@ -306,7 +307,7 @@ impl Palette {
         }
     }
 
-    /// Color of the index-th category; they repeat after ten.
+    /// Color of the index-th category; colors repeat after [`Palette::distinct_count`].
     pub fn distinct(self, index: usize) -> Rgb {
         if self == Self::OkabeIto {
             return OKABE_ITO[index % OKABE_ITO.len()];
@@ -324,7 +325,7 @@ impl FromStr for Palette {
     }
 }
 
-/// Types 5 and above: none near those of the types before.
+/// Types from 5 on: colors unlike those of the types below.
 const CUSTOM: [Rgb; 8] = [
     [230, 140, 20],
     [20, 150, 110],
@@ -336,7 +337,7 @@ const CUSTOM: [Rgb; 8] = [
     [200, 170, 40],
 ];
 
-/// Tableau's ten, a shade darker, to stand on white.
+/// Tableau's ten colors, a shade darker, for white backgrounds.
 const DISTINCT: [Rgb; 10] = [
     [62, 105, 156],
     [226, 124, 34],
@@ -408,7 +409,7 @@ mod tests {
             (viridis.at(0.0), viridis.at(1.0)),
             ([68, 1, 84], [253, 231, 37])
         );
-        // All of the map, whatever the background; without an end only where that is asked for.
+        // The whole map whatever the background; scale_before leaves out an end.
         let scale = viridis.scale();
         assert_eq!((scale[0], scale[255]), ([68, 1, 84], [253, 231, 37]));
         assert_ne!(viridis.scale_before([255; 3])[255], [253, 231, 37]);

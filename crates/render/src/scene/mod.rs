@@ -1,7 +1,7 @@
-//! What there is to see: templates, and instances that put them somewhere.
+//! What is drawn: templates, and instances of them.
 //!
-//! A **template** is a coarse mesh that the device holds once. An **instance** is a placement, an
-//! identity and a state of display: ten thousand neurons of a thousand morphologies cost a thousand
+//! A **template** is a coarse mesh that the device holds once. An **instance** is a placement of a
+//! template with a state: ten thousand neurons of a thousand morphologies take a thousand
 //! templates.
 
 pub(crate) mod color;
@@ -15,18 +15,18 @@ use crate::gpu::error::DeviceError;
 use crate::scene::templates::{Template, Templates};
 use crate::view::frustum::BoundingSphere;
 
-/// A template among those of a [`Templates`].
+/// Index of a template among those of a [`Templates`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TemplateId(pub u32);
 
-/// Where an instance stands: `world = translation + scale · rotation · cell`.
+/// Where an instance is: `world = translation + scale · rotation · cell`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// Unit quaternion.
     pub rotation: DQuat,
-    /// The same in all directions, positive.
+    /// Scale, the same in all directions; positive.
     pub scale: f64,
-    /// µm.
+    /// Translation (µm).
     pub translation: DVec3,
 }
 
@@ -60,18 +60,18 @@ impl Placement {
 /// One neuron in the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instance {
-    /// Its shape.
+    /// The template that it shows.
     pub template: TemplateId,
-    /// Where.
+    /// Where it is.
     pub placement: Placement,
-    /// Not drawn.
+    /// Whether it is left out.
     pub hidden: bool,
-    /// What the shading reads: selection, visibility.
+    /// Bits of [`state`](crate::state) for the shading.
     pub state: u32,
 }
 
 impl Instance {
-    /// A template where its own coordinates put it.
+    /// A template in its own coordinates.
     pub fn new(template: TemplateId) -> Self {
         Self {
             template,
@@ -93,16 +93,17 @@ pub enum SceneError {
         "instance {instance} is of template {template}, but there are {templates}: add it first"
     )]
     Template {
-        /// Which instance.
+        /// Index of the instance.
         instance: usize,
-        /// What it asks for.
+        /// Index of its template.
         template: u32,
-        /// How many there are.
+        /// Number of templates.
         templates: usize,
     },
 }
 
-/// Whether an instance can be shown, one of so many templates.
+/// Checks the template and the placement of an instance; `index`: its own, `templates`: their
+/// number.
 pub(crate) fn check_placement(
     index: usize,
     instance: &Instance,
@@ -135,10 +136,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks every instance. Shaders know an instance by its place in this list.
+    /// Checks every instance. Shaders know an instance by its index in this list.
     ///
     /// # Errors
-    /// An instance without a template, or nowhere.
+    /// An instance refers to a template that does not exist, or has an invalid placement.
     pub fn new(templates: Templates, instances: Vec<Instance>) -> Result<Self, SceneError> {
         for (i, instance) in instances.iter().enumerate() {
             check_placement(i, instance, templates.count_of_templates())?;
@@ -159,17 +160,17 @@ impl Scene {
         &self.instances
     }
 
-    /// Which instances are not drawn from now on, in their order.
+    /// Hides or shows instances; a value for each, in their order.
     pub fn set_hidden(&mut self, hidden: impl IntoIterator<Item = bool>) {
         for (instance, hidden) in self.instances.iter_mut().zip(hidden) {
             instance.hidden = hidden;
         }
     }
 
-    /// Puts another mesh in a template's place; instances of it show the new one.
+    /// Replaces a template's mesh; its instances show the new one.
     ///
     /// # Errors
-    /// The device has no memory left, or refuses; the old one stays.
+    /// The device has no memory left, or reports another error; the old mesh stays.
     pub fn replace(
         &mut self,
         gpu: &Gpu,
@@ -179,12 +180,13 @@ impl Scene {
         self.templates.replace(gpu, id, template)
     }
 
-    /// Gives back what the scene was made of, to change it.
+    /// Takes the scene apart, to change it.
     pub fn into_parts(self) -> (Templates, Vec<Instance>) {
         (self.templates, self.instances)
     }
 
-    /// Bounding spheres that together hold all that shows, in the world (µm): to fit a camera to.
+    /// Bounding spheres that hold all instances that are not hidden, in the world (µm): to fit a
+    /// camera to.
     pub fn spheres(&self) -> Vec<BoundingSphere> {
         let shown = self.instances.iter().filter(|instance| !instance.hidden);
         shown

@@ -11,17 +11,18 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::TemplateId;
 
-/// Patches that are decided on together: the size of a workgroup.
+/// Number of patches in a cluster, which share a bounding sphere: the size of a workgroup.
 pub(crate) const CLUSTER: usize = 64;
-/// u32s of an explicit vertex: see refine's template.wgsl.
+/// Number of u32s of an explicit vertex: see refine's template.wgsl.
 const EXPLICIT_VERTEX_U32S: u32 = 3;
-/// Most places for patches of a part: a batch holds at least one.
+/// Most slots for patches in a part: as many as a batch has, so that each part fits a batch.
 pub(crate) const MOST_PATCHES: usize = 1 << 20;
-/// Most u32s of a part per patch: an explicit patch, four explicit vertices with anchors.
+/// Most u32s that a part takes per patch: an explicit patch with four explicit vertices and their
+/// anchors.
 const U32S_OF_PATCH: usize = 2 + 4 * (3 + 8);
 
-/// Where a part lies in the packed buffer of its page: [`PartLayout`], moved. Twin of the struct of the same name in
-/// refine's template.wgsl.
+/// Where the arrays of a part are in the packed buffer of its page: [`PartLayout`] with the part's
+/// offset added. Twin of the struct of the same name in refine's template.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Base {
@@ -69,10 +70,10 @@ impl Base {
 pub struct Template<'t> {
     /// The mesh.
     pub mesh: &'t CoarseMesh,
-    /// One color key per tracing point that its color is looked up by. Missing ones are 0.
+    /// A color key for each tracing point. Missing ones are 0.
     pub color_keys: &'t [u32],
-    /// One level per tracing point, for [`LodCriterion::PerPoint`](neurotess_refine::LodCriterion::PerPoint). Missing ones
-    /// are 1.
+    /// A level for each tracing point, for
+    /// [`LodCriterion::PerPoint`](neurotess_refine::LodCriterion::PerPoint). Missing ones are 1.
     pub values: &'t [u8],
 }
 
@@ -83,26 +84,26 @@ pub(crate) struct Page {
     pub(crate) group: wgpu::BindGroup,
 }
 
-/// Where a part of a template lies.
+/// A part of a template on the device.
 #[derive(Clone, Debug)]
 pub(crate) struct TemplatePart {
     pub(crate) page: usize,
     pub(crate) base: Base,
-    /// Number of patches, counting those that stay empty.
+    /// Number of slots for patches, some of which are empty.
     pub(crate) slots: u32,
     /// Number of patches.
     pub(crate) patches: u32,
-    /// By place: the mesh's patch.
+    /// By slot: index of the mesh's patch.
     pub(crate) in_mesh: Vec<u32>,
-    /// By number: the mesh's vertex that is explicit.
+    /// By explicit vertex: index of the mesh's vertex.
     pub(crate) explicit: Vec<u32>,
-    /// BoundingSphere around each cluster of patches, relative to the template's origin (µm).
+    /// Bounding sphere of each cluster of patches, relative to the template's origin (µm).
     pub(crate) spheres: Vec<(Vec3, f32)>,
-    /// BoundingSphere around all of them.
+    /// Bounding sphere of the whole part.
     pub(crate) sphere: (Vec3, f32),
 }
 
-/// What the host remembers of a template.
+/// What the host keeps of a template.
 #[derive(Clone, Debug)]
 pub(crate) struct StoredTemplate {
     pub(crate) origin: DVec3,
@@ -119,15 +120,15 @@ pub struct Templates {
 }
 
 impl Templates {
-    /// Nothing yet.
+    /// No templates.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Uploads templates, with numbers that follow those already there.
+    /// Uploads templates. Their ids follow those already there.
     ///
     /// # Errors
-    /// The device has no memory left, or refuses.
+    /// The device has no memory left, or reports another error.
     pub fn add(
         &mut self,
         gpu: &Gpu,
@@ -170,11 +171,11 @@ impl Templates {
         Ok(ids.map(|id| TemplateId(id as u32)).collect())
     }
 
-    /// Puts another mesh in a template's place. It gets pages of its own; those that only the old one
-    /// had are used again.
+    /// Replaces a template's mesh. The new mesh gets pages of its own, in place of those that no
+    /// other template uses.
     ///
     /// # Errors
-    /// The device has no memory left, or refuses; the old one stays.
+    /// The device has no memory left, or reports another error; the old mesh stays.
     pub fn replace(
         &mut self,
         gpu: &Gpu,
@@ -258,7 +259,7 @@ impl Templates {
         self.templates.len()
     }
 
-    /// Number of tracing points of all templates, those that stand for somata's vertices aside.
+    /// Number of tracing points of all templates, without those of somata.
     pub fn point_count(&self) -> usize {
         self.templates.iter().map(|template| template.points).sum()
     }
@@ -269,7 +270,7 @@ impl Templates {
         bytes as f64 / self.point_count().max(1) as f64
     }
 
-    /// Bytes on the device by what they hold.
+    /// Bytes on the device by the name of the buffer.
     pub fn bytes(&self) -> Vec<(&'static str, u64)> {
         self.bytes.clone()
     }

@@ -1,4 +1,4 @@
-//! What shaders bind is what Rust binds: every variable of every entry point, by group and number.
+//! Tests that the bindings of every entry point equal the layouts of its pipeline.
 
 use neurotess_refine::testing::{self, naga};
 use neurotess_refine::wgsl::{Shader, WgslFile};
@@ -53,7 +53,7 @@ fn assert_bindings(shader: &Shader, entry: &str, groups: &Groups) {
     }
 }
 
-/// What a binding is, as text that both sides can say.
+/// The type of a binding as text, to be compared with that of a shader's variable.
 fn kind_of(ty: &BindingType) -> String {
     match ty {
         BindingType::Buffer { ty, .. } => match ty {

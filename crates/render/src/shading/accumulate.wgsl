@@ -1,5 +1,5 @@
-// The last pass of a picture that gets better: adds this step's samples to those before, and makes the
-// bytes of their mean. Called by progressive.rs.
+// The last pass of a progressive picture: adds this step's samples to those of the steps before,
+// and computes the bytes of their mean. Called by progressive/mod.rs.
 
 #import finish.wgsl
 #import occlusion.wgsl
@@ -22,7 +22,7 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
     if finish.spare > 0u {
         sum += sums[at];
     }
-    // One step needs no memory.
+    // A picture of a single step needs no sums.
     if finish.clear == 0u {
         sums[at] = sum;
     }

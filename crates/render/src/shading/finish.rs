@@ -1,5 +1,4 @@
-//! What comes after the drawing: ambient occlusion, and the bytes of the picture. Twin of the uniform
-//! in `finish.wgsl`.
+//! The passes after the drawing: ambient occlusion, and the bytes of the picture.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::{Shader, ShaderParts};
@@ -29,7 +28,7 @@ pub(crate) struct Finish {
 }
 
 impl Finish {
-    /// What the frame says; the rest is 0.
+    /// The fields that follow from the frame; the others are 0.
     pub(crate) fn of(frame: &Frame) -> Self {
         Self {
             tile_size: [frame.tile.width, frame.tile.height],
@@ -41,19 +40,22 @@ impl Finish {
     }
 }
 
-/// Taps of the occlusion around a sub-pixel.
+/// Number of samples that the occlusion of a sub-pixel takes around it.
 const TAPS: u32 = 14;
-/// How dark corners are. SelectedPatch by eye: forks and the feet of stems show, tubes stay clean.
+/// How dark corners are. Chosen by eye: it shows at forks and where neurites leave the soma, but
+/// not on tubes.
 const STRENGTH: f32 = 3.0;
-/// Sub-pixels that the occlusion is blurred over, to each side: the turns repeat after four.
+/// Sub-pixels that the occlusion is blurred over, to each side: its pattern of turns repeats after
+/// four.
 pub(crate) const BLUR: u32 = 4;
 
 /// What the last pass does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Last {
-    /// Makes pixels of sub-pixels.
+    /// Computes pixels from sub-pixels.
     Gather,
-    /// Adds sub-pixels, which are pixels, to those before: one more binding.
+    /// Adds sub-pixels, which are pixels here, to the sums of the steps before; has one more
+    /// binding.
     Accumulate,
 }
 
@@ -104,7 +106,8 @@ pub(crate) fn finish_shader(samples: u32, last: Last) -> Shader {
     if last == Last::Accumulate {
         parts.files.push(shader::file("accumulate.wgsl"));
     }
-    // Of several samples the first stands for the sub-pixel; of one, there is only that.
+    // Textures of normals and depths are then multisampled; the first sample stands for the
+    // sub-pixel.
     if samples > 1 {
         parts.constants.flag("MULTISAMPLED");
     }
@@ -114,7 +117,7 @@ pub(crate) fn finish_shader(samples: u32, last: Last) -> Shader {
     shader::shader("finish", &parts)
 }
 
-/// The passes' only group. `multisampled`: of normals and depths.
+/// The passes' only bind group. `multisampled`: whether the textures of normals and depths are.
 pub(crate) fn entries(multisampled: bool, last: Last) -> Vec<wgpu::BindGroupLayoutEntry> {
     let compute = wgpu::ShaderStages::COMPUTE;
     let mut entries = vec![

@@ -1,28 +1,29 @@
-// What passes after the drawing share, and the last: from samples to the bytes of a picture.
-// Called by tiles.rs. Rust twin: finish.rs.
+// What the passes after the drawing share; and the last of them, from samples to the bytes of a
+// picture. Called by tiles.rs. Rust twin: finish.rs.
 
 struct Finish {
     tile_size: vec2<u32>,
     tile_origin: vec2<i32>,
     // Half the whole picture (sub-pixels).
     half_size: vec2<f32>,
-    // µm per sub-pixel at unit depth.
+    // Size (µm) of a sub-pixel at unit depth.
     slope: f32,
     // Sub-pixels per pixel, along one side.
     scale: u32,
     // Radius of occlusion (µm), at most `most` sub-pixels; 0: none.
     radius: f32,
     most: f32,
-    // Sub-pixels around what is kept.
+    // Sub-pixels around the part of the tile that is kept.
     margin: u32,
-    // 1: the background is left out.
+    // For gather: 1 if the background is transparent. For accumulate: 1 if there is a single step.
     clear: u32,
-    // What is kept (pixels).
+    // Size of the part that is kept (pixels).
     kept: vec2<u32>,
+    // For accumulate: number of steps before this one.
     spare: u32,
     // Bytes of a pixel where nothing is.
     empty: u32,
-    // Linear.
+    // Linear color of the background.
     background: vec4<f32>,
 }
 
@@ -47,13 +48,14 @@ fn depth_at(p: vec2<i32>) -> f32 {
     return bitcast<f32>(pack4x8unorm(textureLoad(depths, p, 0)));
 }
 
-// Place in the view (µm): right, up, backward.
+// Position in the view (µm): right, up, backward.
 fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
     let place = vec2<f32>(p + finish.tile_origin) + 0.5 - finish.half_size;
     return vec3(place * vec2(1.0, -1.0) * finish.slope * depth, -depth);
 }
 
-// 1 where the depth is that of the middle, falling to 0 over half a radius of occlusion.
+// Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's
+// radius.
 fn alike(depth: f32, q: vec2<i32>) -> f32 {
     let other = depth_at(q);
     if other == 0.0 || depth == 0.0 {
@@ -112,7 +114,7 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     if finish.clear == 1u {
         out = vec4(sum.rgb / sum.a, sum.a);
     }
-    // Rounded by hand: how pack4x8unorm rounds is the driver's lod.
+    // Not by pack4x8unorm, whose rounding depends on the driver.
     let bytes = vec4<u32>(floor(vec4(encoded(out.rgb), out.a) * 255.0 + 0.5));
     pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
 }

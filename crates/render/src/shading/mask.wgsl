@@ -1,4 +1,5 @@
-// From the normals that a draft has drawn to a mask: the bits of all samples of a pixel. Called by present.rs.
+// From the texture of normals, whose last component holds bits of outlines, to a mask: the bits of
+// all samples of a pixel. For drafts. Called by present.rs.
 
 #ifdef MULTISAMPLED
 @group(0) @binding(0) var normals: texture_multisampled_2d<f32>;

@@ -1,4 +1,4 @@
-//! From vertices to pixels, whichever source they come from.
+//! From vertices to pixels, for all sources.
 
 pub(crate) mod finish;
 pub(crate) mod present;

@@ -1,9 +1,9 @@
 // Ambient occlusion from depth and normals. Called by tiles.rs. Rust twin of the uniform:
 // finish.rs.
 //
-// Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: taps on a spiral, each
-// counts by how far it rises above the tangent plane and fades out with its distance. The blur is
-// theirs too, along x here and along y in finish.wgsl, and stops where depth jumps.
+// Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: samples on a spiral, each
+// weighted by how far it rises above the tangent plane, less with greater distance. The blur is
+// theirs too, along x here and along y in finish.wgsl; it stops where the depth jumps.
 
 #import finish.wgsl
 
@@ -24,7 +24,8 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let reach = min(finish.radius / pixel, finish.most);
     let radius = reach * pixel;
     let whole = vec2<u32>(p + finish.tile_origin + 65536);
-    // One of 16 turns, so that neighbors, which the blur joins, look in different directions.
+    // One of 16 turns of the spiral, so that neighboring sub-pixels, which the blur averages,
+    // sample different directions.
     let turn = f32((whole.x & 3u) + 4u * ((whole.y & 3u) ^ ((whole.x & 1u) << 1u))) / 16.0;
     var sum = 0.0;
     for (var i = 0u; i < TAPS; i++) {
@@ -39,7 +40,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
         let v = view_at(q, other) - center;
         let distance = length(v);
         let rise = max(dot(v, n) / max(distance, 1e-20) - 0.12, 0.0);
-        // Twice the radius along the sight: what lies that far in front still casts its shade.
+        // Up to twice the radius, since things that are closer to the eye also occlude.
         let far = min(distance / (2.0 * radius), 1.0);
         sum += rise * (1.0 - far * far);
     }

@@ -1,4 +1,4 @@
-//! The pass that puts a picture into a texture, with outlines. Twin of the uniform in `present.wgsl`.
+//! The pass that writes a picture into a texture, with outlines: present.wgsl.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::{Shader, ShaderParts};
@@ -9,14 +9,14 @@ use crate::gpu::shader;
 use crate::scene::color::Rgb;
 use crate::shading::targets::Targets;
 
-/// What windows show without converting: bytes of the screen.
+/// The format that windows show without conversion: the screen's bytes.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Bit of a mask: selected.
 pub const SELECTED: u8 = 1;
 /// Bit of a mask: under the cursor.
 pub const HOVERED: u8 = 2;
-/// Bit of a mask: the piece that was clicked.
+/// Bit of a mask: the part that was clicked.
 pub const PICKED: u8 = 4;
 
 /// How outlines look.
@@ -24,9 +24,9 @@ pub const PICKED: u8 = 4;
 pub struct Outlines {
     /// Width (pixels); 0: none.
     pub width: u32,
-    /// Color of those round what is selected.
+    /// Color of outlines around what is selected.
     pub selected: Rgb,
-    /// Color of those round what is under the cursor.
+    /// Color of outlines around what is under the cursor.
     pub hovered: Rgb,
 }
 
@@ -65,7 +65,7 @@ impl Present {
     }
 }
 
-/// The shader that makes a mask of the normals that a draft has drawn, of so many samples.
+/// The shader that computes the mask of a draft with this number of samples.
 pub(crate) fn mask_shader(samples: u32) -> Shader {
     let mut parts = ShaderParts::new(&[shader::file("mask.wgsl")]);
     parts.constants.i32("SAMPLES", samples as i32);
@@ -87,10 +87,11 @@ struct FullScreenPass {
     layout: wgpu::BindGroupLayout,
 }
 
-/// What a picture is shown in.
+/// The texture that a picture is shown in.
 pub(crate) struct Screen {
     pub(crate) texture: wgpu::Texture,
-    /// Of a draft: the mask that is made of what it has drawn. Others have the host's.
+    /// A draft's own mask, computed on the device. Other pictures have the mask that the host
+    /// uploads.
     drawn: Option<wgpu::Texture>,
 }
 
@@ -105,7 +106,7 @@ impl Screen {
     }
 }
 
-/// The pass, with the mask that it looks at.
+/// The pass, and the mask that the host uploads.
 pub(crate) struct Presenter {
     show: FullScreenPass,
     gather: FullScreenPass,
@@ -115,7 +116,7 @@ pub(crate) struct Presenter {
 }
 
 impl Presenter {
-    /// `samples`: of a draft's pixels.
+    /// `samples`: number of samples of a draft's pixels.
     pub(crate) fn new(gpu: &Gpu, samples: u32) -> Self {
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("present"),
@@ -138,7 +139,8 @@ impl Presenter {
         }
     }
 
-    /// Bytes of [`SELECTED`] and [`HOVERED`] by pixel, for pictures of this size; none: no outlines.
+    /// Bytes of [`SELECTED`] and [`HOVERED`] by pixel, for pictures of this size; none: no
+    /// outlines.
     pub(crate) fn set_mask(&mut self, gpu: &Gpu, mask: Option<([u32; 2], &[u8])>) {
         self.mask_size = mask.map(|(size, _)| size);
         let Some((size, bytes)) = mask else { return };
@@ -167,7 +169,7 @@ impl Presenter {
         encoder: &mut wgpu::CommandEncoder,
     ) {
         let size = [to.texture.width(), to.texture.height()];
-        // Of another size, the mask belongs to another picture.
+        // A mask of another size belongs to another picture.
         let fits = to.drawn.is_some() || self.mask_size == Some(size);
         let outlines = Some(outlines).filter(|outlines| fits && outlines.width > 0);
         let uniform = Present::new(size, outlines);
@@ -265,7 +267,7 @@ impl FullScreenPass {
     }
 }
 
-/// What masks are made of: bits by pixel.
+/// Format of masks: bits of a pixel.
 const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
 
 fn mask_texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
@@ -278,7 +280,7 @@ fn mask_texture(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
     )
 }
 
-/// Of the pass that shows.
+/// Bindings of the pass that shows a picture.
 pub(crate) fn show_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let fragment = wgpu::ShaderStages::FRAGMENT;
     vec![
@@ -288,7 +290,7 @@ pub(crate) fn show_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     ]
 }
 
-/// Of the pass that gathers the mask of a draft of so many samples.
+/// Bindings of the pass that computes the mask of a draft with this number of samples.
 pub(crate) fn gather_entries(samples: u32) -> Vec<wgpu::BindGroupLayoutEntry> {
     let fragment = wgpu::ShaderStages::FRAGMENT;
     vec![texture_binding(0, fragment, UNFILTERED, samples > 1)]

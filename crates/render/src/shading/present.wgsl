@@ -1,21 +1,22 @@
-// From the bytes of a picture to a texture, with outlines around what a mask says. Called by present.rs.
+// From the bytes of a picture to a texture, with outlines around the things in a mask. Called by
+// present.rs.
 //
-// Between what is selected and its outline one pixel stays free. Neurites of a pixel's width would be seen as
-// their outlines' color if these touched them.
+// One pixel is left free between a selected thing and its outline. Without it, neurites of a
+// pixel's width would seem to have the outline's color.
 
 struct Present {
     size: vec2<u32>,
     // Width (pixels) of outlines; 0: none.
     width: u32,
     spare: u32,
-    // sRGB, not linear: what is mixed here is bytes of the screen.
+    // sRGB, not linear: these colors are mixed with the screen's bytes.
     selected: vec4<f32>,
     hovered: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> present: Present;
 @group(0) @binding(1) var<storage, read> pixels: array<u32>;
-// 1: selected, 2: under the cursor, 4: the piece that was clicked.
+// 1: selected, 2: under the cursor, 4: the part that was clicked.
 @group(0) @binding(2) var mask: texture_2d<u32>;
 
 @vertex
@@ -31,7 +32,7 @@ fn mask_at(p: vec2<i32>) -> u32 {
     return textureLoad(mask, p, 0).r;
 }
 
-// Bits of the mask at a pixel, within a pixel of it, and as far as outlines reach.
+// Bits of the mask: at a pixel, within a pixel of it, and within the reach of outlines.
 fn bits_near(p: vec2<i32>) -> vec3<u32> {
     var bits = vec3(mask_at(p));
     let reach = i32(present.width) + 1;
@@ -59,7 +60,7 @@ fn show(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         return color;
     }
     let bits = bits_near(vec2<i32>(p));
-    // Whole neurons have a free pixel between them and their outline, pieces have none.
+    // Whole neurons have a free pixel between them and their outline, parts of them have none.
     let around = (bits.z & ~bits.y & 3u) | (bits.y & ~bits.x & 6u);
     if (around & 5u) != 0u {
         color = vec4(mix(color.rgb, present.selected.rgb, present.selected.a), 1.0);

@@ -1,4 +1,4 @@
-//! The pipeline that shades a source's vertices. Twin of the uniform in `shade.wgsl`.
+//! The pipeline that shades a source's vertices, with shade.wgsl.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -15,60 +15,61 @@ use crate::view::frame::Frame;
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Normals in the view.
 pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Depths (µm): the bytes of an f32.
+/// Depths (µm), as the bytes of an f32.
 pub(crate) const DISTANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Reversed depth keeps its digits in floating point only.
+/// Depth buffer: floating point, which reversed depth needs to be precise.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// How surfaces look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// Where the key light comes from.
+    /// How surfaces are lit.
     pub light: Light,
-    /// Width (pixels) of the wireframe that show the triangles; 0: none.
+    /// Width (pixels) of the wireframe's lines; 0: no wireframe.
     pub wire: f32,
-    /// What is cut away.
+    /// The plane behind which everything is cut away.
     pub clip: Option<Clip>,
-    /// Color of instances that are [`HIGHLIGHTED`], and its share, 0 to 1.
+    /// Color of [`HIGHLIGHTED`] instances, and its share, 0 to 1.
     pub highlighted: (Rgb, f32),
-    /// Share of the samples that instances which are [`GHOSTED`] cover, 0 to 1.
+    /// Opacity of [`GHOSTED`] instances, 0 to 1.
     pub ghosted: f32,
-    /// The background that colors of the scale must differ from: those that are as light as it have
-    /// edges, darker before a light background and lighter before a dark one. None, or [`Light::Flat`]: no
-    /// edges.
+    /// Background against which colors of the scale must stand out: colors about as light as the
+    /// background have edges, dark ones on a light background and light ones on a dark one. None,
+    /// or [`Light::Flat`]: no edges.
     pub contrast: Option<Rgb>,
 }
 
-/// A plane: what lies behind it is cut away.
+/// A plane behind which everything is cut away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clip {
-    /// A point of it (µm).
+    /// A point of the plane (µm).
     pub point: DVec3,
-    /// Unit direction to what is kept.
+    /// Unit normal, towards the side that is kept.
     pub normal: DVec3,
 }
 
 /// State of an instance: it has the color of [`Look::highlighted`].
 pub const HIGHLIGHTED: u32 = 1;
-/// State of an instance: one looks through it, see [`Look::ghosted`].
+/// State of an instance: it is transparent, see [`Look::ghosted`].
 pub const GHOSTED: u32 = 2;
 /// State of an instance: only its soma is drawn.
 pub const WITHOUT_NEURITES: u32 = 4;
 /// State of an instance: its soma is not drawn.
 pub const WITHOUT_SOMA: u32 = 8;
-/// State of an instance: drafts have an outline round it, see [`ProgressiveRenderer::draft`](crate::ProgressiveRenderer::draft).
+/// State of an instance: drafts draw an outline around it, see
+/// [`ProgressiveRenderer::draft`](crate::ProgressiveRenderer::draft).
 pub const OUTLINED: u32 = 16;
 
-/// What surfaces are lit by.
+/// How surfaces are lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Light {
     /// A soft key light from the upper left, a weak fill and the sky.
     #[default]
     Soft,
-    /// The same with the key light in this direction, seen from the picture: right, up, towards
-    /// the viewer. Any length but 0.
+    /// The same with the key light from this direction, in the picture's coordinates: right, up,
+    /// towards the viewer. Any length but 0.
     From(Vec3),
-    /// None: the bare colors.
+    /// No light: plain colors.
     Flat,
 }
 
@@ -85,7 +86,7 @@ impl Default for Look {
     }
 }
 
-/// Direction of [`Light::Soft`]'s key.
+/// Direction of [`Light::Soft`]'s key light.
 const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
 
 /// Twin of `Shade` in `shade.wgsl`.
@@ -119,7 +120,7 @@ pub(crate) struct Shade {
     pub(crate) edge: [f32; 4],
 }
 
-/// What shaders must know of a color table.
+/// Sizes of a color table, for shaders.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TableSizes {
     /// Colors of the scale.
@@ -169,12 +170,13 @@ impl Shade {
             jitter: [0.0; 2],
             batch: 0,
             pad: 0,
-            // Bare colors are nothing but those.
+            // Plain colors have no edges.
             edge: edge(look.contrast.filter(|_| lit > 0.0)),
         }
     }
 
-    /// A step towards many samples: the picture moved by so many sub-pixels, its dither by `turn`.
+    /// For a step of a progressive picture: offset by `jitter` (sub-pixels), its dither pattern by
+    /// `turn`.
     pub(crate) fn moved(mut self, jitter: [f32; 2], turn: [f32; 2]) -> Self {
         self.jitter = jitter;
         self.tile_origin = [0, 1].map(|k| self.tile_origin[k] + turn[k]);
@@ -182,7 +184,8 @@ impl Shade {
     }
 }
 
-/// Color of edges before a background, and the background's luminance; beyond 1 there are no edges.
+/// Color of edges on a background, and the background's luminance; a luminance above 1 gives no
+/// edges.
 fn edge(background: Option<Rgb>) -> [f32; 4] {
     let Some(background) = background else {
         return [0.0, 0.0, 0.0, 100.0];
@@ -191,16 +194,17 @@ fn edge(background: Option<Rgb>) -> [f32; 4] {
     [ink, ink, ink, luminance(background)]
 }
 
-/// Sub-pixels by which the viewport reaches beyond the tile on each side. Software rasterisers clip at
-/// the viewport, and a clipped edge covers other samples: one in 600,000 at the borders of tiles.
+/// Sub-pixels by which the viewport is larger than the tile on each side. Software rasterizers clip
+/// at the viewport, and a clipped edge may cover other samples: one in 600,000 differed at the
+/// borders of tiles.
 pub(crate) const GUARD: f32 = 512.0;
 
-/// Half the width (pixels) of the thinnest thing drawn: below a pixel, lines look dotted.
+/// Half the width (pixels) of the thinnest line drawn: thinner ones would look dotted.
 const HALF_WIDTH: f32 = 0.5;
 
 /// Draws samples from a source's vertices.
 pub(crate) struct Shader {
-    /// One for each of the source's shaders.
+    /// A pipeline for each of the source's shaders.
     pub(crate) pipelines: Vec<wgpu::RenderPipeline>,
     pub(crate) layout: wgpu::BindGroupLayout,
 }
@@ -263,20 +267,21 @@ impl Shader {
     }
 }
 
-/// What pipelines depend on.
+/// All that pipelines depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
     /// The source's shaders.
     pub(crate) source: SourceKey,
     /// Samples of a sub-pixel: 1 or 4.
     pub(crate) samples: u32,
-    /// Whether the inside may show.
+    /// Whether back faces are drawn, since a plane cuts the surface.
     pub(crate) cut: bool,
-    /// Whether instances have values: looking for them in every vertex took software Vulkan 10 ms a frame.
+    /// Whether instances have values. Shaders for scenes without values do not look for them: that
+    /// took software Vulkan 10 ms a frame.
     pub(crate) valued: bool,
 }
 
-/// The shader for what a source defines.
+/// The shader for a source's vertices.
 pub(crate) fn shade_shader(source: &ShaderParts, key: PipelineKey) -> Composed {
     let mut parts = source.clone();
     parts.files.push(shader::file("shade.wgsl"));
@@ -284,7 +289,7 @@ pub(crate) fn shade_shader(source: &ShaderParts, key: PipelineKey) -> Composed {
     shader::shader("shade", &parts)
 }
 
-/// What shade.wgsl needs of Rust.
+/// Constants that shade.wgsl shares with Rust.
 pub(crate) fn constants(key: PipelineKey) -> Constants {
     let mut constants = Constants::default();
     constants.u32("SAMPLES", key.samples);

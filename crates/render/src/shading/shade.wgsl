@@ -1,5 +1,6 @@
-// From a source's vertices to lit samples: projection, widening of thin tubes, color, light, wireframe.
-// Called by tiles.rs, with a source of vertices. Rust twin of the uniform: shade.rs. SAMPLES is the number of samples of a sub-pixel.
+// From a source's vertices to lit samples: projection, widening of thin tubes, color, light,
+// wireframe. Called by tiles.rs, with a vertex source. Rust twin of the uniform: shade.rs. SAMPLES
+// is the number of samples of a sub-pixel.
 
 #import surface_vertex.wgsl
 
@@ -8,14 +9,14 @@ struct Shade {
     right: vec3<f32>,
     near: f32,
     up: vec3<f32>,
-    // µm per sub-pixel at unit depth.
+    // Size (µm) of a sub-pixel at unit depth.
     slope: f32,
     backward: vec3<f32>,
-    // Half the width (sub-pixels) of the thinnest thing drawn.
+    // Half the width (sub-pixels) of the thinnest line drawn.
     half_width: f32,
     // Unit direction to the key light in the view: right, up, backward.
     key: vec3<f32>,
-    // Half the width (sub-pixels) of wireframe; 0: none.
+    // Half the width (sub-pixels) of the wireframe's lines; 0: no wireframe.
     wire: f32,
     size: vec2<f32>,
     tile_origin: vec2<f32>,
@@ -26,31 +27,32 @@ struct Shade {
     lit: f32,
     // Number of scale entries at the start of the table; categories follow.
     scale_entries: u32,
-    // Number of all colors, and of instances whose values follow them; 0: color keys are fractions.
+    // Number of all colors, and of instances whose values follow them in the table.
     colors: u32,
     valued: u32,
-    // From positions as the source has them to those relative to the eye: 0 unless the source's eye is
-    // another one.
+    // Added to the source's positions to make them relative to the eye: 0 unless the source has
+    // selected for another eye.
     shift: vec3<f32>,
-    // Coverage of what is ghosted.
+    // Coverage of ghosted instances.
     ghosted: f32,
-    // What lies behind this plane, relative to the eye, is cut away; all 0: nothing.
+    // Everything behind this plane, relative to the eye, is cut away; all 0: nothing.
     clip: vec4<f32>,
-    // Linear color of what is highlighted, and its share.
+    // Linear color of highlighted instances, and its share.
     highlighted: vec4<f32>,
-    // Sub-pixels by which the whole picture is moved.
+    // Offset (sub-pixels) of the whole picture.
     jitter: vec2<f32>,
-    // Which batch is drawn: for ids.
+    // Index of the batch that is drawn: for picking ids.
     batch: u32,
     pad: u32,
-    // Linear color of edges, and the luminance that they set colors of the scale off from.
+    // Linear color of edges, and luminance of the background, against which they make colors of the
+    // scale stand out.
     edge: vec4<f32>,
 }
 
 @group(1) @binding(0) var<uniform> shade: Shade;
-// Linear colors.
+// Linear colors, then values of instances: see ColorTable::entries.
 @group(1) @binding(1) var<storage, read> table: array<vec4<f32>>;
-// By instance; those beyond the end have 0.
+// State of each instance; instances beyond the end have 0.
 @group(1) @binding(2) var<storage, read> states: array<u32>;
 
 struct Varying {
@@ -60,9 +62,9 @@ struct Varying {
     @location(2) relative: vec3<f32>,
     @location(3) grid: vec2<f32>,
     @location(4) coverage: f32,
-    // From 0, a tube two pixels wide, to 1, nothing.
+    // From 0 for tubes at least two pixels wide to 1 for width 0.
     @location(5) thin: f32,
-    // 1: has an outline.
+    // 1: the instance has an outline.
     @location(6) @interpolate(flat) outline: u32,
     // Share of the edge's color at edges.
     @location(7) edge: f32,
@@ -72,7 +74,7 @@ fn category_entry(category: u32) -> u32 {
     return min(shade.scale_entries + category, shade.colors - 1u);
 }
 
-// The value that a color key means for an instance: see InstanceValues.
+// An instance's value for a color key, or -1: see InstanceValues.
 fn value_of_instance(color_key: u32, instance: u32) -> f32 {
     if instance >= shade.valued {
         return -1.0;
@@ -81,8 +83,9 @@ fn value_of_instance(color_key: u32, instance: u32) -> f32 {
     return table[min(first + color_key / 4u, arrayLength(&table) - 1u)][color_key % 4u];
 }
 
-// A category counts from the end of the scale; anything else is a fraction of the scale, or a place
-// among the instance's values. The last component is 1 for colors of the scale.
+// A color key is a category, whose color comes after those of the scale; or a fraction of the
+// scale; or the index of one of the instance's values. The last component is 1 for colors of the
+// scale.
 fn color_of(color_key: u32, instance: u32) -> vec4<f32> {
     var share = f32(color_key) / f32(CATEGORY_BIT);
     var category = (color_key & CATEGORY_BIT) != 0u;
@@ -104,16 +107,17 @@ fn luminance(color: vec3<f32>) -> f32 {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// How little a color differs from the background: 1 up to a contrast of 1.25, as the light end of viridis has
-// before white, 0 from 1.8 on. Contrast as WCAG 2.2 defines it.
+// How close a color is to the background's: 1 up to a contrast of 1.25, which the light end of
+// viridis has against white, falling to 0 at 1.8. Contrast as WCAG 2.2 defines it.
 fn lack_of_contrast(color: vec3<f32>) -> f32 {
     let own = luminance(color) + 0.05;
     let other = shade.edge.w + 0.05;
     return 1.0 - smoothstep(1.25, 1.8, max(own, other) / min(own, other));
 }
 
-// Rasterisers keep 1/256 of a pixel. Here it is rounded in the whole picture's coordinates, so that
-// a triangle covers the same samples whatever tile it is drawn in. The quarter keeps away from ties.
+// Rasterizers round positions to 1/256 of a pixel. Here they are rounded in the whole picture's
+// coordinates, so that a triangle covers the same samples whatever tile it is drawn in. The quarter
+// of a step keeps positions away from ties.
 fn snapped(clip: vec4<f32>) -> vec4<f32> {
     let pixel = (clip.xy / clip.w * vec2(0.5, -0.5) + 0.5) * shade.size + shade.jitter;
     let local = floor(pixel * 256.0) / 256.0 - shade.viewport_origin + 0.25 / 256.0;
@@ -121,16 +125,18 @@ fn snapped(clip: vec4<f32>) -> vec4<f32> {
     return vec4(ndc * clip.w, clip.z, clip.w);
 }
 
-// Behind the near plane nothing can be divided; this is the same up to rounding.
+// The same without rounding, for vertices behind the near plane, where the division by w is not
+// possible.
 fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
     let scale = shade.size / shade.viewport_size;
     let shift = (shade.size + 2.0 * (shade.jitter - shade.viewport_origin)) / shade.viewport_size - 1.0;
     return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
 }
 
-// Ink of a line by the share of a pixel that it fills. Spread by area alone, the axons of a whole cell
-// fade from sight: 0.3 of a pixel in linear light is hardly seen on white. This rises with the width
-// and is 0.9 there, 0.5 at a twentieth. SelectedPatch by eye on the samples and on real cells of 1 to 3 mm.
+// Coverage of a line by the share of a pixel that it fills. With coverage equal to that share, the
+// axons of a whole cell nearly vanish: 0.3 of a pixel in linear light can hardly be seen on white.
+// This rises faster: it is 0.5 for a twentieth of a pixel and 0.9 for 0.3. Chosen by eye on the
+// samples and on real cells of 1 to 3 mm.
 fn ink_of(share: f32) -> f32 {
     let rest = 1.0 - sqrt(share);
     return 1.0 - rest * rest * rest;
@@ -141,9 +147,10 @@ fn state_of(instance: u32) -> u32 {
     return select(0u, states[min(instance, last)], instance <= last);
 }
 
-// Coverage by what is left out. Somata are known by their radius of 0; their patches around a neurite
-// have corners on its first ring, whose radius is the neurite's. So what is left out or kept wins over
-// the ring by far, up to its very edge.
+// Coverage of a vertex if somata or neurites are left out. Vertices of somata have radius 0, but
+// the soma's patches around a neurite have corners on its first ring, with the neurite's radius.
+// Coverage is interpolated between them: values far outside 0 to 1 move the border to the ring
+// itself.
 fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {
     if (state & WITHOUT_NEURITES) != 0u {
         return select(0.0, 1000.0, radius == 0.0);
@@ -165,9 +172,10 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     var coverage = 1.0;
     var thin = 0.0;
     if v.radius > 0.0 {
-        // What is thinner than a pixel is widened to one and made fainter.
+        // A tube thinner than a pixel is widened to a pixel and made fainter.
         let depth = max(-dot(v.axis, shade.backward), shade.near);
-        // As wide whatever the value: another frame of a recording changes colors and nothing else.
+        // The width does not depend on values, so that another frame of a recording changes colors
+        // only.
         let narrowest = shade.half_width * shade.slope * depth;
         thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
         if v.radius < narrowest {
@@ -213,9 +221,10 @@ fn vertex(
 struct Sample {
     // Linear, premultiplied by coverage through the mask.
     @location(0) color: vec4<f32>,
-    // Normal in the view, from -1..1 to 0..1, and bits of the mask of outlines in bytes.
+    // Normal in the view, mapped from -1..1 to 0..1, and a byte with the bits of the outlines'
+    // mask.
     @location(1) normal: vec4<f32>,
-    // µm along the sight: the bytes of an f32. OpenGL cannot load from depth textures, nor always
+    // Depth (µm), as the bytes of an f32: OpenGL cannot load from depth textures, and cannot always
     // draw to floating-point ones.
     @location(2) depth: vec4<f32>,
 #ifdef MULTISAMPLED
@@ -223,30 +232,30 @@ struct Sample {
 #endif
 }
 
-// A key light from the upper left, a weak fill from the lower right, a sky brighter than the ground.
-// Weights were chosen by eye on real cells so that a side that faces the viewer has the color of
-// the legend.
+// A key light from the upper left, a weak fill light from the lower right, and a sky brighter than
+// the ground. The weights were chosen by eye on real cells, so that a surface that faces the viewer
+// has the color of the legend.
 fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
     let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
     let sky = 0.5 + 0.5 * n.y;
     let diffuse = 0.85 * key * key + 0.18 * fill + mix(0.22, 0.52, sky);
-    // A broad sheen, so that black things have a shape.
+    // A broad highlight, so that the shape of black things shows.
     let half = normalize(shade.key + to_eye);
     let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
-    // Light from behind along the outline, that parts a thing from what lies behind it.
+    // Light from behind along the outline, which makes a thing stand out from what is behind it.
     let grazing = 1.0 - max(dot(n, to_eye), 0.0);
     let rim = 0.16 * grazing * grazing * grazing * mix(0.4, 1.0, sky);
     return albedo * diffuse + sheen + rim * (0.25 + albedo);
 }
 
-// How much of a wire is here: lines run where x, y or x + y is a whole number.
+// Coverage by the wireframe: lines run where x, y or x + y is a whole number.
 fn wireframe(grid: vec2<f32>) -> f32 {
     let g = vec3(grid, grid.x + grid.y);
     let width = max(fwidth(g), vec3(1e-6));
     let distance = abs(fract(g - 0.5) - 0.5) / width;
     let nearest = min(distance.x, min(distance.y, distance.z));
-    // Where lines would touch one another they fade to a tint.
+    // Where lines are so close that they would touch, they fade to a tint.
     let crowded = max(width.x, max(width.y, width.z)) * shade.wire * 4.0;
     return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
 }
@@ -256,7 +265,7 @@ fn bayer(p: vec2<u32>) -> f32 {
     return (f32((q.x ^ q.y) * 2u + q.y) + 0.5) / 4.0;
 }
 
-// As many samples as the coverage asks for, dithered over neighboring sub-pixels.
+// Mask of samples for a coverage, dithered over neighboring sub-pixels.
 fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
     let p = vec2<u32>(position.xy + shade.tile_origin + 4096.0);
     let count = u32(clamp(coverage, 0.0, 1.0) * f32(SAMPLES) + bayer(p));
@@ -265,20 +274,22 @@ fn mask_of(coverage: f32, position: vec4<f32>) -> u32 {
     return (bits | (bits >> SAMPLES)) & ((1u << SAMPLES) - 1u);
 }
 
-// How much of a sample is there: nothing of what is cut away.
+// Coverage after the cut: 0 behind the plane.
 fn left_by_clip(relative: vec3<f32>, coverage: f32) -> f32 {
     return select(coverage, 0.0, dot(shade.clip.xyz, relative) + shade.clip.w < 0.0);
 }
 
 @fragment
 fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
-    // Only a cut shows the inside; it looks as if it were filled.
+    // Back faces show only where the surface is cut: with the plane's normal it looks as if it were
+    // filled.
     let world = select(-shade.clip.xyz, normalize(in.normal), front);
     let axes = mat3x3(shade.right, shade.up, shade.backward);
     let left = left_by_clip(in.relative, in.coverage);
     let to_eye = -normalize(in.relative) * axes;
-    // A line shows no sides: it gets the light of a face towards the viewer, so its color is the
-    // legend's. Means over all sides were a third darker, and thin things looked gray.
+    // A thin line is lit like a surface that faces the viewer, so that it has the color of the
+    // legend. With the mean over all its sides it was a third darker, and thin neurites looked
+    // gray.
     let n = normalize(mix(world * axes, to_eye, in.thin));
     var color = in.color;
     if shade.wire > 0.0 {
@@ -298,7 +309,7 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
 #ifdef MULTISAMPLED
     out.mask = mask_of(left, in.position);
 #else
-    // With one sample a mask is of no use: what covers less than half is left out instead.
+    // A mask of one sample: it is drawn or not.
     if mask_of(left, in.position) == 0u { discard; }
 #endif
     return out;

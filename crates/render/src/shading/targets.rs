@@ -1,10 +1,10 @@
-//! Textures and buffers that a tile passes through.
+//! Textures and buffers that a tile is drawn into and finished in.
 
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::shading::shade::{COLOR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, NORMAL_FORMAT};
 
-/// Textures and buffers for one tile of the greatest size.
+/// Textures and buffers for tiles of one size.
 pub(crate) struct Targets {
     pub(crate) color: wgpu::TextureView,
     pub(crate) resolved: Option<wgpu::TextureView>,

@@ -1,6 +1,7 @@
-//! The seam between what makes vertices and what shades them.
+//! Vertex sources: what makes vertices, apart from what shades them.
 //!
-//! A **source** gives WGSL with one function, and draws by it:
+//! A **source** provides WGSL with the function `surface_vertex`, and issues the draws that call
+//! it:
 //!
 //! ```wgsl
 //! struct SurfaceVertex {
@@ -8,14 +9,15 @@
 //!     normal: vec3<f32>,    // unit, outwards
 //!     axis: vec3<f32>,      // point of the tube's center line, relative to the eye
 //!     radius: f32,          // µm; 0 on somata, which are never widened
-//!     color_key: u32,            // color key of the tracing point: what the color is looked up by
+//!     color_key: u32,       // of the tracing point: what the color is looked up by
 //!     instance: u32,
 //!     grid: vec2<f32>,      // for wireframes: lines run where x, y or x + y is a whole number
 //! }
 //! fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex
 //! ```
 //!
-//! The struct is in `surface_vertex.wgsl`, which both sides import. Bind group 0 is the source's, groups from 1 on are the shading's.
+//! The struct is in `surface_vertex.wgsl`, which both sides import. Bind group 0 is the source's,
+//! groups from 1 on are the shading's.
 
 pub(crate) mod adaptive;
 pub(crate) mod budgeted;
@@ -31,28 +33,28 @@ use crate::view::frame::Frame;
 /// Which shaders a source draws with: equal keys have equal shaders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SourceKey {
-    /// Name of the source, its own.
+    /// Name of the source, unlike that of any other.
     pub name: &'static str,
-    /// Which of its variants.
+    /// Number of the variant, for a source that has several.
     pub variant: u32,
 }
 
-/// Makes vertices on the GPU, and decides how many.
+/// Makes vertices on the GPU, and selects how many.
 pub trait VertexSource {
     /// Number of shaders that it draws with.
     fn shaders(&self) -> usize {
         1
     }
 
-    /// Which shaders it draws with: pipelines are kept by this.
+    /// Identifies its shaders: pipelines are cached by this key.
     fn key(&self) -> SourceKey;
 
-    /// Defines `surface_vertex` and what it needs, with bind group 0, for one of its shaders.
+    /// WGSL of one of its shaders: defines `surface_vertex` and bind group 0.
     fn shader(&self, shader: usize) -> ShaderParts;
 
-    /// Defines `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`, the first less than 8
-    /// where a frame has several rounds, beside what [`VertexSource::shader`] defines; none where what is
-    /// drawn cannot be picked.
+    /// WGSL that is added to [`VertexSource::shader`] for picking: defines
+    /// `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`. The first component is
+    /// less than 8 if a frame can have several rounds. None if the source does not support picking.
     fn id_shader(&self) -> Option<WgslFile> {
         None
     }
@@ -65,15 +67,16 @@ pub trait VertexSource {
         true
     }
 
-    /// What must be uploaded before a frame can be drawn. Gives the number of rounds that draw it:
-    /// one after the other, each chosen, then drawn.
+    /// Uploads what a frame needs. Returns the number of rounds: a frame is drawn in rounds, each
+    /// first selected, then drawn.
     ///
     /// # Errors
-    /// What the device cannot do.
+    /// The device reports an error.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError>;
 
-    /// The compute pass of a round. Nothing to do is still a pass: its times are read.
-    fn choose(
+    /// The compute pass of a round. An empty pass if there is nothing to do, since its timestamps
+    /// are read.
+    fn select(
         &self,
         _round: usize,
         encoder: &mut wgpu::CommandEncoder,
@@ -85,6 +88,7 @@ pub trait VertexSource {
         });
     }
 
-    /// Draws what was chosen for one of its shaders. The pipeline and the groups from 1 on are set.
+    /// Draws what was selected for one of its shaders. The pipeline and the groups from 1 on are
+    /// set.
     fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>);
 }

@@ -1,27 +1,30 @@
-//! Picking: the ids that sources draw, and what they stand for.
+//! Picking: the ids that sources draw, and what they mean.
 //!
-//! A source draws a [`PickId`] for each pixel; its resolver, taken when the frame was drawn, says later
-//! which instance and which part of its mesh that is.
+//! A source draws a [`PickId`] for each pixel. Its resolver, taken when the frame was drawn, later
+//! finds the instance and the place on its mesh that an id means.
 
-/// What is drawn at a pixel, as a [`PickResolver`](crate::pick::PickResolver) reads it; zeros where nothing is.
+/// What is drawn at a pixel, as a [`PickResolver`](crate::pick::PickResolver) reads it; zeros where
+/// nothing is.
 pub type PickId = [u32; 2];
 /// Width and height (pixels), and the ids of all pixels by row.
 pub type PickIds = ([u32; 2], Vec<PickId>);
 
-/// Bits of an id's first number for how a patch is drawn; those above are its batch's.
+/// Low bits of an id's first number: the corner of a flat patch, or [`FINE`]. The bits above are
+/// the index of the batch.
 pub(crate) const BATCH_SHIFT: u32 = 3;
-/// Bits of an id's second number for the point of a chunk of exploration; those above are the chunk's.
+/// Low bits of an id's second number, in exploration mode: the point of the chunk. The bits above
+/// are the index of the chunk.
 pub(crate) const POINT_BITS: u32 = 7;
-/// How a patch is drawn: refined. Less than that is the number of a corner of a flat one.
+/// In place of a corner's number: the patch is refined.
 pub(crate) const FINE: u32 = 4;
 
-/// What is seen at a pixel.
+/// What is drawn at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PickHit {
-    /// Place of the instance in the scene.
+    /// Index of the instance in the scene.
     pub instance: u32,
-    /// Where on it.
-    pub spot: PickTarget,
+    /// The place on the template's mesh.
+    pub target: PickTarget,
 }
 
 /// A place on a template's mesh.
@@ -29,7 +32,7 @@ pub struct PickHit {
 pub enum PickTarget {
     /// Index of the patch.
     Patch(u32),
-    /// Index of a vertex of the patch, one so small that it is drawn flat.
+    /// Index of a vertex: the nearest corner of a patch that is drawn flat.
     Vertex(u32),
     /// Index of a tracing point.
     Point(u32),

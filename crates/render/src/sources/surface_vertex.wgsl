@@ -1,4 +1,4 @@
-// What sources of vertices return and the shading takes. See mod.rs beside it.
+// What vertex sources return and the shading takes. See mod.rs beside it.
 
 struct SurfaceVertex {
     position: vec3<f32>,

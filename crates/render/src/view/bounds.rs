@@ -1,7 +1,7 @@
-//! Bounding spheres around a mesh, to tell which tiles of a picture are empty.
+//! Bounding spheres of a mesh, to find the empty tiles of a picture.
 //!
-//! An empty tile costs as much as a full one in passes over its sub-pixels: of a cell drawn 4096 pixels
-//! high, nine tiles of ten are empty.
+//! The passes over a tile's sub-pixels take as long for an empty tile as for a full one, and nine
+//! of ten tiles of a cell drawn 4096 pixels high are empty.
 
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Patch, Role};
@@ -10,9 +10,9 @@ use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
 use crate::view::frustum::shows;
 
-/// Patches in a sphere: neighbors, as patches follow the tree.
+/// Number of patches in a sphere. Patches that follow one another are neighbors in the tree.
 const TOGETHER: usize = 8;
-/// How far a surface may bulge beyond its corners, by their distance from the middle.
+/// How far a surface may bulge beyond its corners, as a multiple of their distance from the center.
 const BULGE: f32 = 1.5;
 
 /// Bounding spheres that hold the refined surface of a mesh, whatever its levels.
@@ -29,7 +29,8 @@ fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {
     let low = positions().fold(Vec3::MAX, Vec3::min);
     let high = positions().fold(Vec3::MIN, Vec3::max);
     let center = (low + high) / 2.0;
-    // A tube bulges by its radius, at its end too; a soma's radius is its own size.
+    // A tube bulges by up to its radius, also at its end. Somata are left out, since their radius
+    // is their whole size.
     let radius = corners()
         .map(|v| &mesh.tracing[mesh.vertices[v as usize].tracing as usize])
         .filter(|point| point.role != Role::Soma)
@@ -43,20 +44,21 @@ fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {
     )
 }
 
-/// Whether any sphere may show in a frame, lines widened to a pixel.
+/// Whether any sphere may be in view, with a margin since thin tubes are drawn a pixel wide.
 pub fn any_shows(spheres: &[BoundingSphere], frame: &Frame) -> bool {
     let planes = frame.frustum();
     let eye = frame.camera.eye();
     spheres.iter().any(|&(center, radius)| {
         let center = (center - eye).as_vec3();
-        // Half a pixel is at most four sub-pixels; twice that for the corners of the picture.
+        // Half a pixel is at most four sub-pixels; twice that, since sub-pixels are larger in the
+        // picture's corners.
         let pixels = 8.0 * (f64::from(center.length()) + radius) * frame.slope();
         shows(&planes, center, (radius + pixels) as f32)
     })
 }
 
-/// At most so many spheres that hold all of these: neighbors in the list should be
-/// neighbors in space.
+/// At most this many spheres that hold all of these. Spheres that follow one another should be
+/// close to one another.
 pub fn merged(spheres: &[BoundingSphere], most: usize) -> Vec<BoundingSphere> {
     if spheres.len() <= most {
         return spheres.to_vec();

@@ -1,7 +1,7 @@
-//! From where the scene is seen.
+//! Cameras.
 //!
-//! A circuit is 10⁴ µm wide and a membrane 10⁻² µm thick, so a camera is f64 and shaders get
-//! everything relative to the eye: near things keep all their digits.
+//! A circuit is 10⁴ µm wide and a membrane 10⁻² µm thick, so a camera has f64 coordinates, and
+//! shaders get all positions relative to the eye: near things keep their full precision.
 //!
 //! Depth is reversed and has no far end: 1 at the near plane, 0 infinitely far. With floating-point
 //! depth, precision is then the same share of the distance everywhere (Upchurch & Desbrun,
@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use crate::view::frustum::{BoundingSphere, shows};
 
-/// Why a camera sees nothing: `what: what to do`.
+/// Why a camera is not valid. Messages have the form `what: what to do`.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum CameraError {
     /// A coordinate or angle is no number, or is infinite.
@@ -22,20 +22,21 @@ pub enum CameraError {
     /// There is no viewing direction.
     #[error("the camera's eye and target coincide: move one of them")]
     NoDirection,
-    /// The picture could be turned any way.
+    /// The direction upwards in the picture is not defined.
     #[error("the camera's up points along its viewing direction: give another direction")]
     NoUp,
-    /// The angle of view is not usable.
+    /// The field of view is too small or too large.
     #[error("a field of view of {0}° is not between 0.01° and 170°: choose one in between")]
     FieldOfView(f64),
 }
 
-/// An eye in perspective.
+/// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     eye: DVec3,
     target: DVec3,
-    /// Rows: right, up and backward, unit and orthogonal.
+    /// Rotation from the world to the view. Its rows are the unit directions right, up and
+    /// backward.
     pub(crate) view_from_world: DMat3,
     fov: f64,
 }
@@ -45,7 +46,7 @@ impl Camera {
     /// vertical angle of view (radians).
     ///
     /// # Errors
-    /// Numbers that are not finite, or that leave the direction open.
+    /// A number is not finite, a direction is not defined, or the field of view is out of range.
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, fov: f64) -> Result<Self, CameraError> {
         for (value, name) in [(eye, "eye"), (target, "target"), (up, "up")] {
             if !value.is_finite() {
@@ -75,7 +76,7 @@ impl Camera {
         })
     }
 
-    /// The same camera, gone around its target by an angle (radians), to the right if positive.
+    /// The same camera, moved around its target by an angle (radians), to the right if positive.
     pub fn turned(&self, angle: f64) -> Self {
         let turn = DQuat::from_axis_angle(self.axes()[1], angle);
         let [right, up, backward] = self.axes().map(|axis| turn * axis);
@@ -91,7 +92,7 @@ impl Camera {
         self.eye
     }
 
-    /// What it looks at (µm).
+    /// The point that it looks at (µm).
     pub fn target(&self) -> DVec3 {
         self.target
     }
@@ -107,13 +108,13 @@ impl Camera {
         [world.x_axis, world.y_axis, world.z_axis]
     }
 
-    /// Depth (µm) of a point along the sight, negative behind the eye.
+    /// Depth (µm) of a point along the direction of view, negative behind the eye.
     pub fn depth(&self, point: DVec3) -> f64 {
         -(self.view_from_world * (point - self.eye)).z
     }
 
-    /// Nearest depth (µm) at which anything shows, for a scene of these spheres: a little before the
-    /// nearest, and never so near that digits are lost.
+    /// Depth (µm) of a near plane for a scene of these spheres: a little before the nearest sphere,
+    /// but not so near that precision is lost.
     pub fn near(&self, spheres: &[BoundingSphere]) -> f64 {
         let depths = spheres
             .iter()
@@ -122,8 +123,8 @@ impl Camera {
         (0.9 * near.min(far)).max(1e-5 * far)
     }
 
-    /// Depth (µm) of the nearest sphere in the picture, at least a thousandth of the target's: what
-    /// lies outside or behind the eye need not be fine. Nothing seen: the target's.
+    /// Depth (µm) of the nearest sphere in the picture, at least a thousandth of the target's; the
+    /// target's if there is none. Spheres outside the picture or behind the eye do not count.
     pub fn nearest_seen(&self, aspect: f64, spheres: &[BoundingSphere]) -> f64 {
         let target = self.depth(self.target).abs();
         let planes = self.frustum(aspect, 0.0);
@@ -155,8 +156,8 @@ impl Camera {
         Mat4::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose()
     }
 
-    /// Planes of the frustum relative to the eye, normals inwards, unit: left, right, bottom, top,
-    /// near. A point p is inside where n·p + d ≥ 0.
+    /// Planes of the frustum relative to the eye, with unit normals inwards: left, right, bottom,
+    /// top, near. A point p is inside if n·p + d ≥ 0 for all.
     pub fn frustum(&self, aspect: f64, near: f64) -> [Vec4; 5] {
         let [right, up, backward] = self.axes();
         let (tan_x, tan_y) = self.tangents(aspect, 0.0);
@@ -174,8 +175,8 @@ impl Camera {
         ]
     }
 
-    /// Where a point is seen in a picture of this size (pixels from the upper left corner); nowhere
-    /// if it lies behind the eye.
+    /// Position of a point in a picture of this size (pixels from the upper left corner); none if
+    /// it is behind the eye.
     pub fn pixel_of(&self, point: DVec3, size: [u32; 2]) -> Option<[f64; 2]> {
         let v = self.view_from_world * (point - self.eye);
         let [width, height] = size.map(f64::from);
@@ -188,7 +189,7 @@ impl Camera {
         2.0 * (self.fov / 2.0).tan() / height
     }
 
-    /// The view that levels are chosen from, in coordinates relative to `origin` (µm).
+    /// The view that levels are selected for, in coordinates relative to `origin` (µm).
     pub fn refine_view(&self, origin: DVec3, height: f64, near: f64) -> LodView {
         LodView {
             eye: (self.eye - origin).as_vec3(),

@@ -4,7 +4,8 @@ use glam::{DVec3, Mat4, Vec4};
 
 use crate::view::camera::Camera;
 
-/// A rectangle of a picture in sub-pixels, from its upper left corner. It may reach over the border.
+/// A rectangle of a picture in sub-pixels, from its upper left corner. It may reach over the
+/// border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tile {
     /// Left side.
@@ -19,22 +20,37 @@ pub struct Tile {
 
 /// A tile of a picture.
 ///
-/// A **sub-pixel** is a pixel of what is drawn; a pixel of the finished picture is the mean of one or
-/// more. Whatever decides how finely something is drawn asks the whole picture, not the tile, so
-/// that tiles fit together.
+/// A **sub-pixel** is a pixel of what is drawn; a pixel of the finished picture is the mean of one
+/// or more. Whatever decides how finely something is drawn takes the size of the whole picture, not
+/// that of the tile, so that tiles fit together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Depth (µm) of the near plane.
     pub near: f64,
     /// Width and height of the whole picture (sub-pixels).
     pub size: [u32; 2],
-    /// What is drawn of it.
+    /// The part of the picture that is drawn.
     pub tile: Tile,
 }
 
 impl Frame {
+    /// A picture of this size (sub-pixels) in one tile.
+    pub fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Self {
+        Self {
+            camera,
+            near,
+            size,
+            tile: Tile {
+                x: 0,
+                y: 0,
+                width: size[0],
+                height: size[1],
+            },
+        }
+    }
+
     /// Width by height of the whole picture.
     pub fn aspect(&self) -> f64 {
         f64::from(self.size[0]) / f64::from(self.size[1])

@@ -1,11 +1,11 @@
-//! Where a camera must stand to see all there is.
+//! Cameras that have a whole scene in the picture.
 
 use glam::DVec3;
 
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::BoundingSphere;
 
-/// Sides to look from. Cells stand in y; x points right, z towards the front.
+/// Sides to look from. Cells are upright along y; x points right, z towards the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Along −z.
@@ -21,15 +21,15 @@ pub enum Side {
     Top,
     /// Along +y.
     Bottom,
-    /// From the right, above and before.
+    /// From the right, above and the front.
     Iso,
 }
 
-/// Angle of view (radians) by default: little distortion, as through a long lens.
+/// Field of view (radians) by default: little distortion, as through a long lens.
 pub const DEFAULT_FOV: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 impl Side {
-    /// From the target to the eye, and upwards.
+    /// Directions from the target to the eye, and upwards.
     fn axes(self) -> (DVec3, DVec3) {
         match self {
             Self::Front => (DVec3::Z, DVec3::Y),
@@ -44,9 +44,9 @@ impl Side {
 }
 
 impl Camera {
-    /// The camera on this side that is as near as it can be while all spheres are in the picture and
-    /// `margin` of its width and height stays free on each side. `aspect` is width by height. No
-    /// sphere at all: from 100 µm away at the origin.
+    /// The nearest camera on this side that has all spheres in the picture, with a `margin` (share
+    /// of its width and height) free on each side. `aspect` is width by height. Without spheres it
+    /// looks at the origin from 100 µm away.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -60,7 +60,7 @@ impl Camera {
         Self::fit_within(side, fov, aspect, [margin; 4], spheres)
     }
 
-    /// As [`Camera::fit`], with a margin for each side: left, right, top, bottom.
+    /// Like [`Camera::fit`], with a margin for each side: left, right, top, bottom.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -78,8 +78,8 @@ impl Camera {
         }
         let (tan_x, tan_y) = start.tangents(aspect, 0.0);
         let [left, right, top, bottom] = margins.map(|m| 1.0 - 2.0 * m.clamp(0.0, 0.45));
-        // Where the eye must be along an axis, and how far back, for the planes on its low and high
-        // side to touch.
+        // Position of the eye along an axis, and its distance, at which the planes on both sides
+        // touch the spheres.
         let touch = |axis: usize, low_tan: f64, high_tan: f64| {
             let (mut low, mut high) = (f64::MAX, f64::MIN);
             for &(center, radius) in spheres {
@@ -96,7 +96,7 @@ impl Camera {
         let (x, depth_x) = touch(0, tan_x * left, tan_x * right);
         let (y, depth_y) = touch(1, tan_y * bottom, tan_y * top);
         let depth = depth_x.max(depth_y);
-        // Farther than an axis asks for, its things stay in the middle of what is free.
+        // If the other axis needs a larger distance, the spheres are centered between the margins.
         let x = x + (depth - depth_x) * tan_x * (left - right) / 2.0;
         let y = y + (depth - depth_y) * tan_y * (bottom - top) / 2.0;
         let nearest = spheres
@@ -104,7 +104,7 @@ impl Camera {
             .map(|&(center, radius)| (start.view_from_world * center).z + radius)
             .fold(f64::MIN, f64::max);
         let middle = start.view_from_world * mean(spheres);
-        // A scene without extent is seen from a little away; never from within the nearest sphere.
+        // At some distance also from a scene without extent, and never inside the nearest sphere.
         let depth = depth.max(nearest + 1e-3 * (nearest - middle.z).abs().max(1e-3));
         let eye = DVec3::new(x, y, depth);
         let target = DVec3::new(x, y, middle.z.min(nearest - 1e-6).min(depth - 1e-3));
@@ -112,8 +112,7 @@ impl Camera {
         Self::new(world * eye, world * target, up, fov)
     }
 
-    /// The camera that keeps all spheres in the picture while it goes around them by
-    /// [`Camera::turned`], as near as it can be.
+    /// The nearest camera that has all spheres in the picture at any angle of [`Camera::turned`].
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -180,7 +179,7 @@ mod tests {
             .collect()
     }
 
-    /// Farthest that a sphere reaches in the picture, from −1 to 1 in both directions.
+    /// Greatest coordinate that a sphere reaches in the picture, whose borders are at −1 and 1.
     fn reach(camera: &Camera, aspect: f64, spheres: &[BoundingSphere]) -> f64 {
         let planes = camera.frustum(aspect, 1e-3);
         let mut most = f64::MIN;

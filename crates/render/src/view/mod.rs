@@ -1,4 +1,4 @@
-//! From where one looks: cameras, frames and their tiles, what fits into a picture.
+//! Views: cameras, frames and their tiles, frustums, and cameras that fit a scene.
 
 pub(crate) mod bounds;
 pub(crate) mod camera;

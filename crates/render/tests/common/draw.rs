@@ -21,15 +21,15 @@ fn vertex(
     let v = surface_vertex(vertex_index, instance_index);
     return Varying(snapped(clip_from_relative * vec4<f32>(v.position, 1.0)), v.normal);
 }
-// Off the samples' rows and columns: software rasterisers disagree with themselves about samples that lie
-// on a vertex's row at a silhouette (lavapipe: 5 of 4,352,725 pixels, all there).
+// Off the samples' rows and columns: software rasterisers disagree with themselves about samples
+// that lie on a vertex's row at a silhouette (lavapipe: 5 of 4,352,725 pixels, all there).
 fn snapped(clip: vec4<f32>) -> vec4<f32> {
     let pixel = (clip.xy / clip.w * 0.5 + 0.5) * SIZE;
     let there = floor(pixel * 128.0) / 128.0 + 1.0 / 256.0;
     return vec4<f32>((there / SIZE * 2.0 - 1.0) * clip.w, clip.zw);
 }
-// A thousandth farther away: at a silhouette a front and a back face meet, and their depths may be equal
-// up to rounding.
+// A thousandth farther away: at a silhouette a front and a back face meet, and their depths may be
+// equal up to rounding.
 @vertex
 fn vertex_back(
     @builtin(vertex_index) vertex_index: u32,
@@ -218,7 +218,7 @@ impl Drawer {
         for round in 0..plan.batches.len().max(1) {
             let batch = plan.batches.get(round);
             if let Some(batch) = batch {
-                refiner.choose(scene, &mut encoder, Some(batch), None);
+                refiner.select(scene, &mut encoder, Some(batch), None);
             }
             let first = round == 0;
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -1,5 +1,5 @@
 //! Cells with every kind of patch.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test program uses some of it")]
 
 #[path = "../../../refine/tests/common/mod.rs"]
 pub(crate) mod trees;
@@ -65,8 +65,8 @@ pub(crate) fn cell(seed: u64, twigs: usize) -> CoarseMesh {
     mesh
 }
 
-/// A cell without sharp bends: neurites all around a soma that curve gently and fork once. No part of
-/// its surface is folded over at any level.
+/// A cell without sharp bends: neurites all around a soma that curve gently and fork once. No part
+/// of its surface is folded over at any level.
 pub(crate) fn smooth_cell(seed: u64) -> CoarseMesh {
     let mut random = Random(seed);
     let sample = SomaSample {

@@ -1,5 +1,5 @@
 //! A cell and its picture.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test program uses some of it")]
 
 use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};

@@ -120,7 +120,7 @@ pub(crate) fn picks(
     view: &ViewParams,
 ) -> Vec<Option<PickHit>> {
     renderer.identify(gpu, source, view).expect("drawn");
-    let resolver = source.namer();
+    let resolver = source.resolver();
     gpu.wait().expect("done");
     let (size, ids) = renderer.ids().expect("no fault").expect("arrived");
     assert_eq!(size, view.size);
@@ -128,5 +128,5 @@ pub(crate) fn picks(
         renderer.ids().expect("no fault").is_none(),
         "handed over once"
     );
-    ids.into_iter().map(|id| resolver.name(id)).collect()
+    ids.into_iter().map(|id| resolver.resolve(id)).collect()
 }

@@ -13,7 +13,7 @@ use super::methods::{adaptive, instances, median};
 use super::scenes::{self, BenchScene, Neuron};
 use crate::report::Reporter;
 
-/// Angle (radians) from frame to frame: what lists were chosen for does not stay.
+/// Angle (radians) from frame to frame, so that every frame is selected anew.
 const TURN: f64 = 0.01;
 /// Error (pixels) of the adaptive frame.
 const ERROR: f32 = 0.5;
@@ -27,9 +27,9 @@ struct Document<'a> {
     size: [u32; 2],
     budget: u32,
     distinct: usize,
-    /// Per neuron, on average.
+    /// Tracing points per neuron, on average.
     points: f64,
-    /// Milliseconds that it took to sketch and to upload all distinct neurons.
+    /// Milliseconds that it took to compute and to upload the proxies of all distinct neurons.
     sketch_ms: f64,
     upload_ms: f64,
     bytes_per_point: f64,
@@ -44,13 +44,13 @@ struct Row {
     points: u64,
     exploration: Times,
     triangles: u64,
-    /// That half a pixel everywhere would take.
+    /// Triangles that it would take to draw everything within half a pixel.
     wanted: u64,
     bytes: u64,
     adaptive: Option<Times>,
     adaptive_triangles: Option<u64>,
     adaptive_bytes: Option<u64>,
-    /// Waited for the adaptive frame, by that of exploration.
+    /// Time waited for the adaptive frame, divided by that for the frame of exploration mode.
     ratio: Option<f64>,
 }
 
@@ -106,7 +106,7 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
             points: points.map(|n| n as u64).sum(),
             exploration: times,
             triangles: stats.triangles,
-            wanted: stats.wanted,
+            wanted: stats.requested,
             bytes: source.bytes().iter().map(|(_, bytes)| bytes).sum(),
             adaptive: None,
             adaptive_triangles: None,
@@ -122,7 +122,7 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
     reporter.document(&document)
 }
 
-/// The same frames, refined adaptively.
+/// Times the same frames, refined adaptively.
 fn compare(
     row: &mut Row,
     gpu: &Gpu,
@@ -144,7 +144,7 @@ fn compare(
     Ok(())
 }
 
-/// Frames from a camera that turns, after one that is not counted.
+/// Times frames of a turning camera, after one that is not counted.
 fn times(
     gpu: &Gpu,
     source: &mut dyn VertexSource,

@@ -24,11 +24,11 @@ pub(crate) enum Method {
     Prerefined,
     /// On the fly, one level everywhere.
     Homogeneous,
-    /// On the fly, the level falling with the distance.
+    /// On the fly, with a level that falls with the distance.
     Adaptive,
     /// On the fly, by the error in pixels.
     PixelError,
-    /// Refined beforehand with the very levels of the one before.
+    /// Refined beforehand, with the same levels as by the error in pixels.
     PrerefinedPixelError,
 }
 
@@ -37,16 +37,16 @@ pub(crate) enum Method {
 pub(crate) struct Row {
     pub(crate) neurons: u32,
     pub(crate) method: Method,
-    /// Of the three ways that have one.
+    /// Level, for the three methods that have one.
     pub(crate) level: Option<u32>,
-    /// Median frame: the GPU's time where it can tell, else that waited (ms).
+    /// Median time (ms) of a frame: the GPU's if it is known, else the time waited.
     pub(crate) ms: f64,
-    /// Median time waited (ms), what the processor does included.
+    /// Median time waited (ms), including the CPU's work.
     pub(crate) waited_ms: f64,
-    /// Median time of choosing levels (ms), where the GPU can tell.
+    /// Median time (ms) of the selection of levels, if the GPU supports timestamps.
     pub(crate) choose_ms: Option<f64>,
     pub(crate) triangles: u64,
-    /// On the device, but for the picture.
+    /// Bytes on the device, without those of the picture.
     pub(crate) bytes: u64,
 }
 
@@ -94,7 +94,7 @@ impl MethodTimer<'_> {
         )))
     }
 
-    /// Stored surfaces with the levels that the error in pixels asks for, each neuron for itself.
+    /// Stored surfaces with levels by the error in pixels, refined for each neuron's own placement.
     pub(crate) fn prerefined_by_error(&self, scene: &BenchScene) -> anyhow::Result<Row> {
         let moved: Vec<CoarseMesh> = scene
             .placements
@@ -140,13 +140,13 @@ impl MethodTimer<'_> {
         ))
     }
 
-    /// What draws a scene on the fly.
+    /// The source that refines a scene as it is drawn.
     pub(crate) fn on_the_fly(&self, scene: &BenchScene) -> anyhow::Result<Adaptive> {
         adaptive(self.gpu, self.neurons, scene, AdaptiveSettings::default())
     }
 
-    /// Times a way of settings on the fly. `count`: whether triangles are counted, which reads lists
-    /// back.
+    /// Times a scene that is refined as it is drawn. `count`: whether triangles are counted, for
+    /// which lists are read back.
     pub(crate) fn refined(
         &self,
         source: &mut Adaptive,
@@ -177,7 +177,7 @@ impl MethodTimer<'_> {
         Ok(row(scene, method, level, &times, triangles, bytes))
     }
 
-    /// Times of some frames, after one that is not counted; of one only where it takes long.
+    /// Times some frames, after one that is not counted; only one if it takes long.
     fn times(
         &self,
         source: &mut dyn VertexSource,
@@ -241,7 +241,7 @@ impl Neuron {
         }
     }
 
-    /// Triangles of a level.
+    /// Number of triangles at a level.
     pub(crate) fn triangles(&self, level: u32) -> usize {
         let lod = LodCriterion::Homogeneous(level);
         Refinement::new(&self.mesh, lod, &RefineOptions::default()).triangle_count()
@@ -256,7 +256,7 @@ fn row(
     triangles: u64,
     bytes: u64,
 ) -> Row {
-    let choose = times
+    let selection = times
         .iter()
         .filter_map(|time| Some(time.gpu_ms?[0]))
         .collect();
@@ -266,13 +266,13 @@ fn row(
         level,
         ms: median(times.iter().map(FrameTime::best_ms).collect()).unwrap_or(0.0),
         waited_ms: median(times.iter().map(|t| t.waited_ms).collect()).unwrap_or(0.0),
-        choose_ms: median(choose),
+        choose_ms: median(selection),
         triangles,
         bytes,
     }
 }
 
-/// The middle one.
+/// The median; none of no values.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()

@@ -1,8 +1,9 @@
 //! `neurotess bench`: benchmarks that anyone can repeat.
 //!
-//! `refinement` repeats the experiment of García-Cantero et al. (Frontiers in Neuroinformatics 2017,
-//! figure 15): scenes of several sizes drawn with rising levels in three ways, and beyond it by the
-//! error in pixels and with thousands of neurons. `exploration` draws such scenes within a budget.
+//! `refinement` repeats the experiment of García-Cantero et al. (Frontiers in Neuroinformatics
+//! 2017, figure 15): scenes of several sizes drawn with rising levels in three ways, and beyond it
+//! by the error in pixels and with thousands of neurons. `exploration` draws such scenes within a
+//! budget.
 
 mod args;
 mod exploration;
@@ -33,11 +34,11 @@ struct Document<'a> {
     software: bool,
     size: [u32; 2],
     distinct: usize,
-    /// Per neuron, on average.
+    /// Tracing points per neuron, on average.
     tracing_points: f64,
     patches: f64,
     pixels: f64,
-    /// Whether times are the GPU's own or those waited.
+    /// Whether times are the GPU's or times waited.
     gpu_times: bool,
     rows: Vec<Row>,
     growth: Vec<Row>,
@@ -119,7 +120,7 @@ fn refinement(args: &RefinementArgs, reporter: &Reporter) -> anyhow::Result<()> 
 const JSON: &str = "refinement.json";
 const SVG: &str = "refinement.svg";
 
-/// All scenes at all levels, in all ways.
+/// Times all scenes at all levels by all methods.
 fn levels(timer: &MethodTimer<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     let args = timer.args;
@@ -153,7 +154,7 @@ fn levels(timer: &MethodTimer<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Ro
     Ok(rows)
 }
 
-/// Adaptive refinement in ever larger scenes.
+/// Times adaptive refinement in ever larger scenes.
 fn growth(timer: &MethodTimer<'_>, reporter: &Reporter) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for &count in &timer.args.grow {

@@ -8,7 +8,7 @@ use super::methods::{Method, Row};
 /// Size of a panel (pixels).
 const PANEL: (u32, u32) = (360, 300);
 
-/// Curves, their names and colors: told apart by the color-blind.
+/// Curves with their names and colors, which the color-blind can distinguish.
 const CURVES: [(Method, &str, RGBColor); 3] = [
     (
         Method::Prerefined,

@@ -1,19 +1,19 @@
-//! The neurons that are drawn, and from where.
+//! The scenes that are drawn: neurons, their placements and the camera.
 
 use glam::DVec3;
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
 use neurotess::render::bounds::bounds;
 use neurotess::render::color::{ColorTable, Palette, category};
-use neurotess::render::{BoundingSphere, Camera, Frame, Side, Tile};
+use neurotess::render::{BoundingSphere, Camera, Frame, Side};
 use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 
-/// Distance (µm) of neighbors: dendrites meet.
+/// Distance (µm) of neighboring neurons: so near that their dendrites meet.
 const APART: f64 = 120.0;
-/// Angle of view (radians): wide, so that some neurons are near and others far.
+/// Field of view (radians): wide, so that some neurons are near and others far.
 const FOV: f64 = 60.0 * std::f64::consts::PI / 180.0;
-/// Types that colors are told by; the others look like the last.
+/// Number of types with a color of their own; others have the color of the last.
 const TYPES: i32 = 8;
 
 /// A neuron and its colors.
@@ -21,7 +21,7 @@ pub(crate) struct Neuron {
     pub(crate) mesh: CoarseMesh,
     pub(crate) color_keys: Vec<u32>,
     spheres: Vec<BoundingSphere>,
-    /// What moves its soma to the origin (µm).
+    /// Translation (µm) that moves its soma to the origin.
     to_origin: DVec3,
 }
 
@@ -71,7 +71,7 @@ pub(crate) fn colors() -> ColorTable {
 
 /// A scene: neurons on a square grid in the plane, seen as a whole.
 pub(crate) struct BenchScene {
-    /// Neuron, and what is added to its coordinates (µm).
+    /// Index of the neuron, and the translation (µm) added to its coordinates.
     pub(crate) placements: Vec<(usize, DVec3)>,
     pub(crate) frame: Frame,
     /// Distance (µm) from the eye to the farthest neuron.
@@ -100,17 +100,7 @@ impl BenchScene {
         let camera = Camera::fit(Side::Iso, FOV, aspect, 0.02, &spheres)?;
         let distance = |&(center, radius): &BoundingSphere| center.distance(camera.eye()) + radius;
         Ok(Self {
-            frame: Frame {
-                camera,
-                near: camera.near(&spheres),
-                size,
-                tile: Tile {
-                    x: 0,
-                    y: 0,
-                    width: size[0],
-                    height: size[1],
-                },
-            },
+            frame: Frame::whole(camera, camera.near(&spheres), size),
             far: spheres.iter().map(distance).fold(0.0, f64::max),
             placements,
         })

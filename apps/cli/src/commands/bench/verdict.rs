@@ -1,4 +1,5 @@
-//! What the figures say: ratios within the run, beside the paper's, and which bars hold.
+//! Evaluates the figures: ratios within the run beside those of the paper, and which targets they
+//! meet.
 
 use serde::Serialize;
 
@@ -9,13 +10,13 @@ use super::methods::{Method, Row};
 pub(crate) struct Ratio {
     pub(crate) what: String,
     pub(crate) measured: f64,
-    /// What García-Cantero et al. (2017) measured, on hardware of their time.
+    /// The ratio that García-Cantero et al. (2017) measured, on hardware of their time.
     pub(crate) paper: Option<f64>,
-    /// Least or most that it should be, and whether it is.
+    /// The target, and whether it is met.
     pub(crate) bar: Option<Bar>,
 }
 
-/// What a ratio should be.
+/// The target of a ratio.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Bar {
     pub(crate) least: Option<f64>,
@@ -23,7 +24,7 @@ pub(crate) struct Bar {
     pub(crate) held: bool,
 }
 
-/// All ratios that the rows allow.
+/// All ratios that can be computed from the rows.
 pub(crate) fn ratios(rows: &[Row]) -> Vec<Ratio> {
     let Some(neurons) = rows.iter().map(|row| row.neurons).max() else {
         return Vec::new();

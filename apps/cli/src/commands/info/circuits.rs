@@ -13,14 +13,14 @@ use crate::report::{Entry, Failed, Failure, Reporter, count};
 pub(crate) struct Description {
     file: String,
     format: &'static str,
-    /// All nodes.
+    /// Number of nodes.
     n_neurons: usize,
-    /// Those with a place and a morphology that is there.
+    /// Number of nodes that have a position and a morphology file that exists.
     n_shown: usize,
-    /// Distinct morphology files that are there.
+    /// Number of distinct morphology files that exist.
     n_morphologies: usize,
     populations: Vec<PopulationInfo>,
-    /// Around the somata.
+    /// Bounding box of the somata.
     bbox: Option<Bounds>,
     edges: Vec<EdgesInfo>,
     node_sets: Vec<String>,
@@ -86,7 +86,7 @@ struct CircuitWarning {
     count: u64,
 }
 
-/// Describes circuits one after the other; tells people at once.
+/// Describes circuits one after the other, and prints each description at once.
 pub(crate) fn describe_all(
     circuits: &[PathBuf],
     reporter: &Reporter,
@@ -223,7 +223,7 @@ fn report_infos(name: &str, path: &std::path::Path, recording: &RecordingFile) -
     }
 }
 
-/// A circuit for people.
+/// The description of a circuit as text.
 fn table(info: &Description) -> String {
     let mut lines = vec![format!("{} ({})", info.file, info.format)];
     let mut line = |name: &str, value: String| lines.push(format!("  {name:<12} {value}"));

@@ -1,4 +1,4 @@
-//! `neurotess info`: what is in a morphology; circuits.rs is for circuits.
+//! `neurotess info`: describes morphologies; circuits.rs describes circuits.
 
 mod circuits;
 mod text;
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
     reporter.document(&(Chained(results, described)))
 }
 
-/// One list of two.
+/// Two lists that are written as one.
 struct Chained<A, B>(Vec<A>, Vec<B>);
 
 impl<A: Serialize, B: Serialize> Serialize for Chained<A, B> {

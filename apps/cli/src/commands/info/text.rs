@@ -1,9 +1,9 @@
-//! Cells for people.
+//! Descriptions of cells as text.
 
 use super::Info;
 use crate::report::count;
 
-/// One cell for people.
+/// The description of a single cell.
 pub(super) fn table(info: &Info) -> String {
     let m = &info.measures;
     let mut lines = vec![format!("{} ({})", info.file, info.format)];
@@ -72,7 +72,7 @@ pub(super) fn header() -> String {
     )
 }
 
-/// One of many cells for people.
+/// A line for one of several cells.
 pub(super) fn row(info: &Info) -> String {
     let m = &info.measures;
     format!(

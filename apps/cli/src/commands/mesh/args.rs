@@ -27,8 +27,8 @@ use crate::options::types::Types;
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
 and radius (µm).")]
 pub(crate) struct MeshArgs {
-    /// Morphology files, folders (searched recursively) or globs, - for standard input; or one circuit,
-    /// whose cells are written in its coordinates
+    /// Morphology files, folders (searched recursively) or globs, - for standard input; or one
+    /// circuit, whose cells are written in its coordinates
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -86,8 +86,8 @@ pub(crate) struct MeshArgs {
     /// Do every N-th input only, from the I-th on, 1 ≤ I ≤ N
     #[arg(long, value_name = "I/N", help_heading = "Many inputs")]
     pub(crate) shard: Option<Shard>,
-    /// Skip inputs whose output is there, newer than they are and made with the same options; outputs of
-    /// other options are made again. Several runs may share a folder
+    /// Skip inputs whose output is there, newer than they are and made with the same options;
+    /// outputs of other options are made again. Several runs may share a folder
     #[arg(long, help_heading = "Many inputs")]
     pub(crate) resume: bool,
     /// Append one JSON line per cell to this file as it finishes

@@ -24,7 +24,7 @@ use crate::report::{Failure, Progress, Reporter};
 pub(crate) struct CellReport {
     pub(crate) file: String,
     pub(crate) out: String,
-    /// Of a circuit: which cell this is.
+    /// The cell's node, if it is of a circuit.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub(crate) node: Option<NodeName>,
     pub(crate) vertices: usize,
@@ -33,10 +33,10 @@ pub(crate) struct CellReport {
     pub(crate) closed: bool,
     pub(crate) euler: i64,
     pub(crate) components: usize,
-    /// µm³, as written; none: not measured.
+    /// Volume (µm³) of the written mesh; none if it is not measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) volume: Option<f64>,
-    /// µm², likewise.
+    /// Area (µm²) of the written mesh; none if it is not measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
     pub(crate) soma_volume: f64,
@@ -44,17 +44,17 @@ pub(crate) struct CellReport {
     pub(crate) warnings: Vec<CellWarning>,
 }
 
-/// Which cell of a circuit.
+/// A node of a circuit.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct NodeName {
     pub(crate) population: String,
     pub(crate) node_id: u64,
 }
 
-/// Where the time went.
+/// Seconds by stage.
 ///
-/// Refining and writing are one streamed pass over all threads: `refine` is the planning and what
-/// the blocks took, divided by the threads; `write` is the rest of the pass.
+/// Refining and writing are one streamed pass over all threads: `refine` is the planning and the
+/// time of the blocks, divided by the number of threads; `write` is the rest of the pass.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
     pub(crate) read: f64,
@@ -66,7 +66,7 @@ pub(crate) struct Seconds {
     pub(crate) measure: f64,
 }
 
-/// Something odd in the file (with a line), or mended in the mesh (with a sample).
+/// A warning about the file (with a line), or about a repair of the mesh (with a sample).
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CellWarning {
     pub(crate) line: Option<u64>,
@@ -82,7 +82,7 @@ pub(crate) struct Prepared {
     generated: Generated,
     read: Vec<formats::Warning>,
     seconds: Seconds,
-    /// Of the tracing, in its own coordinates (µm).
+    /// Center of the soma in the tracing's coordinates (µm).
     pub(crate) soma_center: DVec3,
 }
 
@@ -93,7 +93,7 @@ impl Prepared {
     }
 }
 
-/// Makes the mesh of one cell and writes it, into a file that has no name yet.
+/// Generates the mesh of one cell and writes it into a temporary file.
 pub(super) fn mesh(
     job: &Job,
     options: &MeshOptions,
@@ -104,7 +104,7 @@ pub(super) fn mesh(
     finish(&prepared, options, &job.out, output, None, watchers)
 }
 
-/// What hears of the work.
+/// What is informed while a cell is written.
 #[derive(Clone, Copy)]
 pub(super) struct Watchers<'t> {
     pub(super) reporter: &'t Reporter,
@@ -144,7 +144,7 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     })
 }
 
-/// Refines a cell and writes it, perhaps somewhere else than it was traced.
+/// Refines a cell and writes it, perhaps at a placement.
 pub(super) fn finish(
     prepared: &Prepared,
     options: &MeshOptions,
@@ -175,12 +175,12 @@ pub(super) fn finish(
         triangles: written.triangles,
         quads: written.quads,
         closed: topology.closed,
-        // Refinement divides faces and edges; the shape stays.
+        // Refinement does not change the topology.
         euler: topology.euler,
         components: topology.components,
         volume: measured.map(|(volume, _)| volume),
         area: measured.map(|(_, area)| area),
-        // An empty sum is −0.
+        // Adding 0 turns −0, the sum of no somata, into 0.
         soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
         seconds,
         warnings: warnings(&prepared.read, generated),
@@ -188,7 +188,7 @@ pub(super) fn finish(
     Ok((cell, output))
 }
 
-/// What a file holds.
+/// What was written into a file.
 struct Written {
     vertices: usize,
     triangles: usize,
@@ -241,7 +241,7 @@ fn write(
     })
 }
 
-/// Volume and area of what was written.
+/// Volume and area of the written mesh.
 fn measure(mesh: &CoarseMesh, options: &MeshOptions) -> (f64, f64) {
     match options.lod {
         Some(lod) => Refinement::new(mesh, lod, &options.refine).volume_and_area(),

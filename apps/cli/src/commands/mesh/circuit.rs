@@ -1,5 +1,5 @@
-//! `neurotess mesh CIRCUIT`: each cell in the circuit's coordinates, in a file of its own, or all in one GLB
-//! (circuit_glb.rs).
+//! `neurotess mesh CIRCUIT`: each cell in the circuit's coordinates, in a file of its own, or all
+//! in one GLB (circuit_glb.rs).
 //!
 //! ```text
 //! circuit ─select─▶ instances ─by morphology─▶ workers: prepare once ─▶ finish for each instance
@@ -70,7 +70,7 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
         return circuit_glb::run(args, &circuit, &instances, reporter);
     }
     let measure = reporter.json() || args.log.is_some();
-    // Many inputs, whatever their names: OUT is a folder.
+    // No single input file, so that OUT is a folder.
     let options = MeshOptions::new(args, &Inputs::default(), measure)?;
     let mut instance_jobs = plan(&circuit, &instances, folder, options.format.extension());
     if let Some(shard) = args.shard {
@@ -105,7 +105,7 @@ fn plan(
     let mut taken: BTreeSet<PathBuf> = BTreeSet::new();
     let job = |instance: &Instance| {
         let population = &circuit.populations[instance.node.population as usize].name;
-        // A population's name is the file's own and may hold anything.
+        // A population's name comes from the file and may contain any characters.
         let plain: String = population
             .chars()
             .map(|c| {
@@ -162,7 +162,7 @@ fn mesh_all(
             .push((index, instance_job));
     }
     let groups: Vec<(u32, Vec<(usize, InstanceJob)>)> = of_template.into_iter().collect();
-    // The morphologies of most cells first.
+    // Morphologies with the most cells first, so that no thread starts a long one last.
     let mut order: Vec<usize> = (0..groups.len()).collect();
     order.sort_by_key(|&g| (std::cmp::Reverse(groups[g].1.len()), g));
     let results = workers::run(&groups, &order, reporter.threads(), |(template, cells)| {

@@ -1,4 +1,5 @@
-//! `neurotess mesh CIRCUIT -o FILE.glb`: one file, in which each morphology is once and each cell a node.
+//! `neurotess mesh CIRCUIT -o FILE.glb`: one file, in which each morphology is once and each cell a
+//! node.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -21,23 +22,23 @@ use crate::report::{Progress, Reporter, bug, count, usage};
 struct GlbReport {
     file: String,
     out: String,
-    /// Nodes, and cells left out because their morphology failed.
+    /// Number of nodes, and of cells left out because their morphology failed.
     cells: usize,
     failed: usize,
     morphologies: usize,
-    /// Of all morphologies, each once.
+    /// Number of vertices of all morphologies, each counted once.
     vertices: usize,
     triangles: usize,
     seconds: f64,
 }
 
-/// Whether OUT is one file: it has a name that ends in .glb.
+/// Whether OUT is one file, with a name that ends in .glb.
 pub(super) fn is_one_file(args: &MeshArgs) -> bool {
     let out = &args.out.out;
     !out.is_dir() && Format::from_extension(out).is_ok_and(|format| format == Format::Glb)
 }
 
-/// Writes the chosen cells of a circuit.
+/// Writes the selected cells of a circuit.
 pub(super) fn run(
     args: &MeshArgs,
     circuit: &Circuit,
@@ -109,7 +110,7 @@ pub(super) fn run(
     reporter.document(&[report])
 }
 
-/// Reads and generates each morphology once, on all cores; tells of those that fail.
+/// Reads and generates each morphology once, on all cores; reports those that fail.
 fn prepare_all(
     circuit: &Circuit,
     instances: &[Instance],

@@ -11,7 +11,7 @@ use crate::report::Failed;
 pub(super) enum Entry {
     Done(Box<CellReport>),
     Failed(Failed),
-    /// Its output was there and newer.
+    /// Its output exists and is newer.
     Skipped {
         file: String,
         out: String,
@@ -27,7 +27,7 @@ pub(super) fn skipped(job: &Job) -> Entry {
     }
 }
 
-/// Entries in the order of the inputs, the skipped ones in their places.
+/// Entries in the order of the inputs, with those that were skipped.
 pub(super) fn in_order(jobs: &[Job], entries: Vec<Entry>, skipped: &[Job]) -> Vec<Entry> {
     let mut entries = entries.into_iter();
     let mut skipped = skipped.iter().peekable();

@@ -1,4 +1,4 @@
-//! Messages for people: a line per cell, warnings, the summary.
+//! Messages: a line per cell, warnings, the summary.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -8,7 +8,8 @@ use super::entry::Entry;
 use crate::io::record::OutputState;
 use crate::report::{Reporter, count, place};
 
-/// What is made again although it is there, and what stays although little is known of it.
+/// Reports outputs that exist and are made again, and outputs that are kept although nothing is
+/// known of their options.
 pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
     let number = |state: OutputState| states.iter().filter(|&&s| s == state).count();
     let note = |state, what: &str| {
@@ -28,7 +29,7 @@ pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
     );
 }
 
-/// Tells of a cell as it finishes.
+/// Reports a cell when it is finished.
 pub(super) fn tell(entry: &Entry, one: bool, reporter: &Reporter) {
     match entry {
         Entry::Done(cell) => {
@@ -42,7 +43,7 @@ pub(super) fn tell(entry: &Entry, one: bool, reporter: &Reporter) {
     }
 }
 
-/// One cell for people.
+/// The line of a cell.
 pub(super) fn line(cell: &CellReport) -> String {
     let s = &cell.seconds;
     format!(
@@ -65,7 +66,7 @@ pub(super) fn warn(cell: &CellReport, reporter: &Reporter) {
     }
 }
 
-/// The last words on standard error.
+/// Prints the summary to standard error.
 pub(super) fn summarize(entries: &[Entry], skipped: usize, clock: Instant, reporter: &Reporter) {
     let mut done = 0;
     let mut causes: BTreeMap<&str, usize> = BTreeMap::new();

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
         reporter,
         log: args.log.as_deref().map(Log::open).transpose()?,
         resume: args.resume,
-        // One file with a name of its own leaves nothing beside it unless it is to be resumed.
+        // For a single file there is no record beside it, unless --resume needs one.
         records: args.resume || targets::is_folder(out, &inputs),
     };
     let (skipped, to_do) = run.sort_out(jobs.clone(), &record, |job| job);
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     reporter.document(&in_order(&jobs, entries, &skipped))
 }
 
-/// Where it is written down what files were made of.
+/// The folder of the record of what files were made from.
 fn record_folder(out: &Path, inputs: &Inputs) -> PathBuf {
     match targets::is_folder(out, inputs) {
         true => out.to_path_buf(),

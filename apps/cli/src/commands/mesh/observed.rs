@@ -1,4 +1,4 @@
-//! A surface that notes how long its blocks take to make, and ticks the progress.
+//! A surface that measures how long its blocks take, and counts them for the progress bar.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -15,7 +15,7 @@ pub(crate) struct Observed<'a> {
 }
 
 impl<'a> Observed<'a> {
-    /// Watches a surface; the progress, if there is one, counts its blocks.
+    /// Measures a surface; the progress bar, if there is one, counts its blocks.
     pub(crate) fn new(surface: &'a dyn Surface, progress: Option<&'a Progress<'a>>) -> Self {
         if let Some(progress) = progress {
             progress.expect(surface.vertex_blocks() + surface.face_blocks());
@@ -27,7 +27,7 @@ impl<'a> Observed<'a> {
         }
     }
 
-    /// Seconds that blocks took, of all threads together.
+    /// Seconds that blocks took, summed over all threads.
     pub(crate) fn seconds(&self) -> f64 {
         self.nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9
     }

@@ -15,18 +15,18 @@ use crate::report::usage;
 pub(crate) struct MeshOptions {
     pub(crate) strict: bool,
     pub(crate) generate: GenerateOptions,
-    /// None: the coarse quads themselves.
+    /// Levels; none: the coarse quads themselves.
     pub(crate) lod: Option<LodCriterion>,
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
     pub(crate) force: bool,
-    /// Whether volume and area are measured: they cost a pass over the surface.
+    /// Whether volume and area are measured, which takes a pass over the surface.
     pub(crate) measure: bool,
 }
 
 impl MeshOptions {
-    /// All options that a file depends on, as text. It is hashed in records of earlier versions too: the same
-    /// options must give the same text for ever.
+    /// All options that a file depends on, as text. Records of earlier versions contain its hash,
+    /// so the same options must always give the same text.
     pub(crate) fn fingerprint(&self) -> String {
         let Self {
             generate,
@@ -45,7 +45,7 @@ impl MeshOptions {
         format!("{lod} {generate:?} {refine:?} {format:?}")
     }
 
-    /// Checks what the options mean together.
+    /// Checks the options together and translates them.
     pub(crate) fn new(args: &MeshArgs, inputs: &Inputs, measure: bool) -> anyhow::Result<Self> {
         let format = format(args, inputs)?;
         if args.quads && !format.has_quads() {
@@ -145,7 +145,7 @@ mod tests {
 
     use super::*;
 
-    /// What earlier versions have hashed into records: outputs of theirs are recognized.
+    /// Texts that earlier versions hashed into records, so that their outputs are recognized.
     #[test]
     fn fingerprints_stay_for_ever() {
         let mut options = MeshOptions {

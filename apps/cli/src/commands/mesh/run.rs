@@ -1,4 +1,4 @@
-//! What all cells of a run have in common: which are skipped, claimed, recorded and logged.
+//! A run over many cells: which of them are skipped, claimed, recorded and logged.
 
 use super::cell::CellReport;
 use super::entry::{Entry, skipped};
@@ -17,7 +17,7 @@ pub(super) struct MeshRun<'a> {
     pub(super) reporter: &'a Reporter,
     pub(super) log: Option<Log>,
     pub(super) resume: bool,
-    /// Whether it is written down what files were made of.
+    /// Whether it is recorded what files were made from.
     pub(super) records: bool,
 }
 
@@ -30,7 +30,7 @@ impl MeshRun<'_> {
         }
     }
 
-    /// What stays and what is to be made; tells why.
+    /// Finds out which outputs are kept and which are to be made, and reports why.
     pub(super) fn sort_out<T>(
         &self,
         all: Vec<T>,
@@ -53,7 +53,7 @@ impl MeshRun<'_> {
         (skipped, to_do)
     }
 
-    /// An output that stays. A line that the log lacks, say since it is a new one, is added.
+    /// Handles an output that is kept: adds its line to the log if it is missing there.
     fn left(&self, job: &Job) {
         let known = |log: &Log| log.knows(&job.out.display().to_string());
         if self.log.as_ref().is_some_and(|log| !known(log)) {
@@ -61,7 +61,7 @@ impl MeshRun<'_> {
         }
     }
 
-    /// Claims a cell's file, makes it, writes down what it is and gives it its name.
+    /// Claims a cell's file, writes it, records what it was made from and gives it its name.
     pub(super) fn cell(
         &self,
         job: &Job,
@@ -102,7 +102,7 @@ impl MeshRun<'_> {
         self.failed(job, failure)
     }
 
-    /// A cell that failed, in the log too.
+    /// The entry of a cell that failed; also logs it.
     pub(super) fn failed(&self, job: &Job, failure: Failure) -> Entry {
         let entry = Entry::Failed(Failed {
             file: job.input.display().to_string(),
@@ -112,7 +112,7 @@ impl MeshRun<'_> {
         entry
     }
 
-    /// A cell over which the program stumbled.
+    /// The entry of a cell at which the program panicked; also logs it.
     pub(super) fn panicked(&self, job: &Job, panic: &str) -> Entry {
         self.failed(job, bug(&job.input.display().to_string(), panic))
     }

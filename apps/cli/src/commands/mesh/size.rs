@@ -6,13 +6,13 @@ use neurotess::mesh::{Format, Surface};
 
 use crate::report::{Failure, Reporter};
 
-/// From so many bytes on it is said beforehand.
+/// Size (bytes) from which on it is reported beforehand.
 const LARGE: u64 = 1 << 30;
 
-/// Says that a file will be large.
+/// Reports that a file will be large.
 ///
 /// # Errors
-/// The disk has less room than it needs.
+/// The disk has too little room for it.
 pub(super) fn tell(
     surface: &dyn Surface,
     format: Format,
@@ -41,7 +41,7 @@ pub(super) fn tell(
     Ok(())
 }
 
-/// Bytes of a file, to within some tenths: numbers of text have as many digits as they need.
+/// Estimates the bytes of a file, within some tenths, since numbers in text have different lengths.
 pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
     let [vertices, triangles, quads] = [
         surface.vertex_count(),
@@ -54,7 +54,7 @@ pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
         Format::Stl => [0, 50, 100],
         Format::Glb => [40, 12, 24],
         Format::Vtu => [40, 21, 25],
-        // As measured on a cell of a million faces.
+        // Measured on a cell with a million faces.
         Format::Obj => [64, 48, 64],
         Format::Off => [30, 26, 34],
     };

@@ -29,8 +29,8 @@ use crate::report::usage;
   neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30
   neurotess render circuit/ -o film.png --report voltage.h5 --time 0:100:0.5")]
 pub(crate) struct RenderArgs {
-    /// Morphology files, folders (searched recursively) or globs, all in one picture; or one circuit, or
-    /// one session of neurotess view, in its own view and look
+    /// Morphology files, folders (searched recursively) or globs, all in one picture; or one
+    /// circuit, or one session of neurotess view, in its own view and look
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The picture, - for standard output; of a series NAME_0000.png and so on
@@ -72,7 +72,8 @@ pub(crate) struct RenderArgs {
     /// Values of a simulation: a SONATA report, or a file of spikes
     #[arg(long, value_name = "FILE", help_heading = "Colors")]
     pub(crate) report: Option<PathBuf>,
-    /// Time (ms) in the report [default: its first]; FROM:TO:STEP, TO left out, makes a series of pictures
+    /// Time (ms) in the report [default: its first]; FROM:TO:STEP, TO left out, makes a series of
+    /// pictures
     #[arg(
         long,
         value_name = "MS",
@@ -103,8 +104,8 @@ pub(crate) struct RenderArgs {
         help_heading = "Colors"
     )]
     pub(crate) colormap: ColorMap,
-    /// Leave out the end of the color map that is as light or as dark as the background. Without it that
-    /// end has edges
+    /// Leave out the end of the color map that is as light or as dark as the background. Without it
+    /// that end has edges
     #[arg(long, help_heading = "Colors")]
     pub(crate) trim_colormap: bool,
     /// Draw no legend
@@ -217,7 +218,8 @@ pub(crate) struct RenderArgs {
 }
 
 impl RenderArgs {
-    /// Greatest error (pixels): unseen, or such that a wireframe shows triangles and not a grid.
+    /// Greatest error (pixels): one that cannot be seen; with a wireframe a larger one, so that its
+    /// lines do not run together.
     pub(crate) fn error(&self) -> f64 {
         self.pixels
             .unwrap_or(if self.wireframe { 1.0 } else { 0.25 })
@@ -226,7 +228,8 @@ impl RenderArgs {
     /// Number of pictures of a series; none: one picture.
     ///
     /// # Errors
-    /// Wrong usage: no series, or two that do not fit.
+    /// Wrong usage: `--frames` without a series, or a series in time that has no number of pictures
+    /// or too many.
     pub(crate) fn series(&self) -> anyhow::Result<Option<u32>> {
         match self.time {
             Some(Time::Series(..)) => {
@@ -240,7 +243,7 @@ impl RenderArgs {
         }
     }
 
-    /// Whether colors tell numbers.
+    /// Whether cells are colored by numbers.
     pub(crate) fn is_number(&self) -> bool {
         let by = [ColorBy::BranchOrder, ColorBy::Radius, ColorBy::PathDistance];
         let number = self.color_by.is_some_and(|what| by.contains(&what));

@@ -1,4 +1,4 @@
-//! Bounding spheres of all that is shown.
+//! Bounding spheres of the scene.
 
 use neurotess::mesh::TracingPoint;
 use neurotess::render::bounds::{bounds, merged};
@@ -7,16 +7,16 @@ use rayon::prelude::*;
 
 use super::cells::MeshedCell;
 
-/// From so many placements on, a cell is framed by a few spheres instead of one per point.
+/// Number of placements from which on a cell has a few spheres instead of one per point.
 const MANY: usize = 64;
 
-/// Most spheres that a scene is framed by, and its tiles are tested with: milliseconds of work.
+/// Most spheres of a scene, which take milliseconds to fit a camera to and to test tiles with.
 const MOST_SPHERES: usize = 400_000;
 
 /// Fewest of a cell.
 const FEWEST: usize = 16;
 
-/// Bounding spheres around all that is shown, to fit a camera to.
+/// Bounding spheres of the scene, to fit a camera to.
 pub(crate) fn spheres(
     cells: &[&MeshedCell],
     placements: &[(usize, Placement)],
@@ -52,7 +52,7 @@ fn placed(own: &[Vec<BoundingSphere>], placements: &[(usize, Placement)]) -> Vec
     placements.iter().flat_map(at).collect()
 }
 
-/// Bounding spheres around all that the cell's surface shows.
+/// Bounding spheres of a cell's surface.
 fn of_cell(cell: &MeshedCell) -> impl Iterator<Item = BoundingSphere> {
     let origin = cell.mesh.origin;
     let used = cell

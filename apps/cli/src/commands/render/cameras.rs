@@ -1,4 +1,4 @@
-//! From where: the camera that the options ask for, and its frames.
+//! The cameras that follow from the options.
 
 use neurotess::render::{BoundingSphere, Camera, CameraError, Side};
 
@@ -7,13 +7,13 @@ use crate::report::usage;
 
 /// Share of the picture that stays free on each side.
 const MARGIN: f64 = 0.04;
-/// Most of the width that a legend gets for itself.
+/// Greatest share of the width that is left free for a legend.
 const MOST_BESIDE: f64 = 0.35;
 
 /// Cameras of all pictures, one or as many as there are frames.
 ///
 /// # Errors
-/// Wrong usage: a camera that sees nothing.
+/// Wrong usage: a camera that is not valid.
 pub(crate) fn cameras(
     args: &RenderArgs,
     spheres: &[BoundingSphere],
@@ -33,7 +33,7 @@ pub(crate) fn cameras(
 }
 
 /// The camera that leaves a share of the width free for the legend, on the left (negative) or the
-/// right; none where that is too much, or where --eye says where the camera is.
+/// right; none if that is too much, or if --eye sets the camera.
 pub(crate) fn beside(args: &RenderArgs, spheres: &[BoundingSphere], share: f64) -> Option<Camera> {
     if args.eye.is_some() || args.turntable || share.abs() > MOST_BESIDE {
         return None;

@@ -1,4 +1,4 @@
-//! Inputs to coarse meshes.
+//! Reads and meshes the inputs.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -25,8 +25,8 @@ pub(crate) struct MeshedCell {
     mended: Vec<String>,
 }
 
-/// Reads and meshes all inputs on all cores; tells of those that fail. `cuts`: the elements of those that
-/// show values of a report.
+/// Reads and meshes all inputs on all cores; reports those that fail. `cuts`: the compartments of
+/// those that show values of a report.
 pub(crate) fn read(
     inputs: &Inputs,
     cuts: &HashMap<PathBuf, Vec<Compartment>>,

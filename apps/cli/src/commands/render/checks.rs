@@ -1,4 +1,4 @@
-//! What options mean together, and the names of the pictures.
+//! Checks options together; names of the pictures.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use super::args::{ColorBy, RenderArgs};
 use crate::io::output;
 use crate::report::usage;
 
-/// Values come from a report, and a report gives nothing but values.
+/// Checks that values are colored by only with a report, and a report is given only for its values.
 pub(super) fn check_value(args: &RenderArgs) -> anyhow::Result<()> {
     match (args.color_by, &args.report) {
         (Some(ColorBy::Value), None) => usage("--color-by value needs a --report"),

@@ -1,4 +1,4 @@
-//! Instances of a circuit that are drawn, and what colors need to know of them.
+//! Instances of a circuit that are drawn, with what colors need.
 
 use neurotess::circuit::{Circuit, Instance, NodeRef};
 use neurotess::coloring::Node;

@@ -1,4 +1,4 @@
-//! What colors tell, as the options say.
+//! Colors of pictures, by the options.
 
 use std::path::Path;
 
@@ -14,9 +14,9 @@ use crate::report::Reporter;
 
 /// Colors of all pictures.
 pub(crate) struct PictureColors {
-    /// Of the first.
+    /// Coloring of the first picture.
     pub(crate) coloring: Coloring,
-    /// Of a series over time: what differs.
+    /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
 }
 
@@ -28,7 +28,7 @@ struct RecordedSeries {
 }
 
 impl PictureColors {
-    /// Table and legend of a picture: of a series only the values differ.
+    /// Color table and legend of a picture. In a series only the values differ.
     pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColorTable, Legend)> {
         let Coloring { table, legend, .. } = &self.coloring;
         let time = |series: &RecordedSeries| series.times.get(number).copied();
@@ -48,7 +48,7 @@ impl PictureColors {
 /// Colors of cells. `instances`: those of a circuit; `of_cells`: the cell that each instance shows.
 ///
 /// # Errors
-/// What is wrong with a report.
+/// A report is invalid.
 pub(crate) fn of_pictures(
     cells: &[&MeshedCell],
     instances: Option<&CircuitInstances>,
@@ -94,7 +94,7 @@ pub(crate) fn of_pictures(
     })
 }
 
-/// Colors that cells of a circuit have as a whole, if the options say so.
+/// Colors of whole cells of a circuit, if the options ask for them.
 fn of_circuit(
     cells: &[Cell<'_>],
     instances: &CircuitInstances,
@@ -116,7 +116,7 @@ fn of_circuit(
     }
 }
 
-/// Values of a recording: at one time, or of a series.
+/// Colors by values of a recording: at one time, or over a series.
 fn over_time(
     recording: Recording,
     args: &RenderArgs,
@@ -154,7 +154,7 @@ fn over_time(
     Ok(colored)
 }
 
-/// The whole message is the error's own: with its source it would be printed twice.
+/// An error with the message only: with its source, the message would be printed twice.
 fn whole(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow::anyhow!("{error}")
 }
@@ -166,7 +166,7 @@ fn stem(file: &str) -> String {
 
 fn by(what: ColorBy) -> coloring::ColorBy {
     match what {
-        // Arguments have been checked: a value comes with a report.
+        // Values have been handled: arguments were checked, so that they come with a report.
         ColorBy::Type | ColorBy::Value => coloring::ColorBy::Type,
         ColorBy::Neurite => coloring::ColorBy::Neurite,
         ColorBy::Section => coloring::ColorBy::Section,

@@ -1,4 +1,4 @@
-//! Draws all pictures of a job, and writes them as their bands come.
+//! Draws all pictures of a job, and writes them band by band.
 
 use std::io::BufWriter;
 use std::path::Path;
@@ -22,8 +22,8 @@ use crate::report::{Progress, Reporter, count};
 /// Width (pixels) of the lines of a wireframe.
 const WIRE: f32 = 1.0;
 
-/// Legend and scale bar, and the cameras: where the legend would cover something, the scene makes
-/// room for it if it can.
+/// Legend and scale bar, and the cameras. If the legend would cover something, the camera is
+/// changed to make room for it, if possible.
 pub(super) fn overlay(
     args: &RenderArgs,
     colored: &PictureColors,
@@ -132,7 +132,7 @@ fn picture_options(args: &RenderArgs) -> PictureOptions {
     }
 }
 
-/// Writes a picture as its bands come; it appears whole or not at all.
+/// Writes a picture band by band. The file appears whole or not at all.
 fn write(
     path: &Path,
     args: &RenderArgs,

@@ -1,4 +1,4 @@
-//! What a run draws, from where, and into which files.
+//! A job: the scene, cameras and files of a run.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use super::args::RenderArgs;
 use super::cells::MeshedCell;
 use super::coloring::PictureColors;
 
-/// What is drawn, from where, and into which files.
+/// The scene, cameras and files of a run.
 pub(super) struct RenderJob<'a> {
     pub(super) args: &'a RenderArgs,
     pub(super) cells: &'a [&'a MeshedCell],

@@ -1,4 +1,4 @@
-//! What is drawn, and where: files in their own coordinates, cells of a circuit where it puts them.
+//! The scene: files in their own coordinates, cells of a circuit at their placements.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -18,16 +18,16 @@ use crate::report::{Entry, Failed, Failure, Reporter, usage};
 pub(crate) struct RenderScene {
     /// Distinct cells, and inputs that failed.
     pub(crate) entries: Vec<Entry<MeshedCell>>,
-    /// For each instance its cell, as counted among those that did not fail, and where it is.
+    /// For each instance the index of its cell among those that did not fail, and its placement.
     pub(crate) placements: Vec<(usize, Placement)>,
-    /// The circuit that the placements are of.
+    /// The circuit of the placements.
     pub(crate) instances: Option<CircuitInstances>,
 }
 
 /// Reads and meshes all inputs: tracings, or one circuit.
 ///
 /// # Errors
-/// Wrong usage: a circuit beside other inputs, or a choice of cells without a circuit.
+/// Wrong usage: a circuit beside other inputs, or a selection of cells without a circuit.
 pub(crate) fn read(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<RenderScene> {
     let (circuits, others) = partition(&args.inputs);
     match &circuits[..] {
@@ -106,7 +106,7 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
         Some(report) => {
             let cell = |i: &Instance| (i.template.index(), i.node);
             let nodes: Vec<_> = instances.iter().map(cell).collect();
-            // The whole message is the error's own: with its source it would be printed twice.
+            // The message only: with its source, it would be printed twice.
             cuts(report, &circuit, &nodes).map_err(|e| anyhow::anyhow!("{e}"))?
         }
         None => HashMap::new(),
@@ -116,7 +116,7 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
     };
     let cuts = cuts.into_iter().map(of_path).collect();
     let entries = cells::read(&inputs, &cuts, args, reporter)?;
-    // Cells that did not fail keep their order; those that did are marked.
+    // Indices of cells among those that did not fail; none for those that did.
     let mut centers = Vec::new();
     for (entry, index) in entries.iter().zip(of_template.values_mut()) {
         *index = centers.len();

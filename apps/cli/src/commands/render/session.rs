@@ -1,4 +1,4 @@
-//! Pictures of sessions that the window saved.
+//! Pictures of the window's sessions.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,8 @@ use super::stats;
 use crate::report::{Failure, count};
 use crate::report::{Reporter, usage};
 
-/// A session of the window: its own view and look, at the size and smoothness of the options.
+/// Draws a session of the window in its own view and look, with the size and samples of the
+/// options.
 #[cfg(feature = "view")]
 pub(super) fn draw(
     session: &Path,
@@ -41,7 +42,7 @@ pub(super) fn draw(
     reporter.document(&stats::Document::new(&[], files, None))
 }
 
-/// Sessions are not built in.
+/// Reports that this build cannot draw sessions.
 #[cfg(not(feature = "view"))]
 pub(super) fn draw(
     session: &Path,

@@ -1,4 +1,4 @@
-//! What a picture cost: `--stats` and `--json`.
+//! Statistics of pictures: `--stats` and `--json`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use super::cells::MeshedCell;
 use super::vertex_source::SourceStats;
 use crate::report::{Entry, Failed};
 
-/// The contract's object; times are of the last picture.
+/// The documented JSON object; times are those of the last picture.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Stats {
     adapter: String,
@@ -42,9 +42,9 @@ pub(crate) struct Stages {
     frame: f64,
     /// Opening the adapter.
     adapter: f64,
-    /// Making what is drawn from, and uploading it.
+    /// Making the vertex source and uploading it.
     upload: f64,
-    /// All pictures, and counting what they took.
+    /// Drawing all pictures, and counting triangles.
     draw: f64,
     #[serde(skip)]
     began: Option<Instant>,
@@ -84,7 +84,7 @@ impl Stages {
     }
 }
 
-/// What `--lod exploration` drew of what it would have, in triangles.
+/// What `--lod exploration` drew and what it left out, in triangles.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct BudgetStats {
     budget: u64,
@@ -99,12 +99,12 @@ struct BudgetStats {
 struct FrameTime {
     /// From the first command to the last byte.
     cpu: f64,
-    /// By pass, where the GPU can tell.
+    /// By pass, if the GPU supports timestamps.
     gpu: Option<BTreeMap<&'static str, f64>>,
 }
 
 impl Stats {
-    /// Of nothing drawn yet.
+    /// Statistics before the first picture.
     pub(crate) fn new(gpu: &Gpu, neurons: usize) -> Self {
         Self {
             adapter: gpu.adapter.name.clone(),
@@ -115,7 +115,7 @@ impl Stats {
         }
     }
 
-    /// One more picture.
+    /// Adds a picture.
     pub(crate) fn add(&mut self, cost: &Cost, made: SourceStats) {
         self.pictures += 1;
         self.tiles = cost.tiles;
@@ -128,8 +128,8 @@ impl Stats {
         self.gpu_bytes = made.bytes;
         self.exploration = made.exploration.map(|stats| BudgetStats {
             budget: stats.budget,
-            wanted: stats.wanted,
-            left_out: stats.wanted - stats.triangles.min(stats.wanted),
+            wanted: stats.requested,
+            left_out: stats.requested - stats.triangles.min(stats.requested),
             neurons_in_picture: stats.instances,
         });
         self.gpu_bytes.insert("targets", cost.target_bytes);
@@ -139,7 +139,7 @@ impl Stats {
         };
     }
 
-    /// What was left out or lowered.
+    /// A message about what was left out or drawn with reduced quality.
     pub(crate) fn lowered(&self) -> Option<String> {
         let BudgetStats {
             budget,
@@ -153,12 +153,12 @@ impl Stats {
         ))
     }
 
-    /// How long it took.
+    /// Sets the times of the stages.
     pub(crate) fn took(&mut self, stages: Stages) {
         self.seconds = stages;
     }
 
-    /// For people.
+    /// The statistics as a line of text.
     pub(crate) fn line(&self) -> String {
         format!(
             "{} triangles of {} neurons in {:.2} s",

@@ -48,7 +48,7 @@ pub(crate) fn times(time: Option<Time>, pictures: Option<u32>) -> anyhow::Result
             return usage("--time FROM:TO needs a step, as in 0:100:0.5, or --frames N");
         }
         (None, Some(frames)) => ((to - from) / f64::from(frames), f64::from(frames)),
-        // 0:0.3:0.1 are three pictures whatever is lost by rounding.
+        // 0:0.3:0.1 gives three pictures in spite of rounding.
         (Some(step), _) => (step, ((to - from) / step - 1e-6).ceil().max(1.0)),
     };
     if frames > f64::from(MOST) {
@@ -65,7 +65,7 @@ pub(crate) fn times(time: Option<Time>, pictures: Option<u32>) -> anyhow::Result
     Ok(Some((0..frames as u32).map(time).collect()))
 }
 
-/// A time for people, with as many digits as tell it from its neighbors.
+/// A time as text, with enough digits to distinguish it from its neighbors.
 pub(crate) fn time_text(times: &[f64], time: f64) -> String {
     let rounded = |digits: i32| {
         let unit = 10f64.powi(digits);

@@ -1,4 +1,4 @@
-//! What options of pictures hold: colors, positions, lengths, light.
+//! Values of options: colors, positions, lengths, light.
 
 use std::str::FromStr;
 
@@ -53,12 +53,12 @@ impl FromStr for RgbArg {
     }
 }
 
-/// A length, or whatever fits.
+/// A length, or one that fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Fit {
-    /// What fits.
+    /// A length that fits.
     Auto,
-    /// µm
+    /// A length (µm).
     Length(f64),
 }
 

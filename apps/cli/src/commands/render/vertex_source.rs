@@ -1,4 +1,4 @@
-//! The source of vertices that `--lod` names, and its statistics.
+//! The vertex source for `--lod`, and its statistics.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
     ExplorationStats, Frame, Gpu, Instance, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Template, Templates, Tile, VertexSource,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource,
 };
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ use super::cells::MeshedCell;
 use super::job::RenderJob;
 use crate::report::usage;
 
-/// A source of vertices for whole pictures.
+/// A vertex source for pictures.
 pub(crate) enum PictureSource {
     /// Refined beforehand, in memory.
     Prerefined(Box<Prerefined>),
@@ -26,7 +26,7 @@ pub(crate) enum PictureSource {
     Budgeted(Box<Exploration>),
 }
 
-/// What a source of vertices draws and holds.
+/// What a vertex source draws and holds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SourceStats {
     pub(crate) patches: u64,
@@ -39,7 +39,7 @@ pub(crate) struct SourceStats {
     pub(crate) exploration: Option<ExplorationStats>,
 }
 
-/// The mode that options ask for.
+/// The mode that follows from the options.
 ///
 /// # Errors
 /// Wrong usage: a level where levels follow from the error.
@@ -114,7 +114,7 @@ impl PictureSource {
         Ok(Self::Adaptive(Box::new(source)))
     }
 
-    /// As the renderer takes it.
+    /// The source as the renderer takes it.
     pub(crate) fn as_vertex_source(&mut self) -> &mut dyn VertexSource {
         match self {
             Self::Prerefined(source) => source.as_mut(),
@@ -123,7 +123,7 @@ impl PictureSource {
         }
     }
 
-    /// What it draws of a whole picture.
+    /// What it draws in a whole picture.
     pub(crate) fn stats(
         &mut self,
         gpu: &Gpu,
@@ -169,17 +169,7 @@ impl PictureSource {
 /// The whole picture as one frame.
 fn whole(gpu: &Gpu, camera: &Camera, near: f64, options: &PictureOptions) -> Frame {
     let size = options.size.map(|n| n * options.sub_pixels(gpu));
-    Frame {
-        camera: *camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
-    }
+    Frame::whole(*camera, near, size)
 }
 
 fn budgeted(
@@ -210,7 +200,7 @@ fn budgeted(
     Ok(PictureSource::Budgeted(Box::new(source)))
 }
 
-/// Level where none is given.
+/// Level if none is given.
 const DEFAULT_LEVEL: u32 = 4;
 
 fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<PictureSource> {
@@ -242,8 +232,8 @@ fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<PictureSource> {
     Ok(PictureSource::Prerefined(Box::new(source)))
 }
 
-/// Levels of a cell: those of --level, or by the error that shows from the one camera; where it moves, from
-/// the nearest that anything seen ever is.
+/// Levels of a cell: that of --level, or by the error in pixels; if there are several cameras, by
+/// the least distance of anything in view.
 fn levels(
     args: &RenderArgs,
     cell: &MeshedCell,

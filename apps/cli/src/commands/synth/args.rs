@@ -10,7 +10,8 @@ use crate::report::at_least_one;
 /// Where what is grown goes.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct GrownArgs {
-    /// A file OUT.swc for one cell, - for standard output; a folder for several cells and for a circuit
+    /// A file OUT.swc for one cell, - for standard output; a folder for several cells and for a
+    /// circuit
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Replace files that exist
@@ -25,8 +26,8 @@ pub(crate) struct GrownArgs {
   neurotess synth purkinje -o cells/ --count 1000 --points 5000
   neurotess synth circuit -o circuit/ --neurons 10000 --morphologies 100")]
 pub(crate) struct SynthArgs {
-    /// Kind of cell: pyramidal, purkinje, granule, basket, motor or star; or circuit: many cells, with
-    /// spikes and a report, as SONATA
+    /// Kind of cell: pyramidal, purkinje, granule, basket, motor or star; or circuit: many cells,
+    /// with spikes and a report, as SONATA
     #[arg(value_parser = what)]
     pub(crate) kind: What,
     #[command(flatten)]

@@ -33,7 +33,7 @@ struct Made {
     seconds: f64,
 }
 
-/// Runs the command. The configurations come last, so that half a circuit is none.
+/// Runs the command. The configurations are written last, so that an incomplete circuit has none.
 pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let clock = Instant::now();
     let folder = &args.out.out;
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
     reporter.document(&[made])
 }
 
-/// Writes all morphologies; whether none failed.
+/// Writes all morphologies. True if none failed.
 fn grow_all(
     made: &SyntheticCircuit,
     folder: &Path,
@@ -124,7 +124,7 @@ fn grow_all(
     Ok(all)
 }
 
-/// Writes everything else; how many elements the report has.
+/// Writes everything else. Returns the number of compartments in the report.
 fn write_all(made: &SyntheticCircuit, folder: &Path, force: bool) -> Result<u64, OutputError> {
     let put = |name: &str, write: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
         let path = folder.join(name);
@@ -158,7 +158,7 @@ fn write_all(made: &SyntheticCircuit, folder: &Path, force: bool) -> Result<u64,
     Ok(layout.sections.iter().map(|s| s.len() as u64).sum())
 }
 
-/// The report of the chosen cells, frames × elements.
+/// The report of the selected cells, frames × compartments.
 fn report(made: &SyntheticCircuit) -> io::Result<(ReportLayout, Vec<f32>)> {
     let frames = (DURATION / STEP).round() as u64;
     let time = TimeAxis::of_frames(0.0, STEP, frames).map_err(io::Error::other)?;
@@ -187,7 +187,7 @@ fn report(made: &SyntheticCircuit) -> io::Result<(ReportLayout, Vec<f32>)> {
         nodes: made.reported.clone(),
         sections: cells.into_iter().map(|cell| cell.sections).collect(),
         chunk: [16, 1024],
-        // The HDF5 that libsonata brings knows no compression.
+        // The HDF5 library of libsonata cannot read compressed data.
         compressed: false,
     };
     Ok((layout, data))

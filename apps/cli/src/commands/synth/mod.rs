@@ -99,7 +99,7 @@ fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>>
 }
 
 fn grow(options: &Options, out: &Path, force: bool) -> Result<Grown, Failure> {
-    // The message names the file already.
+    // The message already names the file.
     let failed = |e: output::OutputError| Failure(e.to_string());
     output::check(out, force).map_err(failed)?;
     let morphology = synth::grow(options);

@@ -70,7 +70,7 @@ fn mesh_files(plans: &[MeshPlan], options: &MeshOptions) -> Result<Vec<PathBuf>,
     if plans.is_empty() {
         return Err("nothing is selected: select neurons, or save all that show".into());
     }
-    // A file's name for many: its stem names the folder.
+    // If a file is named for several cells, its stem becomes the name of a folder.
     let folder = match Format::from_extension(&options.out) {
         Ok(_) => options.out.with_extension(""),
         Err(_) => options.out.clone(),

@@ -20,7 +20,7 @@ pub(crate) fn has_ffmpeg() -> bool {
     asked.is_ok_and(|status| status.success())
 }
 
-/// Makes a video of numbered pictures, 30 in a second. Stopped or failed, it leaves none.
+/// Makes a video of numbered pictures, 30 per second. If it is stopped or fails, it leaves no file.
 pub(crate) fn video(first: &Path, replace: bool, progress: &Progress) -> Result<PathBuf, String> {
     let text = first.display().to_string();
     let pattern = text.replace("_0000.png", "_%04d.png");
@@ -43,7 +43,7 @@ pub(crate) fn video(first: &Path, replace: bool, progress: &Progress) -> Result<
     Ok(out)
 }
 
-/// Waits until it is done, or ends it.
+/// Waits until ffmpeg has finished, or ends it if the task is canceled.
 fn wait(ffmpeg: &mut Child, progress: &Progress) -> Result<(), String> {
     loop {
         if progress.is_canceled() {
@@ -79,7 +79,7 @@ mod tests {
         progress
             .canceled
             .store(true, std::sync::atomic::Ordering::Relaxed);
-        // Without ffmpeg it says so, with it that it was stopped.
+        // The error says that ffmpeg is missing, or else that it was stopped.
         let error = video(&first, false, &progress).expect_err("stopped");
         assert!(error.contains("the pictures are there"), "{error}");
         let left = std::fs::read_dir(folder.path()).expect("a folder").count();

@@ -7,42 +7,43 @@ use crate::model::document::{Detail, Document, Look, SomaEdit, SourceId};
 /// A change of the document.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// Selects these, and nothing else unless `add`; what is already selected is dropped then.
+    /// Selects these only; or with `add` changes their selection: those that are selected are
+    /// unselected.
     Select(Vec<usize>, bool),
-    /// Selects all that is shown.
+    /// Selects all neurons that are shown.
     SelectAll,
     /// Selects nothing.
     SelectNone,
-    /// Selects what is not selected.
+    /// Inverts the selection.
     SelectOthers,
-    /// Hides what is selected.
+    /// Hides the selected neurons.
     Hide,
-    /// Shows only what is selected.
+    /// Shows the selected neurons only.
     Isolate,
-    /// Shows all.
+    /// Shows all neurons.
     ShowAll,
-    /// Hides or shows one.
+    /// Hides or shows a neuron.
     SetHidden(usize, bool),
-    /// Takes what is selected out of the list.
+    /// Removes the selected neurons from the list.
     Remove,
-    /// Makes somata in another way.
+    /// Changes how somata are generated.
     SetSoma(Vec<SourceId>, SomaEdit),
-    /// Puts the first ring of a neurite somewhere, or leaves it to itself.
+    /// Places the first ring of a neurite, or leaves its position to the generator.
     SetRing(SourceId, u32, Option<f64>),
-    /// Leaves all first rings to themselves.
+    /// Leaves the positions of all first rings to the generator.
     ResetRings(SourceId),
-    /// Colors and light.
+    /// Changes colors and light.
     SetLook(Box<Look>),
-    /// How finely.
+    /// Changes the level of detail.
     SetDetail(Detail),
-    /// Side by side, or where traced.
+    /// Places neurons side by side, or where they were traced.
     SetGrid(bool),
-    /// Shows the values of a report or spikes, or no longer.
+    /// Shows the values of a report or of spikes, or none.
     SetReport(Option<PathBuf>),
 }
 
 impl Edit {
-    /// What an undo of it is called.
+    /// Its name in the menu's undo and redo.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Select(..) | Self::SelectAll | Self::SelectNone | Self::SelectOthers => "Select",
@@ -59,7 +60,7 @@ impl Edit {
         }
     }
 
-    /// Whether several in a row are one edit: a slider that is dragged.
+    /// Whether several in a row count as one edit, as when a slider is dragged.
     pub fn joins(&self) -> bool {
         matches!(
             self,
@@ -73,7 +74,7 @@ impl Edit {
         match self {
             Self::Select(which, add) => {
                 let is = |i: usize| which.contains(&i);
-                // Adding what is there already takes it away.
+                // If all of them are selected already, they are unselected.
                 let all = which
                     .iter()
                     .all(|&i| neurons.get(i).is_some_and(|n| n.selected));
@@ -92,7 +93,7 @@ impl Edit {
                 neurons.set_states(|_, n| (n.hidden, !n.selected && !n.hidden));
             }
             Self::Hide => neurons.set_states(|_, n| (n.hidden || n.selected, false)),
-            // Of nothing, nothing would be left.
+            // Without a selection, nothing would be left to show.
             Self::Isolate if neurons.selected().is_empty() => {}
             Self::Isolate => neurons.set_states(|_, n| (!n.selected, n.selected)),
             Self::ShowAll => neurons.set_states(|_, n| (false, n.selected)),
@@ -103,7 +104,7 @@ impl Edit {
             Self::Remove => neurons.retain(|n| !n.selected),
             Self::SetSoma(sources, edit) => {
                 for source in sources {
-                    // Rings are each cell's own.
+                    // Each cell keeps its own rings.
                     let rings = document.soma(source).rings;
                     let edit = edit.clone();
                     document.set_soma(source, SomaEdit { rings, ..edit });

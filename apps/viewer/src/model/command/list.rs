@@ -1,18 +1,18 @@
-//! Commands as they stand in menus and the palette.
+//! The commands of the menus and the palette.
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
-use super::{Ask, Command, Edit, Tab};
+use super::{Command, Edit, FilePurpose, Tab};
 
-/// A command that stands in menus and the palette.
+/// A command of the menus and the palette.
 pub struct Listed {
-    /// What it is called.
+    /// Its title.
     pub title: &'static str,
-    /// The keys for it.
+    /// Its shortcut.
     pub keys: Option<KeyboardShortcut>,
-    /// What it runs.
+    /// The command.
     pub command: Command,
 }
 
@@ -23,7 +23,7 @@ const CTRL_SHIFT: Modifiers = Modifiers {
     ..Modifiers::COMMAND
 };
 
-/// All commands that need nothing more said, by menu. `y_down` and so on: as they are now.
+/// All commands that need no further input, by menu. `now`: the state that titles depend on.
 pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
     let item = |title, keys: Option<(Modifiers, Key)>, command| Listed {
         title,
@@ -38,17 +38,21 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
         (
             "File",
             vec![
-                item("Open…", Some((CTRL, Key::O)), Command::AskFiles(Ask::Open)),
+                item(
+                    "Open…",
+                    Some((CTRL, Key::O)),
+                    Command::AskFiles(FilePurpose::Open),
+                ),
                 item(
                     "Open report or spikes…",
                     Some((CTRL_SHIFT, Key::O)),
-                    Command::AskFiles(Ask::Report),
+                    Command::AskFiles(FilePurpose::Report),
                 ),
                 item("Close the report", None, Edit::SetReport(None).into()),
                 item(
                     "Save session…",
                     Some((CTRL, Key::S)),
-                    Command::AskFiles(Ask::SaveSession),
+                    Command::AskFiles(FilePurpose::SaveSession),
                 ),
                 item(
                     "Save mesh, picture or film…",
@@ -234,15 +238,15 @@ const SAMPLE_TITLES: [&str; 6] = [
 /// What titles of commands depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Toggles {
-    /// y runs down.
+    /// Whether y points down.
     pub y_down: bool,
-    /// Side by side.
+    /// Whether neurons are side by side.
     pub grid: bool,
-    /// Levels are frozen.
+    /// Whether levels are frozen.
     pub frozen: bool,
-    /// Dark theme.
+    /// Whether the theme is dark.
     pub dark: bool,
-    /// A recording's time goes on.
+    /// Whether a recording is playing.
     pub playing: bool,
 }
 

@@ -1,4 +1,5 @@
-//! What one can do, as values: menus, shortcuts, the palette and tests share one list.
+//! Commands: all that can be done in the window, as values. Menus, shortcuts, the palette and tests
+//! share one list.
 
 mod edit;
 mod list;
@@ -19,21 +20,21 @@ pub use list::{Listed, Toggles, listed};
 /// One of the panels on the right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tab {
-    /// What is selected.
+    /// Morphometrics of the selection.
     #[default]
     Inspect,
-    /// How somata are made.
+    /// How somata are generated.
     Soma,
     /// Colors and light.
     Look,
-    /// How finely.
+    /// The level of detail.
     Detail,
-    /// Meshes, pictures, films.
+    /// Saving meshes, pictures and films.
     Save,
 }
 
 impl Tab {
-    /// All, with their names.
+    /// All panels, with their names.
     pub const ALL: [(Self, &'static str); 5] = [
         (Self::Inspect, "Inspect"),
         (Self::Soma, "Soma"),
@@ -43,91 +44,91 @@ impl Tab {
     ];
 }
 
-/// What files are asked for.
+/// What the file dialog is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ask {
-    /// Tracings, circuits, folders, sessions.
+pub enum FilePurpose {
+    /// Opening tracings, circuits, folders or sessions.
     Open,
-    /// A report or spikes.
+    /// Opening a report or spikes.
     Report,
-    /// Where a session goes.
+    /// Saving a session.
     SaveSession,
 }
 
-/// Something to do: an edit, or a request to the window around the document.
+/// A command: an edit of the document, or a request to the window.
 #[derive(Clone, PartialEq)]
 pub enum Command {
     /// Changes the document.
     Edit(Edit),
 
-    /// Shows the file panel.
-    AskFiles(Ask),
+    /// Shows the file dialog.
+    AskFiles(FilePurpose),
     /// Reads files, folders, circuits, a session.
     Open(Vec<PathBuf>),
     /// Grows a built-in sample.
     OpenSample(Kind),
-    /// Reads files that changed again.
+    /// Reads changed files again.
     Reload,
     /// Writes a session.
     SaveSession(PathBuf),
-    /// Ends reading or saving.
+    /// Cancels reading or saving.
     Cancel,
-    /// Leaves the program.
+    /// Quits the program.
     Quit,
 
-    /// The one before the last edit.
+    /// Undoes the last edit.
     Undo,
-    /// The one after it.
+    /// Redoes the edit that was undone last.
     Redo,
 
-    /// Lets the recording's time go on, or no longer.
+    /// Plays or pauses the recording.
     TogglePlay,
     /// Goes to a time (ms) of the recording.
     Seek(f64),
-    /// Goes by frames of the recording.
+    /// Goes a number of frames of the recording forwards or backwards.
     StepTime(i64),
-    /// How the recording's time goes on.
+    /// Sets how the recording is played.
     SetPace(Pace),
 
-    /// Goes to a side.
+    /// Looks at everything from a side.
     Look(Side),
-    /// All in the picture, from the front.
+    /// Looks at everything from the front.
     Home,
-    /// What is selected in the picture.
+    /// Looks at the selection.
     Focus,
     /// Goes to a view.
     Go(View),
-    /// Which way y runs.
+    /// Sets whether y points down.
     SetYDown(bool),
-    /// Levels as they are now, whatever the view.
+    /// Keeps the levels of the current view while the camera moves.
     SetFrozen(bool),
 
     /// Shows a panel.
     Show(Tab),
-    /// The sheet of keys.
+    /// Shows or hides the list of keys.
     ToggleKeys,
-    /// All commands, to search.
+    /// Shows or hides the palette, in which all commands can be searched.
     TogglePalette,
-    /// What went wrong.
+    /// Shows or hides the list of problems.
     ToggleProblems,
-    /// Dark or light.
+    /// Sets the dark or light theme.
     SetDark(bool),
-    /// Both side panels.
+    /// Shows or hides both side panels.
     TogglePanels,
 
     /// Writes meshes.
     SaveMeshes(MeshOptions),
     /// Writes a picture.
     SavePicture(PictureFile),
-    /// Keeps the view for a film.
+    /// Adds the current view to the film.
     AddKeyView,
-    /// Forgets a view of the film.
+    /// Removes a view from the film.
     DropKeyView(usize),
     /// Writes a film.
     SaveFilm(FilmOptions),
 }
 
-/// As `neurotess view --verbose` prints it: an edit by its own name.
+/// The form that `neurotess view --verbose` prints: edits by their own names.
 impl fmt::Debug for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut with =
@@ -175,7 +176,7 @@ impl From<Edit> for Command {
 }
 
 impl Command {
-    /// Whether it opens a line of text that hears all keys from then on.
+    /// Whether it opens a line of text, which then gets all keys.
     pub(crate) fn moves_keyboard(&self) -> bool {
         matches!(self, Self::AskFiles(_) | Self::TogglePalette)
     }

@@ -7,32 +7,32 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Detail {
-    /// By what.
+    /// What decides on levels.
     pub criterion: LodKind,
-    /// Error (pixels).
+    /// Greatest error (pixels), for [`LodKind::Error`].
     pub error: f32,
-    /// Length of an edge's piece (pixels).
+    /// Greatest length of refined edges (pixels), for [`LodKind::Size`].
     pub size: f32,
-    /// Level.
+    /// The level, for [`LodKind::Homogeneous`] and [`LodKind::Distance`].
     pub level: u32,
-    /// Distance (µm) from which on the level is 1.
+    /// Distance (µm) from which on the level is 1, for [`LodKind::Distance`].
     pub far: f32,
-    /// What is smaller (pixels) is left out.
+    /// Patches smaller than this (pixels) are left out.
     pub smallest: f32,
 }
 
-/// By what the level is chosen.
+/// What decides on levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LodKind {
-    /// Error in pixels.
+    /// The error in pixels.
     #[default]
     Error,
-    /// Size in pixels.
+    /// The length of edges in pixels.
     Size,
-    /// The same everywhere.
+    /// A single level everywhere.
     Homogeneous,
-    /// By the distance from the eye.
+    /// The distance from the eye.
     Distance,
 }
 

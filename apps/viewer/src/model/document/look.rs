@@ -1,26 +1,26 @@
-//! Colors, light, what is shown of cells.
+//! Colors, light, and which parts of cells are shown.
 
 use neurotess::coloring;
 use neurotess::render::Light;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
 use serde::{Deserialize, Serialize};
 
-/// Background unless another one is chosen: a light gray, before which neither pale lines nor dark somata
-/// are as hard as before white.
+/// Default background: a light gray, on which pale lines can be seen, and which makes dark somata
+/// look less hard than white does.
 pub const PAPER: Rgb = [238, 240, 243];
 
-/// Colors, light, what is shown of cells.
+/// Colors, light, and which parts of cells are shown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Look {
-    /// What colors tell.
+    /// What neurons are colored by.
     #[serde(alias = "colour_by")]
     pub color_by: ColorBy,
-    /// Name of the attribute, where that is what they tell.
+    /// Name of the attribute, for [`ColorBy::Attribute`].
     pub attribute: String,
-    /// Numbers at both ends of the color map; none: those that fit.
+    /// Numbers at both ends of the color map; none: they follow from the data.
     pub range: Option<[f32; 2]>,
-    /// After this time (ms) the flash of a spike has a third of its light.
+    /// Time (ms) after which the flash of a spike has faded to about a third.
     pub decay: f64,
     /// Colors of types.
     #[serde(with = "palette")]
@@ -30,37 +30,37 @@ pub struct Look {
     pub color_map: ColorMap,
     /// Whether the end of the color map that is as light or dark as the background is left out.
     pub trim_map: bool,
-    /// Behind everything.
+    /// Color of the background.
     pub background: Rgb,
-    /// What surfaces are lit by.
+    /// How surfaces are lit.
     pub light: Lighting,
-    /// Whether corners darken one another.
+    /// Whether corners are darkened by ambient occlusion.
     pub occlusion: bool,
-    /// Triangles.
+    /// Whether a wireframe shows the triangles.
     #[serde(alias = "wires")]
     pub wireframe: bool,
-    /// What colors mean.
+    /// Whether there is a legend.
     pub legend: bool,
-    /// A length to compare with.
+    /// Whether there is a scale bar.
     pub scale_bar: bool,
-    /// Directions of x, y and z.
+    /// Whether the directions of x, y and z are shown.
     pub axes: bool,
-    /// A color of its own for what is selected.
+    /// Whether selected neurons have a color of their own.
     #[serde(alias = "mark_selected")]
     pub highlight_selected: bool,
-    /// Whether one looks through what is not selected.
+    /// Whether neurons that are not selected are transparent.
     #[serde(alias = "faint_others")]
     pub ghost_others: bool,
-    /// Share of what is not selected that is still seen.
+    /// Opacity of transparent neurons, 0 to 1.
     #[serde(alias = "faint")]
     pub ghost_opacity: f32,
-    /// What is drawn of cells.
+    /// Which parts of cells are drawn.
     pub parts: VisibleParts,
-    /// What is cut away.
+    /// A plane that cuts a part of the scene away.
     pub cut: Option<Cut>,
 }
 
-/// What colors tell; see [`coloring::ColorBy`].
+/// What neurons are colored by; see [`coloring::ColorBy`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[expect(missing_docs, reason = "the names say it")]
@@ -80,7 +80,7 @@ pub enum ColorBy {
 }
 
 impl ColorBy {
-    /// All, with names for people.
+    /// All of them, with their names in the panel.
     pub const ALL: [(Self, &'static str); 9] = [
         (Self::Type, "type"),
         (Self::Neuron, "neuron"),
@@ -93,7 +93,7 @@ impl ColorBy {
         (Self::Value, "values of a report"),
     ];
 
-    /// Whether tracings alone have it.
+    /// Whether it needs nothing but tracings.
     pub fn is_of_tracings(self) -> bool {
         self.in_library().is_some()
     }
@@ -116,7 +116,7 @@ impl ColorBy {
         )
     }
 
-    /// As the library has it; none: it is no matter of a tracing alone.
+    /// The library's value; none if it needs more than a tracing.
     pub(crate) fn in_library(self) -> Option<coloring::ColorBy> {
         Some(match self {
             Self::Type => coloring::ColorBy::Type,
@@ -131,14 +131,14 @@ impl ColorBy {
     }
 }
 
-/// What surfaces are lit by.
+/// How surfaces are lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lighting {
     /// From the upper left.
     #[default]
     Soft,
-    /// Not at all.
+    /// No light: plain colors.
     Flat,
     /// From a direction (degrees): to the right, and upwards.
     From {
@@ -166,27 +166,27 @@ impl Lighting {
     }
 }
 
-/// What is drawn of cells.
+/// Which parts of cells are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum VisibleParts {
     /// All.
     #[default]
     All,
-    /// Somata.
+    /// Somata only.
     Soma,
-    /// Neurites.
+    /// Neurites only.
     Neurites,
 }
 
-/// A plane across the scene: what lies behind it is cut away.
+/// A plane across the scene, behind which everything is cut away.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cut {
-    /// 0: x, 1: y, 2: z.
+    /// The axis that it is perpendicular to: 0 x, 1 y, 2 z.
     pub axis: usize,
-    /// Where, from 0 to 1 through the scene.
+    /// Its position, from 0 to 1 through the scene.
     pub place: f32,
-    /// The other side is cut away.
+    /// Whether the other side is cut away.
     pub flipped: bool,
 }
 

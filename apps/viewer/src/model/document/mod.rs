@@ -1,4 +1,4 @@
-//! What can be undone and is saved: the cells that are shown and how.
+//! The document, which is saved and whose edits can be undone: the neurons that are shown, and how.
 
 mod detail;
 mod look;
@@ -20,42 +20,42 @@ pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use soma::{Method, SomaEdit};
 
-/// All that an edit changes.
+/// All that edits change.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
-    /// What is shown, in the order of the list.
+    /// The neurons, in the order of the list.
     pub neurons: Neurons,
-    /// Somata that are not as usual, by source.
+    /// Somata that are not generated in the default way, by source.
     pub somata: Tracked<Vec<(SourceId, SomaEdit)>>,
-    /// Colors, light, what is shown of cells.
+    /// Colors, light, and which parts of cells are shown.
     pub look: Look,
-    /// How finely.
+    /// The level of detail.
     pub detail: Detail,
-    /// Side by side instead of where they were traced.
+    /// Whether neurons are side by side instead of where they were traced.
     pub grid: bool,
     /// The recording whose values can be shown.
     pub report: Option<PathBuf>,
 }
 
-/// A tracing somewhere.
+/// A neuron: a tracing with a placement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neuron {
     /// Its tracing.
     pub source: SourceId,
-    /// What it is in its circuit, if it is of one.
+    /// Its node, if it belongs to a circuit.
     pub node: Option<CircuitNode>,
-    /// Name in the list.
+    /// Its name in the list.
     pub name: String,
-    /// Where it was traced, or where its circuit puts it.
+    /// Where it was traced, or where its circuit places it.
     pub placement: Placement,
-    /// Not drawn.
+    /// Whether it is hidden.
     pub hidden: bool,
-    /// Selected.
+    /// Whether it is selected.
     pub selected: bool,
 }
 
 impl Neuron {
-    /// A tracing where its own coordinates put it.
+    /// A tracing in its own coordinates.
     pub fn new(source: SourceId, name: String) -> Self {
         Self {
             source,
@@ -69,13 +69,13 @@ impl Neuron {
 }
 
 impl Document {
-    /// How the soma of a source is made.
+    /// How the soma of a source is generated.
     pub fn soma(&self, source: SourceId) -> SomaEdit {
         let edit = self.somata.iter().find(|(id, _)| *id == source);
         edit.map(|(_, edit)| edit.clone()).unwrap_or_default()
     }
 
-    /// Another soma for a source.
+    /// Sets how the soma of a source is generated.
     pub fn set_soma(&mut self, source: SourceId, edit: SomaEdit) {
         if self.soma(source) == edit {
             return;
@@ -87,7 +87,7 @@ impl Document {
         }
     }
 
-    /// Shows the values of a recording, or no longer.
+    /// Shows the values of a recording, or none.
     pub fn set_report(&mut self, report: Option<PathBuf>) {
         match (&report, self.look.color_by) {
             (Some(_), _) => self.look.color_by = ColorBy::Value,
@@ -97,13 +97,14 @@ impl Document {
         self.report = report;
     }
 
-    /// Indices of what is selected.
+    /// Indices of the selected neurons.
     pub fn selected(&self) -> impl Iterator<Item = usize> {
         self.neurons.selected().iter().copied()
     }
 }
 
-/// Placements of neurons side by side: `extents` are center and size (µm) of each in its own place.
+/// Placements of neurons side by side. `extents`: center and size (µm) of each at its own
+/// placement.
 pub fn grid(neurons: &[Neuron], extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
     let columns = (neurons.len() as f64).sqrt().ceil().max(1.0) as usize;
     let widest = |axis: usize| {

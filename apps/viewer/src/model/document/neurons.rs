@@ -1,4 +1,4 @@
-//! The list of neurons, with a stamp for each thing that others derive from it.
+//! The list of neurons, with a revision for each thing that others derive from it.
 
 use std::ops::Deref;
 
@@ -6,8 +6,8 @@ use super::Neuron;
 use crate::model::ids::SourceId;
 use crate::model::revision::Revision;
 
-/// Neurons in the order of the list. They are read as a slice and changed by methods, which know what else
-/// must follow.
+/// Neurons in the order of the list. They are read as a slice, and changed by methods that keep
+/// revisions and counts up to date.
 #[derive(Clone, Debug, Default)]
 pub struct Neurons {
     list: Vec<Neuron>,
@@ -18,14 +18,14 @@ pub struct Neurons {
     revisions: NeuronRevisions,
 }
 
-/// Stamps of the list of neurons.
+/// Revisions of the list of neurons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NeuronRevisions {
-    /// Which there are, their order and where they are.
+    /// Of the neurons, their order and their placements.
     pub members: Revision,
-    /// Which are hidden.
+    /// Of which neurons are hidden.
     pub hidden: Revision,
-    /// Which are selected.
+    /// Of which neurons are selected.
     pub selection: Revision,
 }
 
@@ -64,12 +64,12 @@ impl FromIterator<Neuron> for Neurons {
 }
 
 impl Neurons {
-    /// The stamps of now.
+    /// The current revisions.
     pub fn revisions(&self) -> NeuronRevisions {
         self.revisions
     }
 
-    /// Indices of what is selected, ascending.
+    /// Indices of the selected neurons, ascending.
     pub fn selected(&self) -> &[usize] {
         &self.selected
     }
@@ -84,7 +84,7 @@ impl Neurons {
         &self.sources
     }
 
-    /// Tracings of what is selected, each once, sorted.
+    /// Tracings of the selected neurons, each once, sorted.
     pub fn selected_sources(&self) -> &[SourceId] {
         &self.selected_sources
     }
@@ -105,7 +105,7 @@ impl Neurons {
         self.stamp_all();
     }
 
-    /// Keeps the neurons that fit.
+    /// Keeps the neurons for which `keeps` is true.
     pub fn retain(&mut self, keeps: impl FnMut(&Neuron) -> bool) {
         let before = self.list.len();
         self.list.retain(keeps);
@@ -114,7 +114,8 @@ impl Neurons {
         }
     }
 
-    /// Hides and selects: `state` says of each neuron whether it is hidden, and whether it is selected.
+    /// Hides and selects neurons: `state` returns for each whether it is hidden and whether it is
+    /// selected.
     pub fn set_states(&mut self, mut state: impl FnMut(usize, &Neuron) -> (bool, bool)) {
         let (mut hides, mut selects) = (false, false);
         for (i, neuron) in self.list.iter_mut().enumerate() {

@@ -1,10 +1,10 @@
-//! Where a neuron stands, as a session has it.
+//! The placement of a neuron in a session's file.
 
 use glam::{DQuat, DVec3};
 use neurotess::render::Placement;
 use serde::{Deserialize, Serialize};
 
-/// Rotation and place as a session has them.
+/// Rotation, scale and position in a session's file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PlacementEntry {
     pub(crate) rotation: [f64; 4],

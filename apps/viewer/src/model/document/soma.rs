@@ -1,4 +1,4 @@
-//! How a soma is made.
+//! How a soma is generated.
 
 use std::collections::BTreeMap;
 
@@ -15,12 +15,12 @@ pub struct SomaEdit {
     pub poisson: f64,
     /// Factor on the radius.
     pub scale: f64,
-    /// The paper's octahedron instead of a cube.
+    /// Whether the reference sphere is the paper's octahedron instead of a cube.
     pub octahedron: bool,
-    /// Resolution of the reference sphere; 0: what fits.
+    /// Resolution of the reference sphere; 0: one that fits the neurites.
     pub level: u32,
     /// Positions of first rings by the neurite's number, from 0: see
-    /// [`GenerateOptions::rings`]. In a session: a list, with numbers from 1 as people see them.
+    /// [`GenerateOptions::rings`]. In a session's file: a list, with numbers from 1.
     #[serde(with = "rings", skip_serializing_if = "BTreeMap::is_empty")]
     pub rings: BTreeMap<u32, f64>,
 }
@@ -36,7 +36,7 @@ pub enum Method {
     Sphere,
     /// LiveMesh's radius function.
     Profile,
-    /// None.
+    /// No soma.
     None,
 }
 

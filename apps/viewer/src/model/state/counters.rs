@@ -1,39 +1,40 @@
-//! Figures of the picture, for its panel.
+//! Figures of the picture, for the level-of-detail panel.
 
-/// What a frame drew, for the panel.
+/// What a frame drew, and what it took.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counters {
     /// Triangles drawn, if counted.
     pub triangles: u64,
-    /// Patches drawn, and those there are.
+    /// Patches drawn, and all patches.
     pub patches: [u64; 2],
     /// Bytes on the device: of cells, and of pictures.
     pub bytes: [u64; 2],
     /// Milliseconds of the last frames.
     pub frames_ms: Vec<f32>,
-    /// How often the picture's parts were made.
+    /// How many times parts of the picture were rebuilt.
     pub rebuilds: Rebuilds,
-    /// How drafts are lowered.
+    /// How the quality of drafts is reduced.
     pub draft: Draft,
-    /// How the picture at rest is lowered, if it is.
+    /// How the quality of the picture at rest is reduced, if it is.
     pub lowered: Option<Lowered>,
 }
 
-/// How the picture at rest is less than what is asked for.
+/// How the quality of the picture at rest is reduced, so that the window stays responsive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lowered {
-    /// By exploration: triangles drawn, and those that half a pixel would take, once they are known.
+    /// By exploration mode: triangles drawn, and those needed for half a pixel, once they are
+    /// known.
     Triangles(Option<[u64; 2]>),
-    /// So many times the error.
+    /// By a greater error: the factor on it.
     Error(f32),
 }
 
-/// How what is drawn while something moves is less than the full picture.
+/// How the quality of drafts, which are drawn while something moves, is reduced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Draft {
-    /// At most so many triangles, for those that show most.
+    /// By a budget: the most triangles, which go to what is seen best.
     Budget(u32),
-    /// So many times the error.
+    /// By a greater error: the factor on it.
     Error(f32),
 }
 
@@ -43,16 +44,17 @@ impl Default for Draft {
     }
 }
 
-/// How often the picture's parts were made since the window opened: an idle frame makes none.
+/// How many times parts of the picture were rebuilt since the window opened: none of them in an
+/// idle frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rebuilds {
     /// Placements of all neurons.
     pub placements: u64,
-    /// Bounding spheres of all that shows.
+    /// Bounding spheres of the neurons that are shown.
     pub spheres: u64,
     /// Instances on the device.
     pub instances: u64,
-    /// Selected, ghosted: states of instances on the device.
+    /// States of instances on the device, such as highlighted and ghosted.
     pub states: u64,
     /// Meshes of templates on the device.
     pub templates: u64,

@@ -1,5 +1,5 @@
-//! What follows from the state and takes time that grows with the number of neurons: kept until what it
-//! follows from has another stamp.
+//! Values that are derived from the state in a time that grows with the number of neurons: kept
+//! until the revision of what they are derived from changes.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,19 +12,19 @@ use crate::model::revision::{Memo, Revision};
 use crate::model::sources::extent;
 use crate::model::totals::{self, Totals};
 
-/// From so many neurons on, a few spheres around each will do.
+/// From this number of neurons on, each has only a few bounding spheres.
 const MANY: usize = 64;
 
 /// What placements depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PlacementsKey {
-    /// Of the neurons.
+    /// Revision of the neurons.
     pub(crate) members: Revision,
-    /// Of the meshes, if neurons are side by side.
+    /// Revision of the meshes, if neurons are side by side.
     grid: Option<Revision>,
 }
 
-/// What the bounding spheres of all that shows depend on.
+/// What the bounding spheres of the neurons that are shown depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SpheresKey {
     placements: PlacementsKey,
@@ -32,7 +32,7 @@ pub(crate) struct SpheresKey {
     geometry: Revision,
 }
 
-/// What follows from the rest and takes time that grows with the number of neurons.
+/// Derived values.
 #[derive(Debug, Default)]
 pub(super) struct Derived {
     placements: Memo<PlacementsKey, Vec<Placement>>,
@@ -43,7 +43,7 @@ pub(super) struct Derived {
 }
 
 impl State {
-    /// Where all neurons are, in the order of the list.
+    /// Placements of all neurons, in the order of the list.
     pub fn placements(&self) -> Arc<Vec<Placement>> {
         let neurons = &self.document.neurons;
         self.derived.placements.get(self.placements_key(), || {
@@ -63,7 +63,7 @@ impl State {
         let grid = self.document.grid;
         PlacementsKey {
             members: self.document.neurons.revisions().members,
-            // Side by side, neurons need room for their meshes.
+            // Side by side, placements depend on the size of meshes.
             grid: grid.then(|| self.sources.geometry()),
         }
     }
@@ -80,13 +80,13 @@ impl State {
             .collect()
     }
 
-    /// Bounding spheres (µm) of all that shows.
+    /// Bounding spheres (µm) of the neurons that are shown.
     pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
         let derive = || self.spheres_where(|_| true);
         self.derived.spheres.get(self.spheres_key(), derive)
     }
 
-    /// What the spheres of all that shows depend on.
+    /// What the bounding spheres of the neurons that are shown depend on.
     pub(crate) fn spheres_key(&self) -> SpheresKey {
         SpheresKey {
             placements: self.placements_key(),
@@ -104,8 +104,8 @@ impl State {
             .collect()
     }
 
-    /// Spheres (µm) at the tracing points of what shows and fits: tighter than [`State::spheres`], to
-    /// frame it. Of many neurons a few spheres each.
+    /// Spheres (µm) at the tracing points of the neurons that are shown and fit `fits`: tighter
+    /// than [`State::spheres`], to fit a camera to. With many neurons a few spheres each.
     pub fn outline(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
         let placements = self.placements();
         let neurons = self.document.neurons.iter().zip(placements.iter());
@@ -140,7 +140,7 @@ impl State {
             .get((members, self.search.clone()), derive)
     }
 
-    /// Sums over what is selected; over all, if nothing is.
+    /// Sums over the selected neurons; over all if none is selected.
     pub(crate) fn totals(&self) -> Arc<Totals> {
         let neurons = &self.document.neurons;
         let key = (neurons.revisions(), self.sources.geometry());
@@ -157,7 +157,7 @@ impl State {
         self.derived.kinds.get(self.sources.geometry(), derive)
     }
 
-    /// How often what grows with the neurons was derived: placements, and spheres.
+    /// How many times placements and spheres were derived.
     pub(crate) fn derivations(&self) -> [u64; 2] {
         [
             self.derived.placements.derived(),

@@ -1,4 +1,4 @@
-//! All that the window shows, in one place; panels are functions of it.
+//! The state: all that the window shows. Panels are functions of it.
 
 mod counters;
 mod derived;
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use neurotess::render::Side;
 
 use crate::model::circuits::Circuits;
-use crate::model::command::{Ask, Command, Edit, Tab, Toggles};
+use crate::model::command::{Command, Edit, FilePurpose, Tab, Toggles};
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
 use crate::model::playback::Playback;
@@ -32,16 +32,16 @@ pub enum CellPart {
     Section(u32),
 }
 
-/// What the cursor is at or was clicked at.
+/// The part of a neuron that is under the cursor or was clicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Picked {
     /// Index among the neurons.
     pub neuron: usize,
-    /// Which part of it.
+    /// The part of it.
     pub part: CellPart,
 }
 
-/// Something that went wrong or was lowered, and why.
+/// Something that went wrong or is shown with reduced quality, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// The file or thing.
@@ -52,17 +52,17 @@ pub struct Problem {
 
 /// All that the window shows.
 pub struct State {
-    /// What can be undone and is saved.
+    /// The document, which is saved and whose edits can be undone.
     pub document: Document,
-    /// Documents before and after.
+    /// Earlier and later documents.
     pub history: History,
     /// Open tracings.
     pub sources: Sources,
     /// Open circuits.
     pub circuits: Circuits,
-    /// The recording's time, and how that goes on.
+    /// Playback of the recording.
     pub playback: Playback,
-    /// Where the camera is.
+    /// The camera's view.
     pub view: View,
     /// The side from which the view shows everything, until it is moved by hand.
     pub fitted: Option<Side>,
@@ -70,13 +70,13 @@ pub struct State {
     pub key_views: Vec<View>,
     /// The view that levels are frozen for.
     pub frozen: Option<View>,
-    /// What is under the cursor, in the picture or in the tree.
+    /// The part under the cursor, in the picture or in the tree.
     pub hovered: Option<Picked>,
-    /// The neurite whose ring's slider is touched.
+    /// The neurite whose ring's slider is under the cursor or being dragged.
     pub touched: Option<(SourceId, u32)>,
-    /// What was clicked last.
+    /// The part that was clicked last.
     pub picked: Option<Picked>,
-    /// What went wrong, in the order in which it did.
+    /// Problems, in the order in which they occurred.
     pub problems: Vec<Problem>,
     /// What was done last, for the status bar.
     pub status: String,
@@ -84,50 +84,50 @@ pub struct State {
     pub tab: Tab,
     /// Text to search the list by.
     pub search: String,
-    /// Which window is open over the others.
-    pub over: Over,
+    /// The dialog that is open.
+    pub dialog: Dialog,
     /// Whether the side panels show.
     pub panels: bool,
-    /// What is remembered between starts.
+    /// Settings, which are kept between starts.
     pub settings: Settings,
-    /// What is to be saved, and how.
+    /// Inputs of the panel that saves.
     pub save: SaveForm,
     /// Counters of the level of detail.
     pub counters: Counters,
-    /// The adapter, and whether it is software.
+    /// Name of the adapter, and whether it draws in software.
     pub adapter: (String, bool),
     /// The session's file, once there is one.
     pub session: Option<PathBuf>,
     /// Width by height of the picture.
     pub aspect: f64,
-    /// What is to be done beside the state.
+    /// What the program must do outside the state.
     pub effects: Vec<Effect>,
-    /// Commands that panels asked for.
+    /// Commands that panels have requested.
     pub requests: Vec<Command>,
-    /// A part to be scrolled to in the tree.
+    /// A part that the tree must scroll to.
     pub reveal: Option<Picked>,
     derived: Derived,
 }
 
-/// A window over the others.
+/// A dialog over the window.
 #[derive(Clone, Debug, Default)]
-pub enum Over {
+pub enum Dialog {
     /// None.
     #[default]
     Nothing,
-    /// Keys and mouse.
+    /// The list of keys and mouse actions.
     Keys,
-    /// Commands, with what is searched and which is chosen.
+    /// The palette of commands, with the search text and the index of the highlighted command.
     Palette(String, usize),
-    /// What went wrong.
+    /// The list of problems.
     Problems,
-    /// Files to choose.
-    Files(Ask),
-    /// Files exist: what to do if they may be replaced.
+    /// The file dialog.
+    Files(FilePurpose),
+    /// Asks whether an existing file may be replaced; the command to run if so.
     Replace(PathBuf, Box<Command>),
 }
 
-/// What a command asks of the program around.
+/// What a command makes the program do outside the state.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// Read files.
@@ -136,16 +136,16 @@ pub enum Effect {
     Reload,
     /// Write files.
     Save(SaveRequest),
-    /// End what is under way.
+    /// Cancel running tasks.
     Cancel,
-    /// Go to a view, smoothly.
+    /// Move the camera to a view.
     Go(View),
-    /// Leave.
+    /// Quit.
     Quit,
 }
 
 impl State {
-    /// Nothing open.
+    /// A state with nothing open.
     pub fn new(settings: Settings) -> Self {
         Self {
             document: Document {
@@ -168,7 +168,7 @@ impl State {
             status: String::new(),
             tab: Tab::default(),
             search: String::new(),
-            over: Over::Nothing,
+            dialog: Dialog::Nothing,
             panels: true,
             save: SaveForm::new(&settings),
             settings,
@@ -194,7 +194,7 @@ impl State {
         }
     }
 
-    /// Does a command.
+    /// Runs a command.
     pub fn run(&mut self, command: impl Into<Command>) {
         let command = command.into();
         if !matches!(command, Command::Edit(_)) {
@@ -216,7 +216,7 @@ impl State {
                 };
                 self.forget_what_is_gone();
             }
-            Command::AskFiles(ask) => self.over = Over::Files(ask),
+            Command::AskFiles(purpose) => self.dialog = Dialog::Files(purpose),
             Command::Open(paths) => {
                 self.settings.remember_files(&paths);
                 self.effects.push(Effect::Load(paths));
@@ -256,9 +256,9 @@ impl State {
             Command::SetPace(pace) => self.playback.pace = pace,
             Command::SetFrozen(frozen) => self.frozen = frozen.then_some(self.view),
             Command::Show(tab) => (self.tab, self.panels) = (tab, true),
-            Command::ToggleKeys => self.toggle(Over::Keys),
-            Command::TogglePalette => self.toggle(Over::Palette(String::new(), 0)),
-            Command::ToggleProblems => self.toggle(Over::Problems),
+            Command::ToggleKeys => self.toggle(Dialog::Keys),
+            Command::TogglePalette => self.toggle(Dialog::Palette(String::new(), 0)),
+            Command::ToggleProblems => self.toggle(Dialog::Problems),
             Command::SetDark(dark) => {
                 self.settings.dark = dark;
             }
@@ -294,14 +294,15 @@ impl State {
         self.effects.push(Effect::Save(request));
     }
 
-    /// Everything, from a side.
+    /// The view of everything from a side.
     fn fit(&self, side: Side) -> View {
         let spheres = self.outline(|_| true);
         self.view
             .fitted(side, self.settings.y_down, self.aspect, &spheres)
     }
 
-    /// The picture has another form: what was seen is still seen. Gives the view, if it is another one.
+    /// Adapts the view to another aspect ratio, so that the same things stay in the picture.
+    /// Returns the view if it has changed.
     pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
         let before = std::mem::replace(&mut self.aspect, aspect);
         if before == aspect || self.document.neurons.is_empty() {
@@ -313,9 +314,9 @@ impl State {
         })
     }
 
-    fn toggle(&mut self, over: Over) {
-        let same = std::mem::discriminant(&self.over) == std::mem::discriminant(&over);
-        self.over = if same { Over::Nothing } else { over };
+    fn toggle(&mut self, dialog: Dialog) {
+        let same = std::mem::discriminant(&self.dialog) == std::mem::discriminant(&dialog);
+        self.dialog = if same { Dialog::Nothing } else { dialog };
     }
 
     fn remember(&mut self) {
@@ -336,7 +337,7 @@ impl State {
         self.sources.get(neuron.source)
     }
 
-    /// Tells how saving ended.
+    /// Notes how saving ended.
     pub(crate) fn note_saved(&mut self, result: Result<String, String>) {
         match result {
             Ok(saved) => self.status = saved,
@@ -347,7 +348,7 @@ impl State {
         }
     }
 
-    /// Notes something that went wrong.
+    /// Adds a problem.
     pub fn problem(&mut self, what: impl Into<String>, why: impl Into<String>) {
         let problem = Problem {
             what: what.into(),

@@ -1,4 +1,4 @@
-//! What stands on the device, brought up to date: at once where that is quick, else beside.
+//! Brings the scene on the device up to date: at once if that is quick, else in the background.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,18 +15,19 @@ use crate::scene::colors::{ColorInputs, ColorRequest};
 use crate::scene::content::{self, BuildError, InstancesKey, SceneContent};
 use crate::scene::templates::{self, SceneTemplate};
 
-/// Cells up to which a soma is changed at once; with more, all colors are made anew beside.
+/// Greatest number of cells at which a changed soma is rebuilt at once; with more, in the
+/// background.
 const QUICK: usize = 24;
 
 pub(super) type Built = Result<BuiltScene, DeviceError>;
 
-/// What was made beside.
+/// What was built in the background.
 pub(super) struct BuiltScene {
-    /// Meshes and color keys on the device; none: they are what they were, only colors are others.
+    /// Templates on the device; none if meshes and color keys are unchanged and only colors differ.
     templates: Option<Templates>,
     content: SceneContent,
     colors: ColorInputs,
-    /// What the instances are of, but for the content's stamp.
+    /// Key of the instances, apart from the content's revision.
     instances: InstancesKey,
     problem: Option<(String, String)>,
 }
@@ -48,7 +49,7 @@ impl Stage {
         let built = match result {
             Ok(built) => built?,
             Err(why) => {
-                // The same would fail again.
+                // Not tried again: the same content would fail again.
                 self.checked = of;
                 state.problem("preparing the picture", why);
                 return Ok(());
@@ -78,7 +79,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Brings templates and colors on the device up to date: at once where that is quick, or beside.
+    /// Brings templates and colors on the device up to date: at once if that is quick, else in the
+    /// background.
     pub(super) fn update_templates(
         &mut self,
         state: &mut State,
@@ -152,7 +154,7 @@ impl Stage {
         self.adaptive.set_scene(scene);
         let instances = std::mem::take(&mut self.content.instances);
         self.content = SceneContent::new(sources, instances, colored);
-        // Other meshes for the same instances.
+        // The instances are the same, with other meshes.
         let revision = self.content.revision;
         self.instances = self.instances.map(|key| key.of_content(revision));
         self.progressive.set_colors(self.content.table.clone());
@@ -214,7 +216,7 @@ impl Before {
         }
     }
 
-    /// Whether other content has the same ones.
+    /// Whether other content has the same meshes and color keys.
     fn fits(&self, other: &SceneContent) -> bool {
         let mut pairs = self.meshes.iter().zip(&other.sources);
         self.meshes.len() == other.sources.len()

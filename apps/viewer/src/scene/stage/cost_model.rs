@@ -1,50 +1,53 @@
-//! What a full picture may cost. Where refining everything would hold the window up, exploration draws the
-//! picture at rest too, with as many triangles as there is time for.
+//! Estimates the time of a full picture. If refining everything would make the window unresponsive,
+//! exploration mode draws the picture at rest too, with as many triangles as there is time for.
 
-use neurotess::render::ViewParams;
 use neurotess::render::bounds::any_shows;
+use neurotess::render::{Frame, ViewParams};
 
-use super::{Stage, whole};
+use super::Stage;
 use crate::model::state::{Lowered, State};
 use crate::scene::content::SceneInstance;
 
-/// No slice of a full picture may be expected to take longer: no input is answered meanwhile.
+/// Longest time (ms) that a slice of a full picture may be expected to take, since the window does
+/// not respond meanwhile.
 const LIMIT_MS: f64 = 600.0;
-/// A slice of an explored picture should take no longer.
+/// Longest time (ms) that a slice should take in exploration mode.
 const EXPLORED_MS: f64 = 150.0;
-/// Triangles of an explored picture: at first, at least and at most.
+/// Triangles of a picture at rest in exploration mode: at first, at least and at most.
 const FIRST_BUDGET: u32 = 200_000;
 const LEAST_BUDGET: u32 = 50_000;
 const MOST_BUDGET: u32 = 2_000_000;
-/// Milliseconds of a slice for each patch that may show, until it was measured: in software, else.
+/// Milliseconds of a slice for each patch in view, until it was measured: in software, and on a
+/// GPU.
 const SOFTWARE_PATCH_MS: f64 = 2.5e-4;
 const PATCH_MS: f64 = 1e-5;
-/// Fewer patches are never too many: what a slice takes is not theirs.
+/// Fewer patches are never too many, since a slice then takes its time elsewhere.
 const FEW: u64 = 100_000;
 
 /// How the picture at rest is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RestMode {
-    /// As it is saved.
+    /// Refined, as it would be saved.
     Refined,
-    /// By the explorer, within a budget.
+    /// In exploration mode, within a budget.
     Explored,
-    /// As coarsely as drafts: what the explorer cannot draw.
+    /// As coarsely as drafts, if exploration mode cannot draw it.
     Coarser,
 }
 
-/// What was measured, and what follows.
+/// Measured times, and what follows from them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CostModel {
-    /// Milliseconds of a slice for each patch: now, and before anything was measured.
+    /// Milliseconds of a slice for each patch: current estimate, and the one before anything was
+    /// measured.
     patch_ms: f64,
     first_ms: f64,
-    /// Patches that are too many, if that is not to be measured.
+    /// Most patches that are not too many, if that is set instead of measured.
     most_patches: Option<u64>,
-    /// Triangles of an explored picture.
+    /// Triangles of a picture at rest in exploration mode.
     pub(super) budget: u32,
-    /// The quickest slice (ms) of the explored picture under way: the first also chooses and looks for
-    /// dark corners, and other work on the machine holds up one or another.
+    /// The fastest slice (ms) of the picture under way in exploration mode. Others may be slower,
+    /// since the first also selects and computes occlusion, and other programs use the machine.
     best_ms: f64,
 }
 
@@ -63,7 +66,7 @@ impl CostModel {
         }
     }
 
-    /// Whether a slice of so many patches is expected to take too long.
+    /// Whether a slice of this number of patches is expected to take too long.
     pub(super) fn too_many(&self, patches: u64) -> bool {
         match self.most_patches {
             Some(most) => patches > most,
@@ -71,36 +74,37 @@ impl CostModel {
         }
     }
 
-    /// Learns from a slice of the refined picture. The mean with what was known: shaders that are
-    /// compiled, or other work on the machine, hold up one slice, not all.
+    /// Updates the estimate from a slice of a refined picture. It is averaged with the old one,
+    /// since a single slice may be slow because of shader compilation or other programs.
     pub(super) fn note_refined(&mut self, took_ms: f64, patches: u64) {
         if patches >= FEW {
             self.patch_ms = (self.patch_ms * took_ms / patches as f64).sqrt();
         }
     }
 
-    /// Another picture is begun.
+    /// Notes that another picture begins.
     pub(super) fn begin(&mut self) {
         self.best_ms = f64::MAX;
     }
 
-    /// Learns from a slice of the explored picture.
+    /// Updates the estimate from a slice in exploration mode.
     pub(super) fn note_explored(&mut self, took_ms: f64) {
         self.best_ms = self.best_ms.min(took_ms);
     }
 
-    /// Another budget for the next explored picture; whether that is worth a picture now. `wanted`:
-    /// triangles that half a pixel everywhere would take.
-    pub(super) fn adapt(&mut self, inputs: u64) -> bool {
+    /// Adapts the budget of exploration mode. True if it is worth drawing the picture again.
+    /// `requested`: triangles that it would take to draw everything within half a pixel.
+    pub(super) fn adapt(&mut self, requested: u64) -> bool {
         let (before, took) = (self.budget, self.best_ms.max(1.0));
         self.best_ms = f64::MAX;
-        // What was slow once is tried again some time.
+        // The estimate falls slowly, so that refining is tried again some time after it was too
+        // slow.
         self.patch_ms = (0.95 * self.patch_ms).max(self.first_ms);
         let room = EXPLORED_MS / took;
         if room < 0.67 {
             let fits = f64::from(before) * room.max(0.25);
             self.budget = (fits as u32).max(LEAST_BUDGET);
-        } else if room > 1.5 && inputs > u64::from(before) {
+        } else if room > 1.5 && requested > u64::from(before) {
             let fits = f64::from(before) * room.min(4.0);
             self.budget = (fits as u32).min(MOST_BUDGET);
         }
@@ -109,15 +113,16 @@ impl CostModel {
 }
 
 impl Stage {
-    /// Takes more than so many patches in the picture for too expensive, whatever was measured: for tests.
+    /// Sets the number of patches above which a picture is too expensive, whatever was measured:
+    /// for tests.
     pub fn limit_patches(&mut self, most: Option<u64>) {
         self.cost_model.most_patches = most;
     }
 
-    /// Patches of all neurons of which something may show.
+    /// Patches of all neurons that may be in view.
     pub(super) fn patches_in(&self, state: &State, params: &ViewParams) -> u64 {
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
-        let frame = whole(camera, near, params.size);
+        let frame = Frame::whole(camera, near, params.size);
         let shows = |instance: &&SceneInstance| {
             let Some(source) = self.content.sources.get(instance.source) else {
                 return false;
@@ -153,7 +158,7 @@ impl Stage {
         }
     }
 
-    /// Learns from the slice that is done.
+    /// Updates the estimates from the last slice.
     pub(super) fn note_slice(&mut self, took_ms: f64) {
         match self.rest_mode {
             RestMode::Refined => self.cost_model.note_refined(took_ms, self.patches),
@@ -162,7 +167,7 @@ impl Stage {
         }
     }
 
-    /// How the picture at rest is less than it should be.
+    /// How the quality of the picture at rest is reduced.
     pub(super) fn lowered(&self) -> Option<Lowered> {
         match self.rest_mode {
             RestMode::Refined => None,
@@ -172,7 +177,7 @@ impl Stage {
     }
 }
 
-/// Exploration knows neither grids nor another camera.
+/// Whether exploration mode can draw the picture: it supports neither wireframes nor frozen levels.
 pub(super) fn explorable(params: &ViewParams) -> bool {
     params.look.wire <= 0.0 && params.frozen.is_none()
 }
@@ -187,7 +192,7 @@ mod tests {
         assert!(cost_model.too_many(20_000_000) && !cost_model.too_many(1_000_000));
         cost_model.note_refined(300.0, 1_000_000);
         assert!(!cost_model.too_many(2_000_000) && cost_model.too_many(2_400_000));
-        // Once held up is not slow.
+        // A single slow slice does not count as slow.
         cost_model.note_refined(800.0, 1_000_000);
         assert!(!cost_model.too_many(1_000_000));
         cost_model.note_refined(1600.0, 1_000_000);

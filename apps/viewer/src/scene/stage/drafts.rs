@@ -1,4 +1,4 @@
-//! What is drawn while something moves.
+//! Drafts, which are drawn while something moves.
 
 use std::time::{Duration, Instant};
 
@@ -16,16 +16,16 @@ use super::{PictureInputs, RestPhase, Stage};
 use crate::model::state::State;
 use crate::scene::content::{self, InstancesKey, StatesKey};
 
-/// A draft should take no longer.
+/// Longest time (ms) that a draft should take.
 const DRAFT_MS: f64 = 40.0;
-/// Drafts that are coarser than this have half as many pixels to each side.
+/// Drafts that are coarser than this have half the width and height.
 const HALF_FROM: f32 = 6.0;
-/// So many frame times are shown.
+/// Number of frame times that are shown.
 const FRAMES: usize = 90;
 
 impl Stage {
-    /// What the picture of now depends on. Takes no time that grows with the neurons while they stay as
-    /// they are.
+    /// What the current picture depends on. While the neurons stay the same, its time does not grow
+    /// with their number.
     pub(super) fn inputs(&mut self, state: &State, size: [u32; 2]) -> PictureInputs {
         let look = &state.document.look;
         let camera = state.view.camera();
@@ -80,7 +80,7 @@ impl Stage {
         }
     }
 
-    /// Draws at once and coarsely, as coarsely as it takes to keep up.
+    /// Draws a draft at once, so coarsely that frames do not take too long.
     pub(super) fn draft(
         &mut self,
         state: &State,
@@ -91,7 +91,7 @@ impl Stage {
         self.phase = RestPhase::Waits;
         self.progressive.stop();
         if self.progressive.is_busy(&self.gpu) {
-            // What was submitted must end first: drafts that pile up come too late.
+            // Waits for the draft before: if drafts piled up, they would be shown too late.
             ctx.request_repaint_after(Duration::from_millis(3));
             return Ok(());
         }
@@ -103,7 +103,7 @@ impl Stage {
             && explorable(&inputs.params)
             && self.cost_model.too_many(self.patches)
         {
-            // Refined, even a draft would take seconds.
+            // Refining even a draft would take seconds: waits for the proxies.
             ctx.request_repaint_after(Duration::from_millis(15));
             return Ok(());
         }
@@ -113,7 +113,8 @@ impl Stage {
         if self.states != Some(inputs.states) {
             self.set_states(state, inputs.states);
         }
-        // A selection moves nothing: the second click of two still finds what the first one did.
+        // If only the selection has changed, picking stays valid, so that the second click of a
+        // double click hits what the first one did.
         let before = self.drawn.map(|d| (d.params, d.instances));
         if before != Some((inputs.params, inputs.instances)) {
             self.picks = None;
@@ -123,7 +124,7 @@ impl Stage {
         self.counts = None;
         let any = !state.document.neurons.selected().is_empty();
         let outlines = Outlines {
-            // Looking for outlines takes time.
+            // No outlines if there is nothing to outline, since searching for them takes time.
             width: u32::from(any),
             ..OUTLINES
         };
@@ -137,7 +138,7 @@ impl Stage {
         Ok(())
     }
 
-    /// By the explorer where it can: it knows neither grids nor another camera.
+    /// Draws a draft, in exploration mode if possible.
     pub(super) fn draw_draft(&mut self, inputs: &PictureInputs) -> Result<(), DeviceError> {
         let mut params = inputs.params;
         let budget = self.explorer.budget();
@@ -152,7 +153,8 @@ impl Stage {
             return self.progressive.draft(&self.gpu, adaptive, &params);
         }
         self.adaptive.set_settings(AdaptiveSettings {
-            // Nothing is left out that would show at rest: holes that come and go look broken.
+            // Leaves out no patches that are drawn at rest, since holes that come and go would look
+            // broken.
             lod: inputs.detail.lod().coarser(self.coarser),
             smallest: inputs.detail.smallest,
             wireframe: params.look.wire > 0.0,
@@ -171,13 +173,13 @@ impl Stage {
         let instances = content::device_instances(&self.content.instances);
         match Scene::new(templates, instances) {
             Ok(scene) => self.adaptive.set_scene(scene),
-            // Placements are finite by construction; if not, all is built anew.
+            // Placements are always valid; if one should not be, everything is rebuilt.
             Err(_) => (self.colors, self.checked) = (None, None),
         }
         self.instances_are(key);
     }
 
-    /// Notes what the instances of the content are.
+    /// Notes the key of the content's instances.
     pub(super) fn instances_are(&mut self, key: InstancesKey) {
         self.shows = self.content.instances.iter().map(|s| !s.hidden).collect();
         self.instances = Some(key);
@@ -194,7 +196,7 @@ impl Stage {
         self.rebuilds.states += 1;
     }
 
-    /// Drafts become coarser where they take too long, and finer where there is time.
+    /// Makes drafts coarser if they take too long, and finer if there is time.
     pub(super) fn keep_up(&mut self) {
         let took = self.progressive.last_ms();
         self.note_frame(took);

@@ -1,4 +1,5 @@
-//! The present frame of a recording: values of the neurons that show, taken when they are read.
+//! The current frame of a recording: values of the neurons that are shown, once they have been
+//! read.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +14,7 @@ use crate::model::state::State;
 use crate::scene::colors::{ColorInputs, color_scheme};
 
 impl Stage {
-    /// Another recording shows, or none: it is read from now on.
+    /// Starts to read another recording, or none.
     pub(super) fn recording(&mut self, state: &mut State, ctx: &egui::Context) {
         let recording = self
             .content
@@ -32,7 +33,7 @@ impl Stage {
         self.tell(state);
     }
 
-    /// What the window knows of the recording.
+    /// Passes what is known of the recording to the window's state.
     fn tell(&self, state: &mut State) {
         let range = color_scheme(&state.document.look).range;
         let facts = self
@@ -52,7 +53,7 @@ impl Stage {
         }
     }
 
-    /// Other colors of the same values: nothing of the scene changes.
+    /// Uses other colors for the same values; nothing else of the scene changes.
     pub(super) fn restyle_values(&mut self, state: &mut State, key: ColorInputs) {
         let Some((recording, all)) = &self.content.recording else {
             return;
@@ -72,13 +73,14 @@ impl Stage {
         self.tell(state);
     }
 
-    /// Whether values are those of the neurons there are.
+    /// Whether values belong to the current neurons.
     pub(super) fn is_in_order(&self, state: &State) -> bool {
         let valued = self.content.table.values.instances();
         valued == 0 || valued == state.document.neurons.len()
     }
 
-    /// Takes the values of the present frame if they are read; whether they are other ones than before.
+    /// Takes the values of the current frame if they have been read. True if they differ from those
+    /// before.
     pub(super) fn take_values(&mut self, state: &mut State, ctx: &egui::Context) -> bool {
         self.values_due = false;
         let (Some(reader), Some(facts)) = (&self.reader, &state.playback.facts) else {

@@ -1,5 +1,5 @@
-//! The picture in the window: the scene on the device, drafts while something moves, the full picture at
-//! rest, and what is under the cursor. Nothing is drawn when nothing changes.
+//! The picture in the window: the scene on the device, drafts while something moves, the full
+//! picture at rest, and what is under the cursor. Nothing is drawn when nothing changes.
 
 mod building;
 mod cost_model;
@@ -18,8 +18,8 @@ use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::color::InstanceValues;
 use neurotess::render::overlay::Legend;
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Frame, Gpu, ProgressiveRenderer, Scene,
-    Tile, ViewParams,
+    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Gpu, ProgressiveRenderer, Scene,
+    ViewParams,
 };
 
 use crate::io::frames::FrameReader;
@@ -36,40 +36,40 @@ use cost_model::{CostModel, RestMode};
 pub(crate) use pointing::OUTLINES;
 use pointing::{MaskKey, Resolver};
 
-/// All that draws.
+/// Draws the picture in the window.
 pub struct Stage {
     gpu: Arc<Gpu>,
     render: RenderState,
     progressive: ProgressiveRenderer,
     adaptive: Adaptive,
     explorer: Explorer,
-    /// Whether the last draft was the explorer's.
+    /// Whether the last draft was drawn in exploration mode.
     explored: bool,
     texture: Option<(egui::TextureId, [u32; 2], bool)>,
-    /// What is on the device.
+    /// The scene on the device.
     content: SceneContent,
     colors: Option<ColorInputs>,
-    /// What the templates on the device were compared with last, and fitted.
+    /// The inputs that the templates on the device were last found to fit.
     checked: Option<Checked>,
-    /// What the instances on the device are of.
+    /// Key of the instances on the device.
     instances: Option<InstancesKey>,
-    /// By instance: whether it shows.
+    /// By instance: whether it is shown.
     shows: Arc<[bool]>,
-    /// What the states on the device are of.
+    /// Key of the states on the device.
     states: Option<StatesKey>,
-    /// Near planes of the picture's camera and of that of frozen levels.
+    /// Near planes of the picture's camera and of the camera of frozen levels.
     near: [Option<((Camera, SpheresKey), f64)>; 2],
     clip: Option<((Cut, SpheresKey), Option<Clip>)>,
     rebuilds: Rebuilds,
-    /// Of what was drawn last.
+    /// Legend of the picture that was drawn last.
     legend: Legend,
     building: Option<(Checked, Task<Built>)>,
-    /// Reads the recording that shows.
+    /// Reads the recording.
     reader: Option<FrameReader>,
     values: Option<Arc<InstanceValues>>,
-    /// Whether values of the present frame are not read yet.
+    /// Whether values of the current frame are still to be read.
     values_due: bool,
-    /// Whether values are other ones than those that were drawn.
+    /// Whether values have changed since they were drawn.
     revalued: bool,
     drawn: Option<PictureInputs>,
     moved: Instant,
@@ -78,19 +78,21 @@ pub struct Stage {
     slices: u32,
     frames: VecDeque<f32>,
     picks: Option<Picks>,
-    /// Whether `picks` are of the picture before this one.
+    /// Whether `picks` belong to an earlier picture.
     picks_stale: bool,
     resolver: Option<Resolver>,
     mask: Option<MaskKey>,
-    /// Triangles and patches of the picture at rest, and all patches, once they are counted.
+    /// Triangles and patches that the picture at rest draws, and all patches, once they are
+    /// counted.
     counts: Option<[u64; 3]>,
     cost_model: CostModel,
     rest_mode: RestMode,
     /// Patches of the neurons in the picture.
     patches: u64,
-    /// Triangles of the explored picture that are drawn, and that half a pixel would take, once they are known.
+    /// In exploration mode: triangles drawn, and those needed for half a pixel, once they are
+    /// known.
     surveyed: Option<[u64; 2]>,
-    /// Whether the last work was a slice, whose time tells something.
+    /// Whether the last work was a slice, whose time is measured.
     timed: bool,
 }
 
@@ -106,24 +108,24 @@ struct PictureInputs {
     instances: InstancesKey,
 }
 
-/// How far the full picture is.
+/// Phases of the full picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RestPhase {
-    /// Something moved a moment ago.
+    /// Waits, since something has just moved.
     Waits,
-    /// Slices are being made.
+    /// Slices are being drawn.
     Slices,
-    /// All is drawn by exploration; what it left out is asked for.
+    /// Everything is drawn in exploration mode; finds out what it left out.
     Surveys,
-    /// All is drawn.
+    /// Everything is drawn.
     Done,
 }
 
 impl Stage {
-    /// On a device that the window has.
+    /// A stage on the window's device.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device reports an error.
     pub fn new(render: RenderState) -> Result<Self, DeviceError> {
         let gpu = Gpu::share(&render.adapter, render.device.clone(), render.queue.clone());
         let progressive = ProgressiveRenderer::new(&gpu);
@@ -180,38 +182,38 @@ impl Stage {
         &self.gpu
     }
 
-    /// What is on the device.
+    /// The scene on the device.
     pub(crate) fn content(&self) -> &SceneContent {
         &self.content
     }
 
-    /// What the colors of the picture mean, also while others are being made.
+    /// The legend of the picture that is shown, also while other colors are being computed.
     pub fn legend(&self) -> &Legend {
         &self.legend
     }
 
-    /// Whether all that there is to draw is drawn.
+    /// Whether everything is drawn.
     pub fn is_settled(&self) -> bool {
         let drawn = self.phase == RestPhase::Done && self.drawn.is_some();
         drawn && self.building.is_none() && !self.values_due
     }
 
-    /// Whether values are those of the recording's present frame, in a draft or a better picture.
+    /// Whether the picture, perhaps a draft, shows the recording's current frame.
     pub fn shows_frame(&self) -> bool {
         !self.values_due && !self.revalued && self.drawn.is_some()
     }
 
-    /// Whether what shows is of the neurons and colors of now, in a draft at least.
+    /// Whether the picture, perhaps a draft, shows the current neurons and colors.
     pub fn is_drawn(&self) -> bool {
         self.drawn.is_some()
     }
 
-    /// Whether it is the full picture that shows, its first step at least, and no draft.
+    /// Whether the full picture is shown, or at least its first step, and not a draft.
     pub fn is_sharp(&self) -> bool {
         !self.progressive.shows_draft()
     }
 
-    /// Whether what was drawn last, perhaps a draft, is seen from here.
+    /// Whether the picture that was drawn last, perhaps a draft, has this camera.
     pub fn is_from(&self, camera: &Camera) -> bool {
         self.drawn
             .as_ref()
@@ -225,15 +227,15 @@ impl Stage {
             .map_or(800.0, |d| f64::from(d.params.size[1]))
     }
 
-    /// Share of the full picture that is made, while it is.
+    /// Share of the full picture that has been drawn, while it is under way.
     pub fn progress(&self) -> Option<f32> {
         self.progressive.progress()
     }
 
-    /// Draws what has changed; asks for another frame while there is more to draw.
+    /// Draws what has changed; requests another frame while there is more to draw.
     ///
     /// # Errors
-    /// What the device cannot do.
+    /// The device reports an error.
     pub fn update(
         &mut self,
         state: &mut State,
@@ -249,7 +251,7 @@ impl Stage {
             return Ok(None);
         }
         if self.building.is_some() && !self.is_in_order(state) {
-            // Neurons came or went: values are still those of others.
+            // Neurons were added or removed: the values do not belong to them yet.
             return Ok(self.texture_id());
         }
         self.revalued |= self.take_values(state, ctx);
@@ -291,7 +293,7 @@ impl Stage {
         [cells, self.progressive.bytes()]
     }
 
-    /// The picture for egui; the same number for as long as the texture is the same.
+    /// The picture's texture for egui; its id stays the same as long as the texture does.
     fn texture_id(&mut self) -> Option<egui::TextureId> {
         let texture = self.progressive.texture()?;
         let key = (
@@ -305,7 +307,7 @@ impl Stage {
         }
         let view = texture.create_view(&Default::default());
         let mut renderer = self.render.renderer.write();
-        // Drafts may be smaller than they are shown.
+        // Drafts may have fewer pixels than the window, and are scaled up.
         let filter = match key.1 {
             true => wgpu::FilterMode::Linear,
             false => wgpu::FilterMode::Nearest,
@@ -320,20 +322,5 @@ impl Stage {
         };
         self.texture = Some((id, key.0, key.1));
         Some(id)
-    }
-}
-
-/// A frame without tiles.
-fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
-    Frame {
-        camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
     }
 }

@@ -13,25 +13,26 @@ use crate::model::state::{Picked, State};
 use crate::scene::content;
 use crate::scene::picks::{CursorHit, Picks, seen};
 
-/// Wider lines would drown thin neurites.
+/// How outlines look: wider ones would hide thin neurites.
 pub(crate) const OUTLINES: Outlines = Outlines {
     width: 1,
     selected: content::SELECTION,
-    // No palette has it: types of neurites are blue, red, purple, green and gray.
+    // A color that no palette has for types of neurites: those are blue, red, purple, green and
+    // gray.
     hovered: [0, 190, 170],
 };
 
-/// What ids mean.
+/// Resolves picking ids of the picture that was drawn.
 pub(super) enum Resolver {
     Refined(PickResolver),
     Explored(ProxyPickResolver),
 }
 
 impl Resolver {
-    fn name(&self, id: PickId) -> Option<PickHit> {
+    fn resolve(&self, id: PickId) -> Option<PickHit> {
         match self {
-            Self::Refined(resolver) => resolver.name(id),
-            Self::Explored(resolver) => resolver.name(id),
+            Self::Refined(resolver) => resolver.resolve(id),
+            Self::Explored(resolver) => resolver.resolve(id),
         }
     }
 }
@@ -47,12 +48,12 @@ pub(super) struct MaskKey {
 }
 
 impl Stage {
-    /// What is seen at a pixel. Nothing while things move.
+    /// What is at a pixel. Nothing while something moves.
     pub fn hit_at(&self, x: f32, y: f32) -> Option<CursorHit> {
         self.picks.as_ref()?.at(x, y)
     }
 
-    /// Whether it is known what is where.
+    /// Whether it is known what is at each pixel of the current picture.
     pub fn can_pick(&self) -> bool {
         self.picks.is_some() && !self.picks_stale
     }
@@ -61,7 +62,7 @@ impl Stage {
         if self.resolver.is_none() {
             return Ok(());
         }
-        // Polls the device.
+        // Called to poll the device, so that ids arrive.
         let _ = self.progressive.is_busy(&self.gpu);
         let Some((size, ids)) = self.progressive.ids()? else {
             ctx.request_repaint_after(Duration::from_millis(5));
@@ -73,16 +74,17 @@ impl Stage {
         let content = &self.content;
         self.picks_stale = false;
         self.picks = Some(Picks::new(size, &ids, |id| {
-            let named = resolver.name(id)?;
-            let instances = content.instances.get(named.instance as usize)?;
-            let source = content.sources.get(instances.source)?;
-            seen(named, &source.generated.mesh, &instances.placement)
+            let hit = resolver.resolve(id)?;
+            let instance = content.instances.get(hit.instance as usize)?;
+            let source = content.sources.get(instance.source)?;
+            seen(hit, &source.generated.mesh, &instance.placement)
         }));
         ctx.request_repaint();
         Ok(())
     }
 
-    /// Outlines around what is selected and hovered, when that has changed.
+    /// Updates the outlines around selected neurons and the part under the cursor, if those have
+    /// changed.
     pub(super) fn outline(&mut self, state: &State) {
         let (Some(picks), Some(drawn), false) = (&self.picks, &self.drawn, self.picks_stale) else {
             return;

@@ -1,23 +1,23 @@
-//! The full picture, when nothing has moved for a while.
+//! The full picture, which is drawn when nothing has moved for a while.
 
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{AdaptiveSettings, DeviceError, Steps, VertexSource, ViewParams};
+use neurotess::render::{AdaptiveSettings, DeviceError, Frame, Steps, VertexSource, ViewParams};
 
 use super::cost_model::RestMode;
 use super::pointing::Resolver;
-use super::{RestPhase, Stage, whole};
+use super::{RestPhase, Stage};
 use crate::model::command::Tab;
 use crate::model::document::Detail;
 use crate::model::state::State;
 
-/// How long nothing must have moved before the full picture is made.
+/// Time without movement after which the full picture is drawn.
 pub(super) const REST: Duration = Duration::from_millis(130);
-/// A slice of a picture should take no longer.
+/// Longest time (ms) that a slice of a picture should take.
 const SLICE_MS: f64 = 120.0;
-/// Most slices of a step: beyond a million patches each is chosen for itself, so many would take longer
-/// together.
+/// Most slices of a step: beyond a million patches each slice selects anew, so that many slices
+/// would take longer in all.
 const MOST_SLICES: f64 = 3.0;
 
 impl Stage {
@@ -82,15 +82,16 @@ impl Stage {
             if self.rest_mode == RestMode::Refined
                 && self.select_rest_mode(&params) != RestMode::Refined
             {
-                // It would go on like this: begun anew, it is drawn otherwise.
+                // The next slices would be as slow: stops, and begins again in another mode.
                 self.progressive.stop();
                 self.phase = RestPhase::Waits;
                 return Ok(());
             }
         }
-        // As soon as the first step shows, the cursor may ask.
-        let asks = !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
-        self.timed = !asks;
+        // Ids for picking are drawn as soon as the first step is shown.
+        let identifies =
+            !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
+        self.timed = !identifies;
         let budget = self.cost_model.budget;
         let adaptive: &mut dyn VertexSource = match self.rest_mode {
             RestMode::Refined | RestMode::Coarser => &mut self.adaptive,
@@ -107,11 +108,11 @@ impl Stage {
                 }
             }
         };
-        if asks {
+        if identifies {
             self.progressive.identify(&self.gpu, adaptive, &params)?;
             self.resolver = match self.rest_mode {
                 RestMode::Refined | RestMode::Coarser => {
-                    Some(Resolver::Refined(self.adaptive.namer()))
+                    Some(Resolver::Refined(self.adaptive.resolver()))
                 }
                 RestMode::Explored => self.explorer.resolver().map(Resolver::Explored),
             };
@@ -127,19 +128,20 @@ impl Stage {
         Ok(())
     }
 
-    /// From the slice that is done.
+    /// Updates estimates from the slice that was drawn last.
     fn learn(&mut self) {
         let took = self.progressive.last_ms();
         self.note_frame(took);
         self.note_slice(took);
         if self.rest_mode == RestMode::Refined {
-            // For the next picture: slices of this one are laid out.
-            let inputs = f64::from(self.slices) * took / SLICE_MS;
-            self.slices = ((f64::from(self.slices) + inputs) / 2.0).clamp(1.0, MOST_SLICES) as u32;
+            // For the next picture, since the slices of this one are fixed.
+            let fitting = f64::from(self.slices) * took / SLICE_MS;
+            self.slices = ((f64::from(self.slices) + fitting) / 2.0).clamp(1.0, MOST_SLICES) as u32;
         }
     }
 
-    /// What the explored picture left out; where there is time for more, it is drawn once more.
+    /// Finds out what exploration mode left out. If there is time for more triangles, the picture
+    /// is drawn again.
     fn survey(&mut self) -> Result<(), DeviceError> {
         self.learn();
         self.phase = RestPhase::Done;
@@ -151,26 +153,26 @@ impl Stage {
             return Ok(());
         };
         let stats = adaptive.stats(&self.gpu)?;
-        self.surveyed = Some([stats.triangles, stats.wanted]);
-        if self.cost_model.adapt(stats.wanted) {
+        self.surveyed = Some([stats.triangles, stats.requested]);
+        if self.cost_model.adapt(stats.requested) {
             self.phase = RestPhase::Waits;
         }
         Ok(())
     }
 
-    /// Triangles and patches of the picture at rest, while somebody looks at their panel.
+    /// Counts triangles and patches of the picture at rest, while their panel is open.
     fn count(&mut self, state: &State) -> Result<(), DeviceError> {
         let Some(drawn) = self.drawn.as_ref().filter(|_| self.counts.is_none()) else {
             return Ok(());
         };
         let looked_at = state.tab == Tab::Detail && state.panels;
-        // Where it is explored, counting would take as long as drawing.
+        // In exploration mode, counting would take as long as drawing.
         if !looked_at || self.rest_mode != RestMode::Refined {
             return Ok(());
         }
         let params = drawn.params;
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
-        let frame = whole(camera, near, params.size);
+        let frame = Frame::whole(camera, near, params.size);
         self.adaptive.prepare(&self.gpu, &frame)?;
         let stats = self.adaptive.stats(&self.gpu)?;
         self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);

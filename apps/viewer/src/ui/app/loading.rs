@@ -1,4 +1,4 @@
-//! Files on their way into the list.
+//! Loading of files into the list.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ pub(super) struct Loading {
     circuits: Vec<CircuitId>,
     session: Option<Box<Session>>,
     failed: usize,
-    /// Nothing was open before: the camera goes home.
+    /// Whether nothing was open before, so that the camera must show everything.
     first: bool,
 }
 
@@ -71,7 +71,7 @@ impl Viewer {
         self.worker.load(request);
     }
 
-    /// All but the cells.
+    /// Takes all of a session but its cells.
     fn take_session(&mut self, file: &Path, session: &Session) {
         let state = &mut self.state;
         let settings = std::mem::take(&mut state.settings);
@@ -149,7 +149,8 @@ impl Viewer {
         if let Some(place) = loading.ids.get_mut(index) {
             *place = Some(id);
         }
-        // Cells of circuits and sessions come together, in their order, when all files are read.
+        // Cells of circuits and sessions are added together, in their order, when all files are
+        // read.
         let stands =
             loading.session.is_some() || loading.found.cells.iter().any(|cell| cell.file == index);
         if !stands {
@@ -170,7 +171,7 @@ impl Viewer {
         self.state.run(Command::Home);
         for effect in std::mem::take(&mut self.state.effects) {
             match effect {
-                // Nothing was there before: there is no way to go.
+                // Nothing was shown before, so there is nothing to fly from.
                 Effect::Go(view) => self.motion.jump(&mut self.state, view),
                 other => self.effect(other),
             }

@@ -1,4 +1,4 @@
-//! What comes back from the workers, and what they are asked for.
+//! Messages from the background tasks, and requests to them.
 
 use super::Viewer;
 use neurotess::generate::Generated;
@@ -55,15 +55,16 @@ impl Viewer {
             Ok(generated) => (Some(generated), None),
             Err(why) => (None, Some(why)),
         };
-        // What failed is not tried again until it is asked for otherwise.
+        // A soma that failed is not generated again until its edit changes.
         self.state.sources.set_soma(id, edit, generated);
         if let Some(why) = why {
             self.state.problem(name.unwrap_or_default(), why);
         }
     }
 
-    /// Somata that are not as the document wants them are made again, one at a time, the newest edit of each.
-    pub(super) fn want_somata(&mut self) {
+    /// Requests somata that differ from the document's edits: one at a time, by the newest edit of
+    /// each.
+    pub(super) fn request_somata(&mut self) {
         if self.worker.is_remeshing() {
             return;
         }

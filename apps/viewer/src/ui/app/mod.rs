@@ -24,43 +24,43 @@ use crate::ui::motion::Motion;
 use crate::ui::panels::{self, Screen};
 use loading::Loading;
 
-/// The whole program, without its frame.
+/// The whole program, without the desktop's window.
 pub struct Viewer {
-    /// All that shows.
+    /// The state.
     pub state: State,
-    /// What draws.
+    /// The stage, which draws the picture.
     pub stage: Stage,
     worker: Worker,
     /// A loading: what was found, and its cells by file.
     loading: Option<Loading>,
-    /// What is to be read after it.
+    /// Paths to be opened after it.
     waiting: Vec<PathBuf>,
     motion: Motion,
     files: Option<FilePanel>,
-    /// What is fatal: the device is lost.
+    /// The error that ends the program: the device is lost.
     pub fatal: Option<String>,
     quits: bool,
     theme: Option<(bool, u32)>,
     remembered: Settings,
-    /// Somata of what is opened first.
+    /// How the somata of files that are opened first are generated.
     soma: SomaEdit,
-    /// When the recording's time was looked at last.
+    /// When the recording's time was last advanced.
     ticked: Instant,
-    /// Where the session is saved when the program must end.
+    /// Folder that the session is saved in when the program must end.
     rescue: PathBuf,
-    /// Stamps of neurons, edits of somata and meshes when every mesh was as its edit wants it.
+    /// Revisions of neurons, edits of somata and meshes at which all meshes fitted their edits.
     somata_checked: Option<[Revision; 3]>,
-    hears: Option<Hears>,
+    listener: Option<CommandListener>,
 }
 
-/// Told of every command before it runs.
-pub type Hears = Box<dyn Fn(&Command)>;
+/// Called with every command before it runs.
+pub type CommandListener = Box<dyn Fn(&Command)>;
 
 impl Viewer {
-    /// In a window that has a device.
+    /// A viewer in a window that has a device.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device reports an error.
     pub fn new(
         ctx: &egui::Context,
         render: RenderState,
@@ -88,35 +88,36 @@ impl Viewer {
             ticked: Instant::now(),
             rescue: crate::model::settings::folder().unwrap_or_default(),
             somata_checked: None,
-            hears: None,
+            listener: None,
         })
     }
 
-    /// A session that must be rescued goes to this folder instead of that of the settings.
+    /// Sets the folder that the session is saved in when the program must end, instead of the
+    /// settings' folder.
     pub fn with_rescue(mut self, folder: PathBuf) -> Self {
         self.rescue = folder;
         self
     }
 
-    /// Somata of what is opened first are made so.
+    /// Sets how the somata of files that are opened first are generated.
     pub fn with_soma(mut self, soma: SomaEdit) -> Self {
         self.soma = soma;
         self
     }
 
-    /// Tells somebody of every command before it runs.
-    pub fn with_hearing(mut self, hears: Hears) -> Self {
-        self.hears = Some(hears);
+    /// Sets the function that is called with every command before it runs.
+    pub fn with_listener(mut self, listener: CommandListener) -> Self {
+        self.listener = Some(listener);
         self
     }
 
-    /// Views change at once: for tests.
+    /// Makes views change at once: for tests.
     pub fn without_motion(mut self) -> Self {
         self.motion.set_smooth(false);
         self
     }
 
-    /// Whether nothing is under way: all that is to be read is, and all is drawn.
+    /// Whether no task is running and everything is drawn.
     pub fn is_settled(&self) -> bool {
         let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
         !self.worker.is_busy() && !self.motion.is_flying() && self.loading.is_none() && drawn
@@ -141,7 +142,7 @@ impl Viewer {
             ctx.request_repaint();
         }
         self.do_effects(&ctx);
-        self.want_somata();
+        self.request_somata();
         self.note_settings();
         self.end_input(&ctx);
         if self.quits {
@@ -149,7 +150,7 @@ impl Viewer {
         }
     }
 
-    /// Shows everything; what cannot go on is kept in `fatal`.
+    /// Shows all panels; keeps an error that ends the program in `fatal`.
     fn show_panels(&mut self, ui: &mut egui::Ui) {
         let mut screen = Screen {
             state: &mut self.state,
@@ -194,7 +195,7 @@ impl Viewer {
         }
     }
 
-    /// Lets the recording's time go on by the clock.
+    /// Advances the recording by the clock.
     fn tick(&mut self) {
         let seconds = self.ticked.elapsed().as_secs_f64();
         self.ticked = Instant::now();
@@ -218,7 +219,7 @@ impl Viewer {
         }
     }
 
-    /// Does what is asked of the program around.
+    /// Carries out the effects of commands.
     fn do_effects(&mut self, ctx: &egui::Context) {
         for effect in std::mem::take(&mut self.state.effects) {
             self.effect(effect);
@@ -226,7 +227,8 @@ impl Viewer {
         }
     }
 
-    /// Runs the shortcuts of this frame, in their order: what one changes counts for the next.
+    /// Runs the shortcuts of this frame, in their order. A shortcut's effect may change what the
+    /// next one does.
     fn shortcuts(&mut self, ctx: &egui::Context) {
         let pressed = ctx.with_plugin(Input::take_pressed).unwrap_or_default();
         for keys in pressed {
@@ -239,9 +241,9 @@ impl Viewer {
         }
     }
 
-    /// Tells the input what is open, for the next frame.
+    /// Passes on to the input which dialog is open, for the next frame.
     fn end_input(&self, ctx: &egui::Context) {
-        let open = (&self.state.over).into();
+        let open = (&self.state.dialog).into();
         let waits = ctx.with_plugin(|input: &mut Input| {
             input.set_open(open);
             input.waits()
@@ -251,16 +253,16 @@ impl Viewer {
         }
     }
 
-    /// Does a command, and tells whoever listens.
+    /// Calls the listener with a command and runs it.
     fn run(&mut self, command: Command) {
-        if let Some(hears) = &self.hears {
-            hears(&command);
+        if let Some(listener) = &self.listener {
+            listener(&command);
         }
         self.state.run(command);
     }
 }
 
-/// What is said of a lost device.
+/// The message for a lost device.
 pub(crate) fn lost(why: &str) -> String {
     format!("the graphics device was lost ({why})")
 }

@@ -1,4 +1,4 @@
-//! What goes to files.
+//! Saving of sessions, meshes, pictures and settings.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::scene::content;
 use crate::scene::pictures::{StillScene, pictures};
 
 impl Viewer {
-    /// Saves the session before the program ends by itself; what to say.
+    /// Saves the session before the program ends because of an error. Returns the message.
     pub(crate) fn rescue(&self, lost: &str) -> String {
         if self.state.document.neurons.is_empty() {
             return format!("{lost}: start again, or choose another one by NEUROTESS_ADAPTER");
@@ -29,7 +29,8 @@ impl Viewer {
 
     pub(super) fn save(&mut self, request: SaveRequest) {
         if let SaveRequest::Session(path) = &request {
-            // It is small, and written at once, whatever else is being written.
+            // A session is small, so it is written at once, also while other files are being
+            // written.
             return self.save_session(path);
         }
         if self.worker.is_saving() {
@@ -140,7 +141,7 @@ impl Viewer {
         }
     }
 
-    /// Writes what is remembered, if it has changed.
+    /// Writes the settings, if they have changed.
     pub fn remember(&mut self) {
         self.note_settings();
         if let Err(why) = settings::write_noted() {
@@ -148,7 +149,7 @@ impl Viewer {
         }
     }
 
-    /// Notes what is remembered, if it has changed: who ends the program writes it.
+    /// Notes the settings, if they have changed, to be written if the program is interrupted.
     pub(super) fn note_settings(&mut self) {
         if self.state.settings != self.remembered {
             self.remembered = self.state.settings.clone();

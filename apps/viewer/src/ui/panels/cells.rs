@@ -60,7 +60,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
         ui.separator();
         tree_of(state, picked.neuron, &mut hovered, ui);
     }
-    // What is hidden has no place in the picture that could be marked.
+    // Hidden neurons are not in the picture, so that they cannot be outlined.
     let neurons = &state.document.neurons;
     let shows = |p: &Picked| neurons.get(p.neuron).is_some_and(|n| !n.hidden);
     if hovered.as_ref().is_some_and(shows) {
@@ -68,7 +68,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     }
 }
 
-/// With so few neurons nobody needs to search.
+/// Greatest number of neurons without a search field.
 const FEW: usize = 8;
 
 fn list(
@@ -118,7 +118,7 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
         if ui.checkbox(&mut shown, "").tip(says).changed() {
             state.requests.push(Edit::SetHidden(index, !shown).into());
         }
-        // From the right: what is said of it, then its name in what is left.
+        // From right to left: figures first, then the name in the remaining width.
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             match stale {
                 Some(Stale::Changed) => {
@@ -146,7 +146,7 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
     });
 }
 
-/// What the cursor does on the name of a neuron.
+/// Handles the cursor and clicks on the name of a neuron.
 fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &mut Option<Picked>) {
     let soma = Picked {
         neuron: index,
@@ -212,7 +212,7 @@ fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &
                     neurite(&mut leaf, &morphology, &facts, index, ui);
                 }
             }
-            // Where a neurite's lines still unfold, the one that is wanted goes on moving.
+            // While the lines of a neurite unfold, the revealed one moves: the request is repeated.
             if leaf.opening {
                 leaf.state.reveal = reveal;
             }
@@ -225,7 +225,7 @@ struct Leaf<'a> {
     neuron: usize,
     hovered: &'a mut Option<Picked>,
     reveal: Option<Picked>,
-    /// Lines that hold what is to be revealed are not all there yet.
+    /// Whether lines around the part to be revealed are still unfolding.
     opening: bool,
 }
 
@@ -309,7 +309,7 @@ fn neurite(
     }
 }
 
-/// Kind of a section for people.
+/// Kind of a section as text.
 pub(super) fn kind_name(morphology: &Morphology, section: usize) -> String {
     let id = SectionId(section as u32);
     let name = morphology.sections[id.index()]

@@ -1,4 +1,4 @@
-//! The level of detail, with what it costs.
+//! The level of detail, and the time and memory that it takes.
 
 use std::ops::RangeInclusive;
 
@@ -142,7 +142,7 @@ fn counters(state: &State, ui: &mut Ui) {
     }
 }
 
-/// Milliseconds of the last frames; a line at 16.7 and at 100.
+/// A graph of the milliseconds of the last frames, with lines at 16.7 and 100.
 fn graph(frames: &[f32], ui: &mut Ui) {
     let size = vec2(ui.available_width().min(260.0), 64.0);
     let (response, painter) = ui.allocate_painter(size, Sense::hover());

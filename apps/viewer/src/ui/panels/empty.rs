@@ -1,9 +1,9 @@
-//! The window before anything is open: how to begin.
+//! Shown before anything is open: how to begin.
 
 use eframe::egui::{self, Align, Layout, RichText};
 use neurotess::synth::Kind;
 
-use crate::model::command::{Ask, Command};
+use crate::model::command::{Command, FilePurpose};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, reading: bool, ui: &mut egui::Ui) {
@@ -20,7 +20,7 @@ pub(super) fn show(state: &mut State, reading: bool, ui: &mut egui::Ui) {
         }
         let open = egui::Button::new(RichText::new("Open…").size(17.0)).min_size([190.0, 38.0].into());
         if ui.add(open).clicked() {
-            state.requests.push(Command::AskFiles(Ask::Open));
+            state.requests.push(Command::AskFiles(FilePurpose::Open));
         }
         ui.add_space(4.0);
         ui.weak("or drop files and folders here: SWC, ASC, H5, NeuroML, SONATA circuits, scenes, sessions");

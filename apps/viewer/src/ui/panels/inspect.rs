@@ -1,4 +1,4 @@
-//! Morphometrics of what is selected.
+//! Morphometrics of the selection.
 
 use eframe::egui::{self, RichText};
 use neurotess::morphology::{Measures, NeuriteKind};
@@ -63,7 +63,7 @@ fn buttons(state: &mut State, ui: &mut egui::Ui) {
     });
 }
 
-/// What was clicked of the cell.
+/// The part of the cell that was clicked.
 fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
     let Some(picked) = state.picked.filter(|p| p.neuron == neuron) else {
         return;
@@ -120,7 +120,7 @@ fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
     }
 }
 
-/// The soma as it was rebuilt; as it was traced stands below, with the cell's figures.
+/// The generated soma; the traced one is below, with the cell's figures.
 fn soma(source: &Source, ui: &mut egui::Ui) {
     heading(ui, "Soma");
     let generated = &source.generated;
@@ -204,7 +204,7 @@ fn cell(source: &Source, ui: &mut egui::Ui) {
     );
     if !source.warnings.is_empty() {
         heading(ui, "Notes on the tracing and its mesh");
-        // What somebody should look into comes first.
+        // Warnings that the user should look into come first.
         for concerns in [true, false] {
             for note in source.warnings.iter().filter(|w| w.concerns == concerns) {
                 let text = RichText::new(format!("• {}", note.text)).small();
@@ -233,7 +233,7 @@ fn by_type(m: &Measures, ui: &mut egui::Ui) {
     }
 }
 
-/// Of what is selected, or of all.
+/// Sums over the selected neurons, or over all.
 fn sums(state: &State, ui: &mut egui::Ui) {
     let sums = state.totals();
     heading(ui, "Totals");

@@ -1,4 +1,4 @@
-//! Colors, light, what is shown of cells.
+//! Colors, light, and which parts of cells are shown.
 
 use eframe::egui::{self, ComboBox, Ui};
 use neurotess::render::color::{ColorMap, Palette};
@@ -7,7 +7,7 @@ use neurotess::render::overlay::Legend;
 use super::heading;
 use super::number::{field, slider};
 use super::tip::Tip;
-use crate::model::command::{Ask, Command, Edit};
+use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
 
@@ -51,7 +51,7 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
         look.color_by = before;
         state.requests.push(match state.circuits.reports().pop() {
             Some((_, file)) => Edit::SetReport(Some(file)).into(),
-            None => Command::AskFiles(Ask::Report),
+            None => Command::AskFiles(FilePurpose::Report),
         });
     }
     if look != state.document.look {
@@ -74,7 +74,7 @@ fn colors(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
             .show_ui(ui, |ui| {
                 let circuits = state.circuits.iter().next().is_some();
                 for (by, name) in ColorBy::ALL {
-                    // A tracing alone has neither.
+                    // Tracings without a circuit have neither attributes nor values.
                     if circuits || by.is_of_tracings() || by == look.color_by {
                         ui.selectable_value(&mut look.color_by, by, name);
                     }
@@ -155,7 +155,7 @@ fn attribute(state: &State, look: &mut Look, ui: &mut Ui) {
     ui.end_row();
 }
 
-/// Which report: those that circuits name, or another file.
+/// Selects a report: one that circuits name, or another file.
 fn report(state: &mut State, ui: &mut Ui) {
     let reports = state.circuits.reports();
     let shown = state.document.report.clone();
@@ -175,7 +175,7 @@ fn report(state: &mut State, ui: &mut Ui) {
                 }
             }
             if ui.selectable_label(false, "another file…").clicked() {
-                state.requests.push(Command::AskFiles(Ask::Report));
+                state.requests.push(Command::AskFiles(FilePurpose::Report));
             }
         });
     ui.end_row();

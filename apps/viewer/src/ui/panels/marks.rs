@@ -1,5 +1,5 @@
-//! What lies over the picture for a moment: the ring that a slider moves, and while things move what the
-//! cursor was at. At rest the picture itself has outlines, exact to the pixel.
+//! Marks that are drawn over the picture: the ring that a slider moves, and, while something moves,
+//! the part under the cursor. At rest the picture itself has outlines, exact to the pixel.
 
 use eframe::egui::{Color32, Painter, Pos2, Rect, Stroke, vec2};
 use glam::DVec3;
@@ -11,10 +11,10 @@ use crate::model::sources::Source;
 use crate::model::state::{CellPart, Picked, State};
 use crate::scene::stage::OUTLINES;
 
-/// Points of a circle as it is drawn.
+/// Number of points that a circle is drawn with.
 const ROUND: usize = 48;
 
-/// From cells to points of the window.
+/// Projects positions (µm) to points of the window.
 struct Projection<'a> {
     camera: Camera,
     rect: Rect,
@@ -25,13 +25,13 @@ struct Projection<'a> {
 impl Projection<'_> {
     fn at(&self, point: DVec3) -> Option<Pos2> {
         let place = self.placement.world_from_cell(self.origin + point);
-        // Sixteenths of a point.
+        // In sixteenths of a point, since sizes are whole numbers.
         let size = [self.rect.width(), self.rect.height()].map(|n| (16.0 * n) as u32);
         let [x, y] = self.camera.pixel_of(place, size)?;
         Some(self.rect.min + vec2(x as f32, y as f32) / 16.0)
     }
 
-    /// Points of the window that a length (µm) takes at a place.
+    /// Length in points of the window of a length (µm) at a position.
     fn wide(&self, point: DVec3, length: f64) -> f32 {
         let place = self.placement.world_from_cell(self.origin + point);
         let slope = self.camera.pixel_slope(f64::from(self.rect.height()));
@@ -73,7 +73,7 @@ pub(super) fn rings(state: &State, rect: Rect, painter: &Painter) {
 
 fn circle(projection: &Projection<'_>, ring: &FirstRing, painter: &Painter) {
     let (across, along) = ring.outwards.any_orthonormal_pair();
-    // Far away a ring is a dot that still can be found.
+    // From far away a ring is drawn as a dot that is large enough to be found.
     let point = f64::from(projection.wide(ring.center, 1.0)).max(1e-9);
     let radius = (1.08 * ring.radius).max(5.0 / point);
     round(
@@ -98,7 +98,7 @@ fn round(projection: &Projection<'_>, center: DVec3, [a, b]: [DVec3; 2], painter
     }
 }
 
-/// Lines beside what the cursor is at, for drafts.
+/// Lines beside the part under the cursor, for drafts.
 pub(super) fn hovered(state: &State, rect: Rect, painter: &Painter) {
     let Some(Picked { neuron, part }) = state.hovered else {
         return;

@@ -1,14 +1,14 @@
-//! Panels: plain functions of the state that ask for commands.
+//! Panels: plain functions of the state that request commands.
 
 mod cells;
 mod detail;
+mod dialogs;
 mod empty;
 mod inspect;
 mod look;
 mod marks;
 mod menu;
 mod number;
-mod over;
 mod rings;
 mod save;
 mod soma;
@@ -35,15 +35,15 @@ pub(crate) struct Screen<'a> {
     pub(crate) state: &'a mut State,
     pub(crate) stage: &'a mut Stage,
     pub(crate) motion: &'a mut Motion,
-    /// The panel of files, while it is open.
+    /// The file dialog, while it is open.
     pub(crate) files: &'a mut Option<FilePanel>,
-    /// Reading and saving, if they are under way.
+    /// Progress of reading and of saving, while they run.
     pub(crate) tasks: [Option<Progress>; 2],
-    /// Why the picture could not be drawn.
+    /// The error, if the picture could not be drawn.
     pub(crate) failed: Option<DeviceError>,
 }
 
-/// Everything.
+/// Shows all panels.
 pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let ctx = ui.ctx().clone();
     let before = screen.state.hovered.take();
@@ -58,7 +58,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
         Panel::bottom("time").show(ui, |ui| timeline::show(screen.state, &facts, ui));
     }
     if screen.state.panels && any {
-        // In a narrow window the picture keeps a third.
+        // Also in a narrow window, a third is left for the picture.
         let all = ui.available_width();
         let sized = |panel: Panel, [least, usual]: [f32; 2], share: f32| {
             let most = share * all;
@@ -81,11 +81,11 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
             empty::show(screen.state, reads, ui);
         }
     });
-    over::show(screen.state, screen.files, &ctx);
-    over::hover(&ctx);
+    dialogs::show(screen.state, screen.files, &ctx);
+    dialogs::hover(&ctx);
 }
 
-/// What is wider than its panel is cut off: it would push the panel over the picture.
+/// Clips what is wider than its panel, since it would push the panel over the picture.
 fn kept_in(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
     let rect = ui.available_rect_before_wrap();
     let mut inner = ui.new_child(UiBuilder::new().max_rect(rect));
@@ -194,7 +194,7 @@ fn figures(ui: &mut egui::Ui, id: &str, rows: &[(&str, String)]) {
         });
 }
 
-/// A box that stands on the picture.
+/// The frame of a box over the picture.
 fn plate(ui: &egui::Ui) -> Frame {
     Frame::new()
         .fill(ui.visuals().window_fill.gamma_multiply(0.92))
@@ -208,7 +208,7 @@ pub(crate) fn grouped(number: u64) -> String {
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            // No line is broken here.
+            // A space that breaks no line.
             text.push('\u{a0}');
         }
         text.push(digit);
@@ -216,7 +216,7 @@ pub(crate) fn grouped(number: u64) -> String {
     text
 }
 
-/// A length, area or volume with as many digits as mean something.
+/// A length, area or volume, rounded to significant digits.
 fn measured(value: f64, unit: &str) -> String {
     let a = value.abs();
     if a >= 10_000.0 {
@@ -230,7 +230,7 @@ fn measured(value: f64, unit: &str) -> String {
     }
 }
 
-/// Keys as they stand on the keyboard: `?`, not "Questionmark".
+/// Keys with the signs of the keyboard: `?`, not "Questionmark".
 fn keys_text(ui: &egui::Ui, keys: &egui::KeyboardShortcut) -> String {
     let key = keys.logical_key;
     let text = ui.ctx().format_shortcut(keys);

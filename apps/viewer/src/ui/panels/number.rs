@@ -1,12 +1,12 @@
-//! Numbers on sliders and in fields. The toolkit's own write back what they show: a number that is rounded
-//! or limited, though nobody has touched it. These change a number only where somebody does.
+//! Sliders and fields for numbers. Those of egui write back the number as they show it, rounded or
+//! limited, even if the user has not touched it. These change a number only if the user does.
 
 use std::ops::RangeInclusive;
 
 use eframe::egui::emath::{Numeric, round_to_decimals};
 use eframe::egui::{DragValue, Response, Slider, SliderClamping, Ui};
 
-/// A slider of a number, which shows so many decimals; none: as many as fit.
+/// A slider for a number. `decimals`: how many are shown; none: as many as fit.
 pub(super) fn slider<N: Numeric>(
     ui: &mut Ui,
     value: &mut N,
@@ -26,7 +26,7 @@ pub(super) fn slider<N: Numeric>(
     })
 }
 
-/// A field of a number, to drag or to type, with at most so many decimals.
+/// A field for a number, to be dragged or typed, with at most this number of decimals.
 pub(super) fn field<N: Numeric>(
     ui: &mut Ui,
     value: &mut N,
@@ -45,7 +45,8 @@ pub(super) fn field<N: Numeric>(
     })
 }
 
-/// Lets somebody change what shows of a number; the number changes only with that.
+/// Shows a control with the rounded number, and changes the number only if the user has changed
+/// that.
 fn edit<N: Numeric>(
     value: &mut N,
     decimals: Option<usize>,
@@ -54,7 +55,7 @@ fn edit<N: Numeric>(
 ) -> Response {
     let number = value.to_f64();
     let rounded = decimals.map_or(number, |decimals| round_to_decimals(number, decimals));
-    // What is no number shows as the least, until somebody changes it.
+    // NaN is shown as the least number until the user changes it.
     let shown = if rounded.is_finite() {
         rounded
     } else {

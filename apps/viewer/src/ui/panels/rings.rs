@@ -1,4 +1,5 @@
-//! Sliders of first rings: where each neurite leaves its soma. What is touched is shown in the picture.
+//! Sliders of first rings, where neurites leave their soma. The ring of the slider in use is shown
+//! in the picture.
 
 use eframe::egui::{Button, Color32, Label, RichText, Sense, Ui};
 
@@ -15,7 +16,7 @@ struct Row {
     neurite: u32,
     name: String,
     color: Color32,
-    /// Where the ring is; where it is requested to be.
+    /// Current position of the ring, and the requested one.
     position: f64,
     requested: Option<f64>,
 }
@@ -53,7 +54,7 @@ fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
     let palette = state.document.look.palette;
     let mut rows: Vec<Row> = Vec::new();
     for ring in &source.generated.rings {
-        // A neurite that forks inside the soma has several rings, which go together.
+        // A neurite that forks inside the soma has several rings, which are moved together.
         if rows.iter().any(|row| row.neurite == ring.neurite) {
             continue;
         }
@@ -105,7 +106,7 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
         }
     });
     ui.horizontal(|ui| {
-        // No tooltip: it would hide the ring that moves.
+        // Without a tooltip, which would hide the moving ring.
         let response = slider(ui, &mut value, 0.0..=2.0, Some(2), |slider| slider);
         touched |= response.hovered() || response.dragged() || response.has_focus();
         let ended = response.drag_stopped() || response.lost_focus();
@@ -132,7 +133,7 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
     }
 }
 
-/// The neurite shows in the picture as if the cursor were on it, and its ring with it.
+/// Shows the neurite in the picture as if it were under the cursor, and its ring.
 fn touch(state: &mut State, id: SourceId, neurite: u32) {
     state.touched = Some((id, neurite));
     let neurons = &state.document.neurons;

@@ -1,4 +1,4 @@
-//! Meshes, pictures, films, sessions.
+//! Saves meshes, pictures, films and sessions.
 
 use std::path::PathBuf;
 
@@ -12,10 +12,10 @@ use super::heading;
 use super::number::field;
 use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
-use crate::model::command::{Ask, Command};
+use crate::model::command::{Command, FilePurpose};
 use crate::model::film::length;
 use crate::model::save::{FilmOptions, MeshLod, PictureFile};
-use crate::model::state::{Over, State};
+use crate::model::state::{Dialog, State};
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
@@ -31,14 +31,16 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     heading(ui, "Session");
     ui.weak("Keeps the files, the view, the look, soma settings, and what is hidden and selected, to continue later.");
     if ui.button("Save session…").clicked() {
-        state.requests.push(Command::AskFiles(Ask::SaveSession));
+        state
+            .requests
+            .push(Command::AskFiles(FilePurpose::SaveSession));
     }
 }
 
 /// Asks before files are replaced.
-fn ask(state: &mut State, out: PathBuf, exists: bool, command: Command, replacing: Command) {
+fn confirm(state: &mut State, out: PathBuf, exists: bool, command: Command, replacing: Command) {
     if exists {
-        state.over = Over::Replace(out, Box::new(replacing));
+        state.dialog = Dialog::Replace(out, Box::new(replacing));
     } else {
         state.requests.push(command);
     }
@@ -108,7 +110,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
             _ => options.out.with_extension(""),
         };
         let exists = out.exists();
-        ask(
+        confirm(
             state,
             out,
             exists,
@@ -184,7 +186,7 @@ fn picture(state: &mut State, ui: &mut Ui) {
             ..options.clone()
         };
         let exists = out.exists();
-        ask(
+        confirm(
             state,
             out,
             exists,
@@ -213,7 +215,7 @@ fn size(picture: &mut PictureFile, ui: &mut Ui) {
     });
 }
 
-/// From when to when a recording goes on.
+/// First and last time of a film through a recording.
 fn film_time(state: &mut State, ui: &mut Ui) {
     let Some(facts) = &state.playback.facts else {
         return;
@@ -315,6 +317,6 @@ fn film(state: &mut State, ui: &mut Ui) {
         };
         let (command, replacing) = (film(false), film(true));
         let exists = first.exists();
-        ask(state, first, exists, command, replacing);
+        confirm(state, first, exists, command, replacing);
     }
 }

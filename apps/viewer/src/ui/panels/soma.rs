@@ -1,4 +1,4 @@
-//! The soma editor: the surface follows while a slider is dragged.
+//! The soma editor: the surface is updated while a slider is dragged.
 
 use eframe::egui::{Button, Ui};
 
@@ -118,7 +118,7 @@ const METHODS: [(Method, &str, &str); 4] = [
     ),
 ];
 
-/// A slider with a value to type and a button that resets it; whether it was let go.
+/// A slider with a field for its value and a button that resets it. True if it was released.
 fn number(
     ui: &mut Ui,
     name: &str,

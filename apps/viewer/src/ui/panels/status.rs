@@ -1,4 +1,4 @@
-//! The last line: what is going on, what went wrong, what was lowered. Nothing is silent.
+//! The status bar: running tasks, problems, and where quality is reduced.
 
 use eframe::egui::{self, Align, Layout, ProgressBar, RichText, Ui};
 
@@ -69,7 +69,7 @@ fn problems(state: &mut State, ui: &mut Ui) {
 const LOWERED: &str = "Full detail would block the window here. Hide or isolate neurons, or move closer, to get it back. \
     Saved pictures always have full detail.";
 
-/// What does not show as it is, and why.
+/// Says where quality is reduced, and why.
 fn lowered(state: &State, ui: &mut Ui) {
     let warn = ui.visuals().warn_fg_color;
     if state.frozen.is_some() {

@@ -50,7 +50,7 @@ fn buttons(state: &mut State, ui: &mut Ui) {
     }
 }
 
-/// What stands on a button: the fonts have no such signs.
+/// Signs on buttons, which are drawn since the fonts do not have them.
 #[derive(Clone, Copy, PartialEq)]
 enum Sign {
     Begin,

@@ -1,19 +1,20 @@
-//! Tips beside the panels: where the toolkit puts them, below a control, they cover the next one.
+//! Tooltips beside the panels: egui would place them below a control, where they cover the next
+//! one.
 
 use eframe::egui::{Context, Id, Rect, RectAlign, Response, Tooltip, WidgetText};
 
-/// Where the picture is, so that tips of what is beside it can lie over it.
+/// Key under which the picture's rectangle is kept, over which tooltips are placed.
 fn place() -> Id {
     Id::unique("place of the picture")
 }
 
-/// Tells where the picture is, from the next frame on.
+/// Sets the picture's rectangle for the next frame.
 pub(super) fn set_picture(ctx: &Context, rect: Rect) {
     ctx.data_mut(|data| data.insert_temp(place(), rect));
 }
 
 pub(super) trait Tip {
-    /// Says something about a control while the cursor stays on it.
+    /// Shows a text about a control while the cursor stays on it.
     fn tip(self, text: impl Into<WidgetText>) -> Self;
 }
 
@@ -30,8 +31,8 @@ impl Tip for Response {
     }
 }
 
-/// What a tip stands next to: the whole width of the panel that a control is in, and the side of it that the
-/// picture is on.
+/// The rectangle that a tooltip is placed next to, as wide as the control's panel, and the side
+/// that the picture is on.
 fn beside(control: Rect, picture: Rect) -> Option<(Rect, RectAlign)> {
     let middle = control.center();
     if !picture.y_range().contains(middle.y) {

@@ -1,4 +1,4 @@
-//! The picture, what the mouse does in it, and what lies over it.
+//! The picture, what the mouse does in it, and what is drawn over it.
 
 use eframe::egui::{
     self, Align2, Area, Color32, ColorImage, FontId, Id, Key, PointerButton, Pos2, Rect, Response,
@@ -12,14 +12,14 @@ use super::{Screen, marks, plate, tip};
 use crate::model::command::{Command, Edit};
 use crate::model::state::{Picked, State};
 
-/// Radians per point that the mouse is dragged.
+/// Angle (radians) for each point that the mouse is dragged.
 const TURN: f64 = 0.008;
-/// Nearer by this for each point that the wheel scrolls.
+/// Share of the distance for each point that the wheel scrolls.
 const WHEEL: f64 = 0.0022;
-/// Flying: so many times the distance to the target in a second.
+/// Speed of flying by keys: multiples of the distance to the target per second.
 const SPEED: f64 = 0.7;
 
-/// `before`: what was under the cursor in the frame before.
+/// Shows the picture. `before`: the part under the cursor in the frame before.
 pub(super) fn show(screen: &mut Screen<'_>, before: Option<Picked>, ui: &mut Ui) {
     let rect = ui.available_rect_before_wrap();
     let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
@@ -51,7 +51,7 @@ pub(super) fn show(screen: &mut Screen<'_>, before: Option<Picked>, ui: &mut Ui)
     response.context_menu(|ui| menu(screen.state, ui));
 }
 
-/// Camera by mouse and keys.
+/// Moves the camera by mouse and keys.
 fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     let view = screen.state.view;
     let height = f64::from(response.rect.height());
@@ -106,7 +106,8 @@ fn zoom(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
             f64::from(response.rect.width()),
             f64::from(response.rect.height()),
         ];
-        // Towards what is there; in the air, towards the target's depth.
+        // Towards what is under the cursor; if there is nothing, towards that point at the target's
+        // depth.
         let seen = screen
             .stage
             .hit_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
@@ -158,13 +159,13 @@ fn fly(screen: &mut Screen<'_>, upwards: DVec3, ui: &Ui) {
     ui.ctx().request_repaint();
 }
 
-/// What is under the cursor, and what clicks do.
+/// Finds the part under the cursor, and handles clicks.
 fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, points: f32) {
     let at = response
         .hover_pos()
         .map(|at| (at - response.rect.min) * points);
     let seen = at.and_then(|at| screen.stage.hit_at(at.x, at.y));
-    // Lists and sliders have said what they point at; elsewhere it is the picture.
+    // Lists and sliders set the part themselves; elsewhere the cursor is over the picture.
     if at.is_some() {
         screen.state.hovered = match screen.stage.can_pick() {
             true => seen.map(|s| s.picked),
@@ -201,7 +202,7 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
                 .get(picked.neuron)
                 .is_some_and(|n| n.selected);
             let only = state.document.neurons.selected().len() == 1;
-            // Another piece of the same neuron is no other selection.
+            // A click on another part of the selected neuron does not change the selection.
             if adds || !already || !only {
                 state
                     .requests
@@ -240,7 +241,7 @@ fn ink(state: &State) -> Color32 {
     }
 }
 
-/// Legend, scale bar, axes.
+/// Draws legend, scale bar and axes.
 fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     let look = &screen.state.document.look;
     if look.legend {
@@ -272,7 +273,7 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     }
 }
 
-/// A legend as a texture, made again when it says something else.
+/// Draws the legend as a texture, which is replaced when the legend changes.
 fn legend(legend: Legend, screen: &Screen<'_>, rect: Rect, ui: &Ui) {
     type Kept = (Legend, [u8; 3], u32, egui::TextureHandle);
     let points = ui.ctx().pixels_per_point();
@@ -313,7 +314,7 @@ fn legend(legend: Legend, screen: &Screen<'_>, rect: Rect, ui: &Ui) {
         .image(texture.id(), place, whole, Color32::WHITE);
 }
 
-/// Sets off what stands in a corner from what lies behind it.
+/// Draws a background behind what is in a corner, so that it stands out from the picture.
 fn set_off(state: &State, rect: Rect, ui: &Ui) {
     let [r, g, b] = state.document.look.background;
     let behind = Color32::from_rgba_unmultiplied(r, g, b, 190);
@@ -375,7 +376,7 @@ fn axes(state: &State, rect: Rect, ui: &Ui) {
 }
 
 impl Screen<'_> {
-    /// Draws the picture of this size; why it cannot is kept in `failed`.
+    /// Draws the picture in this size; keeps the error in `failed` if it cannot.
     fn picture(&mut self, size: [u32; 2], ctx: &egui::Context) -> Option<egui::TextureId> {
         match self.stage.update(self.state, size, ctx) {
             Ok(texture) => texture,

@@ -1,4 +1,4 @@
-//! What a picture is drawn into.
+//! The textures and buffers that a progressive picture is drawn into.
 
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
@@ -11,7 +11,7 @@ pub(super) struct Canvas {
     pub(super) size: [u32; 2],
     pub(super) samples: u32,
     pub(super) targets: Targets,
-    /// Of several steps; of one there is none.
+    /// Sums over the steps; empty for drafts, which have a single step.
     pub(super) sums: wgpu::Buffer,
     pub(super) screen: Screen,
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::gpu::device::Gpu;
 
-/// Tells when submitted work is done.
+/// Counts submitted and finished work.
 #[derive(Debug, Default)]
 pub(super) struct Clock {
     pub(super) submitted: AtomicU64,

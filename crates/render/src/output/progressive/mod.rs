@@ -1,10 +1,10 @@
 //! Pictures for a window: they stay on the device, and get better slice by slice.
 //!
 //! **Theory.** A picture of 16 samples takes a GPU milliseconds and a processor seconds. While the
-//! camera moves a **draft** is drawn at once: four samples, no occlusion. At rest the picture is made in
-//! **steps** of one sub-pixel each, moved so that they add up to the samples of a saved picture
-//! (`still.rs`), and each step in **slices**, so that each ends soon whatever the
-//! scene: a window can show what there is, and stop.
+//! camera moves, a **draft** is drawn at once: four samples, no occlusion. At rest the picture is
+//! drawn in **steps** of one sub-pixel each, offset so that they add up to the samples of a saved
+//! picture (`still.rs`), and each step in **slices**, which are short whatever the scene: between
+//! them a window can show what there is so far, or stop.
 //!
 //! ```text
 //! source ─▶ draw, band by band ─▶ occlude once ─▶ accumulate ─▶ present: texture, outlines
@@ -30,10 +30,11 @@ use crate::shading::present::{Outlines, Presenter};
 use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
 use crate::sources::pick::PickIds;
+use crate::view::frame::Frame;
 
 use canvas::Canvas;
 use clock::Clock;
-use step::{finish_uniform, offset, selected, shade, whole};
+use step::{finish_uniform, offset, selected, shade};
 
 pub use step::{Steps, ViewParams};
 
@@ -49,7 +50,7 @@ pub struct ProgressiveRenderer {
     shows_draft: bool,
     outlines: Outlines,
     table: ColorTable,
-    /// Counts tables, so that each renderer gets each once.
+    /// Number of the current table, so that each renderer gets each table once.
     tables: u64,
     states: Vec<u32>,
     under_way: Option<UnderWay>,
@@ -64,12 +65,12 @@ struct UnderWay {
     draft: bool,
     step: u32,
     slice: u32,
-    /// Slices are bands of rows, each chosen for itself.
+    /// Whether slices are bands of rows, each with a selection of its own.
     banded: bool,
 }
 
 impl ProgressiveRenderer {
-    /// Makes what does not depend on the scene.
+    /// A renderer without a picture. Pipelines are made with the first source.
     pub fn new(gpu: &Gpu) -> Self {
         Self {
             renderers: Vec::new(),
@@ -106,21 +107,23 @@ impl ProgressiveRenderer {
         self.tables += 1;
     }
 
-    /// States of instances from the next picture on, in the scene's order: [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and
-    /// so on; 0 beyond the end.
+    /// States of instances from the next picture on, in the scene's order:
+    /// [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) and so on; 0 for instances beyond the end.
     pub fn set_states(&mut self, states: Vec<u32>) {
         self.states = states;
     }
 
-    /// Outlines from the next [`ProgressiveRenderer::show`] on: bytes of [`SELECTED`](crate::outline::SELECTED) and
-    /// [`HOVERED`](crate::outline::HOVERED) by pixel of a picture of this size.
+    /// Outlines from the next [`ProgressiveRenderer::show`] on: bytes of
+    /// [`SELECTED`](crate::outline::SELECTED) and [`HOVERED`](crate::outline::HOVERED) by pixel of
+    /// a picture of this size.
     pub fn set_outlines(&mut self, gpu: &Gpu, outlines: Outlines, mask: Option<([u32; 2], &[u8])>) {
         self.outlines = outlines;
         self.presenter.set_mask(gpu, mask);
     }
 
-    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::state::OUTLINED) have an outline in the
-    /// color of what is selected, as wide as told by [`ProgressiveRenderer::set_outlines`].
+    /// Draws a draft at once. Instances that are [`OUTLINED`](crate::state::OUTLINED) have an
+    /// outline in the color of selected ones, as wide as [`ProgressiveRenderer::set_outlines`]
+    /// says.
     ///
     /// # Errors
     /// What the device cannot do.
@@ -131,7 +134,8 @@ impl ProgressiveRenderer {
         params: &ViewParams,
     ) -> Result<(), DeviceError> {
         self.under_way = None;
-        // As many samples as the first step at rest has: with one, lines thinner than a pixel are dots.
+        // As many samples as the first step at rest has: with one, lines thinner than a pixel are
+        // dots.
         let samples = samples_in_sub_pixel(gpu, 4);
         let renderer = self.renderer(gpu, source, samples, params)?;
         self.make_canvas(gpu, true, params.size, samples)?;
@@ -153,7 +157,7 @@ impl ProgressiveRenderer {
         self.draw(gpu, source, renderer, &way)
     }
 
-    /// Begins a picture that [`ProgressiveRenderer::slice`] makes.
+    /// Begins a picture, which [`ProgressiveRenderer::slice`] then draws.
     pub fn begin(&mut self, params: ViewParams, steps: Steps) {
         self.under_way = Some(UnderWay {
             params,
@@ -168,20 +172,21 @@ impl ProgressiveRenderer {
         });
     }
 
-    /// Leaves the picture as it is.
+    /// Draws no more of the picture under way.
     pub fn stop(&mut self) {
         self.under_way = None;
     }
 
-    /// Share of the picture under way that is made; none: there is none.
+    /// Share of the picture under way that has been drawn; none if no picture is under way.
     pub fn progress(&self) -> Option<f32> {
         let way = self.under_way?;
         let made = way.step * way.steps.slices + way.slice;
         Some(made as f32 / (way.steps.steps * way.steps.slices) as f32)
     }
 
-    /// The next slice of the picture under way; whether it shows something new. The slice before must be
-    /// done: see [`ProgressiveRenderer::is_busy`].
+    /// Draws the next slice of the picture under way. True if it was the last of its step, so that
+    /// there is something new to show. The slice before must be done: see
+    /// [`ProgressiveRenderer::is_busy`].
     ///
     /// # Errors
     /// What the device cannot do.
@@ -208,7 +213,8 @@ impl ProgressiveRenderer {
         Ok(whole)
     }
 
-    /// Whether the device is still at work on what was submitted last. Must be asked for it to go on.
+    /// Whether the device is still at work on what was submitted last. Call it again and again: it
+    /// polls the device, which makes progress only when polled.
     pub fn is_busy(&self, gpu: &Gpu) -> bool {
         // The next call that draws returns what went wrong.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
@@ -221,7 +227,7 @@ impl ProgressiveRenderer {
         self.clock.took.load(Ordering::Acquire) as f64 / 1e3
     }
 
-    /// Puts the picture there is into its texture once more: for other outlines.
+    /// Writes the current picture into its texture once more, with the current outlines.
     pub fn show(&self, gpu: &Gpu) {
         if let Some(canvas) = self.shown() {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -242,7 +248,8 @@ impl ProgressiveRenderer {
         self.shows_draft
     }
 
-    /// Draws ids; [`ProgressiveRenderer::ids`] has them a little later.
+    /// Draws the ids of a picture for picking; [`ProgressiveRenderer::ids`] has them a little
+    /// later.
     ///
     /// # Errors
     /// What the device cannot do.
@@ -273,8 +280,8 @@ impl ProgressiveRenderer {
         Ok(())
     }
 
-    /// The size and the ids by row of the picture that was identified last, once; nothing before they
-    /// have arrived.
+    /// The size of the picture that was identified last and its ids by row: given out once, and
+    /// none before they have arrived.
     ///
     /// # Errors
     /// The device is lost.
@@ -351,7 +358,7 @@ impl ProgressiveRenderer {
         Ok(())
     }
 
-    /// One slice of one step; what comes after the drawing with the last one.
+    /// Draws one slice of one step. The last slice also finishes the step.
     fn draw(
         &self,
         gpu: &Gpu,
@@ -389,7 +396,7 @@ impl ProgressiveRenderer {
         let band = way.banded.then_some((rows.start, rows.end));
         let rounds = source.prepare(gpu, &selected(params, band))?.max(1);
         for round in 0..rounds {
-            source.choose(round, &mut encoder, None);
+            source.select(round, &mut encoder, None);
             let part = TilePass {
                 round,
                 shaders: shaders.clone(),
@@ -423,7 +430,7 @@ impl ProgressiveRenderer {
         let Some((_, finisher)) = self.finishers.iter().find(|(n, _)| *n == canvas.samples) else {
             return;
         };
-        let frame = whole(params.camera, params.near, params.size);
+        let frame = Frame::whole(params.camera, params.near, params.size);
         let uniform = finish_uniform(params, &frame, *step, steps.steps);
         gpu.queue
             .write_buffer(&self.finish, 0, bytemuck::bytes_of(&uniform));
@@ -434,7 +441,7 @@ impl ProgressiveRenderer {
             timestamp_writes: None,
         });
         pass.set_bind_group(0, &group, &[]);
-        // A quarter of a pixel beside, corners are as dark: one look serves all steps.
+        // Steps lie within the same pixel, so occlusion is computed once for all of them.
         if uniform.radius > 0.0 && *step == 0 {
             for pipeline in [&finisher.occlude, &finisher.blur] {
                 pass.set_pipeline(pipeline);
@@ -450,14 +457,15 @@ impl ProgressiveRenderer {
     }
 }
 
-/// Decides what the slices of a picture are. What is chosen at once is drawn shader by shader, and need
-/// not be chosen for every slice; `rounds` that are chosen in turn are drawn in bands of rows.
+/// Decides what the slices of a picture are. What is selected in one round is drawn shader by
+/// shader, and is not selected again for every slice; with several `rounds` the picture is drawn in
+/// bands of rows.
 fn lay_out(way: &mut UnderWay, rounds: usize, source: &dyn VertexSource) {
     way.banded = rounds > 1 && way.steps.slices > 1;
     if !way.banded {
         way.steps.slices = way.steps.slices.min(source.shaders() as u32);
     } else if way.params.frozen.is_some() {
-        // Levels for another camera know no bands of this one.
+        // What a band of rows shows is not known to a selection for another camera.
         (way.banded, way.steps.slices) = (false, 1);
     }
 }

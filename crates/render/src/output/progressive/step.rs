@@ -1,4 +1,4 @@
-//! What a picture is asked for, and what one step of it draws.
+//! What a picture shows, and what one step of it draws.
 
 use crate::output::still::Occlusion;
 use crate::output::tiles::TileRenderer;
@@ -6,12 +6,12 @@ use crate::scene::color::{Rgb, linear};
 use crate::shading::finish::Finish;
 use crate::shading::shade::{Look, Shade};
 use crate::view::camera::Camera;
-use crate::view::frame::{Frame, Tile};
+use crate::view::frame::Frame;
 
-/// What a picture shows.
+/// What a picture shows, and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewParams {
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Depth (µm) of the near plane.
     pub near: f64,
@@ -19,11 +19,11 @@ pub struct ViewParams {
     pub size: [u32; 2],
     /// Light, wireframe, cut.
     pub look: Look,
-    /// How far corners darken one another.
+    /// Ambient occlusion, which darkens corners.
     pub occlusion: Occlusion,
     /// Color behind everything.
     pub background: Rgb,
-    /// Another camera and near plane, for which levels are chosen and things are left out.
+    /// Another camera and near plane, for which levels are selected and parts are culled.
     pub frozen: Option<(Camera, f64)>,
 }
 
@@ -32,12 +32,13 @@ pub struct ViewParams {
 pub struct Steps {
     /// Number of steps: 1, 4 or 16.
     pub steps: u32,
-    /// Slices that a step is drawn in: at most by the source's shaders, or bands of rows where there are
-    /// so many things that they are chosen in turn.
+    /// Slices that a step is drawn in. One slice draws with one or more of the source's shaders;
+    /// where a scene is too large for one batch, it draws a band of rows.
     pub slices: u32,
 }
 
-/// Pixels by which a step is moved, and by how many its dither is turned: the places of sub-pixels.
+/// Offset of a step (pixels) from the pixel's center, and of its dither pattern: the column and row
+/// of the step's sub-pixel.
 pub(super) fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
     let side = f64::from(steps).sqrt() as u32;
     if side <= 1 {
@@ -47,27 +48,15 @@ pub(super) fn offset(step: u32, steps: u32) -> ([f32; 2], [f32; 2]) {
     (place.map(|k| (k + 0.5) / side as f32 - 0.5), place)
 }
 
-pub(super) fn whole(camera: Camera, near: f64, size: [u32; 2]) -> Frame {
-    Frame {
-        camera,
-        near,
-        size,
-        tile: Tile {
-            x: 0,
-            y: 0,
-            width: size[0],
-            height: size[1],
-        },
-    }
-}
-
-/// Rows above and below a band whose things may reach into it: steps are moved by half a pixel.
+/// Rows above and below a band that are selected with it, since steps are offset by up to half a
+/// pixel.
 const SPARE_ROWS: u32 = 2;
 
-/// What the source selects for: a band of rows, or all; levels for the frozen camera if there is one.
+/// The frame that the source selects for: a band of rows, or all; from the frozen camera if there
+/// is one.
 pub(super) fn selected(params: &ViewParams, band: Option<(u32, u32)>) -> Frame {
     let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
-    let mut frame = whole(camera, near, params.size);
+    let mut frame = Frame::whole(camera, near, params.size);
     let (top, bottom) = band.unwrap_or((0, params.size[1]));
     frame.tile.x -= SPARE_ROWS as i32;
     frame.tile.width += 2 * SPARE_ROWS;
@@ -77,7 +66,7 @@ pub(super) fn selected(params: &ViewParams, band: Option<(u32, u32)>) -> Frame {
 }
 
 pub(super) fn shade(renderer: &TileRenderer, params: &ViewParams) -> Shade {
-    let frame = whole(params.camera, params.near, params.size);
+    let frame = Frame::whole(params.camera, params.near, params.size);
     let mut shade = Shade::new(&frame, &params.look, 1, &renderer.sizes);
     if let Some((frozen, _)) = params.frozen {
         shade.shift = (frozen.eye() - params.camera.eye()).as_vec3().to_array();

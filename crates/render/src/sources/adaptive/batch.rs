@@ -1,4 +1,4 @@
-//! Which parts of templates a frame draws, and which of them together.
+//! Which parts of templates a frame draws, and in which batches.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -7,7 +7,7 @@ use crate::scene::templates::{CLUSTER, MOST_PATCHES};
 use crate::sources::adaptive::cull::shows;
 use crate::sources::adaptive::settings::{BatchUniforms, CullView, FrameUniforms, Placed, SECTION};
 
-/// Most patches that are decided on and drawn together.
+/// Most slots of a batch.
 pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
 
 /// Arguments of an indexed indirect draw. Twin of the struct of the same name in scan.wgsl.
@@ -21,30 +21,31 @@ pub(crate) struct DrawIndexed {
     pub(crate) first_instance: u32,
 }
 
-/// A pile of placed parts, all of one page.
+/// Placed parts that are selected and drawn together, all of one page.
 #[derive(Clone, Copy, Debug)]
 pub struct Batch {
     pub(crate) page: usize,
     pub(crate) uniforms: BatchUniforms,
-    /// Place among the batches of its frame.
+    /// Index among the batches of its frame.
     pub(crate) index: u32,
 }
 
 /// What one frame draws.
 #[derive(Clone, Debug, Default)]
 pub struct FramePlan {
-    /// In order.
+    /// Batches, in the order in which they are drawn.
     pub batches: Vec<Batch>,
     /// Patches of all instances that are not hidden.
     pub patches: u64,
-    /// What stands where: a batch has a range of it.
+    /// The placed parts: each batch has a range of them.
     pub(crate) placed: Vec<Placed>,
 }
 
-/// Parts of instances that may show, with their pages, and the number of patches of all.
+/// Parts of instances that may show, each with its page; and the number of patches of all instances
+/// that are not hidden.
 pub(crate) fn place_all(
     scene: &Scene,
-    sight: &CullView,
+    view: &CullView,
     frame: &FrameUniforms,
 ) -> (Vec<(usize, Placed)>, u64) {
     let mut placed = Vec::new();
@@ -56,30 +57,30 @@ pub(crate) fn place_all(
         if instance.hidden {
             continue;
         }
-        let stand = Placed::new(sight, &instance.placement, template.origin);
+        let at_placement = Placed::new(view, &instance.placement, template.origin);
         for part in &template.parts {
             patches += u64::from(part.patches);
-            let place = Placed {
+            let placed_part = Placed {
                 base: part.base,
                 patches: part.slots,
                 instance: i as u32,
                 state: instance.state,
-                ..stand
+                ..at_placement
             };
-            if shows(frame, &place, part.sphere.0, part.sphere.1) {
-                placed.push((part.page, place));
+            if shows(frame, &placed_part, part.sphere.0, part.sphere.1) {
+                placed.push((part.page, placed_part));
             }
         }
     }
     (placed, patches)
 }
 
-/// Gives every placed part its slots, a whole number of clusters, and begins a new batch where the
-/// page changes or the slots end. Also gives the place of every batch's first explicit vertex.
+/// Gives every placed part its slots, a whole number of clusters, and begins a new batch when the
+/// page changes or a batch is full. Also returns the index of every batch's first explicit vertex.
 pub(crate) fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
     let mut batches: Vec<Batch> = Vec::new();
-    for (i, (page, place)) in placed.iter_mut().enumerate() {
-        let slots = (place.patches as usize).next_multiple_of(CLUSTER);
+    for (i, (page, part)) in placed.iter_mut().enumerate() {
+        let slots = (part.patches as usize).next_multiple_of(CLUSTER);
         let fits = |b: &Batch| b.page == *page && b.uniforms.slots as usize + slots <= MOST_SLOTS;
         if !batches.last().is_some_and(fits) {
             batches.push(Batch {
@@ -94,7 +95,7 @@ pub(crate) fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
         let Some(batch) = batches.last_mut() else {
             continue;
         };
-        place.first_slot = batch.uniforms.slots;
+        part.first_slot = batch.uniforms.slots;
         batch.uniforms.placed += 1;
         batch.uniforms.slots += slots as u32;
         batch.uniforms.clusters = batch.uniforms.slots / CLUSTER as u32;
@@ -108,12 +109,12 @@ pub(crate) fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
     (batches, first_explicit)
 }
 
-/// Gives the explicit vertices of a batch's parts their places behind all slots.
+/// Gives the explicit vertices of a batch's parts their indices, behind all slots.
 fn place_explicit(batch: &mut Batch, first_explicit: u32, placed: &mut [(usize, Placed)]) {
     let uniforms = &mut batch.uniforms;
     let first = uniforms.first as usize;
-    for (_, place) in &mut placed[first..first + uniforms.placed as usize] {
-        place.first_explicit = first_explicit + uniforms.explicit_vertices;
-        uniforms.explicit_vertices += place.base.explicit_count();
+    for (_, part) in &mut placed[first..first + uniforms.placed as usize] {
+        part.first_explicit = first_explicit + uniforms.explicit_vertices;
+        uniforms.explicit_vertices += part.base.explicit_count();
     }
 }

@@ -1,11 +1,14 @@
-// Which clusters show, and in which of them one level holds everywhere: most of what is far away.
+// Finds the clusters that show, and those in which one level holds everywhere: most of what is far
+// away.
 //
-// Called by refiner.rs for a batch, first of all. A cluster that does not show costs nothing after this.
+// Called by refiner.rs for a batch, before all other passes. A cluster that does not show costs
+// nothing after this.
 
 #import clusters.wgsl
 #import shown.wgsl
 
-// Workgroups of the passes that take queues, three u32s each: of clusters, and of single patches.
+// Workgroups of the passes that take queues of clusters, and of the one that takes single patches:
+// three u32s each.
 @group(2) @binding(0) var<storage, read_write> cluster_dispatches: array<atomic<u32>>;
 @group(2) @binding(1) var<storage, read_write> single_dispatch: array<atomic<u32>>;
 
@@ -68,7 +71,7 @@ fn classify(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// Queues what is not around a path: patches of somata, joints and ends.
+// Queues patches that are not around a path: those of somata, joints and caps.
 fn queue_singles(cluster: u32) {
     let k = atomicAdd(&marks[SINGLE_MARK], POINTS_OF_CLUSTER);
     for (var point = 0u; point < POINTS_OF_CLUSTER; point += 1u) {

@@ -1,4 +1,4 @@
-// Makes coarse points: the rings that are needed, and the explicit vertices of all placed parts.
+// Computes coarse points: the rings that are needed, and the explicit vertices of all placed parts.
 //
 // Called by refiner.rs for a batch, after note.wgsl: a lane for each point of queued clusters, and
 // one for each explicit vertex.

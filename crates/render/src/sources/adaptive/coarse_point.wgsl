@@ -1,28 +1,30 @@
-// Rings and explicit vertices where an instance puts them: made once a frame, whatever the level. Every patch
-// that meets in a corner finds it by the same expression in the same color_keys.
+// Rings and explicit vertices where an instance puts them: computed once a frame, whatever the
+// level. All patches that meet in a corner compute it by the same expression from the same u32s, so
+// that they agree to the bit.
 //
-// Few color keys, since vertex shaders load little else. Written by coarse.wgsl, read by vertices.wgsl. The twin
-// of the struct stands in work.rs.
+// Packed into few u32s, since vertex shaders load little else. Written by coarse.wgsl, read by
+// vertices.wgsl. Rust twin of the struct: work.rs.
 
 #import placed.wgsl
 
-// Rings by a quarter of their first corner's place, then two entries for each explicit vertex. Places are
-// relative to the eye (micrometers), directions are the world's.
+// Rings come first, at a quarter of the index of their first corner; then two entries for each
+// explicit vertex. Positions are relative to the eye (micrometers), directions are the world's.
 struct CoarsePoint {
-    // Of a ring: its center. Of an explicit vertex: where it is, and in its second entry the center.
+    // Of a ring: its center. Of an explicit vertex: its position; in its second entry its center.
     x: f32,
     y: f32,
     z: f32,
     // In an explicit vertex's second entry: its collar.
     radius: f32,
-    // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its role.
+    // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its
+    // role.
     low: u32,
     high: u32,
     color_key: u32,
     instance: u32,
 }
 
-// Where the entry of a corner is, by the corner's place.
+// Index of the entry of a corner, from the index that coarse_place gives.
 fn coarse_index(place: u32) -> u32 {
     let at_explicit = frame.first_explicit / 4u + 2u * (place - frame.first_explicit);
     return select(place / 4u, at_explicit, place >= frame.first_explicit);
@@ -47,8 +49,9 @@ fn unpack_direction(packed: u32) -> vec3<f32> {
     return normalize(vec3(folded, z));
 }
 
-// How a ring stands: directions of its first and second corner, and the tangent, at right angles. As a
-// quaternion without its largest component, 19 bits for each other one, with five bits of the slope.
+// The orientation of a ring: directions of its first and second corner, and the tangent, all at
+// right angles. Packed as a quaternion without its largest component, 19 bits for each of the
+// others, with five bits of the slope.
 fn pack_turn(first: vec3<f32>, second: vec3<f32>, tangent: vec3<f32>, slope: u32) -> vec2<u32> {
     // Squares of the components, each times four.
     let squares = vec4<f32>(

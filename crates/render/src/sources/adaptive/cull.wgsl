@@ -1,14 +1,14 @@
-// How finely each patch is drawn, or that it is not.
+// Decides for each patch whether it is drawn, and at which levels.
 //
-// Called by refiner.rs for a batch, after classify.wgsl, for what is queued: `decide_plain` where a level
-// is known, `decide_tubes` for points with rings of their own, a lane for the four patches to the next;
-// `decide_singles` for all other patches. CPU twin: cull.rs.
+// Called by refiner.rs for a batch, after classify.wgsl, for what it queued: `decide_plain` for
+// clusters whose one level is known; `decide_tubes` for points with implicit rings, a lane for the
+// four patches to the next point; `decide_singles` for all other patches. CPU twin: cull.rs.
 
 #import clusters.wgsl
 #import shown.wgsl
 
 @group(2) @binding(0) var<storage, read_write> decisions: array<u32>;
-// By point: level of its ring of its own; 0 where no tube that is asked has asked for it.
+// By point: level of its implicit ring; 0 if no tube of an asked cluster needs it.
 @group(2) @binding(1) var<storage, read_write> ring_levels: array<u32>;
 // Workgroups of decide_singles: three u32s.
 @group(2) @binding(2) var<storage, read_write> single_dispatch: array<atomic<u32>>;
@@ -32,7 +32,7 @@ fn decide_plain(
     decisions[slot] = decided;
 }
 
-// A point of an asked cluster, and what a lane needs to know of it.
+// A point of an asked cluster: one whose patches are decided one by one.
 struct AskedPoint {
     there: bool,
     // First of the slots of its four patches.
@@ -52,8 +52,8 @@ fn asked_point(group: u32, lane: u32) -> AskedPoint {
     return AskedPoint(true, slot, owner, (slot - placed[owner].first_slot) / 4u);
 }
 
-// Levels of the rings of asked clusters and of the first beyond. Rings have theirs from here alone, so
-// that all patches that meet there agree.
+// Levels of the rings of asked clusters, and of the first ring of the next cluster. They are
+// computed only here, so that all patches that meet at a ring agree.
 @compute @workgroup_size(CLUSTER)
 fn level_rings(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -123,8 +123,8 @@ fn ask_tube(place: Placed, point: u32, slot: u32) -> vec4<u32> {
     if (shown(place, (first.center + last.center) * 0.5, reach) == SHOWS_NOTHING) {
         return vec4<u32>(0u);
     }
-    // From corner to opposite corner directions only change sign, and so do not the levels along the path,
-    // but for those that measure the edge itself.
+    // Opposite corners of a ring have opposite directions, so edges along the path have the same
+    // level there, unless the criterion measures the edge itself.
     let levels = levels_of(place);
     let view = view_of(frame, place);
     let values = vec2<u32>(value_of(base, 4u * point), value_of(base, 4u * point + 4u));
@@ -188,11 +188,11 @@ fn known_ring_level(place: Placed, point: u32) -> u32 {
     if (known != 0u) {
         return known;
     }
-    // No tube there asks: none is drawn, or all its levels are known to be as low as can be.
+    // No tube of an asked cluster meets there.
     return level_of_ring(place, point, packed_point(place.base, point));
 }
 
-// BoundingSphere around a patch at any level.
+// Bounding sphere of a patch at any level.
 struct BoundingSphere {
     center: vec3<f32>,
     radius: f32,

@@ -1,5 +1,5 @@
-//! Stored vertices, made on the device by the functions that draws use: the proof that what one sees
-//! is what is exported.
+//! Stores vertices on the device, computed by the functions that the vertex shaders use. With it
+//! tests prove that what is drawn is what is exported.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::{Shader, ShaderParts};
@@ -17,7 +17,7 @@ use crate::sources::adaptive::refiner::{Refiner, drawing_constants};
 /// Workgroups in a row of a dispatch.
 const ROW: u32 = 1024;
 
-/// A vertex as the shading stage gets it. Twin of `SurfaceVertex` in surface_vertex.wgsl.
+/// A vertex as the shading gets it. Twin of `SurfaceVertex` in surface_vertex.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ExpandedVertex {
@@ -33,19 +33,19 @@ pub struct ExpandedVertex {
     pub radius: f32,
     /// The color key of the tracing point.
     pub color_key: u32,
-    /// Place of the instance in the scene.
+    /// Index of the instance in the scene.
     pub instance: u32,
-    /// Place in the refinement grid, as wireframe need it.
+    /// Position in the refinement grid, which wireframes are drawn by.
     pub grid: [f32; 2],
 }
 
-/// A place in the grid of a patch that is drawn.
+/// A vertex of the grid of a patch that is drawn.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct GridPoint {
     /// See [`SelectedPatch::slot`](crate::testing::SelectedPatch::slot).
     pub slot: u32,
-    /// See [`SelectedPatch::slot`](crate::testing::SelectedPatch::slot).
+    /// See [`SelectedPatch::decided`](crate::testing::SelectedPatch::decided).
     pub decided: u32,
     /// Column.
     pub i: u32,
@@ -61,25 +61,25 @@ pub(crate) fn expand_shader() -> Shader {
     shader::shader("expand", &parts)
 }
 
-/// Group 1 of the pass: the places in grids, and their vertices.
+/// Group 1 of the pass: the grid points, and their vertices.
 pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let compute = ShaderStages::COMPUTE;
     vec![storage(0, compute, true), storage(1, compute, false)]
 }
 
 impl Refiner {
-    /// Makes vertices of a batch that was chosen just before, in the order wanted. Waits for the
-    /// device. At most 2²⁶ at a time.
+    /// Computes the vertices at these grid points of a batch that was selected just before, in the
+    /// same order. Waits for the device. At most 2²⁶ at a time.
     ///
     /// # Errors
-    /// What the device complained of.
+    /// The device reports an error.
     pub fn expand(
         &self,
         gpu: &Gpu,
         batch: &Batch,
-        wanted: &[GridPoint],
+        points: &[GridPoint],
     ) -> Result<Vec<ExpandedVertex>, DeviceError> {
-        if wanted.is_empty() {
+        if points.is_empty() {
             return Ok(Vec::new());
         }
         let device = &gpu.device;
@@ -98,18 +98,19 @@ impl Refiner {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        let asked = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("wanted"),
-            contents: bytemuck::cast_slice(wanted),
+        let requested = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("grid points"),
+            contents: bytemuck::cast_slice(points),
             usage: BufferUsages::STORAGE,
         });
-        let made = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("made"),
-            size: (wanted.len() * size_of::<ExpandedVertex>()) as u64,
+        let vertices = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("expanded vertices"),
+            size: (points.len() * size_of::<ExpandedVertex>()) as u64,
             usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let entries = [(0, &asked), (1, &made)].map(|(binding, buffer)| wgpu::BindGroupEntry {
+        let buffers = [(0, &requested), (1, &vertices)];
+        let entries = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding,
             resource: buffer.as_entire_binding(),
         });
@@ -123,11 +124,11 @@ impl Refiner {
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, self.drawing_group(batch), &[]);
         pass.set_bind_group(1, &group, &[]);
-        let groups = wanted.len().div_ceil(64) as u32;
+        let groups = points.len().div_ceil(64) as u32;
         pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
-        read_back(gpu, &made, wanted.len())
+        read_back(gpu, &vertices, points.len())
     }
 }

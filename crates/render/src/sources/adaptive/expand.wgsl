@@ -1,6 +1,6 @@
-// Stores vertices that a draw would make, with the very functions of its vertex shader.
+// Stores the vertices that a draw would compute, with the functions of its vertex shader.
 //
-// Called by expand.rs; joined after vertices.wgsl.
+// Called by expand.rs.
 
 #import vertices.wgsl
 

@@ -8,7 +8,7 @@
 @group(2) @binding(1) var<storage, read_write> flat_indices: array<u32>;
 
 var<workgroup> here: array<u32, CLUSTER>;
-// Flat patches among eight of a cluster.
+// Number of flat patches among each eight of a cluster.
 var<workgroup> eights: array<u32, 8>;
 
 // Writes the triangles of the flat patches of a cluster that shows.
@@ -41,7 +41,7 @@ fn flatten(
     let p = patch_at(place.base, slot - place.first_slot);
     var corners: vec4<u32>;
     for (var k = 0u; k < 4u; k += 1u) {
-        // Wires need corners that know which of the patch's they are.
+        // Wireframes need to know which corner of its patch a vertex is.
         let own = select(0u, k << FLAT_CORNER_SHIFT, frame.wireframe != 0u);
         corners[k] = coarse_place(place, p.corners[k]) | own;
     }

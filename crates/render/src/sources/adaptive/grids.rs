@@ -1,24 +1,26 @@
 //! The grids that patches are drawn in: one index buffer for all of them, made once.
 //!
 //! A patch's grid has 1 to 64 columns and rows. It is drawn in the smallest **bucket** whose grid
-//! holds it: each axis is one of [`GRID_SIZE`], and columns beyond the patch's own fall together with
-//! its last one, as triangles without area. So 12 × 12 buckets draw all 4,096 grids with exactly their
-//! own vertices, and no axis has more than half too many. Round patches (caps, somata) have buckets of
-//! their own, in which diagonals run towards the corners, and so have **tubes**, lateral patches between
-//! points with rings of their own: they are many, and a shader of their own makes their vertices.
+//! holds it: each axis has one of the sizes in [`GRID_SIZE`], and columns beyond the patch's own
+//! fall together with its last one, as triangles without area. So 12 × 12 buckets draw all 4,096
+//! grids with exactly their own vertices, and no axis has more than half too many. Round patches
+//! (caps, somata) have buckets of their own, in which diagonals run towards the corners. So have
+//! **tubes**, lateral patches between two points with implicit rings: they are many, and a shader
+//! of their own computes their vertices.
 //!
-//! Small grids fill a GPU's waves badly: an instance of a small bucket draws **many patches
+//! Small grids fill a GPU's waves badly: an instance of a small bucket draws **several patches
 //! together**, about 256 vertices.
 //!
-//! Patches at level 1, most of what is far away, are in no bucket: they are drawn as the **flat** quads
-//! that they are, with shared corners (coarse_point.wgsl) and an index buffer that the device writes.
+//! Patches at level 1, most of what is far away, are in no bucket: they are drawn as **flat** quads
+//! with shared corners (coarse_point.wgsl), by an index buffer that the device writes.
 //!
-//! Why not one draw per grid: 4,096 draws, most of them empty. Why not triangles without an index
-//! buffer: a vertex is evaluated once per grid place instead of up to six times.
+//! Why not one draw per grid: 4,096 draws, most of them empty. Why an index buffer: with it a
+//! vertex is evaluated once per grid point, without it up to six times.
 
 use bytemuck::{Pod, Zeroable};
 
-/// Sizes of a grid's axis. Finer than powers of two: an axis then has at most half too many columns.
+/// Sizes of a grid's axis. Finer than powers of two: an axis then has at most half too many
+/// columns.
 pub(crate) const GRID_SIZE: [u32; 12] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
 
 /// Grids of tubes.
@@ -28,10 +30,11 @@ pub(crate) const BUCKETS: usize = 3 * TUBE_BUCKETS;
 
 /// Indices of a flat patch: two triangles.
 pub(crate) const FLAT_INDICES: u32 = 6;
-/// Bits of an index of a flat patch that say which of its corners it is, where wireframe are drawn.
+/// The bits of a flat patch's index from this one on say which of its corners it is; only
+/// wireframes need them.
 pub(crate) const FLAT_CORNER_SHIFT: u32 = 28;
 
-/// Vertices that an instance of a draw has at least, if one patch has fewer.
+/// Small patches are drawn together until an instance of the draw has about this many vertices.
 const VERTICES_TOGETHER: u32 = 256;
 
 // A vertex index says, from its low bits upwards: column, row, patch in the instance, bucket.
@@ -41,7 +44,7 @@ pub(crate) const INDEX_PATCH_SHIFT: u32 = 14;
 pub(crate) const INDEX_PATCH_MASK: u32 = 0xff;
 pub(crate) const INDEX_BUCKET_SHIFT: u32 = 22;
 
-/// A bucket as shaders have it. Twin of the struct of the same name in scan.wgsl.
+/// A bucket on the device. Twin of the struct of the same name in scan.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Bucket {
@@ -51,9 +54,9 @@ pub(crate) struct Bucket {
     pub(crate) count: u32,
     /// Patches per instance of the draw.
     pub(crate) together: u32,
-    /// Indices of one instance.
+    /// Number of indices of one instance.
     pub(crate) indices: u32,
-    /// Where they begin.
+    /// Where they begin in the index buffer.
     pub(crate) first_index: u32,
 }
 
@@ -88,7 +91,8 @@ fn push_grid(patch: u32, nx: u32, ny: u32, round: bool, indices: &mut Vec<u32>) 
     for j in 0..ny {
         for i in 0..nx {
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            // As in the stored surface: towards the corners of round patches, else all one way.
+            // Diagonals as in the exported surface: towards the corners of round patches, else
+            // parallel.
             if round && (2 * i < nx) != (2 * j < ny) {
                 indices.extend([a, b, d, b, c, d]);
             } else {

@@ -1,6 +1,6 @@
-//! Which buffers the passes of a frame see, and how.
+//! Which buffers the passes of a frame bind, and how.
 //!
-//! No pass has more than eight storage buffers: what every WebGPU device has.
+//! No pass binds more than eight storage buffers: so many every WebGPU device allows.
 
 use wgpu::ShaderStages;
 
@@ -9,13 +9,14 @@ use crate::gpu::buffers::{group_layout, storage, uniform};
 /// Layouts of the groups that work buffers are in.
 #[derive(Debug)]
 pub(crate) struct WorkLayouts {
-    /// Group 1 of all passes that choose.
+    /// Group 1 of all compute passes.
     pub(crate) clusters: wgpu::BindGroupLayout,
     /// Group 2: one read-write buffer, two, or three.
     pub(crate) one: wgpu::BindGroupLayout,
     pub(crate) two: wgpu::BindGroupLayout,
     pub(crate) three: wgpu::BindGroupLayout,
-    /// Group 0 of what makes vertices: binding 0 of a page, those of a frame from 4.
+    /// Group 0 of the shaders that compute vertices: binding 0 is a page's, those from 4 on are a
+    /// frame's.
     pub(crate) drawing: wgpu::BindGroupLayout,
 }
 
@@ -30,7 +31,7 @@ impl WorkLayouts {
         }
     }
 
-    /// Group 2 with so many buffers that are written, 1 to 3.
+    /// Group 2 with this number of read-write buffers, 1 to 3.
     pub(crate) fn written(&self, count: u32) -> &wgpu::BindGroupLayout {
         match count {
             1 => &self.one,

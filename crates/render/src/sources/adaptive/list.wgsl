@@ -1,12 +1,12 @@
-// Lists the patches that are refined, bucket by bucket, in their order, so that equal scenes are drawn in
-// equal order.
+// Lists the patches that are refined, bucket by bucket, in their order, so that equal scenes are
+// drawn in equal order.
 //
 // Called by refiner.rs for a batch, after scan.wgsl: a workgroup for each queued section.
 
 #import clusters.wgsl
 
 struct Bucket {
-    // First place in the list, and how many.
+    // First index in the list, and number of patches.
     start: u32,
     count: u32,
     // Patches per instance of the draw.
@@ -20,7 +20,7 @@ struct Bucket {
 @group(2) @binding(2) var<storage, read_write> buckets: array<Bucket>;
 
 var<workgroup> here: array<u32, CLUSTER>;
-// The same of four patches each, 16 bits for each: less to load.
+// The same, with four patches in an entry, 16 bits for each: less to load.
 var<workgroup> fours: array<vec2<u32>, POINTS_OF_CLUSTER>;
 var<workgroup> places: array<atomic<u32>, BUCKETS>;
 
@@ -36,7 +36,7 @@ fn scatter(
     }
     for (var round = 0u; round < SECTION / CLUSTER; round += 1u) {
         let slot = section * SECTION + round * CLUSTER + lane;
-        // Of clusters that do not show, decisions are those of an earlier frame.
+        // Clusters that do not show still have the decisions of an earlier frame.
         var decided = 0u;
         if (slot < batch.slots && atomicLoad(&marks[fine_mark(slot / CLUSTER)]) != 0u) {
             decided = decisions[slot];

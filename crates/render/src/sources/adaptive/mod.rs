@@ -1,4 +1,4 @@
-//! The source of vertices that refines on the fly: a scene and how it is refined.
+//! The vertex source that refines as it draws: a scene and how it is refined.
 
 pub(crate) mod batch;
 pub(crate) mod cull;
@@ -40,17 +40,18 @@ pub struct Adaptive {
     plan: FramePlan,
     bounds: Option<Vec<BoundingSphere>>,
     keeps: bool,
-    /// What the lists on the device are chosen for, while they hold.
+    /// The view and settings that the lists on the device are for, while they are kept.
     kept: Option<(CullView, AdaptiveSettings)>,
-    /// Whether they are yet to be chosen.
+    /// Whether those lists are still to be written.
     stale: AtomicBool,
 }
 
 impl Adaptive {
-    /// `sub_pixels`: of a pixel, along a side. Levels, and what is left out, are counted in pixels.
+    /// `sub_pixels`: number of sub-pixels along a pixel's side. Levels and culling by size go by
+    /// whole pixels.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device reports an error.
     pub fn new(
         gpu: &Gpu,
         scene: Scene,
@@ -75,18 +76,19 @@ impl Adaptive {
         &self.scene
     }
 
-    /// Another way of settings, from the next frame on.
+    /// Other settings, from the next frame on.
     pub fn set_settings(&mut self, settings: AdaptiveSettings) {
         self.settings = settings;
     }
 
-    /// Bounding spheres that hold all that the scene shows (µm, in the world): tiles of a picture without any are
-    /// left out. [`bounds`](crate::bounds::bounds) makes them from a mesh.
+    /// Bounding spheres that hold all that the scene shows (µm, in the world). Tiles of a picture
+    /// that none of them reaches are not drawn. [`bounds`](crate::bounds::bounds) computes them
+    /// from a mesh.
     pub fn set_bounds(&mut self, spheres: Vec<BoundingSphere>) {
         self.bounds = Some(spheres);
     }
 
-    /// Other instances, or another scene, from the next frame on.
+    /// Another scene, from the next frame on.
     pub fn set_scene(&mut self, scene: Scene) {
         self.scene = scene;
         self.bounds = None;
@@ -94,15 +96,15 @@ impl Adaptive {
         self.kept = None;
     }
 
-    /// Whether what was chosen is kept for frames of the same view, one after the other: for windows,
-    /// where a picture is drawn in several steps. Not beyond a million patches, which are chosen and
-    /// drawn in turn.
+    /// Whether the selection is kept while the view stays the same: for windows, where a picture is
+    /// drawn in several steps. Scenes of more than a million patches in view keep none: they are
+    /// selected and drawn batch by batch.
     pub fn set_keeping(&mut self, keeps: bool) {
         self.keeps = keeps;
         self.kept = None;
     }
 
-    /// Takes the scene out, to change it and set it again; until then there is none.
+    /// Takes the scene out, to be changed and set again; until then the source draws nothing.
     pub fn take_scene(&mut self) -> Scene {
         self.plan = FramePlan::default();
         self.bounds = None;
@@ -110,25 +112,25 @@ impl Adaptive {
         std::mem::take(&mut self.scene)
     }
 
-    /// Who tells what the ids of the frame mean that was prepared last.
-    pub fn namer(&self) -> PickResolver {
+    /// Resolves the ids of the frame that was prepared last.
+    pub fn resolver(&self) -> PickResolver {
         PickResolver::new(&self.plan, &self.scene)
     }
 
-    /// What the frame that was prepared last draws. Chooses once more and waits: for statistics, not
-    /// for every frame.
+    /// What the frame that was prepared last draws. Selects once more and waits for the device: for
+    /// statistics, not for every frame.
     ///
     /// # Errors
-    /// What the device complained of.
+    /// The device reports an error.
     pub fn stats(&self, gpu: &Gpu) -> Result<FrameStats, DeviceError> {
         let mut stats = FrameStats::new(self.plan.patches);
         for round in 0..self.plan.batches.len() {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            self.choose(round, &mut encoder, None);
+            self.select(round, &mut encoder, None);
             gpu.queue.submit([encoder.finish()]);
             let batch = &self.plan.batches[round];
-            let chosen = self.refiner.read_selected(gpu, &self.scene, batch)?;
-            stats.add(&chosen, self.settings.caps);
+            let selected = self.refiner.read_selected(gpu, &self.scene, batch)?;
+            stats.add(&selected, self.settings.caps);
         }
         Ok(stats)
     }
@@ -176,27 +178,27 @@ impl VertexSource for Adaptive {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
-        let sight = CullView {
+        let view = CullView {
             eye: frame.camera.eye(),
             forward: -frame.camera.axes()[2],
             planes: frame.frustum(),
             slope: frame.slope() * self.sub_pixels,
             near: frame.near,
         };
-        let asked = Some((sight, self.settings));
-        if self.kept != asked {
+        let requested = Some((view, self.settings));
+        if self.kept != requested {
             self.kept = None;
             self.plan = self
                 .refiner
-                .prepare(gpu, &self.scene, &sight, &self.settings)?;
+                .prepare(gpu, &self.scene, &view, &self.settings)?;
             *self.stale.get_mut() = true;
             let keeps = self.keeps && self.plan.batches.len() == 1;
-            self.kept = asked.filter(|_| keeps);
+            self.kept = requested.filter(|_| keeps);
         }
         Ok(self.plan.batches.len())
     }
 
-    fn choose(
+    fn select(
         &self,
         round: usize,
         encoder: &mut wgpu::CommandEncoder,
@@ -204,7 +206,7 @@ impl VertexSource for Adaptive {
     ) {
         let stale = self.stale.swap(false, Ordering::Relaxed) || self.kept.is_none();
         let batch = self.plan.batches.get(round).filter(|_| stale);
-        self.refiner.choose(&self.scene, encoder, batch, timestamps);
+        self.refiner.select(&self.scene, encoder, batch, timestamps);
     }
 
     fn draw(&self, round: usize, shader: usize, pass: &mut wgpu::RenderPass<'_>) {

@@ -1,4 +1,4 @@
-// What was decided, counted: how many patches of each kind there are, and which corners they need.
+// Counts the decisions: how many patches each bucket gets, and which rings they need.
 //
 // Called by refiner.rs for a batch, after cull.wgsl: a workgroup for each cluster that shows.
 
@@ -9,7 +9,7 @@
 @group(2) @binding(1) var<storage, read_write> dispatches: array<atomic<u32>>;
 
 var<workgroup> decided_of_lane: array<u32, CLUSTER>;
-// By four patches of the cluster: how many are drawn flat, refined, or at all.
+// By four patches of the cluster: how many are drawn flat, and how many are refined.
 var<workgroup> flat_counts: array<u32, POINTS_OF_CLUSTER>;
 var<workgroup> fine_counts: array<u32, POINTS_OF_CLUSTER>;
 
@@ -65,7 +65,7 @@ fn note_cluster(cluster: u32, section: u32, lateral: bool) {
         queues[section_queue() + atomicAdd(&dispatches[3u * QUEUE_SECTIONS], 1u)] = section;
     }
     if (lateral && points != 0u) {
-        // Rings at both ends.
+        // A tube needs the rings at both its ends.
         let both = points | (points << 1u);
         need_rings(cluster, both & ((1u << POINTS_OF_CLUSTER) - 1u));
         if ((both >> POINTS_OF_CLUSTER) != 0u) {

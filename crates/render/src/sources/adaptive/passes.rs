@@ -1,14 +1,15 @@
-//! The compute passes that choose: their shaders, pipelines and order.
+//! The compute passes of the selection: their shaders, pipelines and order.
 //!
 //! ```text
 //! classify: which clusters show ─▶ decide: levels by patch ─▶ note: counts, and corners that are needed
-//!    ─▶ make: corners, once for all patches ─▶ scan: counts to places
+//!    ─▶ make: corners, once for all patches ─▶ scan: offsets from counts
 //!    ─▶ flatten: triangles of level 1 ─▶ scatter: the list of all others
 //! ```
 //!
-//! What does not show costs one lane per 64 patches; a cluster whose edges are known to have one level is
-//! not asked for each of them; and the four patches of a tube are asked together. Each of these ways is a
-//! pass of its own with a queue, not a branch: Mesa's software Vulkan takes the time of both sides.
+//! A cluster of 64 patches that does not show costs one lane. Where all edges of a cluster are
+//! known to have one level, its patches are not decided one by one; and the four patches of a tube
+//! are decided together. Each of these cases is a pass with a queue, not a branch: Mesa's software
+//! Vulkan takes the time of both sides of a branch.
 
 use neurotess_refine::wgsl::{Shader, ShaderParts};
 
@@ -24,7 +25,7 @@ use crate::sources::adaptive::settings::{
 };
 use crate::sources::adaptive::work::Work;
 
-/// The modules of the passes, in their order.
+/// The shader modules of the passes, in the order of the passes.
 pub(crate) fn modules() -> [Shader; 7] {
     let of_file = |name: &'static str| {
         let mut parts = ShaderParts::new(&[shader::file(name)]);
@@ -43,7 +44,7 @@ pub(crate) fn modules() -> [Shader; 7] {
     .map(of_file)
 }
 
-/// Entry points: which module has it, and how many buffers of group 2 it writes.
+/// Entry points: index of the module, name, and number of buffers in group 2.
 pub(crate) const ENTRIES: [(usize, &str, u32); 12] = [
     (0, "classify", 2),
     (1, "decide_plain", 3),
@@ -59,7 +60,7 @@ pub(crate) const ENTRIES: [(usize, &str, u32); 12] = [
     (6, "scatter", 3),
 ];
 
-/// Pipelines.
+/// The pipelines of the passes.
 #[derive(Debug)]
 pub(crate) struct Passes {
     classify: wgpu::ComputePipeline,
@@ -127,7 +128,7 @@ impl Passes {
         }
     }
 
-    /// All passes of a batch, in one pass of the device.
+    /// All passes of a batch, in one compute pass of wgpu.
     pub(crate) fn dispatch(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
@@ -174,7 +175,7 @@ impl Passes {
 
         pass.set_bind_group(2, &work.groups.scan, &[]);
         pass.set_pipeline(&self.scan_marks);
-        // One for each bucket, and one for flat patches.
+        // A workgroup for each bucket, and one for flat patches.
         pass.dispatch_workgroups(BUCKETS as u32 + 1, 1, 1);
         pass.set_pipeline(&self.scan_buckets);
         pass.dispatch_workgroups(1, 1, 1);

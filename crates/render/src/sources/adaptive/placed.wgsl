@@ -1,6 +1,7 @@
-// What the shaders of a frame share: the frame's choices, placed parts and the bits of decisions.
+// What the shaders of a frame share: the frame's settings, placed parts and the bits of decisions.
 //
-// Called by all shaders of refiner.rs. Structs as in settings.rs; constants come from its prelude.
+// Imported by all shaders of refiner.rs. The Rust twins of the structs and the constants are in
+// settings.rs.
 
 #import plan.wgsl
 
@@ -10,9 +11,9 @@ struct Frame {
     slope: f32,
     flat: f32,
     smallest: f32,
-    // Whether each patch has corners of its own, which wireframe need.
+    // Whether no two patches share corners, as wireframes need.
     wireframe: u32,
-    // Place of the first explicit vertex of every batch: behind the slots of all.
+    // Index of the first explicit vertex, the same in every batch: behind the slots of the largest.
     first_explicit: u32,
     @align(16) levels: LodCriterion,
 }
@@ -33,11 +34,11 @@ struct Placed {
     patches: u32,
     instance: u32,
     state: u32,
-    // Place of its first explicit vertex.
+    // Index of its first explicit vertex.
     first_explicit: u32,
 }
 
-// What is drawn together.
+// Placed parts that are drawn together.
 struct Batch {
     first: u32,
     placed: u32,
@@ -61,7 +62,7 @@ fn turned(place: Placed, v: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(dot(place.row_x.xyz, v), dot(place.row_y.xyz, v), dot(place.row_z.xyz, v));
 }
 
-// A decision: the levels of a patch's four sides and its kind; 0 where it is not drawn.
+// A decision: the levels of a patch's four sides and its kind; 0 if it is not drawn.
 fn decision(kind: u32, levels: vec4<u32>) -> u32 {
     let sides = levels.x | (levels.y << 7u) | (levels.z << 14u) | (levels.w << 21u);
     return sides | (kind << DECISION_KIND_SHIFT);
@@ -75,12 +76,13 @@ fn decided_kind(decided: u32) -> u32 {
     return (decided >> DECISION_KIND_SHIFT) & 7u;
 }
 
-// Whether a patch is drawn as the coarse quad that it is.
+// Whether a patch is drawn as one coarse quad.
 fn is_flat(decided: u32) -> bool {
     return decided != 0u && (decided & ((1u << DECISION_KIND_SHIFT) - 1u)) == FLAT_LEVELS;
 }
 
-// Place of a corner: of a ring by its slot, else behind all slots.
+// Index of a corner among the corners of a batch: by the ring's slot, or behind all slots for an
+// explicit vertex.
 fn coarse_place(place: Placed, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
         return place.first_explicit + (vertex & ~EXPLICIT);
@@ -88,7 +90,7 @@ fn coarse_place(place: Placed, vertex: u32) -> u32 {
     return place.first_slot + vertex;
 }
 
-// Place of a level in the set of grid sizes: the smallest that holds it.
+// Index of the smallest grid size that holds a level.
 fn size_class(level: u32) -> u32 {
     for (var k = 0u; k < GRID_SIZES; k += 1u) {
         if (GRID_SIZE[k] >= level) {

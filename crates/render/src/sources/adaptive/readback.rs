@@ -1,4 +1,4 @@
-//! What was chosen and drawn, read back after a frame on request: for statistics and for tests.
+//! What was selected and drawn, read back after a frame on request: for statistics and for tests.
 
 use neurotess_mesh::PatchKind;
 use neurotess_refine::{Caps, HIGHEST_LEVEL, patch_triangles};
@@ -17,17 +17,17 @@ use crate::sources::adaptive::settings::{
 /// A patch that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SelectedPatch {
-    /// Its place in the batch, and what was decided: for [`GridPoint`](crate::testing::GridPoint).
+    /// Its slot in the batch, as [`GridPoint`](crate::testing::GridPoint) takes it.
     pub slot: u32,
-    /// See [`SelectedPatch::slot`].
+    /// The bits of its decision, as [`GridPoint`](crate::testing::GridPoint) takes them.
     pub decided: u32,
-    /// Place of the instance in the scene.
+    /// Index of the instance in the scene.
     pub instance: u32,
     /// Index of the patch in the template's mesh.
     pub patch: u32,
     /// Levels of its four sides.
     pub levels: [u32; 4],
-    /// What it covers.
+    /// Whether it is a lateral patch, a cap or a part of a soma.
     pub kind: PatchKind,
 }
 
@@ -38,8 +38,8 @@ pub struct FrameStats {
     pub patches: u64,
     /// Patches that were drawn.
     pub patches_drawn: u64,
-    /// Vertices that were evaluated, each once per patch; one for each patch at level 1, which share
-    /// theirs.
+    /// Vertices that were evaluated, each once per patch. Patches at level 1 share their corners
+    /// and count as one vertex each.
     pub vertices: u64,
     /// Triangles with an area.
     pub triangles: u64,
@@ -48,7 +48,7 @@ pub struct FrameStats {
 }
 
 impl FrameStats {
-    /// Nothing drawn yet, of so many patches.
+    /// Nothing drawn yet, of this number of patches.
     pub fn new(patches: u64) -> Self {
         Self {
             patches,
@@ -58,8 +58,8 @@ impl FrameStats {
     }
 
     /// Adds what a batch drew.
-    pub fn add(&mut self, chosen: &[SelectedPatch], caps: Caps) {
-        for patch in chosen {
+    pub fn add(&mut self, selected: &[SelectedPatch], caps: Caps) {
+        for patch in selected {
             let (nx, ny, triangles) = patch_triangles(patch.kind, caps, patch.levels);
             self.patches_drawn += 1;
             self.vertices += match patch.levels {
@@ -75,11 +75,11 @@ impl FrameStats {
 }
 
 impl Refiner {
-    /// Patches that [`Refiner::choose`] last decided to draw, in the order of their slots. Waits for the
-    /// device.
+    /// Patches that [`Refiner::select`] last decided to draw, in the order of their slots. Waits
+    /// for the device.
     ///
     /// # Errors
-    /// What the device complained of.
+    /// The device reports an error.
     pub fn read_selected(
         &self,
         gpu: &Gpu,
@@ -104,7 +104,7 @@ impl Refiner {
         let decisions: Vec<u32> = read_back(gpu, &buffers.decisions, slots as usize)?;
         let owners: Vec<u32> = read_back(gpu, &buffers.owners, clusters as usize)?;
         let placed: Vec<Placed> = read_back(gpu, &buffers.placed, (first + placed) as usize)?;
-        let mut chosen = Vec::new();
+        let mut selected = Vec::new();
         for cluster in shown {
             let owner: &Placed = &placed[owners[cluster as usize] as usize];
             let instance = scene.instances()[owner.instance as usize];
@@ -115,7 +115,7 @@ impl Refiner {
                 .find(|part| part.page == batch.page && part.base == owner.base);
             let cluster = cluster * CLUSTER as u32..(cluster + 1) * CLUSTER as u32;
             let slots = cluster.map(|slot| (slot, decisions[slot as usize]));
-            chosen.extend(
+            selected.extend(
                 slots
                     .filter(|&(_, decided)| decided != 0)
                     .map(|(slot, bits)| {
@@ -137,6 +137,6 @@ impl Refiner {
                     }),
             );
         }
-        Ok(chosen)
+        Ok(selected)
     }
 }

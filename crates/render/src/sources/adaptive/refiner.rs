@@ -1,15 +1,16 @@
-//! Selection of levels: compute passes between the placed parts of a scene and draws that need nothing from
-//! the host.
+//! Selection of levels: compute passes that turn the placed parts of a scene into arguments of
+//! indirect draws.
 //!
-//! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016, cull
-//! and decide in the tessellation control stage. wgpu has no such stage, so compute passes do it for
-//! every patch (passes.rs), and patches of like grids are drawn together (grids.rs).
+//! **Theory.** Nießner et al., Real-time rendering techniques with hardware tessellation, 2016,
+//! cull and decide in the tessellation control stage. wgpu has no such stage, so compute passes do
+//! it for every patch (passes.rs), and patches with grids of the same size are drawn together
+//! (grids.rs).
 //!
 //! **Practice.** The host culls whole parts of instances, orders them by page, and cuts them into
 //! **batches** of at most a million patches, which share one set of work buffers: memory does not
-//! grow with the level, and beyond a million patches not with the scene. Per batch: [`Refiner::choose`]
-//! in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was made with
-//! [`Refiner::vertex_shader`] and [`Refiner::layout`]. Nothing is read back.
+//! grow with the level, and beyond a million patches not with the scene. Per batch:
+//! [`Refiner::select`] in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was
+//! made with [`Refiner::vertex_shader`] and [`Refiner::layout`]. Nothing is read back.
 
 use neurotess_refine::wgsl::{Constants, ShaderParts};
 use wgpu::BufferUsages;
@@ -46,7 +47,7 @@ impl Refiner {
     /// Makes pipelines on a device.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device reports an error.
     pub fn new(gpu: &Gpu) -> Result<Self, DeviceError> {
         let device = &gpu.device;
         let template_layout = templates::layout(device);
@@ -67,14 +68,15 @@ impl Refiner {
         })
     }
 
-    /// Shaders that draw: one for patches at level 1, one for other tubes, one for all else.
+    /// Number of shaders that draw: one for patches at level 1, one for other tubes, one for all
+    /// else.
     pub const SHADERS: usize = 3;
 
-    /// What makes vertices: `fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`.
-    /// Binds group 0.
+    /// Defines `fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex`. Binds
+    /// group 0.
     ///
-    /// All shaders find an edge's vertices by the same expressions, and their positions must be
-    /// `@invariant`.
+    /// All shaders compute an edge's vertices by the same expressions, so that there are no cracks.
+    /// For that, a vertex shader that calls it must declare its position `@invariant`.
     pub fn vertex_shader(shader: usize) -> ShaderParts {
         ShaderParts {
             files: vec![shader::file("vertices.wgsl")],
@@ -92,20 +94,20 @@ impl Refiner {
         &self.work_layouts.drawing
     }
 
-    /// Culls whole parts, uploads where the others stand, and cuts them into batches.
+    /// Culls whole parts, uploads the placements of the others, and cuts them into batches.
     ///
     /// # Errors
-    /// The device has no memory left, or refuses.
+    /// The device has no memory left, or reports another error.
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
         scene: &Scene,
-        sight: &CullView,
+        view: &CullView,
         settings: &AdaptiveSettings,
     ) -> Result<FramePlan, DeviceError> {
-        let mut frame = FrameUniforms::new(sight, settings);
-        let (mut placed, patches) = place_all(scene, sight, &frame);
-        // By page, else in the scene's order.
+        let mut frame = FrameUniforms::new(view, settings);
+        let (mut placed, patches) = place_all(scene, view, &frame);
+        // A stable sort: within a page the scene's order stays.
         placed.sort_by_key(|&(page, _)| page);
         let (batches, first_explicit) = cut(&mut placed);
         frame.first_explicit = first_explicit;
@@ -128,8 +130,8 @@ impl Refiner {
         if !self.work.holds(&sizes) {
             self.work = Work::new(gpu, &self.work_layouts, &self.buckets, sizes)?;
         }
-        let places: Vec<Placed> = placed.into_iter().map(|(_, place)| place).collect();
-        self.work.write(gpu, &frame, &places, &batches);
+        let placed: Vec<Placed> = placed.into_iter().map(|(_, part)| part).collect();
+        self.work.write(gpu, &frame, &placed, &batches);
         let pages = scene.templates().pages.iter().map(|page| {
             let layout = &self.work_layouts.drawing;
             self.work.drawing_group(gpu, layout, page, &self.buckets)
@@ -139,13 +141,13 @@ impl Refiner {
         Ok(FramePlan {
             batches,
             patches,
-            placed: places,
+            placed,
         })
     }
 
     /// Decides on a batch's patches and lists those that show; without a batch, an empty pass.
     /// `timestamps`: where the device notes the beginning and the end.
-    pub fn choose(
+    pub fn select(
         &self,
         scene: &Scene,
         encoder: &mut wgpu::CommandEncoder,
@@ -165,8 +167,8 @@ impl Refiner {
         }
     }
 
-    /// Draws a batch that was chosen just before, with the pipeline of the shader that is set. Sets
-    /// group 0.
+    /// Draws a batch that was selected just before, with the pipeline that is set, which must be
+    /// that of the shader. Sets group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, shader: usize) {
         pass.set_bind_group(0, self.drawing_group(batch), &[]);
         let (indices, draws) = match shader {
@@ -180,7 +182,7 @@ impl Refiner {
         pass.multi_draw_indexed_indirect(&self.work.buffers.draws, offset, count);
     }
 
-    /// Group 0 of the shaders that make the vertices of a batch.
+    /// Group 0 of the shaders that compute the vertices of a batch.
     pub(crate) fn drawing_group(&self, batch: &Batch) -> &wgpu::BindGroup {
         &self.drawing_groups[batch.page]
     }
@@ -196,7 +198,8 @@ impl Refiner {
     }
 }
 
-/// Constants of the shaders that make vertices; DRAWS says which of its ways vertices.wgsl goes.
+/// Constants of the shaders that compute vertices; DRAWS says which kind of patches vertices.wgsl
+/// draws.
 pub(crate) fn drawing_constants(shader: usize) -> Constants {
     let mut constants = constants();
     constants.u32("DRAWS", shader as u32);

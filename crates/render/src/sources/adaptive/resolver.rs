@@ -1,4 +1,5 @@
-//! What an id means: instance, and patch of its mesh. Twin of surface_id.wgsl.
+//! What a picking id means: an instance, and a patch of its mesh. Reads what surface_id.wgsl
+//! writes.
 
 use std::collections::BTreeMap;
 
@@ -8,18 +9,18 @@ use crate::sources::adaptive::batch::{Batch, FramePlan};
 use crate::sources::adaptive::settings::Placed;
 use crate::sources::pick::{BATCH_SHIFT, FINE, PickHit, PickId, PickTarget};
 
-/// Knows where everything of a frame stood, also when other frames came after.
+/// Resolves the ids of one frame, also after other frames were drawn.
 #[derive(Clone, Debug, Default)]
 pub struct PickResolver {
     batches: Vec<Batch>,
     placed: Vec<Placed>,
-    /// By page, first point and first quad of a part.
+    /// Parts of templates by their page, first point and first quad.
     parts: BTreeMap<Key, PartNames>,
 }
 
 type Key = (usize, u32, u32);
 
-/// What a part's numbers mean in its mesh.
+/// Indices in a template's mesh by indices in one of its parts.
 #[derive(Clone, Debug, Default)]
 struct PartNames {
     patches: Vec<u32>,
@@ -55,13 +56,13 @@ impl PickResolver {
         }
     }
 
-    /// What an id of the frame means; nothing where nothing was drawn.
-    pub fn name(&self, [first, place]: PickId) -> Option<PickHit> {
+    /// What was drawn at a pixel with this id; nothing if nothing was.
+    pub fn resolve(&self, [first, second]: PickId) -> Option<PickHit> {
         let first = first.checked_sub(1)?;
         let batch = self.batches.get((first >> BATCH_SHIFT) as usize)?;
-        let how = first & ((1 << BATCH_SHIFT) - 1);
+        let corner = first & ((1 << BATCH_SHIFT) - 1);
         let placed = &self.placed[range(batch)];
-        let explicit = how != FINE && place >= batch.uniforms.slots;
+        let explicit = corner != FINE && second >= batch.uniforms.slots;
         let begins = |p: &Placed| {
             if explicit {
                 p.first_explicit
@@ -69,25 +70,26 @@ impl PickResolver {
                 p.first_slot
             }
         };
-        let owner = placed.partition_point(|p| begins(p) <= place);
+        let owner = placed.partition_point(|p| begins(p) <= second);
         let owner = placed.get(owner.checked_sub(1)?)?;
         let part = self.parts.get(&key(batch.page, &owner.base))?;
-        let at = (place - begins(owner)) as usize;
-        let spot = if explicit {
+        let at = (second - begins(owner)) as usize;
+        let target = if explicit {
             PickTarget::Vertex(*part.explicit.get(at)?)
         } else {
-            // The far corners of a flat patch are on the ring after its own.
-            let back = if how == 2 || how == 3 { 4 } else { 0 };
+            // Corners 2 and 3 of a flat patch are on the next point's ring.
+            let back = if corner == 2 || corner == 3 { 4 } else { 0 };
             PickTarget::Patch(patch(&part.patches, at.saturating_sub(back))?)
         };
         Some(PickHit {
             instance: owner.instance,
-            spot,
+            target,
         })
     }
 }
 
-/// The patch at a place; the last ring of a run has none, but the one before it has.
+/// The patch at an index of a part. The last ring of a path has no patches: then the last one
+/// before it.
 fn patch(patches: &[u32], at: usize) -> Option<u32> {
     let before = patches.get(..=at.min(patches.len().checked_sub(1)?))?;
     before.iter().copied().rfind(|&patch| patch != u32::MAX)

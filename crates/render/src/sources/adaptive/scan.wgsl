@@ -1,11 +1,11 @@
-// Turns counts into places and draw arguments.
+// Turns counts into offsets and draw arguments.
 //
 // Called by refiner.rs for a batch, after note.wgsl: `scan_marks`, then `scan_buckets`.
 
 #import clusters.wgsl
 
 struct Bucket {
-    // First place in the list, and how many.
+    // First index in the list, and number of patches.
     start: u32,
     count: u32,
     // Patches per instance of the draw.
@@ -23,12 +23,13 @@ struct DrawIndexed {
 }
 
 @group(2) @binding(0) var<storage, read_write> buckets: array<Bucket>;
-// That of flat patches, then those of buckets.
+// The draw of flat patches, then those of the buckets.
 @group(2) @binding(1) var<storage, read_write> draws: array<DrawIndexed>;
 
 var<workgroup> sums: array<u32, CLUSTER>;
 
-// Exclusive prefix sums: a workgroup for each bucket's sections, and one for the flat patches of clusters.
+// Exclusive prefix sums: a workgroup for each bucket's sections, and one for the flat patches of
+// clusters.
 @compute @workgroup_size(CLUSTER)
 fn scan_marks(
     @builtin(workgroup_id) group: vec3<u32>,

@@ -1,4 +1,4 @@
-//! What one frame depends on: from where, how finely, and where parts are placed.
+//! What one frame depends on: the view, the settings, and where parts are placed.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
@@ -14,39 +14,40 @@ use crate::sources::adaptive::grids::{
 };
 use crate::view::camera::Camera;
 
-/// Patches that are counted and listed together.
+/// Number of slots that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
 const DECISION_KIND_SHIFT: u32 = 28;
-/// Levels of a decision on a patch at level 1.
+/// Bits of a decision's levels if all four are 1.
 const FLAT_LEVELS: u32 = 1 | (1 << 7) | (1 << 14) | (1 << 21);
 /// Queued clusters have their level above these bits.
 const QUEUED_LEVEL_SHIFT: u32 = 24;
-/// Queues by their place among the arguments of dispatches.
+/// Queues, by their index among the arguments of indirect dispatches.
 pub(crate) const QUEUE_PLAIN: u32 = 0;
 pub(crate) const QUEUE_ASKED: u32 = 1;
 pub(crate) const QUEUE_SHOWN: u32 = 2;
 pub(crate) const QUEUE_SECTIONS: u32 = 0;
 pub(crate) const QUEUE_RINGS: u32 = 1;
-/// Kind of a lateral patch between two points with rings of their own, in a decision.
+/// Kind of a lateral patch between two points with implicit rings, in a decision.
 pub(crate) const DECIDED_TUBE: u32 = 4;
 
-/// A camera and a picture's size, as culling and levels see them.
+/// A camera and a picture's size, in the form that culling and the selection of levels take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CullView {
     /// Position of the eye (µm).
     pub eye: DVec3,
-    /// Unit direction of sight.
+    /// Unit direction of view.
     pub forward: DVec3,
-    /// Planes relative to the eye, unit normals inwards. A picture in tiles has each tile's own.
+    /// Planes of the frustum relative to the eye, unit normals inwards. Those of the tile if a
+    /// picture is drawn in tiles.
     pub planes: [Vec4; 5],
     /// Size (µm) of a pixel at unit depth.
     pub slope: f64,
-    /// Depth (µm) of the nearest thing that shows.
+    /// Depth (µm) of the near plane.
     pub near: f64,
 }
 
 impl CullView {
-    /// A whole picture of this size (pixels).
+    /// The view of a whole picture of this size (pixels).
     pub fn new(camera: &Camera, width: u32, height: u32, near: f64) -> Self {
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         Self {
@@ -58,7 +59,7 @@ impl CullView {
         }
     }
 
-    /// The view that levels are chosen from, in the coordinates of a template at a placement.
+    /// The view that levels are selected for, in the coordinates of a template at a placement.
     pub fn local_view(&self, placement: &Placement, origin: DVec3) -> LodView {
         LodView {
             eye: (placement.cell_from_world(self.eye) - origin).as_vec3(),
@@ -73,21 +74,21 @@ impl CullView {
 /// How a frame is refined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AdaptiveSettings {
-    /// How finely.
+    /// What decides on the levels.
     pub lod: LodCriterion,
-    /// Course of the path.
+    /// Shape of the path between tracing points.
     pub path: Path,
     /// Shape of the ends.
     pub caps: Caps,
     /// What is smaller than this many pixels is left out; 0 leaves out nothing.
     pub smallest: f32,
-    /// Whether vertices know their place in their patch's grid, as [`Look::wire`](crate::Look) needs.
-    /// Patches at level 1 then do not share corners, which costs time.
+    /// Whether vertices know their position in their patch's grid, as [`Look::wire`](crate::Look)
+    /// needs. Patches at level 1 then do not share corners, which costs time.
     pub wireframe: bool,
 }
 
 impl AdaptiveSettings {
-    /// The same for the reference on the CPU.
+    /// The same settings for refinement on the CPU.
     pub fn options(&self) -> RefineOptions {
         RefineOptions {
             path: self.path,
@@ -106,7 +107,7 @@ pub(crate) struct FrameUniforms {
     pub(crate) flat: f32,
     pub(crate) smallest: f32,
     pub(crate) wireframe: u32,
-    /// Place of the first explicit vertex of every batch.
+    /// Index of the first explicit vertex, the same in every batch.
     pub(crate) first_explicit: u32,
     pad: [u32; 3],
     pub(crate) levels: GpuLodCriterion,
@@ -114,10 +115,10 @@ pub(crate) struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    pub(crate) fn new(sight: &CullView, settings: &AdaptiveSettings) -> Self {
+    pub(crate) fn new(view: &CullView, settings: &AdaptiveSettings) -> Self {
         Self {
-            planes: sight.planes.map(|plane| plane.to_array()),
-            slope: sight.slope as f32,
+            planes: view.planes.map(|plane| plane.to_array()),
+            slope: view.slope as f32,
             flat: 0.0,
             smallest: settings.smallest.max(0.0),
             wireframe: u32::from(settings.wireframe),
@@ -152,14 +153,14 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
-    /// The transform and view; where the part lies is left open.
-    pub(crate) fn new(sight: &CullView, placement: &Placement, origin: DVec3) -> Self {
+    /// With a transform and a view only; the fields from `base` on are for the caller to set.
+    pub(crate) fn new(view: &CullView, placement: &Placement, origin: DVec3) -> Self {
         let linear = placement.linear();
-        // Large coordinates cancel in f64; what is left is as small as what one sees.
-        let at = placement.world_from_cell(origin) - sight.eye;
+        // Subtracted in f64, where large coordinates cancel; the difference fits an f32.
+        let at = placement.world_from_cell(origin) - view.eye;
         let rows = linear.transpose();
         let row = |axis: DVec3, at: f64| axis.as_vec3().extend(at as f32).to_array();
-        let view = sight.local_view(placement, origin);
+        let view = view.local_view(placement, origin);
         Self {
             row_x: row(rows.x_axis, at.x),
             row_y: row(rows.y_axis, at.y),
@@ -180,7 +181,7 @@ impl Placed {
     }
 }
 
-/// What is drawn together. Twin of the struct of the same name in placed.wgsl.
+/// Placed parts that are drawn together. Twin of the struct `Batch` in placed.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct BatchUniforms {
@@ -207,7 +208,7 @@ pub(crate) fn decided(bits: u32) -> (u32, [u32; 4]) {
     ((bits >> DECISION_KIND_SHIFT) & 7, levels)
 }
 
-/// What the shaders of a frame need of Rust.
+/// Constants that the shaders of a frame share with Rust.
 pub(crate) fn constants() -> Constants {
     let mut constants = gpu::constants();
     for (name, value) in [
@@ -266,8 +267,8 @@ mod tests {
             0.5,
         )
         .expect("a camera");
-        let sight = CullView::new(&camera, 100, 100, 0.01);
-        let placed = Placed::new(&sight, &placement, DVec3::ZERO);
+        let view = CullView::new(&camera, 100, 100, 0.01);
+        let placed = Placed::new(&view, &placement, DVec3::ZERO);
         let p = Vec3::new(0.125, 0.25, 0.001);
         assert_eq!(placed.relative(p), p - Vec3::Z);
         assert_eq!(placed.eye, [0.0, 0.0, 1.0]);

@@ -1,9 +1,10 @@
-// What is in view. Called by classify.wgsl and cull.wgsl. CPU twin: cull.rs.
+// Culls bounding spheres. Imported by classify.wgsl and cull.wgsl. CPU twin: cull.rs.
 
 #import clusters.wgsl
 
-// What shows of a sphere: nothing, some of it or all. It shows within the frustum, and if it is not
-// smaller than what is left out. What is thinner than a pixel is drawn a pixel wide.
+// How much of a sphere shows: nothing, some or all. It must reach into the frustum, and must not be
+// smaller than the smallest size. It may reach a pixel further, since thin tubes are drawn a pixel
+// wide.
 const SHOWS_NOTHING: u32 = 0u;
 const SHOWS_SOME: u32 = 1u;
 const SHOWS_ALL: u32 = 2u;
@@ -14,11 +15,11 @@ fn shown(place: Placed, center: vec3<f32>, radius: f32) -> u32 {
     let pixel = view.slope * depth + view.flat;
     let p = relative(place, center);
     let reach = (radius + pixel) * place.scale;
-    // Of things within the sphere, each with a reach of its own, nothing must be asked any more.
+    // Only then does everything inside the sphere show, and need not be culled for itself.
     var all = frame.smallest == 0.0;
     for (var k = 0u; k < 5u; k += 1u) {
         let inside = dot(frame.planes[k].xyz, p) + frame.planes[k].w;
-        // Also where it is not a number.
+        // Written so that a position that is not a number is outside.
         if (!(inside >= -reach)) {
             return SHOWS_NOTHING;
         }

@@ -1,10 +1,10 @@
-// What a vertex is drawn for: see `surface_vertex` in vertices.wgsl, whose places these are. Called by
-// ids.wgsl; Rust twin: resolver.rs.
+// The picking id of a vertex; indices are those of `surface_vertex` in vertices.wgsl. Called by
+// ids.wgsl; resolver.rs reads the ids.
 
 #import vertices.wgsl
 
-// First: the corner's number in a flat patch, or FINE. Second: the corner's place, or the patch's
-// slot.
+// First: the corner's number in its flat patch, or FINE. Second: the corner's index (coarse_place),
+// or the patch's slot.
 fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {
     if (DRAWS == DRAWS_FLAT) {
         let place = vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u);

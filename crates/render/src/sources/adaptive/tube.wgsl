@@ -1,6 +1,7 @@
-// The quick way to a vertex of a tube between two points with rings of their own: most of all vertices.
+// A quick way to compute the vertices of tubes between two implicit rings, which are most of all
+// vertices.
 //
-// Called by vertices.wgsl; gives what grid_vertex of plan.wgsl gives.
+// Called by vertices.wgsl. Returns the same as grid_vertex of plan.wgsl.
 
 #import surface_vertex.wgsl
 #import placed.wgsl
@@ -12,7 +13,8 @@ fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32
     let far = j == grid.ny;
     let on_ring = near || far;
     let on_side = !on_ring && (i == 0u || i == grid.nx);
-    // Both rings of a ring's edge are the same, as are both columns of an edge along the path.
+    // For a vertex on a ring, start and end are that ring; for one on an edge along the path, left
+    // and right are the same column.
     let start = drawn_ring(coarse[select(point, point + 1u, far)]);
     let end = drawn_ring(coarse[select(point + 1u, point, near)]);
     var left = k;
@@ -61,7 +63,7 @@ fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32
     } else if (on_side) {
         v.normal = edge_normal(a, d, made.by_y, y);
     }
-    // Corners are those of the patches around, to the bit.
+    // Corners are taken as they are, so that all patches around them agree to the bit.
     let at_start = (on_ring || on_side) && place == 0u;
     let at_end = (on_ring || on_side) && place == level;
     if (at_start) {

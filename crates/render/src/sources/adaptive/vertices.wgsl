@@ -1,9 +1,8 @@
-// Who makes vertices: on the fly, from the resident patch and its decided levels.
+// Computes vertices as they are drawn, from a resident patch and its decided levels.
 //
-// `surface_vertex` is the seam to whatever shades (source.rs); SurfaceVertex comes before. Called with
-// the builtin indices of a draw that refiner.rs sets up. The index buffer (grids.rs) hands out vertex
-// indices that say which bucket, which
-// patch of the instance, and which column and row of its grid.
+// Shaders that shade call `surface_vertex` (see sources/mod.rs) with the builtin indices of a draw
+// that refiner.rs sets up. A vertex index, from the index buffer of grids.rs, says which bucket,
+// which patch of the instance, and which column and row of the patch's grid.
 
 #import surface_vertex.wgsl
 #import placed.wgsl
@@ -34,7 +33,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let k = (vertex_index >> INDEX_PATCH_SHIFT) & INDEX_PATCH_MASK;
     let place = instance_index * bucket.together + k;
     if (place >= bucket.count) {
-        // The last instance is not full: triangles without area.
+        // The last instance has fewer patches: the rest are triangles without area.
         let nowhere = vec3<f32>(0.0);
         return SurfaceVertex(nowhere, nowhere, nowhere, 0.0, 0u, 0u, vec2<f32>(0.0));
     }
@@ -47,7 +46,8 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     return listed_other_vertex(listed, i, j);
 }
 
-// Column i and row j of a patch with its decision. Those beyond its grid are the last ones.
+// Vertex at column i and row j of a patch, given its slot and decision. Columns and rows beyond its
+// grid are the last ones.
 fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     if (is_flat(listed.y)) {
         return listed_flat_vertex(listed, i, j);
@@ -111,7 +111,7 @@ fn listed_other_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     );
 }
 
-// Where plan.wgsl has corners from: a placed part's, relative to the eye.
+// What plan.wgsl takes corners from: here a placed part, with corners relative to the eye.
 alias CornerSource = Placed;
 
 fn base_of(source: CornerSource) -> Base {

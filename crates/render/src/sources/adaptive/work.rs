@@ -1,4 +1,4 @@
-//! Buffers of a frame's work: where parts stand, what was decided, and what is drawn.
+//! Buffers of the selection: placed parts, decisions, and lists of what is drawn.
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
@@ -12,7 +12,8 @@ use crate::sources::adaptive::grids::{BUCKETS, FLAT_INDICES};
 use crate::sources::adaptive::layouts::WorkLayouts;
 use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed, SECTION};
 
-/// A ring or an explicit vertex as it is drawn. Twin of the struct of the same name in coarse_point.wgsl.
+/// A ring or an explicit vertex as it is drawn. Twin of the struct of the same name in
+/// coarse_point.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct CoarsePoint {
@@ -26,17 +27,17 @@ pub(crate) struct CoarsePoint {
     pub(crate) instance: u32,
 }
 
-/// Workgroups of a pass that takes a queue: none yet.
+/// Dispatch arguments of a pass that takes an empty queue.
 const NO_GROUPS: [u32; 3] = [0, 1, 1];
 /// Most queues that are filled by one pass.
 const QUEUES: usize = 3;
 
-/// How much of everything a frame needs.
+/// How many of each thing a frame needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sizes {
-    /// Of the largest batch.
+    /// Slots of the largest batch.
     pub(crate) slots: usize,
-    /// Loose vertices of the batch with the most.
+    /// Explicit vertices of the batch with the most.
     pub(crate) explicit: usize,
     pub(crate) placed: usize,
     pub(crate) batches: usize,
@@ -51,7 +52,7 @@ impl Sizes {
     }
 }
 
-/// The buffers, for batches of up to so many slots, and their groups.
+/// The buffers, the sizes that they have room for, and their bind groups.
 #[derive(Debug)]
 pub(crate) struct Work {
     sizes: Sizes,
@@ -69,8 +70,9 @@ pub(crate) struct Buffers {
     pub(crate) owners: wgpu::Buffer,
     pub(crate) queues: wgpu::Buffer,
     marks: wgpu::Buffer,
-    /// Workgroups of what takes queues, by the pass that fills them: clusters, single patches, and what
-    /// was noted.
+    /// Dispatch arguments of the passes that take queues, in a buffer for each pass that fills
+    /// queues: classify.wgsl (clusters), cull.wgsl (single patches) and note.wgsl (sections and
+    /// rings).
     pub(crate) cluster_dispatches: wgpu::Buffer,
     pub(crate) single_dispatch: wgpu::Buffer,
     pub(crate) noted_dispatches: wgpu::Buffer,
@@ -84,7 +86,7 @@ pub(crate) struct Buffers {
     pub(crate) draws: wgpu::Buffer,
 }
 
-/// Bind groups of the passes that choose.
+/// Bind groups of the compute passes.
 #[derive(Debug)]
 pub(crate) struct WorkGroups {
     pub(crate) clusters: wgpu::BindGroup,
@@ -234,14 +236,14 @@ impl WorkGroups {
 }
 
 impl Work {
-    /// Buffers for at least so much.
+    /// Buffers of at least these sizes.
     pub(crate) fn new(
         gpu: &Gpu,
         layouts: &WorkLayouts,
         buckets: &wgpu::Buffer,
         least: Sizes,
     ) -> Result<Self, DeviceError> {
-        // A little more than asked for, so that a moving camera does not make buffers every frame.
+        // A little more than needed, so that a moving camera does not need new buffers every frame.
         let more = |n: usize| n + n / 4;
         let sizes = Sizes {
             slots: more(least.slots).next_multiple_of(SECTION),
@@ -262,7 +264,7 @@ impl Work {
         })
     }
 
-    /// Group 0 of the shaders that make vertices of a page's templates.
+    /// Group 0 of the shaders that compute vertices of a page's templates.
     pub(crate) fn drawing_group(
         &self,
         gpu: &Gpu,
@@ -302,8 +304,8 @@ impl Work {
         batches: &[Batch],
     ) {
         let mut bytes = vec![0_u8; self.batch_stride * batches.len()];
-        for (place, batch) in bytes.chunks_mut(self.batch_stride).zip(batches) {
-            place[..size_of::<BatchUniforms>()]
+        for (bytes, batch) in bytes.chunks_mut(self.batch_stride).zip(batches) {
+            bytes[..size_of::<BatchUniforms>()]
                 .copy_from_slice(bytemuck::bytes_of(&batch.uniforms));
         }
         write(gpu, &self.buffers.frame, &[*frame]);
@@ -311,7 +313,7 @@ impl Work {
         write(gpu, &self.buffers.placed, placed);
     }
 
-    /// Empties queues and marks, for a batch.
+    /// Empties the queues and marks before a batch is selected.
     pub(crate) fn begin(&self, encoder: &mut wgpu::CommandEncoder) {
         let b = &self.buffers;
         encoder.clear_buffer(&b.marks, 0, None);

@@ -1,7 +1,8 @@
-// What the shaders of exploration share: structs, placements of instances, what chunks ask for.
+// What the shaders of exploration mode share: structs, placements of instances, and the steps of
+// detail that chunks request.
 //
-// Comes after the constants of layout.rs, whose structs are twins of these. Called by select.wgsl and
-// visible_chunks.wgsl. `offers` has its twin in lod.rs.
+// Imported by select.wgsl and visible_chunks.wgsl. Rust twins: layout.rs for the structs and
+// constants, lod_requests.rs for `offers`.
 
 struct Eye {
     planes: array<vec4<f32>, 5>,
@@ -63,19 +64,20 @@ fn turn(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return v + q.w * t + cross(q.xyz, t);
 }
 
-// From a template's coordinates to those relative to the eye. Cells cancel as whole numbers, so that
-// far from the origin of the world no digit is lost.
+// From a template's coordinates to those relative to the eye. Cells cancel as whole numbers, so
+// that far from the origin of the world no digit is lost.
 fn relative(place: GpuInstance, p: vec3<f32>) -> vec3<f32> {
     let cells = vec3<f32>(place.cell - eye.cell) * CELL;
     return cells + (place.offset - eye.offset) + place.scale * turn(place.rotation, p);
 }
 
-// Whether a sphere shows, relative to the eye; what is thinner than a pixel is drawn a pixel wide.
+// Whether a sphere, relative to the eye, reaches into the frustum. It may reach a pixel further,
+// since thin tubes are drawn a pixel wide.
 fn in_sight(p: vec3<f32>, reach: f32) -> bool {
     let depth = max(dot(eye.forward, p) + reach, eye.near);
     let most = reach + eye.slope * depth;
     for (var k = 0u; k < 5u; k += 1u) {
-        // Also where it is not a number.
+        // Written so that a position that is not a number is outside.
         if (!(dot(eye.planes[k].xyz, p) + eye.planes[k].w >= -most)) {
             return false;
         }
@@ -97,12 +99,12 @@ fn byte_of(bytes: vec2<u32>, k: u32) -> u32 {
     return (select(bytes.x, bytes.y, k >= 4u) >> (8u * (k & 3u))) & 0xffu;
 }
 
-// Segments of a lod; 0 where it is not there.
+// Number of segments of a chunk's polyline; 0 if the chunk does not have it.
 fn segments(chunk: Chunk, level: u32) -> u32 {
     return byte_of(chunk.counts, level);
 }
 
-// How far a lod may be off (µm); there is always lod 0.
+// Greatest distance (µm) of a polyline from the curved path; polyline 0 always exists.
 fn lod_error(chunk: Chunk, level: u32) -> f32 {
     let byte = byte_of(chunk.errors, level);
     if (byte == 0u) {
@@ -111,7 +113,7 @@ fn lod_error(chunk: Chunk, level: u32) -> f32 {
     return exp2(f32(byte) / ERROR_STEPS - ERROR_OFFSET);
 }
 
-// The coarsest lod within an error.
+// The coarsest polyline within an error.
 fn lod_within(chunk: Chunk, error: f32) -> u32 {
     for (var level = LEVELS - 1u; level > 0u; level -= 1u) {
         if (segments(chunk, level) > 0u && lod_error(chunk, level) <= error) {
@@ -132,7 +134,7 @@ fn stored_position(chunk: Chunk, low: u32, high: u32) -> vec3<f32> {
     return chunk.low + chunk.step * steps;
 }
 
-// A point of a lod.
+// A point of a chunk's polyline.
 fn stored(chunk: Chunk, level: u32, index: u32) -> Stored {
     var point = index;
     if (level > 0u) {
@@ -150,18 +152,19 @@ fn stored(chunk: Chunk, level: u32, index: u32) -> Stored {
     return Stored(stored_position(chunk, low, high), radius, point);
 }
 
-// What of a chunk shows: depths (µm) of the nearest that does, and in the mean; and its share.
+// The visible part of a chunk: its least depth and its mean depth (µm), and its share of the chunk.
 struct Seen {
     nearest: f32,
     middle: f32,
     share: f32,
 }
 
-// Segments at most of the lod that is looked at.
+// Most segments of the polyline that seen_part looks at.
 const LOOKED_AT: u32 = 8u;
 
-// A chunk that is near, or partly outside the picture: segment by segment, each cut at the planes. From its
-// sphere alone every chunk that passes beside the eye would be taken for the nearest thing there is.
+// The visible part of a chunk that is near, or partly outside the picture: segment by segment, each
+// cut by the planes. Going by its bounding sphere alone, a chunk that merely passes beside the eye
+// would seem to be at depth 0, and would get the finest detail.
 fn seen_part(chunk: Chunk, place: GpuInstance) -> Seen {
     var level = 0u;
     for (var k = 1u; k < LEVELS; k += 1u) {
@@ -208,7 +211,7 @@ fn seen_part(chunk: Chunk, place: GpuInstance) -> Seen {
     return seen;
 }
 
-// How a visible chunk is drawn, in one u32: see layout.rs.
+// How a visible chunk is drawn, in one u32: see the constants in layout.rs.
 
 fn packed_lod(what: u32, level: u32, halvings: u32, strips: u32, width: u32) -> u32 {
     return what
@@ -234,33 +237,35 @@ fn lod_strips(lod: u32) -> u32 {
     return (lod >> LOD_STRIPS_SHIFT) & ((1u << (LOD_WIDTH_SHIFT - LOD_STRIPS_SHIFT)) - 1u);
 }
 
-// Share of the chunk's width.
+// Share of the chunk's width that is drawn.
 fn lod_width(lod: u32) -> f32 {
     return f32(lod >> LOD_WIDTH_SHIFT) / f32(FULL_WIDTH);
 }
 
-// Quads of a sphere seen from the front: a fan of two sectors each, and a ring around it.
+// Number of quads of a sphere seen from the front. A disc is a fan of quads that cover two sectors
+// each; a dome has six such quads and a ring of twelve around them.
 const DISC_QUADS: u32 = 4u;
 const DOME_QUADS: u32 = 18u;
 
-// Half the width (pixels) of the thinnest thing drawn, as the shading's.
+// Half the width (pixels) of the thinnest line that the shading draws.
 const HALF_PIXEL: f32 = 0.5;
 
-// As in shade.wgsl.
+// The same function as in shade.wgsl.
 fn ink_share(share: f32) -> f32 {
     let rest = 1.0 - sqrt(min(share, 1.0));
     return 1.0 - rest * rest * rest;
 }
 
-// Up to four steps in which a chunk is drawn better, each with the class of its worth and the quads that
-// it takes beyond those before. Worth falls from step to step.
+// Up to four steps in which a chunk can be drawn better. For each: the bin of its worth, the quads
+// that it takes in addition to the steps before, and the level of detail that it leads to. Worth
+// falls from step to step.
 struct Offers {
     bins: vec4<u32>,
     quads: vec4<u32>,
     lods: vec4<u32>,
 }
 
-// The class of square pixels per quad. 0: nothing.
+// Bin of the histogram for a worth (square pixels per quad). 0: worth nothing.
 fn bin_of(worth: f32) -> u32 {
     if (!(worth > 0.0)) {
         return 0u;
@@ -269,7 +274,7 @@ fn bin_of(worth: f32) -> u32 {
     return u32(clamp(bin, 1.0, f32(BINS - 1u)));
 }
 
-// From 0 to 1, by instance, the same in every frame.
+// A random number from 0 to 1 for each instance, the same in every frame.
 fn chance(instance: u32) -> f32 {
     var h = instance * 747796405u + 277803737u;
     h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
@@ -281,8 +286,8 @@ fn no_offers() -> Offers {
     return Offers(vec4<u32>(0u), vec4<u32>(0u), vec4<u32>(0u));
 }
 
-// Strips around the visible half of a tube of this radius (pixels), and a little more: within half a
-// pixel of the circle.
+// Number of strips around the visible half of a tube of this radius (pixels): enough to be within
+// half a pixel of the circle.
 fn strips_of(radius: f32) -> u32 {
     if (radius < 3.0) {
         return 1u;
@@ -314,7 +319,7 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     }
     let nearest = eye.slope * max(seen.nearest, eye.near);
     let pixel = max(eye.slope * seen.middle, nearest);
-    // Errors and lengths in the template, sizes in pixels.
+    // Size of a pixel in the template's coordinates: errors and lengths are given in those.
     let near_pixel = nearest / place.scale;
     let far_pixel = pixel / place.scale;
     let mean = chunk.radius * (f32(chunk.flags >> 16u) / 65535.0) / far_pixel;
@@ -340,8 +345,9 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     let first = segments(chunk, coarse);
     let second = segments(chunk, fine) << halvings;
     let third = second * strips + caps;
-    // By projected size, and what carries others before them, so that nothing floats. Equals are parted by
-    // chance, or all of a class would come and go at once.
+    // Worth goes by projected size. A chunk is worth as much as the largest one behind it, so that
+    // no chunk is drawn without those that lead to it. The random factor keeps equal chunks of
+    // different instances from appearing and vanishing all at once.
     let worth = 2.0 * chunk.carried / (far_pixel * sqrt(far_pixel)) * exp2(0.5 * chance(instance) - 0.25);
     var all = no_offers();
     all.bins.x = max(bin_of(worth), 1u);
@@ -362,7 +368,7 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     return all;
 }
 
-// Somata come before neurites of their size: they are what a circuit consists of.
+// Somata are worth more than neurites of their size: they show where the neurons of a circuit are.
 fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
     let area = 3.1416 * radius * radius;
     var all = no_offers();
@@ -384,7 +390,7 @@ fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
     all.bins.z = min(bin_of(8.0 * area / f32(own)), all.bins.y);
     all.quads.z = own - sphere;
     all.lods.z = packed_lod(WHAT_SOMA, 0u, 0u, 1u, FULL_WIDTH);
-    // Half a pixel where it bends four times as much as a sphere of its size.
+    // Within half a pixel also where the soma bends four times as sharply as a sphere of its size.
     let off = 4.0 * (3.1416 / 2.0) * radius / f32(own) / eye.error;
     let halvings = u32(clamp(ceil(0.5 * log2(max(off, 1.0))), 0.0, 3.0));
     if (halvings > 0u) {

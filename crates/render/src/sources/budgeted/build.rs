@@ -15,7 +15,8 @@ use super::quantized::{STEPS, error_byte, grid, packed, packed_direction, sphere
 use super::somata;
 
 impl Proxy {
-    /// The proxy of a mesh. `color_keys`: one per tracing point for whoever shades; missing ones are 0.
+    /// The proxy of a mesh. `color_keys`: one per tracing point, for the shading; missing ones are
+    /// 0.
     pub fn new(mesh: &CoarseMesh, color_keys: &[u32]) -> Self {
         let mut proxy = Self {
             origin: mesh.origin,
@@ -52,7 +53,7 @@ impl Proxy {
         proxy
     }
 
-    /// Adds a chunk whose points and simplified lods are packed here.
+    /// Adds a chunk with these points: simplifies them and packs all its polylines.
     fn add_chunk(&mut self, points: &[PathPoint], directions: &[Vec3], flags: u32) {
         let tube: Vec<(Vec3, f32)> = points.iter().map(|p| (p.center, p.radius)).collect();
         let length: f32 = tube.windows(2).map(|w| w[0].0.distance(w[1].0)).sum();
@@ -107,16 +108,16 @@ impl Proxy {
     }
 }
 
-/// Which chunk hangs on which.
+/// From which chunk each chunk starts: its carrier.
 struct Carriers {
     /// By tracing point: the chunk that leads to it.
     chunk_of: Vec<usize>,
-    /// By chunk: the one that it hangs on.
+    /// By chunk: its carrier, or `usize::MAX`.
     carriers: Vec<usize>,
 }
 
 impl Carriers {
-    /// Somata carry nothing, and nothing them.
+    /// No chunks yet but those of somata, which neither have nor are carriers.
     fn new(mesh: &CoarseMesh, somata: usize) -> Self {
         Self {
             chunk_of: vec![usize::MAX; mesh.tracing.len()],
@@ -137,7 +138,7 @@ impl Carriers {
         }
     }
 
-    /// Gives every chunk the greatest worth of what hangs on it.
+    /// Gives every chunk the greatest `carried` of the chunks behind it.
     fn carry(&self, chunks: &mut [Chunk]) {
         for chunk in (0..chunks.len()).rev() {
             let carried = chunks[chunk].carried;
@@ -148,7 +149,8 @@ impl Carriers {
     }
 }
 
-/// Unit direction of a path at each of its points: between those of the segments before and after.
+/// Unit direction of a path at each of its points: the mean of those of the segments before and
+/// after.
 fn directions(points: &[PathPoint]) -> Vec<Vec3> {
     let way = |i: usize| (points[i + 1].center - points[i].center).normalize_or_zero();
     let last = points.len() - 1;
@@ -161,7 +163,7 @@ fn directions(points: &[PathPoint]) -> Vec<Vec3> {
         .collect()
 }
 
-/// How far (µm) the curved path is from the straight one at most.
+/// Greatest distance (µm) of the curved path from the straight one.
 fn sway(tube: &[(Vec3, f32)], directions: &[Vec3]) -> f32 {
     let of = |i: usize| {
         let way = tube[i + 1].0 - tube[i].0;

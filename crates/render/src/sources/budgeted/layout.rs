@@ -1,42 +1,43 @@
-//! What the shaders of exploration share with the host: constants and structs, twins of those in
-//! `explore.wgsl`.
+//! What the shaders of exploration mode share with the host: constants, and structs that are twins
+//! of those in budgeted.wgsl and select.wgsl.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::Constants;
 
 /// Most segments of a chunk.
 pub(crate) const MOST_SEGMENTS: usize = 64;
-/// Forms of a chunk: all points, and ever coarser ones.
+/// Polylines that a chunk is stored as: one of all its points, and ever coarser ones.
 pub(crate) const LEVELS: usize = 7;
-/// Runs that are looked at together, and the size of workgroups that do.
+/// Number of chunks that one workgroup handles, a lane for each.
 pub(crate) const CLUSTER: usize = 64;
-/// Size of the workgroups that sum up.
+/// Size of the workgroups that compute sums.
 pub(crate) const WIDE: usize = 256;
-/// Classes of keys.
+/// Bins of the histogram of quads by worth.
 pub(crate) const BINS: usize = 1024;
-/// Classes per octave of key.
+/// Bins of the histogram per octave of worth.
 pub(crate) const BINS_OF_OCTAVE: f32 = 24.0;
-/// Octaves below a square pixel per quad at which classes begin.
+/// Binary logarithm of the worth (square pixels per quad) at which the bins begin.
 pub(crate) const LOWEST_OCTAVE: f32 = -20.0;
 /// Quads of a full block of the draw.
 pub(crate) const BLOCK: usize = 1024;
 /// Groups side by side in a dispatch: some devices take no more than 65,535.
 pub(crate) const ROW: usize = 32_768;
-/// Of a stored error's byte: `2^(byte / ERROR_STEPS - ERROR_OFFSET)` µm.
+/// An error is stored as a byte that means `2^(byte / ERROR_STEPS - ERROR_OFFSET)` µm.
 pub(crate) const ERROR_STEPS: f32 = 8.0;
 pub(crate) const ERROR_OFFSET: f32 = 20.0;
-/// A lod that is not there.
+/// Error byte of a level of detail that a chunk does not have.
 pub(crate) const NO_LOD: u8 = 255;
-/// Edge (µm) of the cells that positions in the world are counted in.
+/// Edge (µm) of the cells that positions in the world are relative to.
 pub(crate) const CELL: f64 = 1024.0;
-/// As [`neurotess_refine`]'s of the same name: a path sways by no more than this share of the radius.
+/// Equal to [`neurotess_refine`]'s constant of the same name: a path sways by no more than this
+/// share of the radius.
 pub(crate) const MOST_SWAY: f32 = 0.12;
 
-/// Kinds and marks of a chunk.
+/// Flags of a chunk: it is a soma; nothing closes it at its start; nothing closes it at its end.
 pub(crate) const CHUNK_SOMA: u32 = 1;
 pub(crate) const CHUNK_FREE_START: u32 = 2;
 pub(crate) const CHUNK_FREE_END: u32 = 4;
-/// One color key colors all of it; else there is one per point.
+/// Flag of a chunk that has a single color key; others have one per point.
 pub(crate) const CHUNK_ONE_COLOR_KEY: u32 = 8;
 
 impl Chunk {
@@ -45,24 +46,24 @@ impl Chunk {
         self.radius * ((self.flags >> 16) as f32 / 65_535.0)
     }
 
-    /// Marks with a mean radius.
+    /// Flags, with the mean radius in the upper 16 bits.
     pub(crate) fn marks(flags: u32, mean: f32, radius: f32) -> u32 {
         let share = mean / radius.max(f32::MIN_POSITIVE);
         flags | (((share * 65_535.0).round().clamp(0.0, 65_535.0) as u32) << 16)
     }
 }
 
-/// Mark of an instance that is not drawn.
+/// Flag of an instance that is not drawn.
 pub(crate) const HIDDEN: u32 = 1;
 
-/// What a chunk is drawn as: the lowest bits of its level of detail.
+/// What a chunk is drawn as: the lowest bits of a packed level of detail.
 const WHAT_TUBE: u32 = 0;
 const WHAT_DOT: u32 = 1;
 const WHAT_DISC: u32 = 2;
 const WHAT_DOME: u32 = 3;
 const WHAT_SOMA: u32 = 4;
-/// Where the other fields of a level of detail begin: the simplified polyline, halvings of its segments,
-/// strips around it, and how much of its width is drawn.
+/// First bits of the other fields of a packed level of detail: index of the polyline, halvings of
+/// its segments, strips around it, and the share of its width that is drawn.
 const LOD_LEVEL_SHIFT: u32 = 3;
 const LOD_HALVINGS_SHIFT: u32 = 6;
 const LOD_STRIPS_SHIFT: u32 = 8;
@@ -74,35 +75,37 @@ const FULL_WIDTH: u32 = 63;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct Chunk {
-    /// BoundingSphere around its surface (µm, in the template).
+    /// Bounding sphere of its surface (µm, in the template).
     pub(crate) center: [f32; 3],
     pub(crate) reach: f32,
-    /// What stored positions are counted from, and in steps of.
+    /// Stored positions are counted from here, in steps of this length (µm).
     pub(crate) low: [f32; 3],
     pub(crate) step: f32,
-    /// A byte per lod, 0 to 6: segments. Of a soma: quads, vertices.
+    /// A byte for each of the polylines 0 to 6: number of segments. Of a soma: numbers of quads and
+    /// of vertices.
     pub(crate) counts: [u32; 2],
-    /// A byte per lod: error.
+    /// A byte for each polyline: its error.
     pub(crate) errors: [u32; 2],
-    /// Word of the packed buffer where its points begin; lists of kept points follow.
+    /// Index in the packed buffer at which its points begin; lists of kept points follow.
     pub(crate) first: u32,
-    /// Its one color key, or where its color keys begin.
+    /// Its single color key, or the index of its first one.
     pub(crate) color_keys: u32,
-    /// Marks, and from bit 16 on the mean radius in 65,535 steps of the greatest.
+    /// Flags, and from bit 16 on the mean radius in 65,535 steps of the greatest.
     pub(crate) flags: u32,
     /// Greatest radius (µm).
     pub(crate) radius: f32,
     /// Length of the path (µm).
     pub(crate) length: f32,
-    /// The greatest product of length and root of the mean radius (µm^1.5) of it and what hangs on it:
-    /// ink of thin lines grows with the root.
+    /// The greatest product of length and square root of the mean radius (µm^1.5) among it and all
+    /// chunks that branch off behind it: the shading draws thin lines with an opacity that grows
+    /// with the root.
     pub(crate) carried: f32,
-    /// Directions of the path at its ends.
+    /// Packed directions of the path at its ends.
     pub(crate) start: u32,
     pub(crate) end: u32,
 }
 
-/// What a template consists of.
+/// A template: its bounding sphere and its chunks.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct Shape {
@@ -113,8 +116,8 @@ pub(crate) struct Shape {
     pub(crate) pad: [u32; 2],
 }
 
-/// Where an instance instance_pose. In the world: `cell · CELL + offset + scale · rotation · p`, p relative to
-/// the template's origin.
+/// An instance with its placement. A point p, relative to the template's origin, is in the world at
+/// `cell · CELL + offset + scale · rotation · p`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct GpuInstance {
@@ -128,21 +131,21 @@ pub(crate) struct GpuInstance {
     pub(crate) pad: [u32; 2],
 }
 
-/// One for the whole frame.
+/// The camera and the limits of a frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct Eye {
-    /// Relative to the eye.
+    /// Planes of the frustum, relative to the eye.
     pub(crate) planes: [[f32; 4]; 5],
     pub(crate) cell: [i32; 3],
-    /// µm per pixel at unit depth.
+    /// Size (µm) of a pixel at unit depth.
     pub(crate) slope: f32,
     pub(crate) offset: [f32; 3],
     pub(crate) near: f32,
     pub(crate) forward: [f32; 3],
-    /// Farthest that anything may be off (pixels).
+    /// Greatest distance (pixels) of what is drawn from the true surface.
     pub(crate) error: f32,
-    /// Most quads.
+    /// Most quads of the frame.
     pub(crate) budget: u32,
     pub(crate) instances: u32,
     pub(crate) pad: [u32; 2],
@@ -152,16 +155,16 @@ pub(crate) struct Eye {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Sums {
-    /// Chunks of instances that may show.
+    /// Clusters of chunks of instances that may show.
     pub(crate) clusters: u32,
-    /// Those with anything to draw.
+    /// Those of which anything is drawn.
     pub(crate) visible: u32,
-    /// Least class that is drawn.
+    /// Least bin of the histogram that is drawn.
     pub(crate) threshold: u32,
-    /// Quads drawn, visible chunks that they are of.
+    /// Quads drawn, and the visible chunks that they belong to.
     pub(crate) quads: u32,
     pub(crate) visible_chunks: u32,
-    /// Quads that would be drawn without a limit.
+    /// Quads that would be drawn without a budget.
     pub(crate) wanted: u32,
     /// Instances that may show.
     pub(crate) instances: u32,
@@ -174,13 +177,13 @@ pub(crate) struct Sums {
 pub(crate) struct VisibleChunk {
     pub(crate) instance: u32,
     pub(crate) chunk: u32,
-    /// Its level of detail: `packed_lod` in budgeted.wgsl.
+    /// Its level of detail, as `packed_lod` in budgeted.wgsl packs it.
     pub(crate) lod: u32,
-    /// Place of its first quad.
+    /// Index of its first quad.
     pub(crate) first: u32,
 }
 
-/// What the shaders of exploration need of Rust.
+/// Constants that the shaders of exploration mode share with Rust.
 pub(crate) fn constants() -> Constants {
     let mut constants = Constants::default();
     for (name, value) in [

@@ -1,5 +1,5 @@
-//! What a chunk asks for: twin of `offers` in `explore.wgsl`, for tests. Written for one chunk at a time in
-//! f64, from the same definitions.
+//! The steps of detail that a chunk requests: twin of `offers` in budgeted.wgsl, for tests.
+//! Computed in f64 from the same definitions.
 
 use glam::{DQuat, DVec3, Vec3};
 
@@ -21,14 +21,14 @@ const LOOKED_AT: u32 = 8;
 /// A step in which a chunk is drawn better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LodRequest {
-    /// Worth, in classes: a fraction tells how near the next class is.
+    /// Worth, as a bin of the histogram, with its fraction.
     pub class: f64,
-    /// Quads beyond those of the steps before.
+    /// Quads in addition to those of the steps before.
     pub quads: u32,
 }
 
-/// What every chunk of a proxy asks for at an instance's placement; nothing where it does not show.
-/// `instance`: its place in the list.
+/// What every chunk of a proxy requests at an instance's placement; nothing if it does not show.
+/// `instance`: its index in the list.
 pub fn lod_requests(
     proxy: &Proxy,
     placement: &Placement,
@@ -88,7 +88,7 @@ impl View {
         })
     }
 
-    /// Depths of the nearest that shows and in the mean, and the share that shows.
+    /// Of the visible part of a chunk: least depth, mean depth, and share of the chunk's length.
     fn seen(
         &self,
         chunk: &Chunk,
@@ -216,7 +216,8 @@ impl Steps {
     }
 }
 
-/// The part of a way that is on the right side of all planes, or within a reach: from 0 to 1.
+/// The part of a segment that is inside all planes, or outside by no more than a distance:
+/// parameters from 0 to 1. `a` and `b`: distances of the segment's ends from the planes.
 fn between(a: [f64; 5], b: [f64; 5], reach: f64) -> Option<[f64; 2]> {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (a, b) in a.iter().zip(b).map(|(a, b)| (a + reach, b + reach)) {
@@ -230,13 +231,11 @@ fn between(a: [f64; 5], b: [f64; 5], reach: f64) -> Option<[f64; 2]> {
     (from <= to).then_some([from, to])
 }
 
-/// Points of a lod, placed in the world.
+/// Points of a chunk's polyline, in the world.
 fn points(proxy: &Proxy, chunk: &Chunk, level: usize, at: &dyn Fn(Vec3) -> DVec3) -> Vec<DVec3> {
     let all = lod(chunk, 0).0 as usize + 1;
-    let color_keys = &proxy.packed[chunk.first as usize..];
-    let bytes = color_keys[2 * all..]
-        .iter()
-        .flat_map(|color_key| color_key.to_le_bytes());
+    let u32s = &proxy.packed[chunk.first as usize..];
+    let bytes = u32s[2 * all..].iter().flat_map(|four| four.to_le_bytes());
     let bytes: Vec<u8> = bytes.take(2 * all).collect();
     let before = (1..level).map(|k| lod(chunk, k).0).filter(|&n| n > 0);
     let first = before.map(|n| n as usize + 1).sum::<usize>();
@@ -246,16 +245,16 @@ fn points(proxy: &Proxy, chunk: &Chunk, level: usize, at: &dyn Fn(Vec3) -> DVec3
         } else {
             usize::from(bytes[first + i])
         };
-        let [low, high] = [color_keys[2 * kept], color_keys[2 * kept + 1]];
+        let [low, high] = [u32s[2 * kept], u32s[2 * kept + 1]];
         let steps = [low & 0xffff, low >> 16, high & 0xffff].map(|n| n as f32);
         at(Vec3::from_array(chunk.low) + chunk.step * Vec3::from_array(steps))
     };
     (0..=lod(chunk, level).0 as usize).map(point).collect()
 }
 
-/// Segments and error (µm) of a lod.
+/// Number of segments and error (µm) of a chunk's polyline.
 fn lod(chunk: &Chunk, level: usize) -> (u32, f64) {
-    let byte = |color_keys: [u32; 2]| color_keys[level / 4].to_le_bytes()[level % 4];
+    let byte = |u32s: [u32; 2]| u32s[level / 4].to_le_bytes()[level % 4];
     let error = match byte(chunk.errors) {
         0 => 0.0,
         byte => (f64::from(byte) / f64::from(ERROR_STEPS) - f64::from(ERROR_OFFSET)).exp2(),

@@ -1,27 +1,28 @@
-//! Exploration: any scene within a budget of triangles, for a camera that moves.
+//! Exploration mode: any scene within a budget of triangles, for a camera that moves.
 //!
-//! **Theory.** A scene of 50 million segments has more parts than a screen has pixels, so work must
-//! follow what shows. Instances are culled as a whole; of those left every **chunk**, up to 64 segments
-//! of a path ([`Proxy`]), says on the GPU what it would take to draw it coarsely, within half a
-//! pixel, and round, and what each step is worth: square pixels per quad. A histogram of quads over
-//! worth gives the least worth that is within the budget, in the same frame; what is worth more is
-//! listed and drawn (select.wgsl, visible_chunks.wgsl).
+//! **Theory.** A scene of 50 million segments has more parts than a screen has pixels, so the work
+//! must depend on what is visible. Instances are culled as a whole. For each of the others, every
+//! **chunk**, up to 64 segments of a path ([`Proxy`]), computes on the GPU how many quads it would
+//! take to draw it coarsely, within half a pixel, and round, and what each of these steps is worth:
+//! square pixels per quad. A histogram of quads by worth gives the least worth that is within the
+//! budget; in the same frame, all steps that are worth more are listed and drawn (select.wgsl,
+//! visible_chunks.wgsl).
 //!
-//! A chunk is a polyline, one of seven nested ones, the coarsest that is within half a pixel of the
-//! curved path; below three pixels of radius a strip that faces the eye with a cylinder's normals,
-//! above it the half of the tube that faces the eye, round within half a pixel. Below a pixel the
-//! shading widens the strip and makes it fainter, as it does every tube. Somata are dots of a pixel at
-//! least, then spheres, then their own mesh.
+//! A chunk is stored as seven nested polylines and drawn as the coarsest that is within half a
+//! pixel of the curved path. A tube of a radius below three pixels is a strip that faces the eye,
+//! with a cylinder's normals; a wider one is the half of the tube that faces the eye, round within
+//! half a pixel. The shading widens strips below a pixel and makes them fainter, as it does all
+//! tubes. Somata are dots of at least a pixel, then spheres, then their own mesh.
 //!
-//! **Practice.** [`Proxy::new`] on any thread, [`Exploration::add`] once a template,
+//! **Practice.** [`Proxy::new`] on any thread, [`Exploration::add`] once for each template,
 //! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
-//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any time:
-//! pipelines are made once. A frame uploads 144 bytes and what changed; where camera, size and scene
-//! are those of the frame before, it chooses nothing anew.
+//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any
+//! time: pipelines are made once. A frame uploads 144 bytes and what changed; if camera, size and
+//! scene are those of the frame before, it keeps that frame's selection.
 //!
-//! Why not the patches of [`Adaptive`](crate::Adaptive)? They are closed and fit one another whatever
-//! their levels, and need eight triangles a segment for it. Seen from where a whole neuron fits the
-//! screen no one can tell.
+//! Why not the patches of [`Adaptive`](crate::Adaptive)? They form a closed surface at any levels,
+//! for which they need eight triangles a segment. When a whole neuron fits the screen, the
+//! difference cannot be seen.
 
 mod build;
 pub(crate) mod layout;
@@ -59,13 +60,14 @@ pub use proxy::Proxy;
 pub use residents::ExplorationError;
 pub use stats::ExplorationStats;
 
-/// Triangles of a frame by default: what a laptop draws fluently.
+/// Triangles of a frame by default: so many a laptop draws smoothly.
 pub const DEFAULT_BUDGET: u32 = 100_000;
 /// Most triangles of a frame.
 pub const MOST_BUDGET: u32 = 1 << 23;
-/// Farthest (pixels) that a lod may be off.
+/// Greatest distance (pixels) of what is drawn from the true surface.
 const ERROR: f32 = 0.5;
-/// Most of a picture's height that a tile's margin may reach over its border.
+/// Greatest share of a picture's height by which a tile's margin may reach over the picture's
+/// border.
 const MOST_MARGIN: f64 = 0.1;
 
 /// A source that draws any scene within a budget of triangles.
@@ -79,24 +81,25 @@ pub struct Exploration {
     color_keys: GrowableBuffer,
     known: Vec<Known>,
     instances: Vec<Instance>,
-    /// Those that the device has not heard of yet.
+    /// Instances that were edited and are still to be uploaded.
     edited: Range<usize>,
     work: Work,
     groups: Option<Groups>,
-    /// Triangles.
+    /// Most triangles of a frame.
     budget: u32,
     sub_pixels: f64,
-    /// Whether the lists on the device must be chosen anew.
+    /// Whether the lists on the device must be written anew.
     stale: AtomicBool,
-    /// The picture that they are chosen for.
+    /// The picture that they are for.
     picture: Option<Frame>,
 }
 
 impl Exploration {
-    /// An empty scene. `sub_pixels`: of a pixel, along a side; errors are counted in pixels.
+    /// An empty scene. `sub_pixels`: number of sub-pixels along a pixel's side; errors are measured
+    /// in whole pixels.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device reports an error.
     pub fn new(gpu: &Gpu, sub_pixels: u32) -> Result<Self, DeviceError> {
         let budget = DEFAULT_BUDGET;
         Ok(Self {
@@ -132,7 +135,7 @@ impl Exploration {
         self.budget
     }
 
-    /// Sub-pixels of a pixel, along a side, from the next frame on.
+    /// Number of sub-pixels along a pixel's side, from the next frame on.
     pub fn set_sub_pixels(&mut self, sub_pixels: u32) {
         self.sub_pixels = f64::from(sub_pixels.max(1));
         self.changed(false);
@@ -158,7 +161,7 @@ impl Exploration {
         bytes as f64 / points.max(1) as f64
     }
 
-    /// What there is, were all to show.
+    /// What a frame would select from if all instances showed.
     fn size(&self) -> Size {
         let mut size = Size {
             instances: self.instances.len(),
@@ -200,7 +203,7 @@ impl Exploration {
     }
 }
 
-/// The cell that a point of the world is in, and where in it (µm).
+/// The cell that a point of the world is in, and its position in the cell (µm).
 fn in_cells(p: DVec3) -> ([i32; 3], [f32; 3]) {
     let cell = (p / CELL).floor();
     let offset = (p - cell * CELL).as_vec3();
@@ -216,7 +219,7 @@ impl VertexSource for Exploration {
             let center = known.origin + known.center.as_dvec3();
             let center = (instance.placement.world_from_cell(center) - eye).as_vec3();
             let reach = f64::from(known.reach) * instance.placement.scale;
-            // As for spheres of patches: lines are a pixel wide.
+            // A margin of 8 sub-pixels, since thin tubes are drawn a pixel wide.
             let pixels = 8.0 * (f64::from(center.length()) + reach) * frame.slope();
             !instance.hidden && shows(&planes, center, (reach + pixels) as f32)
         })
@@ -241,7 +244,7 @@ impl VertexSource for Exploration {
         &self.passes.drawing
     }
 
-    /// One lod for the whole picture, whatever the tile.
+    /// Selects for the whole picture, whatever the tile, so that tiles fit together.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
         if !self.edited.is_empty() {
             let edited = std::mem::take(&mut self.edited);
@@ -271,7 +274,7 @@ impl VertexSource for Exploration {
             ..*frame
         };
         if *self.stale.get_mut() || self.picture != Some(whole) {
-            // What lies just outside the picture darkens what is inside.
+            // What lies just outside the picture must be drawn too: it occludes what is inside.
             let most = (MOST_MARGIN * f64::from(frame.size[1])).ceil() as i32;
             let margin = (-frame.tile.x).max(-frame.tile.y).clamp(0, most) as u32;
             let eye = self.eye(frame, margin);
@@ -284,7 +287,7 @@ impl VertexSource for Exploration {
         Ok(1)
     }
 
-    fn choose(
+    fn select(
         &self,
         _round: usize,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,9 +1,9 @@
-//! Simplified polylines of one chunk, each a part of the next finer one.
+//! Simplified polylines of one chunk, each a subset of the next finer one.
 //!
-//! **Theory.** Ramer 1972, Douglas & Peucker 1973, from the coarse end: between the two ends, which
-//! always stay, the point that lies farthest from what is there is put back, again and again. So every
-//! coarser polyline is a part of the finer ones, and the error of each is known when it is left. A
-//! point's distance counts its radius too: how far the tube's surface is off at most.
+//! **Theory.** Ramer 1972, Douglas & Peucker 1973, run from the coarse end: start with the two end
+//! points and add, again and again, the point that lies farthest from the polyline so far. So every
+//! coarser polyline is a subset of the finer ones, and its error is known. A point's distance
+//! includes the difference in radius: it bounds the distance of the tube's surface.
 
 use glam::Vec3;
 
@@ -12,14 +12,15 @@ use super::layout::{LEVELS, MOST_SEGMENTS};
 /// A polyline that leaves out points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Simplified {
-    /// Indices of the points that stay, ascending.
+    /// Indices of the points that are kept, ascending.
     pub(crate) kept: Vec<u8>,
-    /// Farthest (µm) that the surface of what was left out is from what stays.
+    /// Greatest distance (µm) of the surface at a point that was left out from the simplified
+    /// surface.
     pub(crate) error: f32,
 }
 
-/// Coarser lods of a chunk of 2 to [`MOST_SEGMENTS`] + 1 points, with half, a fourth, … of its segments;
-/// nothing where that is no fewer than the lod before.
+/// Coarser polylines of a chunk of 2 to [`MOST_SEGMENTS`] + 1 points, with half, a fourth, … of its
+/// segments; nothing where that is no fewer than the polyline before.
 pub(crate) fn simplify(points: &[(Vec3, f32)]) -> [Option<Simplified>; LEVELS - 1] {
     let last = points.len() - 1;
     assert!((1..=MOST_SEGMENTS).contains(&last), "{last} segments");
@@ -50,10 +51,11 @@ pub(crate) fn simplify(points: &[(Vec3, f32)]) -> [Option<Simplified>; LEVELS - 
     }
 }
 
-/// The point between two that lies farthest from the tube between them, and how far.
+/// The point between two others that lies farthest from the tube between them, and its distance
+/// (µm).
 fn worst(points: &[(Vec3, f32)], from: usize, to: usize) -> (usize, f32) {
     let between = (from + 1..to).map(|i| (i, apart(points[i], points[from], points[to])));
-    // The first of equals, and never an end while there is another.
+    // The first of several equal ones; an end, at distance −1, only if there is no point between.
     between.fold(
         (from, -1.0),
         |best, one| {

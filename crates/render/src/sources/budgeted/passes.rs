@@ -1,4 +1,4 @@
-//! The compute passes of exploration and the buffers that they share: see `select.wgsl`.
+//! The compute passes of exploration mode and the buffers that they share: see `select.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::gpu;
@@ -39,7 +39,7 @@ pub(crate) struct Resident<'a> {
     pub(crate) color_keys: &'a GrowableBuffer,
 }
 
-/// A pass: what it is called, and the bindings that it uses.
+/// A pass: its entry point, and the bindings that it uses.
 pub(crate) struct Step {
     pub(crate) entry: &'static str,
     bindings: &'static [u32],
@@ -52,7 +52,7 @@ impl Step {
     }
 }
 
-/// Group 0 of what makes vertices.
+/// Group 0 of the shaders that compute vertices.
 pub(crate) fn drawing_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let vertex = wgpu::ShaderStages::VERTEX;
     let mut entries = vec![uniform(0, vertex, false)];
@@ -99,17 +99,17 @@ pub(crate) struct Passes {
     pub(crate) drawing: wgpu::BindGroupLayout,
 }
 
-/// What a frame may have to do with.
+/// The most that a frame may have to handle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Size {
     pub(crate) instances: usize,
     pub(crate) chunks: u64,
     pub(crate) clusters: u64,
-    /// Quads.
+    /// Most quads.
     pub(crate) budget: u32,
 }
 
-/// Buffers of a frame, for scenes up to a size.
+/// Buffers of a frame, for scenes of up to this size.
 #[derive(Debug)]
 pub(crate) struct Work {
     size: Size,
@@ -244,7 +244,7 @@ impl Passes {
         }
     }
 
-    /// Draws what was chosen, with the pipeline that is set. Sets group 0.
+    /// Draws what was selected, with the pipeline that is set. Sets group 0.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, work: &Work, groups: &Groups) {
         pass.set_bind_group(0, &groups.drawing, &[]);
         pass.set_index_buffer(work.indices.slice(..), wgpu::IndexFormat::Uint32);
@@ -253,10 +253,10 @@ impl Passes {
 }
 
 impl Work {
-    /// For scenes up to a size.
+    /// Buffers for scenes of up to this size.
     ///
     /// # Errors
-    /// More than the device binds in one piece.
+    /// A buffer would be larger than the device can bind, or the device reports another error.
     pub(crate) fn new(gpu: &Gpu, size: Size) -> Result<Self, DeviceError> {
         let quads = u64::from(size.budget).max(1);
         let stored = BufferUsages::STORAGE;
@@ -272,7 +272,7 @@ impl Work {
                 mapped_at_creation: false,
             }))
         };
-        // Every visible cluster draws a quad at least, and so does every visible chunk.
+        // Every visible cluster draws at least one quad, and so does every visible chunk.
         let most_visible = size.clusters.min(quads);
         let book = size_of::<Sums>() as u64 + 4 * (size.instances as u64).max(1);
         let most_visible_chunks = size.chunks.min(quads);
@@ -306,7 +306,7 @@ impl Work {
         Ok(work)
     }
 
-    /// Whether a scene of this size fits: smaller ones need no other buffers.
+    /// Whether a scene of this size fits into the buffers.
     pub(crate) fn holds(&self, size: &Size) -> bool {
         let Size {
             instances,
@@ -333,10 +333,11 @@ impl Work {
     }
 }
 
-/// Of a full block and of the rest.
+/// Number of indices: those of a full block, and those of the rest.
 const INDICES: usize = 12 * BLOCK;
 
-/// Two triangles a quad, parted from corner 1 to 3; those of the rest have vertices of their own.
+/// Two triangles a quad, split along the diagonal from corner 1 to 3. Vertex indices of the rest
+/// follow those of a full block.
 fn indices() -> Vec<u32> {
     let quads = 0..2 * BLOCK as u32;
     quads
@@ -344,14 +345,15 @@ fn indices() -> Vec<u32> {
         .collect()
 }
 
-/// The module of all passes that select.
+/// The shader module of all passes.
 pub(crate) fn select_shader() -> Shader {
     let mut parts = ShaderParts::new(&[shader::file("select.wgsl")]);
     parts.constants = constants();
     shader::shader("select", &parts)
 }
 
-/// What makes vertices. Somata near by are evaluated as everywhere.
+/// The shader that computes vertices. It has refine's constants too, since near somata are
+/// evaluated by evaluate.wgsl.
 pub(crate) fn vertex_shader() -> ShaderParts {
     let mut parts = ShaderParts::new(&[shader::file("visible_chunks.wgsl")]);
     parts.constants = gpu::constants();

@@ -1,15 +1,16 @@
-//! A coarse mesh's tubes as paths: from a start through forks to a tip, always along the branch that
-//! reaches farthest. What branches off is a path of its own that starts at the fork.
+//! A coarse mesh's tubes as paths: from a start through forks to a tip, always along the branch
+//! that reaches farthest. A branch that leaves such a path is a path of its own, which starts at
+//! the fork.
 //!
-//! A path goes on through forks, so a far neuron needs as many visible chunks as it has tips, and the tube of
-//! a fork's main branch has no seam.
+//! Since paths go on through forks, there are only as many paths as tips, and a neuron far away
+//! takes only as many chunks; and there is no seam along the main branch of a fork.
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 
 const NONE: u32 = u32::MAX;
 
-/// A way along tracing points.
+/// A path along tracing points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct TubePath {
     /// At least two.
@@ -25,11 +26,11 @@ pub(crate) struct TubePath {
 pub(crate) struct PathPoint {
     pub(crate) center: Vec3,
     pub(crate) radius: f32,
-    /// Tracing point that says the color.
+    /// Tracing point that it takes its color from.
     pub(crate) tracing: u32,
 }
 
-/// All paths of a mesh, each after the one that it starts from.
+/// All paths of a mesh, each after the one that it branches off from.
 pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
     let tree = Tree::new(mesh);
     let far = tree.reaches(mesh);
@@ -46,14 +47,14 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
             ..TubePath::default()
         };
         if fork != NONE {
-            // The branch leaves with its own width and color: the fork's tube is there already.
+            // The branch starts with its own width and color, since the main branch draws the fork.
             path.points.push(PathPoint {
                 center: mesh.tracing[fork as usize].center,
                 ..point(mesh, first)
             });
         }
         if fork == NONE && leaves_soma(mesh, first) {
-            // From within the soma, so that no gap shows however the neurite bends away.
+            // Starts inside the soma, so that no gap shows however the neurite bends.
             let mut inside = point(mesh, first);
             inside.center -= mesh.tracing[first as usize].tangent * inside.radius;
             path.points.push(inside);
@@ -98,14 +99,14 @@ fn point(mesh: &CoarseMesh, tracing: u32) -> PathPoint {
 /// Which tracing point follows which.
 struct Tree {
     parents: Vec<u32>,
-    /// Children of all, one after the other, and where each one's begin.
+    /// Children of all points, one after the other, and where those of each point begin.
     children: Vec<u32>,
     first: Vec<u32>,
 }
 
 impl Tree {
-    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2), lofts
-    /// from a trunk's to an inset.
+    /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2),
+    /// lofts from a trunk's to an inset.
     fn new(mesh: &CoarseMesh) -> Self {
         let count = mesh.tracing.len();
         let mut parents = vec![NONE; count];
@@ -149,7 +150,7 @@ impl Tree {
         &self.children[self.first[point] as usize..self.first[point + 1] as usize]
     }
 
-    /// Length (µm) of the longest way from each point to a tip.
+    /// Length (µm) of the longest path from each point to a tip.
     fn reaches(&self, mesh: &CoarseMesh) -> Vec<f32> {
         let mut order: Vec<u32> = Vec::with_capacity(self.parents.len());
         let roots = (0..).zip(&self.parents).filter(|(_, p)| **p == NONE);
@@ -172,10 +173,11 @@ impl Tree {
     }
 }
 
-/// Whether `from` descends from `ancestor`: only a mesh that is no tree's has such a ring.
+/// Whether `from` descends from `ancestor`: then a patch from `from` to `ancestor` would close a
+/// circle, which only a mesh of something other than a tree has.
 fn leads_to(parents: &[u32], from: u32, ancestor: u32) -> bool {
-    // A mesh of ours names parents before children, and then the child has no descendants yet; a
-    // parent that was named before its own parent is rare, and its chain short.
+    // Meshes that we generate have the patches of parents before those of children, so that the
+    // child has no descendants yet. Where a parent comes later it is rare, and its chain is short.
     let mut at = from;
     for _ in 0..parents.len() {
         if at == ancestor {

@@ -1,4 +1,5 @@
-//! What an id of exploration means: instance, and traced point of its mesh. Twin of visible_chunks_id.wgsl.
+//! What a picking id of exploration mode means: an instance, and a tracing point of its mesh. Reads
+//! what visible_chunks_id.wgsl writes.
 
 use std::sync::Arc;
 
@@ -8,29 +9,29 @@ use super::proxy::Proxy;
 use crate::sources::pick::PickId;
 use crate::sources::pick::{POINT_BITS, PickHit, PickTarget};
 
-/// What the points of a proxy's chunks are in its mesh.
+/// Which tracing points of a mesh the points of its proxy's chunks are.
 #[derive(Clone, Debug, Default)]
 pub struct ProxyPickTargets {
     /// By chunk: where its points begin, and whether it is a soma.
     chunks: Vec<(u32, bool)>,
-    /// Tracing points.
+    /// Tracing points of all chunks, one chunk after the other.
     points: Vec<u32>,
 }
 
 impl ProxyPickTargets {
-    /// Of a proxy.
+    /// The pick targets of a proxy.
     pub fn new(proxy: &Proxy) -> Self {
-        let mut names = Self::default();
+        let mut targets = Self::default();
         for (chunk, colors) in proxy.chunks.iter().zip(&proxy.colors) {
             let soma = chunk.flags & CHUNK_SOMA != 0;
-            names.chunks.push((names.points.len() as u32, soma));
-            names.points.extend(colors);
+            targets.chunks.push((targets.points.len() as u32, soma));
+            targets.points.extend(colors);
         }
-        names
+        targets
     }
 
-    /// What a point of a chunk is.
-    fn spot(&self, chunk: usize, point: usize) -> Option<PickTarget> {
+    /// The pick target of a chunk's point.
+    fn target(&self, chunk: usize, point: usize) -> Option<PickTarget> {
         let &(first, soma) = self.chunks.get(chunk)?;
         let end = self
             .chunks
@@ -46,36 +47,37 @@ impl ProxyPickTargets {
     }
 }
 
-/// Knows what the ids of a frame of exploration mean, also when other frames came after.
+/// Resolves the ids of one frame of exploration mode, also after other frames were drawn.
 #[derive(Clone, Debug)]
 pub struct ProxyPickResolver {
-    names: Arc<[ProxyPickTargets]>,
-    /// By instance: its template, and the first of that one's chunks.
+    targets: Arc<[ProxyPickTargets]>,
+    /// By instance: its template, and the template's first chunk.
     instances: Vec<(u32, u32)>,
 }
 
 impl ProxyPickResolver {
-    /// What an id of the frame means; nothing where nothing was drawn.
-    pub fn name(&self, [first, place]: PickId) -> Option<PickHit> {
+    /// What was drawn at a pixel with this id; nothing if nothing was.
+    pub fn resolve(&self, [first, second]: PickId) -> Option<PickHit> {
         let instance = first.checked_sub(1)?;
         let &(template, first_chunk) = self.instances.get(instance as usize)?;
-        let chunk = (place >> POINT_BITS).checked_sub(first_chunk)?;
-        let point = place & ((1 << POINT_BITS) - 1);
-        let names = self.names.get(template as usize)?;
-        let spot = names.spot(chunk as usize, point as usize)?;
-        Some(PickHit { instance, spot })
+        let chunk = (second >> POINT_BITS).checked_sub(first_chunk)?;
+        let point = second & ((1 << POINT_BITS) - 1);
+        let targets = self.targets.get(template as usize)?;
+        let target = targets.target(chunk as usize, point as usize)?;
+        Some(PickHit { instance, target })
     }
 }
 
 impl Exploration {
-    /// Who tells what ids of the instances of now mean. `names`: of all proxies that were added.
-    pub fn namer(&self, names: Arc<[ProxyPickTargets]>) -> ProxyPickResolver {
+    /// Resolves ids of the current instances. `targets`: those of all proxies that were added, in
+    /// order.
+    pub fn resolver(&self, targets: Arc<[ProxyPickTargets]>) -> ProxyPickResolver {
         let instances = self.instances.iter().map(|instance| {
             let template = instance.template.0;
             (template, self.known[template as usize].first_chunk)
         });
         ProxyPickResolver {
-            names,
+            targets,
             instances: instances.collect(),
         }
     }

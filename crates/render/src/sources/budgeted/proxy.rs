@@ -1,23 +1,24 @@
-//! What exploration keeps of a coarse mesh: chunks of its paths with simplified levels of detail, and its
-//! somata.
+//! What exploration mode keeps of a coarse mesh: chunks of its paths with simplified polylines, and
+//! its somata.
 //!
-//! A **chunk** is up to 64 segments of a path: what is culled, selected and listed as one. Its positions
-//! and radii are counted in 65,535 steps of its own extent: 8 bytes a point, and a byte for each
-//! point of a simplified level, at most one a point in all.
+//! A **chunk** is up to 64 segments of a path, which are culled, selected and listed together. Its
+//! positions and radii are stored in 65,535 steps of its own extent: 8 bytes a point. Each point of
+//! a simplified polyline takes a byte, and all simplified polylines together have no more points
+//! than the chunk.
 
 use glam::{DVec3, Vec3};
 
 use super::layout::{CHUNK_ONE_COLOR_KEY, Chunk};
 use crate::view::frustum::BoundingSphere;
 
-/// A template for exploration, made on the host, ready to be uploaded.
+/// A template for exploration mode, computed on the host, ready to be uploaded.
 #[derive(Clone, Debug, Default)]
 pub struct Proxy {
     pub(crate) origin: DVec3,
     pub(crate) chunks: Vec<Chunk>,
     pub(crate) packed: Vec<u32>,
     pub(crate) color_keys: Vec<u32>,
-    /// By chunk: tracing points that its color keys are of.
+    /// By chunk: the tracing points that its color keys belong to.
     pub(super) colors: Vec<Vec<u32>>,
     pub(crate) center: Vec3,
     pub(crate) reach: f32,
@@ -25,7 +26,7 @@ pub struct Proxy {
 }
 
 impl Proxy {
-    /// Other colors: color keys of the tracing points of the mesh that it was made of.
+    /// Sets the color keys, one for each tracing point of the mesh.
     pub fn set_color_keys(&mut self, color_keys: &[u32]) {
         self.color_keys.clear();
         for (chunk, colors) in self.chunks.iter_mut().zip(&self.colors) {
@@ -42,17 +43,17 @@ impl Proxy {
         }
     }
 
-    /// Number of tracing points, those of somata aside.
+    /// Number of tracing points outside somata.
     pub fn point_count(&self) -> usize {
         self.points
     }
 
-    /// Bounding sphere around all of it, in the tracing's own coordinates (µm).
+    /// Bounding sphere of the whole template, in the coordinates of the tracing (µm).
     pub fn sphere(&self) -> BoundingSphere {
         (self.origin + self.center.as_dvec3(), f64::from(self.reach))
     }
 
-    /// Bounding spheres that together hold all of it, in the tracing's own coordinates (µm): one for each chunk.
+    /// Bounding spheres of the chunks, in the coordinates of the tracing (µm).
     pub fn spheres(&self) -> Vec<BoundingSphere> {
         let sphere = |chunk: &Chunk| {
             let center = Vec3::from_array(chunk.center).as_dvec3();
@@ -74,7 +75,7 @@ impl Proxy {
     }
 }
 
-/// A chunk whose packed buffer and color keys begin elsewhere.
+/// A chunk with offsets added to where its packed u32s and its color keys begin.
 pub(super) fn moved(chunk: &Chunk, (packed, color_keys): (usize, usize)) -> Chunk {
     let mut chunk = *chunk;
     chunk.first += packed as u32;

@@ -7,7 +7,7 @@ use super::layout::{ERROR_OFFSET, ERROR_STEPS, NO_LOD};
 /// Steps of a stored coordinate.
 pub(super) const STEPS: f32 = 65_535.0;
 
-/// Rounded up, so that no error is understated.
+/// An error (µm) as a byte, rounded up so that no error is understated.
 pub(super) fn error_byte(error: f32) -> u8 {
     if error <= 0.0 {
         return 0;
@@ -21,7 +21,7 @@ pub(super) fn u32s_of(bytes: [u8; 8]) -> [u32; 2] {
     [[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes)
 }
 
-/// What positions are counted from, and in steps of.
+/// The grid that positions are stored in: its lowest corner, and the length (µm) of a step.
 pub(super) fn grid(positions: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32) {
     let low = positions.clone().fold(Vec3::MAX, Vec3::min);
     let high = positions.fold(Vec3::MIN, Vec3::max);
@@ -29,7 +29,7 @@ pub(super) fn grid(positions: impl Iterator<Item = Vec3> + Clone) -> (Vec3, f32)
     (low, (extent / STEPS).max(1e-9))
 }
 
-/// A position in steps, and 16 bits more.
+/// A position in steps of a grid, 16 bits for each coordinate, and 16 bits `more`.
 pub(super) fn packed(position: Vec3, low: Vec3, step: f32, more: u32) -> [u32; 2] {
     let [x, y, z] = ((position - low) / step)
         .round()
@@ -39,15 +39,15 @@ pub(super) fn packed(position: Vec3, low: Vec3, step: f32, more: u32) -> [u32; 2
     [x | (y << 16), z | (more << 16)]
 }
 
-/// A unit vector in two times 16 bits.
+/// A unit vector as octahedral coordinates of 16 bits each.
 pub(super) fn packed_direction(v: Vec3) -> u32 {
     let p = octahedral(v);
     let whole = |x: f32| u32::from((x * 32_767.0).round() as i16 as u16);
     whole(p.x) | (whole(p.y) << 16)
 }
 
-/// Place of a unit vector on an unfolded octahedron (Meyer et al., On floating-point normal vectors,
-/// 2010), −1 to 1.
+/// Octahedral coordinates of a unit vector, −1 to 1 (Meyer et al., On floating-point normal
+/// vectors, 2010).
 pub(super) fn octahedral(v: Vec3) -> Vec2 {
     let size = v.abs().element_sum();
     if size <= 0.0 {
@@ -61,7 +61,7 @@ pub(super) fn octahedral(v: Vec3) -> Vec2 {
     Vec2::new((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y))
 }
 
-/// A sphere that holds spheres: around the middle of their box.
+/// A sphere that holds these spheres, around the center of their bounding box.
 pub(super) fn sphere(spheres: impl Iterator<Item = (Vec3, f32)> + Clone) -> (Vec3, f32) {
     let low = spheres
         .clone()
@@ -75,6 +75,6 @@ pub(super) fn sphere(spheres: impl Iterator<Item = (Vec3, f32)> + Clone) -> (Vec
     let reach = spheres
         .map(|(c, r)| c.distance(center) + r)
         .fold(0.0, f32::max);
-    // Positions are stored rounded.
+    // A little more, since positions are rounded when they are stored.
     (center, reach * 1.0001)
 }

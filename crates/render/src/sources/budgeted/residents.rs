@@ -1,4 +1,5 @@
-//! What is resident for exploration, and how it changes: templates, their colors, instances.
+//! What exploration mode keeps on the device, and how it changes: templates, their colors,
+//! instances.
 
 use glam::{DVec3, Vec3};
 
@@ -9,18 +10,18 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::{Instance, SceneError, TemplateId, check_placement};
 
-/// Why a scene cannot be explored.
+/// Why a scene cannot be drawn in exploration mode.
 #[derive(Debug, thiserror::Error)]
 pub enum ExplorationError {
-    /// An instance is wrong.
+    /// An instance is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The device refuses.
+    /// The device reports an error.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
 
-/// What the host remembers of a template.
+/// What the host keeps of a template.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub(super) origin: DVec3,
@@ -29,14 +30,14 @@ pub(super) struct Known {
     pub(super) points: usize,
     pub(super) first_chunk: u32,
     pub(super) chunks: u32,
-    /// Where its packed buffer and its color keys begin, and how many color keys there is room for.
+    /// Where its packed u32s and its color keys begin, and how many color keys there is room for.
     first_packed: usize,
     first_color_key: usize,
     color_keys: usize,
 }
 
 impl Known {
-    /// Its chunks, as they lie on the device.
+    /// The proxy's chunks, with indices into the buffers on the device.
     fn placed<'s>(&self, proxy: &'s Proxy) -> impl Iterator<Item = Chunk> + use<'s> {
         let at = (self.first_packed, self.first_color_key);
         proxy
@@ -47,10 +48,11 @@ impl Known {
 }
 
 impl Exploration {
-    /// Uploads templates, with numbers that follow those already there.
+    /// Uploads templates. Their ids follow those already there.
     ///
     /// # Errors
-    /// They do not fit what the device can bind in one visible chunk, or it refuses.
+    /// All templates together are larger than a buffer that the device can bind, or the device
+    /// reports another error.
     pub fn add(&mut self, gpu: &Gpu, proxies: &[Proxy]) -> Result<Vec<TemplateId>, DeviceError> {
         let first = self.known.len();
         let (mut chunks, mut shapes) = (Vec::new(), Vec::new());
@@ -98,10 +100,10 @@ impl Exploration {
     /// Uploads the color keys of a template's proxy, which [`Proxy::set_color_keys`] has changed.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device reports an error.
     ///
     /// # Panics
-    /// If there is no such template, or the proxy is another one's.
+    /// If there is no such template, or the proxy is another template's.
     pub fn recolor(
         &mut self,
         gpu: &Gpu,
@@ -125,7 +127,7 @@ impl Exploration {
         gpu.check()
     }
 
-    /// Notes that something changed, perhaps buffers themselves.
+    /// Notes that something changed. `buffers`: some buffer was replaced by a larger one.
     pub(super) fn changed(&mut self, buffers: bool) {
         if buffers {
             self.groups = None;
@@ -133,10 +135,11 @@ impl Exploration {
         *self.stale.get_mut() = true;
     }
 
-    /// Other instances. Shaders know an instance by its place in this list.
+    /// Replaces the instances. Shaders know an instance by its index in this list.
     ///
     /// # Errors
-    /// An instance without a template, or nowhere.
+    /// An instance has no template or a placement that is not finite, or the device reports an
+    /// error.
     pub fn set_instances(
         &mut self,
         gpu: &Gpu,
@@ -169,7 +172,7 @@ impl Exploration {
         self.edit(instance);
     }
 
-    /// Another state of an instance, from the next frame on.
+    /// Sets the state of an instance, from the next frame on.
     ///
     /// # Panics
     /// If there is no such instance.
@@ -178,7 +181,8 @@ impl Exploration {
         self.edit(instance);
     }
 
-    /// The next frame uploads it, with all between the first and the last that were edited.
+    /// Marks an instance as edited. The next frame uploads all from the first to the last edited
+    /// one.
     fn edit(&mut self, instance: usize) {
         self.edited = match self.edited.is_empty() {
             true => instance..instance + 1,
@@ -187,7 +191,7 @@ impl Exploration {
         self.changed(false);
     }
 
-    /// An instance as shaders have it.
+    /// An instance in the form that shaders read.
     pub(super) fn cull_instances(&self, instance: &Instance) -> GpuInstance {
         let at = instance.placement;
         let origin = at.world_from_cell(self.known[instance.template.0 as usize].origin);

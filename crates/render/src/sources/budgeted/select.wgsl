@@ -1,12 +1,14 @@
-// What is drawn in exploration, and how well, within a budget: seven passes, none of which is read back.
+// Selects what exploration mode draws, and how finely, within a budget. Seven passes, and nothing
+// is read back:
 //
-// cull_instances  by instance: clusters of 64 chunks of those that may show
-// sum_clusters  where the clusters of each instance begin
-// measure     by chunk: what it asks for, as a histogram of quads by worth
-// limit       the least worth that is within the budget, and the clusters that have any
-// count       by chunk of those clusters: quads and visible chunks
-// sum_visible    where those of each cluster begin; arguments of the draws
-// write       the list of quads, in the order of instances and chunks: equal frames are equal
+// cull_instances  for each instance that may show, its number of clusters of 64 chunks
+// sum_clusters    where the clusters of each instance begin
+// measure         for each chunk, the steps that it requests, summed into a histogram of quads by
+// worth limit           the least worth that is within the budget, and the clusters that have
+// anything above it count           the quads and visible chunks of each of those clusters
+// sum_visible     where those of each cluster begin; arguments of the draws write           the
+// list of quads, in the order of instances and chunks, so that equal frames are
+//                 drawn equally
 //
 // Called by passes.rs.
 
@@ -33,7 +35,7 @@ struct Sums {
 
 struct VisibleCluster {
     cluster: u32,
-    // Counts, then places of the first.
+    // Counts; after sum_visible, indices of the first.
     quads: u32,
     visible_chunks: u32,
 }
@@ -41,26 +43,26 @@ struct VisibleCluster {
 struct Arguments {
     clusters: array<u32, 3>,
     visible: array<u32, 3>,
-    // Two indexed draws: full blocks, and the rest.
+    // Two indexed draws: full blocks of quads, and the rest.
     draws: array<u32, 10>,
 }
 
 struct Book {
     sums: Sums,
-    // By instance: clusters, then the place of its first.
+    // By instance: its number of clusters; after sum_clusters, the index of its first.
     starts: array<u32>,
 }
 
 @group(0) @binding(2) var<storage, read> shapes: array<Shape>;
 @group(0) @binding(4) var<storage, read_write> book: Book;
 @group(0) @binding(6) var<storage, read_write> arguments: Arguments;
-// By cluster: the greatest class of its chunks.
+// By cluster: the greatest bin of its chunks.
 @group(0) @binding(7) var<storage, read_write> best: array<u32>;
-// By class: quads.
+// By bin: number of quads.
 @group(0) @binding(8) var<storage, read_write> histogram: array<atomic<u32>>;
 @group(0) @binding(9) var<storage, read_write> visible: array<VisibleCluster>;
 @group(0) @binding(10) var<storage, read_write> visible_chunks: array<VisibleChunk>;
-// Number of quads, then the visible chunk of each.
+// Number of quads, then the index of each quad's visible chunk.
 @group(0) @binding(11) var<storage, read_write> quads: array<u32>;
 
 @compute @workgroup_size(WIDE)
@@ -144,7 +146,7 @@ fn owner_of(cluster: u32) -> u32 {
     return low;
 }
 
-// What the chunk of a lane asks for.
+// The chunk of a lane, and the steps that it requests.
 struct LodRequest {
     instance: u32,
     chunk: u32,
@@ -188,7 +190,7 @@ var<workgroup> least: atomic<u32>;
 
 @compute @workgroup_size(WIDE)
 fn limit(@builtin(local_invocation_index) lane: u32) {
-    // Sums from the greatest class down: four classes a lane.
+    // Sums from the greatest bin down: four bins a lane.
     let each = BINS / WIDE;
     var sum = 0u;
     for (var k = 0u; k < each; k += 1u) {
@@ -196,7 +198,7 @@ fn limit(@builtin(local_invocation_index) lane: u32) {
     }
     var above = sum_before(lane, sum);
     let wanted = parts[WIDE - 1u];
-    // The least class so far that is too much: all above it are drawn.
+    // The first bin that exceeds the budget: only those above it are drawn.
     for (var k = 0u; k < each; k += 1u) {
         let bin = BINS - 1u - lane * each - k;
         above += atomicLoad(&histogram[bin]);
@@ -232,7 +234,7 @@ fn limit(@builtin(local_invocation_index) lane: u32) {
     }
 }
 
-// How a chunk is drawn: the last step that is worth it.
+// How a chunk is drawn: the last of its steps that is within the budget.
 struct Drawn {
     quads: u32,
     lod: u32,
@@ -247,7 +249,8 @@ fn drawn(offers: Offers) -> Drawn {
         }
     }
     if (lod_what(it.lod) == WHAT_TUBE) {
-        // What has hardly found room is drawn with part of its width: it fades in and out.
+        // A chunk that is only just within the budget is drawn with part of its width, so that it
+        // fades in and out.
         var width = FULL_WIDTH;
         if (threshold > 1u) {
             let over = f32(offers.bins.x - threshold) + 1.0;
@@ -304,8 +307,8 @@ fn sum_visible(@builtin(local_invocation_index) lane: u32) {
         visible_chunk_at += visible_chunks_here;
     }
     if (lane == 0u) {
-        // Two compilations of one expression could round differently: whatever they count, no more
-        // is drawn than there is room for.
+        // Two compilations of an expression may round differently, so the counts of two passes may
+        // differ: here they are limited to what there is room for.
         let most = min(min(all_quads, eye.budget), arrayLength(&quads) - 1u);
         book.sums.quads = most;
         book.sums.visible_chunks = min(all_visible_chunks, arrayLength(&visible_chunks));
@@ -319,7 +322,7 @@ fn sum_visible(@builtin(local_invocation_index) lane: u32) {
 }
 
 var<workgroup> counts: array<u32, CLUSTER>;
-// Up to and with each lane.
+// Sums up to and including each lane.
 var<workgroup> quads_before: array<u32, CLUSTER>;
 var<workgroup> visible_chunks_before: array<u32, CLUSTER>;
 
@@ -333,7 +336,8 @@ fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         ask = lod_requests(visible[at].cluster, lane);
         it = drawn(ask.offers);
     }
-    // Inclusive sums, by each lane for itself: two barriers instead of twelve, which cost more in software.
+    // Inclusive sums, computed by each lane for itself: this takes two barriers instead of twelve,
+    // which are slow in software rendering.
     counts[lane] = it.quads;
     workgroupBarrier();
     var sum = 0u;
@@ -357,7 +361,7 @@ fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
             visible_chunks[visible_chunk] = VisibleChunk(ask.instance, ask.chunk, it.lod, first);
         }
     }
-    // All lanes share the list of the cluster's quads.
+    // All lanes together write the list of the cluster's quads.
     let total = quads_before[CLUSTER - 1u];
     for (var k = lane; k < total; k += CLUSTER) {
         var low = 0u;

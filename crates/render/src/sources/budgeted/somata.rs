@@ -1,4 +1,5 @@
-//! Somata of a mesh for exploration: their quads as they are, and one more for each neurite that leaves it.
+//! The somata of a proxy: their quads as they are in the mesh, and one more for each neurite, which
+//! closes the opening that the neurite grows from.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +25,8 @@ pub(super) fn add(proxy: &mut Proxy, mesh: &CoarseMesh) {
     }
 }
 
-/// The rings that neurites grow from: what is open in a soma's own quads, facing outwards.
+/// The rings that neurites grow from, facing outwards: they close the openings of a soma's own
+/// quads.
 fn first_rings(mesh: &CoarseMesh) -> Vec<[u32; 4]> {
     let near = |patch: &Patch| {
         let tracing = mesh.vertices[patch.corners[0] as usize].tracing;
@@ -40,7 +42,7 @@ fn first_rings(mesh: &CoarseMesh) -> Vec<[u32; 4]> {
         .collect()
 }
 
-/// Quads by what they are connected to, in order of their first one.
+/// Groups of connected quads, in the order of their lowest vertex.
 fn connected(quads: &[[u32; 4]]) -> Vec<Vec<[u32; 4]>> {
     let mut leader: BTreeMap<u32, u32> = BTreeMap::new();
     fn find(leader: &mut BTreeMap<u32, u32>, vertex: u32) -> u32 {
@@ -74,7 +76,7 @@ fn connected(quads: &[[u32; 4]]) -> Vec<Vec<[u32; 4]>> {
 fn add_soma(proxy: &mut Proxy, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut vertices = Vec::new();
-    // Its own vertices first: the color of the first is that of the sphere.
+    // The soma's own vertices first, since the soma has the color of its first vertex.
     let own = |&&vertex: &&u32| {
         let tracing = mesh.vertices[vertex as usize].tracing;
         mesh.tracing[tracing as usize].role == Role::Soma
@@ -109,7 +111,7 @@ fn add_soma(proxy: &mut Proxy, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
             proxy.packed.extend([a | (b << 16), c | (d << 16)]);
         }
     }
-    // The sphere that is drawn for it from afar has the mean of its sides.
+    // From afar a soma is drawn as a sphere with its mean radius.
     let (middle, radius) = middle(mesh, &vertices).unwrap_or((center, reach));
     proxy.push(
         Chunk {
@@ -127,12 +129,13 @@ fn add_soma(proxy: &mut Proxy, mesh: &CoarseMesh, quads: &[[u32; 4]]) {
             length: 2.0 * radius,
             ..Chunk::default()
         },
-        // The rings of neurites have the soma's color on its side.
+        // A single color: on the soma's side, the rings of neurites have the soma's color too.
         vec![at(&vertices[0]).tracing],
     );
 }
 
-/// Center of a soma, and the mean distance of its surface, insertions aside.
+/// Center of a soma, and the mean distance (µm) of its surface from it, leaving out the rings of
+/// neurites.
 fn middle(mesh: &CoarseMesh, vertices: &[u32]) -> Option<(Vec3, f32)> {
     let own = || {
         let tracing = vertices.iter().map(|&v| mesh.vertices[v as usize].tracing);

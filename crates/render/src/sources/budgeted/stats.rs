@@ -1,4 +1,4 @@
-//! What a frame of exploration drew, read back on request: for statistics and for tests.
+//! What a frame of exploration mode drew, read back on request: for statistics and for tests.
 
 use super::Exploration;
 use super::layout::{Sums, VisibleChunk};
@@ -11,13 +11,13 @@ use crate::gpu::error::DeviceError;
 pub struct ExplorationStats {
     /// Triangles drawn.
     pub triangles: u64,
-    /// The most that may be.
+    /// Most triangles that may be drawn.
     pub budget: u64,
-    /// Triangles that half a pixel everywhere would take.
-    pub wanted: u64,
-    /// Runs and somata drawn.
+    /// Triangles that it would take to draw everything within half a pixel.
+    pub requested: u64,
+    /// Chunks and somata drawn.
     pub visible_chunks: u64,
-    /// Instances that may show: not hidden, in the picture.
+    /// Instances that are not hidden and may show in the picture.
     pub instances: u64,
     /// All instances.
     pub all_instances: u64,
@@ -26,38 +26,39 @@ pub struct ExplorationStats {
 /// A chunk or a soma that was drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnChunk {
-    /// Place of the instance.
+    /// Index of the instance.
     pub instance: u32,
-    /// Chunk, among those of its template.
+    /// Index of the chunk, among those of its template.
     pub chunk: u32,
-    /// What was drawn, in the color keys of `explore.wgsl`.
+    /// Its level of detail, as `packed_lod` in budgeted.wgsl packs it.
     pub lod: u32,
-    /// Quads.
+    /// Number of quads.
     pub quads: u32,
 }
 
 impl Exploration {
-    /// What the picture that was prepared last takes. Chooses once more and waits: for statistics, not
-    /// for every frame.
+    /// What the picture that was prepared last draws. Selects once more and waits for the device:
+    /// for statistics, not for every frame.
     ///
     /// # Errors
-    /// What the device complained of.
+    /// The device reports an error.
     pub fn stats(&self, gpu: &Gpu) -> Result<ExplorationStats, DeviceError> {
         let sums = self.sums(gpu)?;
         Ok(ExplorationStats {
             triangles: 2 * u64::from(sums.quads),
             budget: u64::from(self.budget),
-            wanted: 2 * u64::from(sums.wanted),
+            requested: 2 * u64::from(sums.wanted),
             visible_chunks: u64::from(sums.visible_chunks),
             instances: u64::from(sums.instances),
             all_instances: self.instances.len() as u64,
         })
     }
 
-    /// The visible chunks themselves, in the order in which they are drawn, as [`Exploration::stats`].
+    /// The visible chunks, in the order in which they are drawn. Selects and waits like
+    /// [`Exploration::stats`].
     ///
     /// # Errors
-    /// What the device complained of.
+    /// The device reports an error.
     pub fn shown(&self, gpu: &Gpu) -> Result<Vec<DrawnChunk>, DeviceError> {
         let sums = self.sums(gpu)?;
         let count = sums.visible_chunks as usize;

@@ -1,9 +1,8 @@
-// Vertices of what exploration has chosen: four for each quad.
+// Vertices of the chunks that exploration mode has selected: four for each quad.
 //
-// `surface_vertex` is the seam to the shading (source.rs); SurfaceVertex, refine's evaluate.wgsl and
-// explore.wgsl come before.
-// A tube is drawn as the half of it that faces the eye: one strip as wide as the tube, or 5, 10 or 20
-// around it. A sphere is drawn as the cap that faces the eye.
+// Shaders that shade call `surface_vertex` (see sources/mod.rs). A tube is drawn as the half of it
+// that faces the eye: one strip as wide as the tube, or 5, 10 or 20 strips around it. A sphere is
+// drawn as the cap that faces the eye.
 
 #import surface_vertex.wgsl
 #import evaluate.wgsl
@@ -13,7 +12,8 @@
 @group(0) @binding(4) var<storage, read> quads: array<u32>;
 @group(0) @binding(6) var<storage, read> color_keys: array<u32>;
 
-// Which quad a vertex is of. The rest after the full blocks has indices of its own.
+// Index of the quad that a vertex belongs to. The quads after the last full block are a draw of
+// their own, with vertex indices from 4 * BLOCK on.
 fn quad_place(vertex_index: u32, instance_index: u32) -> u32 {
     let rest = vertex_index >= 4u * BLOCK;
     let local = vertex_index % (4u * BLOCK);
@@ -39,7 +39,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let chunk = chunks[visible_chunk.chunk];
     let instance_pose = gpu_instances[visible_chunk.instance];
     var v = sphere_vertex(relative(instance_pose, chunk.center), chunk.radius * instance_pose.scale, what, index, corner);
-    // Somata are never widened by the shading: a dot is as large as it must be.
+    // Radius 0: the shading does not widen somata, and a dot is a pixel wide already.
     v.radius = 0.0;
     v.color_key = color_key_at(chunk, 0u);
     v.instance = visible_chunk.instance;
@@ -62,7 +62,8 @@ fn across(v: vec3<f32>) -> vec3<f32> {
     return normalize(cross(axis, v));
 }
 
-// Unit vector from its place on an octahedron, -1 to 1.
+// Unit vector from octahedral coordinates, -1 to 1 (Meyer et al., On floating-point normal vectors,
+// 2010).
 fn from_octahedral(p: vec2<f32>) -> vec3<f32> {
     let z = 1.0 - abs(p.x) - abs(p.y);
     let fold = max(-z, 0.0);
@@ -70,8 +71,8 @@ fn from_octahedral(p: vec2<f32>) -> vec3<f32> {
     return normalize(vec3<f32>(folded, z));
 }
 
-// Direction of the path at a point of a lod. At the ends of a chunk it is that of all its points, the
-// same as its neighbor's there; but where a coarse lod starts off in quite another direction.
+// Direction of the path at a point of a polyline. At the ends of a chunk it is the stored one,
+// which the next chunk shares, unless a coarse polyline starts off in quite another direction.
 fn direction(chunk: Chunk, level: u32, index: u32, here: vec3<f32>) -> vec3<f32> {
     let last = segments(chunk, level);
     if (index > 0u && index < last) {
@@ -94,7 +95,7 @@ struct Station {
     direction: vec3<f32>,
     radius: f32,
     point: u32,
-    // Of the segment that it belongs to.
+    // From start to end of its segment.
     chord: vec3<f32>,
 }
 
@@ -115,13 +116,14 @@ fn station(chunk: Chunk, level: u32, segment: u32, t: f32) -> Station {
     return Station(along.position, normalize_or(along.derivative, near), radius, select(a.point, b.point, t > 0.5), chord);
 }
 
-// A point of a path, as evaluate.wgsl takes it.
+// A point of a path, in the form that evaluate.wgsl takes.
 fn on_path(p: Stored, tangent: vec3<f32>) -> Corner {
     let none = vec3<f32>(0.0);
     return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY, 0.0);
 }
 
-// How far (radians) beyond the half that faces the eye a tube is drawn on each side.
+// Angle (radians) by which a tube is drawn further around than the half that faces the eye, on each
+// side.
 const BEYOND: f32 = 0.35;
 
 fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceVertex {
@@ -149,17 +151,18 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
     let square = dot(side, side) > 1e-8;
     let plain = select(across(way), normalize(side), square);
     let up = cross(plain, way);
-    // A path that turns back on the screen keeps its left side left.
+    // Keeps the strip from twisting where the path turns back on the screen.
     let chord_side = cross(turn(instance_pose.rotation, there.chord), to_eye);
     let sideways = plain * select(1.0, -1.0, dot(plain, chord_side) < 0.0);
     let share = (f32(index % strips) + grid.x) / f32(strips);
     var normal = sideways * (2.0 * share - 1.0);
     var offset = normal;
     if (strips == 1u) {
-        // Normals in between are those of a cylinder but for its outermost quarters.
+        // Normals at the strip's edges are tilted by 45°: interpolated between them, they are close
+        // to those of a cylinder except near its outline.
         normal = normalize(normal + up);
     } else {
-        // A ninth of a turn more, or gaps show where paths bend sharply.
+        // With exactly half a turn, gaps would show where paths bend sharply.
         let angle = share * (3.14159265 + 2.0 * BEYOND) - BEYOND;
         normal = up * sin(angle) - sideways * cos(angle);
         offset = normal;
@@ -176,7 +179,7 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
     );
 }
 
-// The round end of a path that nothing else closes.
+// The round cap at a free end of a path.
 fn cap_vertex(visible_chunk: VisibleChunk, chunk: Chunk, instance_pose: GpuInstance, index: u32, corner: u32) -> SurfaceVertex {
     var point = segments(chunk, 0u);
     if (index < DOME_QUADS && (chunk.flags & CHUNK_FREE_START) != 0u) {
@@ -201,7 +204,7 @@ fn sphere_vertex(center: vec3<f32>, radius: f32, what: u32, index: u32, corner: 
     var normal = front;
     var offset = vec3<f32>(0.0);
     if (what == WHAT_DOT) {
-        // A square of a disc's area, a pixel wide at least.
+        // A square with the area of the sphere's disc, at least a pixel wide.
         let pixel = eye.slope * max(dot(eye.forward, center), eye.near);
         let half = max(0.886 * radius, HALF_PIXEL * pixel) / radius;
         offset = (right * (2.0 * grid.x - 1.0) + up * (2.0 * grid.y - 1.0)) * half;
@@ -228,7 +231,7 @@ fn sphere_vertex(center: vec3<f32>, radius: f32, what: u32, index: u32, corner: 
     return SurfaceVertex(center + offset * radius, normal, center, radius, 0u, 0u, grid);
 }
 
-// A corner of a soma's quad, as evaluate.wgsl takes it, in the template.
+// A corner of a soma's quad in the template, in the form that evaluate.wgsl takes.
 fn soma_corner(chunk: Chunk, vertex: u32) -> Corner {
     let low = packed[chunk.first + 2u * vertex];
     let high = packed[chunk.first + 2u * vertex + 1u];
@@ -238,7 +241,7 @@ fn soma_corner(chunk: Chunk, vertex: u32) -> Corner {
     return Corner(position, normal, position, normal, normal, normal, 0.0, ROLE_SOMA, 0.0);
 }
 
-// A soma's own quads, or 4, 16 or 64 in place of each.
+// A vertex of a soma: of its own quads, or of the 4, 16 or 64 that each is refined into.
 fn soma_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceVertex {
     let chunk = chunks[visible_chunk.chunk];
     let instance_pose = gpu_instances[visible_chunk.instance];
@@ -257,7 +260,7 @@ fn soma_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
         let side = 1u << halvings;
         let x = (f32(index % side) + grid.x) / f32(side);
         let y = (f32((index / side) % side) + grid.y) / f32(side);
-        // Every edge the same way, whichever of its two quads asks.
+        // Evaluates every edge in the same direction for both its quads.
         let sides = vec4<u32>(EDGE_SOMA) | SIDE_REVERSED * vec4<u32>(vertices.xywx > vertices.yzzw);
         let shape = PatchShape(
             PATCH_SOMA,

@@ -1,8 +1,8 @@
-// What a vertex of visible_chunks.wgsl is drawn for. Called by ids.wgsl; Rust twin: names.rs.
+// The picking id of a vertex of visible_chunks.wgsl. Called by ids.wgsl; pick.rs reads the ids.
 
 #import visible_chunks.wgsl
 
-// First: the instance. Second: the chunk, and the point of it that the segment leads to.
+// First: the instance. Second: the chunk, and the point at the end of the segment.
 fn surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32> {
     let place = quad_place(vertex_index, instance_index);
     if (place >= quads[0]) {

@@ -1,8 +1,9 @@
-//! The simplest source of vertices: a surface refined beforehand, whole in the GPU's memory.
+//! The simplest vertex source: a surface that was refined beforehand, held whole in the GPU's
+//! memory.
 //!
-//! Memory grows with the level; that is what refinement on the fly is compared with. Surfaces are
-//! cut into **chunks** that each fit one binding, and chunks into **runs** of triangles that are left
-//! out where they do not show.
+//! Its memory grows with the level. The adaptive source is compared with it. Surfaces are cut into
+//! **chunks** that each fit one binding, and chunks into **runs** of triangles, which are culled as
+//! one.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -23,15 +24,15 @@ use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
 use crate::view::frustum::shows;
 
-/// Triangles in a run: some thousand, so that tests for showing cost nothing beside drawing.
+/// Triangles in a run: some thousand, so that culling takes far less time than drawing.
 const RUN: usize = 4096;
-/// Runs in a chunk: at most 36 MiB of vertices, were they all of one triangle each.
+/// Triangles in a chunk: 128 runs, at most 36 MiB of vertices if no two triangles shared any.
 const CHUNK: usize = 128 * RUN;
-/// Distance of dynamic offsets into a uniform buffer that every device allows.
+/// Alignment of dynamic offsets into a uniform buffer that every device supports.
 const STRIDE: u64 = 256;
 
-/// A coarse mesh with one color key per tracing point that says its color: see
-/// [`ColorTable`](crate::color::ColorTable).
+/// A coarse mesh with a color key for each tracing point, which
+/// [`ColorTable`](crate::color::ColorTable) looks colors up by.
 #[derive(Clone, Copy, Debug)]
 pub struct PrerefinedSurface<'m> {
     /// The mesh.
@@ -45,7 +46,7 @@ pub struct PrerefinedSurface<'m> {
 pub struct Place {
     /// Index of the mesh.
     pub mesh: usize,
-    /// What to add to its coordinates (µm).
+    /// Added to its coordinates (µm).
     pub translation: DVec3,
 }
 
@@ -76,12 +77,12 @@ pub(crate) struct Placement {
     pub(crate) instance: u32,
 }
 
-/// What is resident, and how much.
+/// Sizes of what is kept on the device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Resident {
-    /// Coarse patches that it was made of.
+    /// Patches of the coarse meshes.
     pub patches: usize,
-    /// Tracing points that it was made of.
+    /// Tracing points of the coarse meshes.
     pub points: usize,
     /// Vertices of the surface.
     pub vertices: usize,
@@ -89,18 +90,18 @@ pub struct Resident {
     pub triangles: usize,
     /// Bytes of vertices.
     pub vertex_bytes: u64,
-    /// Bytes of corners.
+    /// Bytes of the index buffers.
     pub corner_bytes: u64,
     /// Number of coarse edges by level.
     pub levels: BTreeMap<u32, usize>,
 }
 
 struct Run {
-    /// Corners in the chunk.
+    /// Its range of the chunk's index buffer.
     corners: Range<u32>,
     center: Vec3,
     radius: f32,
-    /// Whether it ever showed.
+    /// Whether it was in view in any frame.
     drawn: bool,
 }
 
@@ -109,7 +110,7 @@ struct Chunk {
     group: wgpu::BindGroup,
     corners: wgpu::Buffer,
     runs: Vec<Run>,
-    /// Place and corners.
+    /// What the current frame draws: index of the place, and range of the index buffer.
     shown: Vec<(u32, Range<u32>)>,
 }
 
@@ -117,19 +118,20 @@ struct Chunk {
 pub struct Prerefined {
     layout: wgpu::BindGroupLayout,
     placements: wgpu::Buffer,
-    /// Mesh, and what its coordinates are relative to.
+    /// By place: index of the mesh, and the point of the world that its coordinates are relative
+    /// to.
     places: Vec<(usize, DVec3)>,
     chunks: Vec<Chunk>,
     bounds: Vec<BoundingSphere>,
     resident: Resident,
     drawn: usize,
-    /// Whether triangles have corners of their own, as wireframes need.
+    /// Whether no two triangles share corners, as wireframes need.
     barycentric: bool,
 }
 
 impl Prerefined {
-    /// Refines meshes and uploads them. `levels` gives the levels of each mesh, in its coordinates;
-    /// `barycentric`: whether a wireframe will be drawn.
+    /// Refines meshes and uploads them. `lod` returns the levels of the mesh with this index, in
+    /// the mesh's coordinates; `barycentric`: whether a wireframe will be drawn.
     ///
     /// # Errors
     /// They do not fit the device.
@@ -148,13 +150,13 @@ impl Prerefined {
         Self::placed(gpu, meshes, &places, lod, options, barycentric)
     }
 
-    /// As [`Prerefined::new`], each mesh drawn at any number of places.
+    /// Like [`Prerefined::new`], with each mesh drawn at any number of places.
     ///
     /// # Errors
     /// They do not fit the device.
     ///
     /// # Panics
-    /// If a place is of no mesh.
+    /// If a place refers to a mesh that does not exist.
     pub fn placed(
         gpu: &Gpu,
         meshes: &[PrerefinedSurface<'_>],
@@ -193,9 +195,10 @@ impl Prerefined {
             drawn: 0,
             barycentric,
         };
-        for (index, painted) in meshes.iter().enumerate() {
-            // The vertices' numbers of samples become those of tracing points, to find the color keys by.
-            let mut numbered = painted.mesh.clone();
+        for (index, source) in meshes.iter().enumerate() {
+            // A vertex of a surface knows its sample: with the index of the tracing point in its
+            // place, the color key is found by it.
+            let mut numbered = source.mesh.clone();
             for (point, number) in numbered.tracing.iter_mut().zip(0..) {
                 point.sample = number;
             }
@@ -204,9 +207,9 @@ impl Prerefined {
                 *made.resident.levels.entry(level).or_default() += edges;
             }
             let surface = SurfaceMesh::collect(&refined);
-            made.resident.patches += painted.mesh.patches.len();
-            made.resident.points += painted.mesh.tracing.len();
-            let store = |vertex: &SurfaceVertex| store(vertex, painted);
+            made.resident.patches += source.mesh.patches.len();
+            made.resident.points += source.mesh.tracing.len();
+            let store = |vertex: &SurfaceVertex| store(vertex, source);
             for triangles in surface.faces.triangles.chunks(CHUNK) {
                 made.add(gpu, index, &surface.vertices, triangles, store)?;
             }
@@ -215,23 +218,23 @@ impl Prerefined {
         Ok(made)
     }
 
-    /// What is resident.
+    /// Sizes of what is kept on the device.
     pub fn resident(&self) -> &Resident {
         &self.resident
     }
 
-    /// Triangles of the runs that showed in any frame.
+    /// Triangles of the runs that were in view in any frame.
     pub fn drawn(&self) -> usize {
         self.drawn
     }
 
-    /// Triangles of the runs that show in the frame that was prepared last, at all places.
+    /// Triangles of the runs that are in view in the frame that was prepared last, at all places.
     pub fn shown(&self) -> usize {
         let shown = self.chunks.iter().flat_map(|chunk| &chunk.shown);
         shown.map(|(_, corners)| corners.len() / 3).sum()
     }
 
-    /// About as many patches as made those triangles.
+    /// About the number of patches that [`Prerefined::drawn`] triangles come from.
     pub fn patches_drawn(&self) -> usize {
         let Resident {
             patches, triangles, ..
@@ -247,7 +250,7 @@ impl Prerefined {
         triangles: &[[u32; 3]],
         store: impl Fn(&SurfaceVertex) -> StoredVertex,
     ) -> Result<(), DeviceError> {
-        // Numbers within the chunk, in the order of first use.
+        // Vertices are numbered within the chunk, in the order of first use.
         let mut place = vec![u32::MAX; vertices.len()];
         let mut stored = Vec::new();
         let mut corners = Vec::with_capacity(3 * triangles.len());
@@ -348,7 +351,7 @@ impl VertexSource for Prerefined {
             let here = self.places.iter().zip(&offsets).zip(0_u32..);
             for ((_, &offset), place) in here.filter(|((place, _), _)| place.0 == chunk.mesh) {
                 for run in &mut chunk.runs {
-                    // Widened to a pixel, a run reaches farther by half of one: 4 sub-pixels.
+                    // A margin of 8 sub-pixels, since thin tubes are drawn a pixel wide.
                     let center = run.center + offset;
                     let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
                     if !shows(&planes, center, run.radius + pixels) {
@@ -387,27 +390,27 @@ impl VertexSource for Prerefined {
     }
 }
 
-/// Defines `surface_vertex`. `barycentric`: every triangle has corners of its own.
+/// Defines `surface_vertex`. `barycentric`: no two triangles share corners.
 pub(crate) fn vertex_shader(barycentric: bool) -> ShaderParts {
     let mut parts = ShaderParts::new(&[shader::file("prerefined.wgsl")]);
     parts.constants.bool("BARYCENTRIC", barycentric);
     parts
 }
 
-fn store(vertex: &SurfaceVertex, painted: &PrerefinedSurface<'_>) -> StoredVertex {
+fn store(vertex: &SurfaceVertex, source: &PrerefinedSurface<'_>) -> StoredVertex {
     let tracing = vertex.point as usize;
-    let soma = painted.mesh.tracing[tracing].role == Role::Soma;
+    let soma = source.mesh.tracing[tracing].role == Role::Soma;
     StoredVertex {
         x: vertex.position.x,
         y: vertex.position.y,
         z: vertex.position.z,
         radius: if soma { 0.0 } else { vertex.radius },
         normal: pack_normal(vertex.normal),
-        color_key: painted.color_keys.get(tracing).copied().unwrap_or(0),
+        color_key: source.color_keys.get(tracing).copied().unwrap_or(0),
     }
 }
 
-/// A unit vector's place on an octahedron, two signed 16-bit numbers: the angle is kept within 0.005°.
+/// A unit vector as octahedral coordinates, two signed 16-bit numbers: accurate to 0.005°.
 fn pack_normal(normal: Vec3) -> u32 {
     let sum = normal.abs().element_sum().max(f32::MIN_POSITIVE);
     let (x, y) = (normal.x / sum, normal.y / sum);

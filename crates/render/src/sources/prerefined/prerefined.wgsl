@@ -1,5 +1,5 @@
-// Vertices of a surface that was refined beforehand and lies in buffers. Called by shade.wgsl.
-// Rust twin: mod.rs beside it. BARYCENTRIC says whether every triangle has corners of its own.
+// Vertices of a surface that was refined beforehand and is stored in buffers. Called by shade.wgsl.
+// Rust twin: mod.rs beside it. BARYCENTRIC says whether no two triangles share corners.
 
 #import surface_vertex.wgsl
 
@@ -21,7 +21,7 @@ struct Placement {
 @group(0) @binding(1) var<storage, read> corners: array<u32>;
 @group(0) @binding(2) var<uniform> placement: Placement;
 
-// Unit vector from its place on an octahedron (Meyer et al., On floating-point normal vectors, 2010).
+// Unit vector from octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010).
 fn unpack_normal(packed: u32) -> vec3<f32> {
     let p = unpack2x16snorm(packed);
     let z = 1.0 - abs(p.x) - abs(p.y);

@@ -1,55 +1,60 @@
-//! Windows over the others: keys, commands, problems, files, questions.
+//! Dialogs: keys, commands, problems, files, questions.
 
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use super::keys_text;
-use crate::model::command::{Ask, Command, Listed, listed};
-use crate::model::state::{Over, State};
+use crate::model::command::{Command, FilePurpose, Listed, listed};
+use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
 
 pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Context) {
-    let over = std::mem::take(&mut state.over);
-    if !matches!(over, Over::Files(_)) {
+    let dialog = std::mem::take(&mut state.dialog);
+    if !matches!(dialog, Dialog::Files(_)) {
         *panel = None;
     }
     let escape = ctx.input(|i| i.key_pressed(Key::Escape));
-    let stays = match over {
-        Over::Nothing => Over::Nothing,
-        Over::Keys => keys(state, ctx),
-        Over::Problems => problems(state, ctx),
-        Over::Palette(text, chosen) => palette(state, text, chosen, ctx),
-        Over::Files(ask) => files(state, ask, panel, ctx),
-        Over::Replace(path, command) => replace(state, path, command, ctx),
+    let stays = match dialog {
+        Dialog::Nothing => Dialog::Nothing,
+        Dialog::Keys => keys(state, ctx),
+        Dialog::Problems => problems(state, ctx),
+        Dialog::Palette(text, chosen) => palette(state, text, chosen, ctx),
+        Dialog::Files(purpose) => files(state, purpose, panel, ctx),
+        Dialog::Replace(path, command) => replace(state, path, command, ctx),
     };
-    let had = !matches!(stays, Over::Nothing);
-    state.over = if escape { Over::Nothing } else { stays };
-    if !matches!(state.over, Over::Files(_)) {
+    let had = !matches!(stays, Dialog::Nothing);
+    state.dialog = if escape { Dialog::Nothing } else { stays };
+    if !matches!(state.dialog, Dialog::Files(_)) {
         *panel = None;
     }
     if escape && had {
-        // This escape closed a window: it does not also drop the selection.
+        // Escape has closed a dialog: it must not also clear the selection.
         ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Escape));
     }
 }
 
-fn files(state: &mut State, ask: Ask, panel: &mut Option<FilePanel>, ctx: &Context) -> Over {
+fn files(
+    state: &mut State,
+    purpose: FilePurpose,
+    panel: &mut Option<FilePanel>,
+    ctx: &Context,
+) -> Dialog {
     let mut shown = panel
         .take()
-        .filter(|panel| panel.is_for(ask))
+        .filter(|panel| panel.is_for(purpose))
         .unwrap_or_else(|| {
             let session = state.session.as_deref();
-            FilePanel::new(ask, &state.settings.folder, session)
+            FilePanel::new(purpose, &state.settings.folder, session)
         });
     let mut open = true;
     state.requests.extend(shown.show(ctx, &mut open));
     if !open {
-        return Over::Nothing;
+        return Dialog::Nothing;
     }
     *panel = Some(shown);
-    Over::Files(ask)
+    Dialog::Files(purpose)
 }
 
-/// What a drop would do, while files are held over the window.
+/// While files are dragged over the window: says what dropping them would do.
 pub(super) fn hover(ctx: &Context) {
     let count = ctx.input(|input| input.raw.hovered_files.len());
     if count == 0 {
@@ -92,18 +97,18 @@ const MOUSE: [(&str, &str); 9] = [
     ("+  −", "zoom in and out"),
 ];
 
-fn keys(state: &State, ctx: &Context) -> Over {
+fn keys(state: &State, ctx: &Context) -> Dialog {
     let mut open = true;
     window("Keys and mouse", ctx)
         .open(&mut open)
         .show(ctx, |ui| {
             let room = ctx.content_rect().size() - egui::vec2(60.0, 90.0);
-            // As large as it must be, and as the window allows.
+            // As large as its content, as far as the window allows.
             let area = ScrollArea::both().max_width(room.x).max_height(room.y);
             let area = area.min_scrolled_width(room.x).min_scrolled_height(room.y);
             area.show(ui, |ui| keys_and_mouse(state, ui));
         });
-    if open { Over::Keys } else { Over::Nothing }
+    if open { Dialog::Keys } else { Dialog::Nothing }
 }
 
 fn keys_and_mouse(state: &State, ui: &mut Ui) {
@@ -153,7 +158,7 @@ fn rows<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>
         });
 }
 
-fn problems(state: &mut State, ctx: &Context) -> Over {
+fn problems(state: &mut State, ctx: &Context) -> Dialog {
     let mut open = true;
     window("What went wrong", ctx)
         .open(&mut open)
@@ -184,10 +189,14 @@ fn problems(state: &mut State, ctx: &Context) -> Over {
                 }
             });
         });
-    if open { Over::Problems } else { Over::Nothing }
+    if open {
+        Dialog::Problems
+    } else {
+        Dialog::Nothing
+    }
 }
 
-fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Over {
+fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context) -> Dialog {
     let mut done = false;
     egui::Window::new("palette")
         .title_bar(false)
@@ -202,7 +211,8 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
             line.request_focus();
             let [up, down, enter] = [Key::ArrowUp, Key::ArrowDown, Key::Enter]
                 .map(|key| ui.input(|i| i.key_pressed(key)));
-            // Found by the words of now: Enter may have come with the last letter.
+            // Searched with the current text, since Enter may be in the same frame as the last
+            // letter.
             let items = found(state, &text);
             let last = items.len().saturating_sub(1);
             chosen = match (up, down) {
@@ -235,18 +245,18 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
                     }
                 });
             if done {
-                // The next key is no text any more.
+                // The next key is not for the line of text any more.
                 line.surrender_focus();
             }
         });
     if done {
-        Over::Nothing
+        Dialog::Nothing
     } else {
-        Over::Palette(text, chosen)
+        Dialog::Palette(text, chosen)
     }
 }
 
-/// Commands with their menus, of those whose names have all words.
+/// Commands whose titles contain all words, with their menus.
 fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
     let all = listed(&state.toggles());
     all.into_iter()
@@ -268,7 +278,7 @@ fn replace(
     path: std::path::PathBuf,
     command: Box<Command>,
     ctx: &Context,
-) -> Over {
+) -> Dialog {
     let mut answer = None;
     window("Replace?", ctx).show(ctx, |ui| {
         let what = if path.is_dir() {
@@ -291,10 +301,10 @@ fn replace(
     match answer {
         Some(true) => {
             state.requests.push(*command);
-            Over::Nothing
+            Dialog::Nothing
         }
-        Some(false) => Over::Nothing,
-        None => Over::Replace(path, command),
+        Some(false) => Dialog::Nothing,
+        None => Dialog::Replace(path, command),
     }
 }
 
