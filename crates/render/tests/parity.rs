@@ -155,8 +155,8 @@ fn vertices_are_the_reference_s() {
     let mut refiner = Refiner::new(&gpu).expect("a refiner");
     let mut random = Random(11);
     let (mut most, mut most_normal, mut count) = (0.0_f32, 0.0_f32, 0_usize);
-    let mut kinds = [0_usize; 3];
-    for seed in 10..12 {
+    let mut kinds = [0_usize; 4];
+    for seed in 10..15 {
         let mesh = cell(seed, 16);
         let values = random_values(&mesh, seed);
         let (middle, reach) = extent(&mesh);
