@@ -20,10 +20,12 @@ use crate::{crowd, fork, uncross};
 
 /// What is tried, in this order. The lift decides most: 0.4 keeps the branch closest to the tracing,
 /// higher ones cross the trunk's bends less.
-const CHOICES: [ForkChoice; 4] = [
-    ForkChoice::Inset { lift: 0.4 },
-    ForkChoice::Inset { lift: 0.7 },
-    ForkChoice::Inset { lift: 1.0 },
+const CHOICES: [ForkChoice; 6] = [
+    inset(0.4, false),
+    inset(0.7, false),
+    inset(1.0, false),
+    inset(0.4, true),
+    inset(1.0, true),
     ForkChoice::Joint,
 ];
 const JOINT: usize = CHOICES.len() - 1;
@@ -43,7 +45,19 @@ pub(crate) fn mesh(skeleton: &Skeleton, somata: &Somata<'_>, warnings: &mut Warn
         let mut assembly = Assembly::new(&layout, &orientations);
         assembly.somata(somata);
         let (mesh, patches) = assembly.finish();
-        if !trials.advance(&mesh, patches, &layout.refused) {
+        let more = trials.advance(&mesh, patches, &layout.refused);
+        if !more {
+            let mut h = std::collections::BTreeMap::new();
+            let mut all = Vec::new();
+            for (f, t) in &trials.trials {
+                let e: &mut (usize, usize) = h.entry((t.current, t.faults[t.current] == Some(0), t.faults[0] == Some(usize::MAX))).or_default();
+                e.0 += 1;
+                e.1 += t.faults[t.current].unwrap_or(0);
+                all.push((t.faults[t.current].unwrap_or(0), skeleton.node(*f).sample, t.faults, skeleton.node(*f).radius, skeleton.node(*f).center));
+            }
+            all.sort_by_key(|a| a.0); all.reverse();
+            for a in &all[..12.min(all.len())] { eprintln!("{a:?}"); }
+            eprintln!("(choice, sound, refused) -> forks, faults: {h:?}");
             warnings.extend(found);
             return mesh;
         }
@@ -56,6 +70,10 @@ fn buried(sample: i64, warnings: &mut Warnings) {
         Some(sample),
         "twig ends inside the neurite that it branches from: left out of the mesh",
     );
+}
+
+const fn inset(lift: f64, thickened: bool) -> ForkChoice {
+    ForkChoice::Inset { lift, thickened }
 }
 
 /// Choices as they are tried.
@@ -134,10 +152,13 @@ impl ForkTrials {
 }
 
 impl Trial {
-    /// There is no room for an inset, whatever its lift.
+    /// There is no room for an inset of this thickness, whatever its lift.
     fn refuse(&mut self) {
-        for faults in &mut self.faults[..JOINT] {
-            faults.get_or_insert(usize::MAX);
+        let thick = |choice: &ForkChoice| matches!(choice, ForkChoice::Inset { thickened: true, .. });
+        for (choice, faults) in CHOICES.iter().zip(&mut self.faults).take(JOINT) {
+            if thick(choice) == thick(&CHOICES[self.current]) {
+                faults.get_or_insert(usize::MAX);
+            }
         }
         self.current = JOINT;
     }

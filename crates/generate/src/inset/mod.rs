@@ -42,6 +42,9 @@ pub(crate) enum ForkChoice {
     Inset {
         /// Radii of the branch.
         lift: f64,
+        /// Whether the fork becomes as thick as the second thickest of its neighbors: a single thin sample
+        /// between thick ones leaves them no room.
+        thickened: bool,
     },
 }
 

@@ -204,7 +204,7 @@ impl<'a> Planner<'a> {
             let way = self.base.node(b).center - self.base.node(a).center;
             way.normalize_or_zero()
         };
-        let (incoming, radius) = (direction(before, fork), self.base.node(fork).radius);
+        let (incoming, radius) = (direction(before, fork), self.radius(fork));
         let score = |&child: &u32| {
             let relative = self.base.node(child).radius / radius;
             relative + STRAIGHTNESS * incoming.dot(direction(fork, child))
@@ -214,8 +214,24 @@ impl<'a> Planner<'a> {
         best.expect("a fork has children")
     }
 
+    /// Radius of a node; of a fork, as its choice has it.
+    fn radius(&self, node: u32) -> f64 {
+        let own = self.base.node(node).radius;
+        let thickened = matches!(
+            self.choices[node as usize],
+            ForkChoice::Inset { thickened: true, .. }
+        );
+        if !thickened || self.children.of(node).len() < 2 {
+            return own;
+        }
+        let around = fork::neighbors(self.children, self.base, node).into_iter();
+        let mut radii: Vec<f64> = around.map(|n| self.base.node(n).radius).collect();
+        radii.sort_by(f64::total_cmp);
+        own.max(radii[radii.len() - 2])
+    }
+
     fn leaves_through_insets(&self, fork: u32, main: u32) -> bool {
-        let [here, main_radius] = [fork, main].map(|n| self.base.node(n).radius);
+        let [here, main_radius] = [fork, main].map(|n| self.radius(n));
         let trunk = if main_radius > 0.3 * here {
             here.min(main_radius)
         } else {
@@ -229,9 +245,9 @@ impl<'a> Planner<'a> {
     }
 
     fn polyline(&self, start: &Start, way: &Way) -> Polyline {
-        let nodes = way.nodes.iter().map(|&n| self.base.node(n));
-        let mut centers: Vec<DVec3> = nodes.clone().map(|n| n.center).collect();
-        let mut radii: Vec<f64> = nodes.map(|n| n.radius).collect();
+        let nodes = way.nodes.iter();
+        let mut centers: Vec<DVec3> = nodes.clone().map(|&n| self.base.node(n).center).collect();
+        let mut radii: Vec<f64> = nodes.map(|&n| self.radius(n)).collect();
         match start {
             Start::Root(_) => {}
             Start::Joint(..) => radii[0] = radii[0].min(radii[1]),
@@ -286,7 +302,7 @@ impl<'a> Planner<'a> {
         let mut buried = Vec::new();
         for &(index, child) in &way.branches {
             let fork = way.nodes[index];
-            let ForkChoice::Inset { lift } = self.choices[fork as usize] else {
+            let ForkChoice::Inset { lift, .. } = self.choices[fork as usize] else {
                 continue;
             };
             let line = self.branch_line(fork, child);
@@ -465,6 +481,7 @@ impl<'a> Planner<'a> {
             NONE
         };
         self.nodes.push(SkeletonNode {
+            radius: self.radius(node),
             parent,
             root,
             marks: Marks {
