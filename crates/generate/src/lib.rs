@@ -11,6 +11,7 @@ mod normals;
 mod options;
 mod prepare;
 mod rings;
+mod separate;
 mod skeleton;
 mod soma;
 mod somata;
@@ -21,12 +22,13 @@ mod uncross;
 mod warning;
 
 pub use error::GenerateError;
-pub use options::{GenerateOptions, SomaMethod, SphereKind};
+pub use options::{Crossings, GenerateOptions, SomaMethod, SphereKind};
+pub use separate::{SeparatedPlace, Separation};
 pub use warning::Warning;
 
 use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Vertex};
-use neurotess_morphology::Morphology;
+use neurotess_morphology::{Morphology, Soma};
 
 use assemble::Assembly;
 use rings::RingRequests;
@@ -44,6 +46,8 @@ pub struct Generated {
     pub rings: Vec<FirstRing>,
     /// What was mended, counted by cause.
     pub warnings: Vec<Warning>,
+    /// What [`Crossings::Separate`] found and did; none without it.
+    pub separation: Option<Separation>,
     /// Seconds that somata took, by the clock of [`generate_timed`]; 0 without one.
     pub soma_seconds: f64,
 }
@@ -126,17 +130,25 @@ pub fn generate_timed(
     thin::space_points(&mut skeleton, &mut warnings);
     crowd::split_crowded_forks(&mut skeleton, &mut warnings);
     fork::clear_the_way(&mut skeleton, &mut warnings);
-    let orientations = uncross::uncross_rings(&mut skeleton, &soma_spheres, &mut warnings);
+    let soma_samples = first_samples(morphology);
+    let separated = match options.crossings {
+        Crossings::Keep => None,
+        Crossings::Separate => Some(separate::separate(
+            &mut skeleton,
+            &soma_spheres,
+            &soma_samples,
+            &mut warnings,
+        )),
+    };
+    let room = separated.as_ref().map(|s| s.room.as_slice());
+    let orientations = uncross::uncross_rings(&mut skeleton, &soma_spheres, room, &mut warnings);
 
     let mut assembly = Assembly::new(&skeleton, &orientations);
     let ring_nodes = somata::ring_nodes(&skeleton, morphology.somata.len());
     let mut somata = Vec::new();
     for (index, (soma, nodes)) in built.somata.iter().zip(ring_nodes).enumerate() {
         if let (Some(soma), Some(soma_sphere)) = (soma, soma_spheres[index]) {
-            let sample = morphology.somata[index]
-                .samples
-                .first()
-                .map_or(-1, |s| s.id);
+            let sample = soma_samples[index];
             assembly.soma(&soma.surface, soma_sphere.center, sample, &nodes);
             somata.push(soma.report);
         }
@@ -153,6 +165,13 @@ pub fn generate_timed(
         somata,
         rings: built.rings,
         warnings: warnings.into_vec(),
+        separation: separated.map(|s| s.report),
         soma_seconds,
     })
+}
+
+/// The file's own number of each soma's first sample; −1 without one.
+fn first_samples(morphology: &Morphology) -> Vec<i64> {
+    let first = |soma: &Soma| soma.samples.first().map_or(-1, |sample| sample.id);
+    morphology.somata.iter().map(first).collect()
 }

@@ -19,14 +19,16 @@ const MOST_TURNS: u8 = 3;
 const MOST_MOVED: f64 = 2.0;
 
 /// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
-/// of every node that is left, along the path.
+/// of every node that is left, along the path. Where `room` is given, a point is left out only if the path
+/// moves by less than there is room at it (µm).
 pub(crate) fn uncross_rings(
     skeleton: &mut Skeleton,
     soma_spheres: &[Option<SomaSphere>],
+    room: Option<&[f64]>,
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
     let children = skeleton.children();
-    let mut work = Work::new(skeleton, children, soma_spheres);
+    let mut work = Work::new(skeleton, children, soma_spheres, room);
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -83,6 +85,7 @@ struct Work<'a> {
     skeleton: &'a Skeleton,
     children: &'a Children,
     soma_spheres: &'a [Option<SomaSphere>],
+    room: Option<&'a [f64]>,
     keep: Vec<bool>,
     parent: Vec<u32>,
     /// The only child, or [`NONE`] at forks and ends.
@@ -96,6 +99,7 @@ impl<'a> Work<'a> {
         skeleton: &'a Skeleton,
         children: &'a Children,
         soma_spheres: &'a [Option<SomaSphere>],
+        room: Option<&'a [f64]>,
     ) -> Self {
         let count = skeleton.nodes().len();
         let only = |i: u32| match children.of(i) {
@@ -106,6 +110,7 @@ impl<'a> Work<'a> {
             skeleton,
             children,
             soma_spheres,
+            room,
             keep: vec![true; count],
             parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
             child: (0..count as u32).map(only).collect(),
@@ -199,7 +204,11 @@ impl<'a> Work<'a> {
             return f64::INFINITY;
         }
         let center = |n: u32| self.skeleton.node(n).center;
-        crate::skeleton::off_segment(center(n), center(parent), center(child))
+        let cost = crate::skeleton::off_segment(center(n), center(parent), center(child));
+        match self.room {
+            Some(room) if cost > room[n as usize] => f64::INFINITY,
+            _ => cost,
+        }
     }
 
     /// Leaves an ordinary node out; returns the nodes whose pair with their parent has changed.
