@@ -33,7 +33,7 @@ fn main() {
 
 fn judge(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let morphology = read(file, &ReadOptions::default())?.morphology;
-    let tree = Tree::new(&morphology);
+    let mut tree = Tree::new(&morphology);
     let mut lines = format!("{} ({} points)", morphology.name, morphology.points.len());
     for crossings in [Crossings::Keep, Crossings::Separate] {
         let options = GenerateOptions {
@@ -43,6 +43,7 @@ fn judge(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
         let clock = Instant::now();
         let generated = generate(&morphology, &options)?;
         let seconds = clock.elapsed().as_secs_f64();
+        tree.measure_kept(&generated);
         let counts = tree.counts(&generated);
         lines += &format!("\n  {crossings:?}: {counts:?} {seconds:.3} s");
         if let Some(separation) = generated.separation {
@@ -93,6 +94,8 @@ struct Tree<'a> {
     arc: Vec<f64>,
     soma: Vec<Option<u32>>,
     length: Vec<f64>,
+    /// Way to the point above that the mesh has.
+    kept: Vec<f64>,
 }
 
 impl<'a> Tree<'a> {
@@ -106,6 +109,7 @@ impl<'a> Tree<'a> {
             arc: vec![0.0; count],
             soma: vec![None; count],
             length: vec![0.0; count],
+            kept: vec![0.0; count],
         };
         for section in &morphology.sections {
             let mut above = match section.attachment {
@@ -136,9 +140,29 @@ impl<'a> Tree<'a> {
         f64::from(self.morphology.points[i].radius)
     }
 
+    /// A facet lies anywhere between its sample and the one above it that the mesh has.
+    fn measure_kept(&mut self, generated: &Generated) {
+        let samples: std::collections::BTreeSet<i64> = generated
+            .mesh
+            .tracing
+            .iter()
+            .filter(|t| t.section != 0)
+            .map(|t| i64::from(t.sample))
+            .collect();
+        for i in 0..self.kept.len() {
+            let above = self.parent[i].map_or(0.0, |above| {
+                match samples.contains(&self.morphology.sample_ids[above]) {
+                    true => 0.0,
+                    false => self.kept[above],
+                }
+            });
+            self.kept[i] = self.length[i] + above;
+        }
+    }
+
     fn near(&self, a: usize, b: usize) -> bool {
         let (mut i, mut j) = (Some(a), Some(b));
-        let slack = self.length[a] + self.length[b];
+        let slack = self.kept[a] + self.kept[b];
         let radii = self.radius(a) + self.radius(b);
         while i != j {
             if i > j {

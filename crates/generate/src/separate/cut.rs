@@ -16,7 +16,7 @@ pub(super) fn cut_near_contacts(rods: &mut Rods, spread: &Spread, room: &mut usi
     for i in rods.segments() {
         let above = rods.parent(i);
         let distance = [i, above].map(|n| spread.distance[n as usize]);
-        if distance[0].min(distance[1]) >= NEAR {
+        if distance[0].min(distance[1]) >= NEAR || rods.fixed(i) {
             continue;
         }
         let piece = PIECE * rods.radius(i).max(rods.radius(above));

@@ -53,7 +53,7 @@ use rods::Rods;
 use search::{Margin, search};
 use spread::{GAP, Spread};
 
-/// Times that branches are moved apart: points that are left out afterwards can make contacts again.
+/// Times that branches are moved apart: points that are left out at forks can make contacts again.
 const MOST_ROUNDS: usize = 3;
 /// Times that segments are cut: pieces can be nearer to one another than the whole.
 const MOST_CUTS: usize = 3;
@@ -92,19 +92,22 @@ pub(crate) fn separate(
             break;
         }
         complete &= solver::solve(&mut rods, &spread);
-        thin_out::thin_out(&mut rods);
+        let room = room(&rods);
+        thin_out::thin_out(&mut rods, &room);
         clear_forks(&mut rods, warnings);
         // No number of rounds sorts a crowd.
         if !complete {
             break;
         }
     }
-    thin_out::thin_out(&mut rods);
+    let free = room(&rods);
+    thin_out::thin_out(&mut rods, &free);
     let found = search(&rods, &rods.centers(), Margin::NONE, None);
     depths.after(&rods, &found);
     let report = depths.report(&rods, complete && found.complete);
     warn(&report, warnings);
     let room = room(&rods);
+    let room = rods.nodes().map(|i| room[i as usize]).collect();
     *skeleton = rods.skeleton();
     Separated { report, room }
 }
@@ -134,7 +137,7 @@ fn spread_and_cut(rods: &mut Rods, may_add: &mut usize) -> Spread {
 fn clear_forks(rods: &mut Rods, warnings: &mut Warnings) {
     let mut skeleton = rods.skeleton();
     fork::clear_the_way(&mut skeleton, warnings);
-    if skeleton.nodes().len() < rods.count() {
+    if skeleton.nodes().len() < rods.nodes().count() {
         rods.follow(&skeleton);
     }
 }

@@ -171,7 +171,8 @@ impl<'a> Depths<'a> {
 
     /// The whole report.
     pub(super) fn report(&self, rods: &Rods, complete: bool) -> Separation {
-        let moves = rods.points.iter().map(|p| {
+        let moves = rods.nodes().map(|i| {
+            let p = &rods.points[i as usize];
             let way = p.node.center.distance(p.rest);
             (way, way / p.node.radius)
         });

@@ -7,6 +7,22 @@ use crate::prepare::SomaSphere;
 use crate::separate::paths::{Origin, Paths};
 use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 
+/// By how much the soma's surface widens from a ring towards the sphere: as a share of the way. Chosen by
+/// eye.
+const FLARE: f64 = 0.5;
+
+/// What a point of a rod stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A node of the skeleton that was given.
+    Traced,
+    /// One that was put between two of these, so that the rod can bend.
+    Added,
+    /// The foot of the cone that the soma's surface makes towards a ring beyond its sphere. It is no node of a
+    /// skeleton.
+    Foot,
+}
+
 /// A point of a rod.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
@@ -14,8 +30,8 @@ pub(super) struct Point {
     pub(super) node: SkeletonNode,
     /// Where the tracing has it (µm).
     pub(super) rest: DVec3,
-    /// Whether it is the tracing's; else it was put between two that are.
-    pub(super) traced: bool,
+    /// What it stands for.
+    pub(super) role: Role,
     /// The traced segment that it ends, or lies on, by its lower end in the skeleton that was given.
     pub(super) traced_segment: u32,
 }
@@ -36,13 +52,24 @@ pub(super) struct Rods {
 
 impl Rods {
     pub(super) fn new(skeleton: &Skeleton, somata: &[Option<SomaSphere>]) -> Self {
-        let point = |(i, node): (usize, &SkeletonNode)| Point {
-            node: *node,
-            rest: node.center,
-            traced: true,
-            traced_segment: i as u32,
-        };
-        let points = skeleton.nodes().iter().enumerate().map(point).collect();
+        let mut points = Vec::with_capacity(skeleton.nodes().len());
+        let mut moved_to = Vec::with_capacity(skeleton.nodes().len());
+        for (i, node) in skeleton.nodes().iter().enumerate() {
+            let mut point = Point {
+                node: *node,
+                rest: node.center,
+                role: Role::Traced,
+                traced_segment: i as u32,
+            };
+            if node.parent != NONE {
+                point.node.parent = moved_to[node.parent as usize];
+            } else if let Some(foot) = foot(&point, somata) {
+                point.node.parent = points.len() as u32;
+                points.push(foot);
+            }
+            moved_to.push(points.len() as u32);
+            points.push(point);
+        }
         Self::of_points(points, somata.to_vec())
     }
 
@@ -101,8 +128,7 @@ impl Rods {
 
     /// Rings on somata stay: the soma was built for them.
     pub(super) fn fixed(&self, point: u32) -> bool {
-        let node = &self.points[point as usize].node;
-        node.parent == NONE && origin_soma(node, &self.somata).is_some()
+        sphere_of(&self.points[point as usize].node, &self.somata).is_some()
     }
 
     /// Whether a point is an end that nothing hangs on or holds.
@@ -161,9 +187,26 @@ impl Rods {
         *self = Self::of_points(points, std::mem::take(&mut self.somata));
     }
 
+    /// Points that are nodes of a skeleton.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        let is_node = |&i: &u32| self.points[i as usize].role != Role::Foot;
+        (0..self.count() as u32).filter(is_node)
+    }
+
     /// The points as nodes of a skeleton.
     pub(super) fn skeleton(&self) -> Skeleton {
-        Skeleton::from_nodes(self.points.iter().map(|p| p.node).collect())
+        let mut moved_to = vec![NONE; self.count()];
+        let mut nodes = Vec::with_capacity(self.count());
+        for i in self.nodes() {
+            let node = self.points[i as usize].node;
+            let parent = match node.parent {
+                NONE => NONE,
+                above => moved_to[above as usize],
+            };
+            moved_to[i as usize] = nodes.len() as u32;
+            nodes.push(SkeletonNode { parent, ..node });
+        }
+        Skeleton::from_nodes(nodes)
     }
 
     /// Leaves out what a step of the skeleton has left out of [`skeleton`](Self::skeleton).
@@ -173,11 +216,11 @@ impl Rods {
             a.center == b.center && a.radius == b.radius && a.sample == b.sample
         };
         // Nodes keep their order.
-        let keep: Vec<bool> = self
-            .points
-            .iter()
-            .map(|p| left.next_if(|node| same(&p.node, node)).is_some())
-            .collect();
+        let mut keep = vec![true; self.count()];
+        for i in self.nodes() {
+            let node = &self.points[i as usize].node;
+            keep[i as usize] = left.next_if(|other| same(node, other)).is_some();
+        }
         self.retain(&keep);
     }
 }
@@ -196,17 +239,36 @@ fn between(above: &Point, below: &Point, share: f64, parent: u32) -> Point {
             ..below.node
         },
         rest: above.rest.lerp(below.rest, share),
-        traced: false,
+        role: Role::Added,
         traced_segment: below.traced_segment,
     }
 }
 
-/// The soma that a root hangs on, if it is meshed.
-fn origin_soma(node: &SkeletonNode, somata: &[Option<SomaSphere>]) -> Option<u32> {
-    let (Root::Soma(soma) | Root::Insertion(soma)) = node.root else {
-        return None;
+/// The sphere of the soma that a root hangs on, if it is meshed.
+fn sphere_of(node: &SkeletonNode, somata: &[Option<SomaSphere>]) -> Option<SomaSphere> {
+    match node.root {
+        Root::Soma(soma) | Root::Insertion(soma) => somata[soma as usize],
+        Root::Free => None,
+    }
+}
+
+/// The foot of a ring that is beyond its soma's sphere.
+fn foot(ring: &Point, somata: &[Option<SomaSphere>]) -> Option<Point> {
+    let sphere = sphere_of(&ring.node, somata)?;
+    let way = ring.rest - sphere.center;
+    let beyond = way.length() - sphere.radius;
+    let center = sphere.center + way * (sphere.radius / way.length());
+    let node = SkeletonNode {
+        center,
+        radius: ring.node.radius + FLARE * beyond,
+        ..ring.node
     };
-    somata[soma as usize].map(|_| soma)
+    (beyond > 0.01 * sphere.radius).then_some(Point {
+        node,
+        rest: center,
+        role: Role::Foot,
+        ..*ring
+    })
 }
 
 fn origin(root: &Point, somata: &[Option<SomaSphere>]) -> Option<Origin> {

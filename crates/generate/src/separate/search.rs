@@ -224,7 +224,7 @@ impl View<'_> {
         let near = SOMA_REACH * sphere.radius + (1.0 + self.margin.share()) * radius;
         let origin = self.rods.paths.origin(segment);
         let own = origin.filter(|o| o.soma == soma).is_some_and(|origin| {
-            let way = self.rods.paths.arc(segment) + origin.way;
+            let way = self.on_segment(segment, s).arc + origin.way;
             way <= OWN_WAY.0 * radius + OWN_WAY.1 * sphere.radius
         });
         (distance < near && !own).then_some(SomaContact {
