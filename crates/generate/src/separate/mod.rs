@@ -54,7 +54,10 @@ use search::{Margin, search};
 use spread::{GAP, Spread};
 
 /// Times that branches are moved apart: points that are left out at forks can make contacts again.
-const MOST_ROUNDS: usize = 3;
+const MOST_ROUNDS: usize = 4;
+/// In so many rounds points are added; what touches after these is moved with the points that are there, as
+/// those that a fork has no room for would be left out again.
+const ADDING_ROUNDS: usize = 2;
 /// Times that segments are cut: pieces can be nearer to one another than the whole.
 const MOST_CUTS: usize = 3;
 /// Points that may be added, for each traced one, and in any cell.
@@ -78,38 +81,44 @@ pub(crate) fn separate(
 ) -> Separated {
     let mut rods = Rods::new(skeleton, soma_spheres);
     let traced = std::mem::take(skeleton);
-    let mut depths = Depths::new(&traced, soma_samples);
-    let mut complete = true;
-    let mut may_add = MOST_ADDED.0 * rods.count() + MOST_ADDED.1;
-    for round in 0..MOST_ROUNDS {
-        let spread = spread_and_cut(&mut rods, &mut may_add);
-        let found = search(&rods, &rods.centers(), Margin::NONE, None);
-        complete &= found.complete;
-        if round == 0 {
-            depths.before(&rods, &found);
-        }
-        if !found.touches() {
-            break;
-        }
-        complete &= solver::solve(&mut rods, &spread);
-        let room = room(&rods);
-        thin_out::thin_out(&mut rods, &room);
-        clear_forks(&mut rods, warnings);
-        // No number of rounds sorts a crowd.
-        if !complete {
-            break;
-        }
-    }
-    let free = room(&rods);
-    thin_out::thin_out(&mut rods, &free);
-    let found = search(&rods, &rods.centers(), Margin::NONE, None);
-    depths.after(&rods, &found);
-    let report = depths.report(&rods, complete && found.complete);
+    let report = move_apart(&mut rods, Depths::new(&traced, soma_samples), warnings);
     warn(&report, warnings);
     let room = room(&rods);
     let room = rods.nodes().map(|i| room[i as usize]).collect();
     *skeleton = rods.skeleton();
     Separated { report, room }
+}
+
+fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, warnings: &mut Warnings) -> Separation {
+    let mut complete = true;
+    let mut may_add = MOST_ADDED.0 * rods.count() + MOST_ADDED.1;
+    for round in 0..MOST_ROUNDS {
+        if round == ADDING_ROUNDS {
+            may_add = 0;
+        }
+        let spread = spread_and_cut(rods, &mut may_add);
+        let found = search(rods, &rods.centers(), Margin::NONE, None);
+        complete &= found.complete;
+        if round == 0 {
+            depths.before(rods, &found);
+        }
+        if !found.touches() {
+            break;
+        }
+        complete &= solver::solve(rods, &spread);
+        let free = room(rods);
+        thin_out::thin_out(rods, &free);
+        clear_forks(rods, warnings);
+        // No number of rounds sorts a crowd.
+        if !complete {
+            break;
+        }
+    }
+    let free = room(rods);
+    thin_out::thin_out(rods, &free);
+    let found = search(rods, &rods.centers(), Margin::NONE, None);
+    depths.after(rods, &found);
+    depths.report(rods, complete && found.complete)
 }
 
 /// Cuts segments near contacts; the spread of what is there then.

@@ -9,7 +9,7 @@ use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 
 /// By how much the soma's surface widens from a ring towards the sphere: as a share of the way. Chosen by
 /// eye.
-const FLARE: f64 = 0.5;
+const FLARE: f64 = 1.0;
 
 /// What a point of a rod stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
