@@ -250,8 +250,12 @@ fn assert_no_square(kinds: &[Kind], crossings: Crossings) {
         let (few, many) = (make(*count), make(4 * count));
         cost(&few, crossings); // spheres are factored once
         // A busy machine may slow one of the two down: three tries.
-        let ratio = |_| cost(&many, crossings) / cost(&few, crossings);
-        let growth = (0..3).map(ratio).fold(f64::INFINITY, f64::min);
+        let mut growth = f64::INFINITY;
+        for _ in 0..3 {
+            if growth > MOST {
+                growth = growth.min(cost(&many, crossings) / cost(&few, crossings));
+            }
+        }
         println!("{name}: {growth:.1} times for 4 times as many");
         if growth > MOST {
             failed.push(format!("{name}: {growth:.1}"));
@@ -286,15 +290,15 @@ fn no_stage_takes_the_square_of_what_it_is_given() {
 #[test]
 fn moving_branches_apart_takes_no_square_either() {
     let kinds: [Kind; 10] = [
-        ("stems all around", stems_all_around, 500),
-        ("branches all around", branches_all_around, 500),
-        ("branches in one direction", branches_in_one_direction, 500),
-        ("forks in one place", forks_in_one_place, 500),
-        ("free trees", free_trees, 2_000),
-        ("a long path", long_path, 2_000),
-        ("crossed pairs", crossed_pairs, 2_000),
-        ("crossed in one place", crossed_in_one_place, 1_000),
-        ("doubled", doubled, 500),
+        ("stems all around", stems_all_around, 150),
+        ("branches all around", branches_all_around, 150),
+        ("branches in one direction", branches_in_one_direction, 150),
+        ("forks in one place", forks_in_one_place, 200),
+        ("free trees", free_trees, 1_000),
+        ("a long path", long_path, 600),
+        ("crossed pairs", crossed_pairs, 1_000),
+        ("crossed in one place", crossed_in_one_place, 200),
+        ("doubled", doubled, 150),
         ("somata on a path", somata_on_a_path, 400),
     ];
     assert_no_square(&kinds, Crossings::Separate);
