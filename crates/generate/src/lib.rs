@@ -140,8 +140,12 @@ pub fn generate_timed(
             &mut warnings,
         )),
     };
-    let room = separated.as_ref().map(|s| s.room.as_slice());
-    let orientations = uncross::uncross_rings(&mut skeleton, &soma_spheres, room, &mut warnings);
+    let may_join = |from: u32, to: u32| {
+        let separated = separated.as_ref();
+        separated.is_none_or(|separated| separated.clearance.allows(from, to))
+    };
+    let orientations =
+        uncross::uncross_rings(&mut skeleton, &soma_spheres, &may_join, &mut warnings);
 
     let mut assembly = Assembly::new(&skeleton, &orientations);
     let ring_nodes = somata::ring_nodes(&skeleton, morphology.somata.len());

@@ -19,16 +19,16 @@ const MOST_TURNS: u8 = 3;
 const MOST_MOVED: f64 = 2.0;
 
 /// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
-/// of every node that is left, along the path. Where `room` is given, a point is left out only if the path
-/// moves by less than there is room at it (µm).
+/// of every node that is left, along the path. A point is left out only if the path `may_join` its two
+/// neighbors, upper and lower.
 pub(crate) fn uncross_rings(
     skeleton: &mut Skeleton,
     soma_spheres: &[Option<SomaSphere>],
-    room: Option<&[f64]>,
+    may_join: &dyn Fn(u32, u32) -> bool,
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
     let children = skeleton.children();
-    let mut work = Work::new(skeleton, children, soma_spheres, room);
+    let mut work = Work::new(skeleton, children, soma_spheres, may_join);
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -85,7 +85,7 @@ struct Work<'a> {
     skeleton: &'a Skeleton,
     children: &'a Children,
     soma_spheres: &'a [Option<SomaSphere>],
-    room: Option<&'a [f64]>,
+    may_join: &'a dyn Fn(u32, u32) -> bool,
     keep: Vec<bool>,
     parent: Vec<u32>,
     /// The only child, or [`NONE`] at forks and ends.
@@ -99,7 +99,7 @@ impl<'a> Work<'a> {
         skeleton: &'a Skeleton,
         children: &'a Children,
         soma_spheres: &'a [Option<SomaSphere>],
-        room: Option<&'a [f64]>,
+        may_join: &'a dyn Fn(u32, u32) -> bool,
     ) -> Self {
         let count = skeleton.nodes().len();
         let only = |i: u32| match children.of(i) {
@@ -110,7 +110,7 @@ impl<'a> Work<'a> {
             skeleton,
             children,
             soma_spheres,
-            room,
+            may_join,
             keep: vec![true; count],
             parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
             child: (0..count as u32).map(only).collect(),
@@ -200,15 +200,11 @@ impl<'a> Work<'a> {
     /// How far the path moves if a node is left out (µm); infinite for those that may not be.
     fn cost(&self, n: u32) -> f64 {
         let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
-        if parent == NONE || child == NONE {
+        if parent == NONE || child == NONE || !(self.may_join)(parent, child) {
             return f64::INFINITY;
         }
         let center = |n: u32| self.skeleton.node(n).center;
-        let cost = crate::skeleton::off_segment(center(n), center(parent), center(child));
-        match self.room {
-            Some(room) if cost > room[n as usize] => f64::INFINITY,
-            _ => cost,
-        }
+        crate::skeleton::off_segment(center(n), center(parent), center(child))
     }
 
     /// Leaves an ordinary node out; returns the nodes whose pair with their parent has changed.

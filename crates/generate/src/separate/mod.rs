@@ -21,12 +21,14 @@
 //! | the solver | `solver`, with `elastic` and `side` |
 //! | points left out again | `thin_out` |
 //! | what it took | `report` |
+//! | what may be left out later | `clearance` |
 //!
 //! Time is n log n for n points, and a bounded number of searches and sweeps for the branches
 //! concerned. A cell in which nothing touches stays as it is, to the bit; so does a branch that is far from all
 //! contacts.
 
 mod boxes;
+mod clearance;
 mod cut;
 mod elastic;
 mod geometry;
@@ -48,6 +50,7 @@ use crate::prepare::SomaSphere;
 use crate::skeleton::Skeleton;
 use crate::warning::Warnings;
 
+use clearance::Clearance;
 use report::Depths;
 use rods::Rods;
 use search::{Margin, search};
@@ -68,8 +71,8 @@ const ROOM: f64 = 2.0;
 /// A skeleton whose branches are apart.
 pub(crate) struct Separated {
     pub(crate) report: Separation,
-    /// How far the path may move at each node (µm) before it touches another one.
-    pub(crate) room: Vec<f64>,
+    /// What steps that leave nodes out have to respect.
+    pub(crate) clearance: Clearance,
 }
 
 /// Moves branches apart. `soma_samples`: the first sample of each soma.
@@ -83,10 +86,11 @@ pub(crate) fn separate(
     let traced = std::mem::take(skeleton);
     let report = move_apart(&mut rods, Depths::new(&traced, soma_samples), warnings);
     warn(&report, warnings);
-    let room = room(&rods);
-    let room = rods.nodes().map(|i| room[i as usize]).collect();
     *skeleton = rods.skeleton();
-    Separated { report, room }
+    Separated {
+        report,
+        clearance: Clearance::new(rods),
+    }
 }
 
 fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, warnings: &mut Warnings) -> Separation {

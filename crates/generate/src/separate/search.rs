@@ -22,7 +22,7 @@ const OWN_WAY: (f64, f64) = (3.0, 0.25);
 /// The soma bulges towards its neurites: it reaches this many of its radii.
 pub(super) const SOMA_REACH: f64 = 1.1;
 /// Boxes that one segment looks at, at most, and contacts that it may have with segments after it.
-const MOST_LOOKS: usize = 256;
+pub(super) const MOST_LOOKS: usize = 256;
 const MOST_CONTACTS: usize = 32;
 /// Boxes that all somata look at, for each segment of the cell.
 const SOMA_LOOKS: usize = 64;
@@ -121,6 +121,14 @@ pub(super) fn search(
     found
 }
 
+/// Whether the way between two places is so short that surfaces of these `radii` (their sum, µm) meet there.
+pub(super) fn may_touch(rods: &Rods, a: OnSegment, b: OnSegment, radii: f64) -> bool {
+    rods.paths.way(a, b).is_some_and(|way| {
+        let fork = way.fork.map_or(0.0, |fork| FORK * rods.radius(fork));
+        way.length <= MOST_WAY * radii.max(fork)
+    })
+}
+
 struct View<'a> {
     rods: &'a Rods,
     centers: &'a [DVec3],
@@ -180,16 +188,8 @@ impl View<'_> {
         let near = -self.margin.thin * ra.min(rb) - self.margin.thick * ra.max(rb);
         let contact = Contact { a, b, s, t, depth };
         // Not with `<`: a distance that is no number is no contact.
-        (depth > near && !self.may_touch(&contact, ra + rb)).then_some(contact)
-    }
-
-    fn may_touch(&self, contact: &Contact, radii: f64) -> bool {
-        let a = self.on_segment(contact.a, contact.s);
-        let b = self.on_segment(contact.b, contact.t);
-        self.rods.paths.way(a, b).is_some_and(|way| {
-            let fork = way.fork.map_or(0.0, |fork| FORK * self.rods.radius(fork));
-            way.length <= MOST_WAY * radii.max(fork)
-        })
+        let (on_a, on_b) = (self.on_segment(a, s), self.on_segment(b, t));
+        (depth > near && !may_touch(self.rods, on_a, on_b, ra + rb)).then_some(contact)
     }
 
     fn look_around_somata(&self, moves: impl Fn(u32) -> bool, found: &mut Found) {
