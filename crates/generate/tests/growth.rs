@@ -244,6 +244,7 @@ const MOST: f64 = 9.0;
 /// A name, what makes so many, and how many.
 type Kind = (&'static str, fn(usize) -> Morphology, usize);
 
+#[expect(clippy::print_stdout, reason = "shown where a test fails")]
 fn assert_no_square(kinds: &[Kind], crossings: Crossings) {
     let mut failed = Vec::new();
     for (name, make, count) in kinds {

@@ -88,7 +88,11 @@ impl Boxes {
         self.parts.push(Part {
             bounds: whole,
             next: 0,
-            leaf: if is_leaf { first as u32..end as u32 } else { 0..0 },
+            leaf: if is_leaf {
+                first as u32..end as u32
+            } else {
+                0..0
+            },
         });
         if !is_leaf {
             let middle = (first + end) / 2;

@@ -70,9 +70,8 @@ impl Clearance {
         };
         let radius = |n: u32| self.rods.radius(n);
         let radii = between(p, s, &radius) + between(q, t, &radius);
-        let place = |ends: [u32; 2], share: f64| {
-            self.center(ends[0]).lerp(self.center(ends[1]), share)
-        };
+        let place =
+            |ends: [u32; 2], share: f64| self.center(ends[0]).lerp(self.center(ends[1]), share);
         let arc = |n: u32| self.rods.paths.arc(n);
         let on = |ends: [u32; 2], share: f64| OnSegment {
             segment: ends[1],

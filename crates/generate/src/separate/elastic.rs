@@ -45,7 +45,9 @@ impl<'a> Elastic<'a> {
     pub(super) fn new(rods: &'a Rods, spread: &Spread) -> Self {
         let mobility = mobility(rods, spread);
         let moves = |i: u32| mobility[i as usize] > 0.0;
-        let stretched = rods.segments().filter(|&i| moves(i) || moves(rods.parent(i)));
+        let stretched = rods
+            .segments()
+            .filter(|&i| moves(i) || moves(rods.parent(i)));
         Self {
             stretched: stretched.collect(),
             bends: bends(rods, spread, &mobility),
@@ -62,7 +64,11 @@ impl<'a> Elastic<'a> {
     /// One sweep over bending and length, from the roots or from the ends.
     pub(super) fn sweep(&mut self, from_ends: bool) {
         for k in 0..self.bends.len() {
-            self.bend(if from_ends { self.bends.len() - 1 - k } else { k });
+            self.bend(if from_ends {
+                self.bends.len() - 1 - k
+            } else {
+                k
+            });
         }
         for k in 0..self.stretched.len() {
             let last = self.stretched.len() - 1;
@@ -146,7 +152,10 @@ fn bends(rods: &Rods, spread: &Spread, mobility: &[f64]) -> Vec<Bend> {
             NONE => return None,
             above => (above, length(here)),
         };
-        if [above, here, below].iter().all(|&n| mobility[n as usize] == 0.0) {
+        if [above, here, below]
+            .iter()
+            .all(|&n| mobility[n as usize] == 0.0)
+        {
             return None;
         }
         let (after, spread) = (length(below), spread.length[here as usize]);

@@ -177,10 +177,25 @@ mod tests {
 
     #[test]
     fn neurites_of_one_soma_are_joined_by_it() {
-        let origin = |root: u32| (root < 4).then_some(Origin { soma: root / 3, way: 0.5 });
-        let paths = Paths::new(vec![NONE, 0, NONE, NONE, NONE], &[0.0, 2.0, 0.0, 0.0, 0.0], origin);
-        let at = |segment: u32| OnSegment { segment, arc: paths.arc(segment) };
-        let way = Way { length: 3.0, fork: None };
+        let origin = |root: u32| {
+            (root < 4).then_some(Origin {
+                soma: root / 3,
+                way: 0.5,
+            })
+        };
+        let paths = Paths::new(
+            vec![NONE, 0, NONE, NONE, NONE],
+            &[0.0, 2.0, 0.0, 0.0, 0.0],
+            origin,
+        );
+        let at = |segment: u32| OnSegment {
+            segment,
+            arc: paths.arc(segment),
+        };
+        let way = Way {
+            length: 3.0,
+            fork: None,
+        };
         assert_eq!(paths.way(at(1), at(2)), Some(way));
         assert_eq!(paths.way(at(1), at(3)), None);
         assert_eq!(paths.way(at(1), at(4)), None);

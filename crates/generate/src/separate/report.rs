@@ -116,7 +116,10 @@ impl<'a> Depths<'a> {
 
     fn samples_at_soma(&self, rods: &Rods, contact: &SomaContact) -> [i64; 2] {
         let soma = self.somata.get(contact.soma as usize).copied();
-        [nearest_sample(rods, contact.segment, contact.s), soma.unwrap_or(-1)]
+        [
+            nearest_sample(rods, contact.segment, contact.s),
+            soma.unwrap_or(-1),
+        ]
     }
 
     /// Meetings that hang together along both branches are one place.
@@ -206,12 +209,17 @@ fn traced(rods: &Rods, segment: u32) -> u32 {
 }
 
 fn nearest_sample(rods: &Rods, segment: u32, share: f64) -> i64 {
-    let point = if share < 0.5 { rods.parent(segment) } else { segment };
+    let point = if share < 0.5 {
+        rods.parent(segment)
+    } else {
+        segment
+    };
     rods.points[point as usize].node.sample
 }
 
 fn samples(rods: &Rods, contact: &Contact) -> [i64; 2] {
-    [(contact.a, contact.s), (contact.b, contact.t)].map(|(i, share)| nearest_sample(rods, i, share))
+    [(contact.a, contact.s), (contact.b, contact.t)]
+        .map(|(i, share)| nearest_sample(rods, i, share))
 }
 
 fn median_and_largest(values: impl Iterator<Item = f64>) -> (f64, f64) {

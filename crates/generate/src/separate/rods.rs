@@ -221,7 +221,10 @@ impl Rods {
             let node = &self.points[i as usize].node;
             keep[i as usize] = left.next_if(|other| same(node, other)).is_some();
         }
-        self.retain(&keep);
+        debug_assert!(left.peek().is_none(), "a node was moved, and not left out");
+        if left.peek().is_none() {
+            self.retain(&keep);
+        }
     }
 }
 

@@ -106,9 +106,8 @@ pub(super) fn search(
         margin,
         boxes: Boxes::new(bounds.collect(), rods.segments().collect()),
     };
-    let moves = |i: u32| {
-        moving.is_none_or(|moving| moving[i as usize] || moving[rods.parent(i) as usize])
-    };
+    let moves =
+        |i: u32| moving.is_none_or(|moving| moving[i as usize] || moving[rods.parent(i) as usize]);
     let mut found = Found {
         complete: true,
         ..Found::default()

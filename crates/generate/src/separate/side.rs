@@ -165,7 +165,10 @@ impl Axes {
     /// The line between them, if it stands across both.
     fn across(&self) -> Option<DVec3> {
         let line = direction(self.between);
-        let slant = line.dot(self.along_a).abs().max(line.dot(self.along_b).abs());
+        let slant = line
+            .dot(self.along_a)
+            .abs()
+            .max(line.dot(self.along_b).abs());
         (slant < 0.5 && line != DVec3::ZERO).then_some(line)
     }
 
@@ -217,11 +220,18 @@ pub(super) fn from_course(rods: &Rods, centers: &[DVec3], contact: &Contact) -> 
 fn walk(rods: &Rods, centers: &[DVec3], from: u32, length: f64, up: bool) -> DVec3 {
     let (mut here, mut left) = (from, length);
     for _ in 0..MOST_STEPS {
-        let next = if up { rods.parent(here) } else { rods.only[here as usize] };
+        let next = if up {
+            rods.parent(here)
+        } else {
+            rods.only[here as usize]
+        };
         if next == NONE {
             break;
         }
-        let (at, step) = (centers[here as usize], centers[next as usize] - centers[here as usize]);
+        let (at, step) = (
+            centers[here as usize],
+            centers[next as usize] - centers[here as usize],
+        );
         let way = step.length();
         if way >= left && way > 0.0 {
             return at + step * (left / way);

@@ -49,7 +49,11 @@ pub(super) fn solve(rods: &mut Rods, spread: &Spread) -> bool {
     for round in 0..=MOST_SEARCHES {
         let found = search(rods, &solver.elastic.centers, MARGIN, Some(&moving));
         complete &= found.complete;
-        let most = if complete { MOST_SEARCHES } else { MOST_IN_CROWD };
+        let most = if complete {
+            MOST_SEARCHES
+        } else {
+            MOST_IN_CROWD
+        };
         if !best.improves(rods, &found, &solver.elastic.centers) || round >= most {
             break;
         }
@@ -122,7 +126,11 @@ impl Solver<'_> {
             self.leave_soma(self.somata[k]);
         }
         for k in 0..self.pairs.len() {
-            self.part(if backwards { self.pairs.len() - 1 - k } else { k });
+            self.part(if backwards {
+                self.pairs.len() - 1 - k
+            } else {
+                k
+            });
         }
     }
 
@@ -159,10 +167,15 @@ impl Solver<'_> {
             return;
         }
         let meet = distance <= 0.05 * thinner;
-        let line = if meet { DVec3::ZERO } else { direction(between) };
+        let line = if meet {
+            DVec3::ZERO
+        } else {
+            direction(between)
+        };
         let (along_a, along_b) = (a.along(elastic), b.along(elastic));
         let across = |along: DVec3, free: bool| free || line.dot(along).abs() <= SLANT;
-        let stands_across = across(along_a, a.free_at(rods, s)) && across(along_b, b.free_at(rods, t));
+        let stands_across =
+            across(along_a, a.free_at(rods, s)) && across(along_b, b.free_at(rods, t));
         if self.strict && !meet && !stands_across {
             return;
         }
@@ -195,7 +208,11 @@ fn normal_on(side: DVec3, along_a: DVec3, along_b: DVec3) -> DVec3 {
     let common = along_a.cross(along_b);
     if common.length() > CROSSED {
         let common = direction(common);
-        return if common.dot(side) >= 0.0 { common } else { -common };
+        return if common.dot(side) >= 0.0 {
+            common
+        } else {
+            -common
+        };
     }
     direction(side - side.dot(along_a) * along_a)
 }

@@ -45,7 +45,8 @@ impl Tubes {
         let mut warnings = Warnings::default();
         let samples = vec![-7; spheres.len()];
         let separated = separate(&mut skeleton, spheres, &samples, &mut warnings);
-        let parents_first = |(i, n): (usize, &SkeletonNode)| n.parent == NONE || (n.parent as usize) < i;
+        let parents_first =
+            |(i, n): (usize, &SkeletonNode)| n.parent == NONE || (n.parent as usize) < i;
         assert!(skeleton.nodes().iter().enumerate().all(parents_first));
         assert!(skeleton.nodes().iter().all(|n| n.center.is_finite()));
         (skeleton.nodes().to_vec(), separated.report, warnings)
@@ -113,7 +114,13 @@ fn tubes_that_pass_at_a_distance_stay_as_they_are() {
     let traced = tubes.0.clone();
     let (nodes, report, warnings) = tubes.separate(&[]);
     assert_eq!(nodes, traced);
-    assert_eq!(report, Separation { complete: true, ..Separation::default() });
+    assert_eq!(
+        report,
+        Separation {
+            complete: true,
+            ..Separation::default()
+        }
+    );
     assert!(warnings.into_vec().is_empty());
 }
 
@@ -159,7 +166,11 @@ fn a_branch_that_comes_back_to_its_parent_is_moved_away() {
 }
 
 fn sphere(center: DVec3, radius: f64) -> Option<SomaSphere> {
-    Some(SomaSphere { center, radius, reach: 1.0 })
+    Some(SomaSphere {
+        center,
+        radius,
+        reach: 1.0,
+    })
 }
 
 #[test]
@@ -167,7 +178,12 @@ fn a_branch_through_the_soma_of_another_cell_is_led_round_it() {
     let soma = [sphere(DVec3::ZERO, 4.0)];
     let mut tubes = Tubes::new();
     let off = dvec3(0.0, 2.5, 0.5);
-    tubes.tube([off - DVec3::X * 60.0, off + DVec3::X * 60.0], 24, 0.5, NONE);
+    tubes.tube(
+        [off - DVec3::X * 60.0, off + DVec3::X * 60.0],
+        24,
+        0.5,
+        NONE,
+    );
     let root = tubes.push(DVec3::Z * 4.0, 1.0, NONE, Root::Insertion(0));
     tubes.tube([DVec3::Z * 4.0, DVec3::Z * 30.0], 8, 1.0, root);
     assert!(touching(&tubes.0, &soma));
@@ -175,7 +191,10 @@ fn a_branch_through_the_soma_of_another_cell_is_led_round_it() {
     assert_eq!(report.places.len(), 1);
     assert_eq!(report.places[0].samples[1], -7);
     assert!(!touching(&nodes, &soma), "{report:?}");
-    let ring = nodes.iter().find(|n| n.root == Root::Insertion(0)).expect("the ring");
+    let ring = nodes
+        .iter()
+        .find(|n| n.root == Root::Insertion(0))
+        .expect("the ring");
     assert_eq!(ring.center, DVec3::Z * 4.0);
 }
 
@@ -227,6 +246,21 @@ fn no_length_is_no_crash() {
     assert!(!report.places.is_empty());
 }
 
+#[test]
+fn a_point_stays_if_the_shorter_way_would_touch_another_branch() {
+    let mut tubes = Tubes::new();
+    let (left, right) = (DVec3::X * -3.0, DVec3::X * 3.0);
+    let first = tubes.push(left, 0.5, NONE, Root::Free);
+    let bend = tubes.push(DVec3::Y * 2.0, 0.5, first, Root::Free);
+    let last = tubes.push(right, 0.5, bend, Root::Free);
+    tubes.tube([DVec3::Z * -9.0, DVec3::Z * 9.0], 2, 0.5, NONE);
+    let mut skeleton = Skeleton::from_nodes(tubes.0);
+    let separated = separate(&mut skeleton, &[], &[], &mut Warnings::default());
+    assert!(separated.report.places.is_empty());
+    assert!(!separated.clearance.allows(first, last));
+    assert!(separated.clearance.allows(first, bend));
+}
+
 /// A tree that wanders through its own neighborhood.
 fn wandering() -> impl Strategy<Value = Vec<(u32, [f64; 3], f64)>> {
     let step = (any::<u32>(), [-3.0..3.0, -3.0..3.0, -3.0..3.0], 0.1..1.0);
@@ -244,7 +278,11 @@ fn wander(steps: &[(u32, [f64; 3], f64)]) -> Tubes {
             1 | 2 => draw / 10 % i,
             _ => i - 1,
         };
-        let from = if parent == NONE { DVec3::ZERO } else { tubes.0[parent as usize].center };
+        let from = if parent == NONE {
+            DVec3::ZERO
+        } else {
+            tubes.0[parent as usize].center
+        };
         tubes.push(from + DVec3::from(step), radius, parent, Root::Free);
     }
     tubes

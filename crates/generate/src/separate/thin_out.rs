@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::rods::{Role, Rods};
+use super::rods::{Rods, Role};
 use crate::skeleton::{NONE, off_segment};
 
 /// The branch may change by this share of its radius where a point is left out.
