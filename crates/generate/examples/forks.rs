@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sums = [[0; 3]; 2];
     println!("file samples ms | level 2: pairs near forks, all pairs, folded | level 4");
     for file in std::env::args().skip(1) {
-        let read = match neurotess_formats::read(&file, &neurotess_formats::ReadOptions::default()) {
+        let read = match neurotess_formats::read(&file, &neurotess_formats::ReadOptions::default())
+        {
             Ok(read) => read,
             Err(error) => {
                 eprintln!("{file}: {error}");
@@ -30,7 +31,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let seconds = start.elapsed().as_secs_f64();
             let name = std::path::Path::new(&file).file_name().unwrap_or_default();
             let name = name.to_string_lossy();
-            print!("{name:30.30} {:6} {:7.1}", morphology.points.len(), 1e3 * seconds);
+            print!(
+                "{name:30.30} {:6} {:7.1}",
+                morphology.points.len(),
+                1e3 * seconds
+            );
             let forks = forks(morphology);
             for (level, sums) in [2, 4].into_iter().zip(&mut sums) {
                 let options = RefineOptions::default();
@@ -44,7 +49,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let topology = topology(&positions, &surface.faces);
                 let sound = topology.closed && topology.oriented && topology.vertex_manifold;
                 let [near, all, folded] = figures;
-                print!(" | {near:6} {all:6} {folded:6} {}", if sound { "closed" } else { "OPEN" });
+                print!(
+                    " | {near:6} {all:6} {folded:6} {}",
+                    if sound { "closed" } else { "OPEN" }
+                );
             }
             println!();
         }

@@ -30,8 +30,14 @@ const CHOICES: [ForkChoice; 6] = [
 ];
 const JOINT: usize = CHOICES.len() - 1;
 
-/// The mesh of a skeleton with the best choice for each fork.
-pub(crate) fn mesh(skeleton: &Skeleton, somata: &Somata<'_>, warnings: &mut Warnings) -> CoarseMesh {
+/// The mesh of a skeleton with the best choice for each fork. `may_join`: whether a path may go straight
+/// from one node to another below it.
+pub(crate) fn mesh(
+    skeleton: &Skeleton,
+    somata: &Somata<'_>,
+    may_join: &dyn Fn(u32, u32) -> bool,
+    warnings: &mut Warnings,
+) -> CoarseMesh {
     let mut trials = ForkTrials::new(skeleton);
     loop {
         let mut found = Warnings::default();
@@ -41,23 +47,12 @@ pub(crate) fn mesh(skeleton: &Skeleton, somata: &Somata<'_>, warnings: &mut Warn
         }
         crowd::split_crowded_forks(&mut layout.skeleton, &mut found);
         fork::clear_the_way(&mut layout.skeleton, &mut found);
-        let orientations = uncross::uncross_rings(&mut layout, somata.soma_spheres, &mut found);
+        let orientations =
+            uncross::uncross_rings(&mut layout, somata.soma_spheres, may_join, &mut found);
         let mut assembly = Assembly::new(&layout, &orientations);
         assembly.somata(somata);
         let (mesh, patches) = assembly.finish();
-        let more = trials.advance(&mesh, patches, &layout.refused);
-        if !more {
-            let mut h = std::collections::BTreeMap::new();
-            let mut all = Vec::new();
-            for (f, t) in &trials.trials {
-                let e: &mut (usize, usize) = h.entry((t.current, t.faults[t.current] == Some(0), t.faults[0] == Some(usize::MAX))).or_default();
-                e.0 += 1;
-                e.1 += t.faults[t.current].unwrap_or(0);
-                all.push((t.faults[t.current].unwrap_or(0), skeleton.node(*f).sample, t.faults, skeleton.node(*f).radius, skeleton.node(*f).center));
-            }
-            all.sort_by_key(|a| a.0); all.reverse();
-            for a in &all[..12.min(all.len())] { eprintln!("{a:?}"); }
-            eprintln!("(choice, sound, refused) -> forks, faults: {h:?}");
+        if !trials.advance(&mesh, patches, &layout.refused) {
             warnings.extend(found);
             return mesh;
         }
@@ -154,7 +149,15 @@ impl ForkTrials {
 impl Trial {
     /// There is no room for an inset of this thickness, whatever its lift.
     fn refuse(&mut self) {
-        let thick = |choice: &ForkChoice| matches!(choice, ForkChoice::Inset { thickened: true, .. });
+        let thick = |choice: &ForkChoice| {
+            matches!(
+                choice,
+                ForkChoice::Inset {
+                    thickened: true,
+                    ..
+                }
+            )
+        };
         for (choice, faults) in CHOICES.iter().zip(&mut self.faults).take(JOINT) {
             if thick(choice) == thick(&CHOICES[self.current]) {
                 faults.get_or_insert(usize::MAX);

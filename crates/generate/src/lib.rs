@@ -14,6 +14,7 @@ mod normals;
 mod options;
 mod prepare;
 mod rings;
+mod separate;
 mod skeleton;
 mod soma;
 mod somata;
@@ -24,12 +25,13 @@ mod uncross;
 mod warning;
 
 pub use error::GenerateError;
-pub use options::{GenerateOptions, SomaMethod, SphereKind};
+pub use options::{Crossings, GenerateOptions, SomaMethod, SphereKind};
+pub use separate::{SeparatedPlace, Separation};
 pub use warning::Warning;
 
 use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Vertex};
-use neurotess_morphology::Morphology;
+use neurotess_morphology::{Morphology, Soma};
 
 use assemble::Somata;
 use rings::RingRequests;
@@ -47,6 +49,8 @@ pub struct Generated {
     pub rings: Vec<FirstRing>,
     /// What was mended, counted by cause.
     pub warnings: Vec<Warning>,
+    /// What [`Crossings::Separate`] found and did; none without it.
+    pub separation: Option<Separation>,
     /// Seconds that somata took, by the clock of [`generate_timed`]; 0 without one.
     pub soma_seconds: f64,
 }
@@ -127,12 +131,25 @@ pub fn generate_timed(
     skeleton.start_free_trees_at_an_end();
     prepare::lengthen_single_points(&mut skeleton, &mut warnings);
     thin::space_points(&mut skeleton, &mut warnings);
+    let separated = match options.crossings {
+        Crossings::Keep => None,
+        Crossings::Separate => Some(separate::separate(
+            &mut skeleton,
+            &soma_spheres,
+            &first_samples(morphology),
+            &mut warnings,
+        )),
+    };
+    let may_join = |from: u32, to: u32| {
+        let separated = separated.as_ref();
+        separated.is_none_or(|separated| separated.clearance.allows(from, to))
+    };
     let somata = Somata {
         morphology,
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
-    let mut mesh = forks::mesh(&skeleton, &somata, &mut warnings);
+    let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut warnings);
     mesh.origin = morphology.origin;
     let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
     if let Some(vertex) = mesh.vertices.iter().find(lost) {
@@ -145,6 +162,13 @@ pub fn generate_timed(
         somata: reports.collect(),
         rings: built.rings,
         warnings: warnings.into_vec(),
+        separation: separated.map(|s| s.report),
         soma_seconds,
     })
+}
+
+/// The file's own number of each soma's first sample; −1 without one.
+fn first_samples(morphology: &Morphology) -> Vec<i64> {
+    let first = |soma: &Soma| soma.samples.first().map_or(-1, |sample| sample.id);
+    morphology.somata.iter().map(first).collect()
 }

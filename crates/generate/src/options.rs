@@ -28,6 +28,17 @@ pub enum SphereKind {
     Cube,
 }
 
+/// What becomes of branches that were traced through one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Crossings {
+    /// They stay where they were traced, and their surfaces cross.
+    #[default]
+    Keep,
+    /// They are moved apart, thin ones more than thick ones.
+    Separate,
+}
+
 /// Choices for [`generate`](crate::generate).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GenerateOptions {
@@ -49,6 +60,8 @@ pub struct GenerateOptions {
     pub rings: BTreeMap<u32, f64>,
     /// Kinds of neurites to keep; `None`: all.
     pub kinds: Option<Vec<NeuriteKind>>,
+    /// What becomes of branches that were traced through one another.
+    pub crossings: Crossings,
 }
 
 impl Default for GenerateOptions {
@@ -61,6 +74,7 @@ impl Default for GenerateOptions {
             sphere_level: None,
             rings: BTreeMap::new(),
             kinds: None,
+            crossings: Crossings::Keep,
         }
     }
 }

@@ -39,6 +39,8 @@ pub(crate) struct Marks {
     pub(crate) zone_ends: u32,
     /// Node of this joint's fork in the skeleton that was laid out.
     pub(crate) fork: u32,
+    /// Its own node there, or the nearest.
+    pub(crate) base: u32,
 }
 
 impl Default for Marks {
@@ -47,6 +49,7 @@ impl Default for Marks {
             zone_begins: NONE,
             zone_ends: NONE,
             fork: NONE,
+            base: NONE,
         }
     }
 }

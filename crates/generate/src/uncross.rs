@@ -20,17 +20,23 @@ const MOST_TURNS: u8 = 3;
 const MOST_MOVED: f64 = 2.0;
 
 /// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
-/// of every node that is left, along the path.
+/// of every node that is left, along the path. A point is left out only if the path `may_join` its two
+/// neighbors, upper and lower, by their nodes in the skeleton that was laid out.
 pub(crate) fn uncross_rings(
     layout: &mut Layout,
     soma_spheres: &[Option<SomaSphere>],
+    may_join: &dyn Fn(u32, u32) -> bool,
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
     let Layout {
         skeleton, insets, ..
     } = layout;
     let children = skeleton.children();
-    let mut work = Work::new(skeleton, children, soma_spheres, insets);
+    let may_join = |from: u32, to: u32| {
+        let base = |n: u32| skeleton.node(n).marks.base;
+        base(from) == NONE || base(to) == NONE || may_join(base(from), base(to))
+    };
+    let mut work = Work::new(skeleton, children, soma_spheres, insets, &may_join);
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -88,6 +94,7 @@ struct Work<'a> {
     children: &'a Children,
     soma_spheres: &'a [Option<SomaSphere>],
     insets: &'a [Inset],
+    may_join: &'a dyn Fn(u32, u32) -> bool,
     keep: Vec<bool>,
     parent: Vec<u32>,
     /// The only child, or [`NONE`] at forks and ends.
@@ -102,6 +109,7 @@ impl<'a> Work<'a> {
         children: &'a Children,
         soma_spheres: &'a [Option<SomaSphere>],
         insets: &'a [Inset],
+        may_join: &'a dyn Fn(u32, u32) -> bool,
     ) -> Self {
         let count = skeleton.nodes().len();
         let only = |i: u32| match children.of(i) {
@@ -113,6 +121,7 @@ impl<'a> Work<'a> {
             children,
             soma_spheres,
             insets,
+            may_join,
             keep: vec![true; count],
             parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
             child: (0..count as u32).map(only).collect(),
@@ -209,7 +218,8 @@ impl<'a> Work<'a> {
     /// How far the path moves if a node is left out (µm); infinite for those that may not be.
     fn cost(&self, n: u32) -> f64 {
         let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
-        if parent == NONE || child == NONE || self.skeleton.node(n).marks.of_zone() {
+        let fixed = parent == NONE || child == NONE || self.skeleton.node(n).marks.of_zone();
+        if fixed || !(self.may_join)(parent, child) {
             return f64::INFINITY;
         }
         let center = |n: u32| self.skeleton.node(n).center;

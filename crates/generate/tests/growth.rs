@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use glam::{Vec3, vec3};
-use neurotess_generate::{GenerateOptions, generate};
+use neurotess_generate::{Crossings, GenerateOptions, generate};
 use neurotess_morphology::{
     Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
 };
@@ -183,11 +183,55 @@ fn long_path(count: usize) -> Morphology {
     m
 }
 
+/// Branches that cross one another two by two.
+fn crossed_pairs(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    for i in 0..count / 4 {
+        let at = vec3(8.0 * i as f32, 0.0, 0.0);
+        for across in [vec3(3.0, 1.0, 0.1), vec3(-1.0, 3.0, 0.0)] {
+            add_section(&mut m, Attachment::Free, &[at - across, at + across], 0.5);
+        }
+    }
+    m
+}
+
+/// Branches that all cross one another in one place.
+fn crossed_in_one_place(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    for i in 0..count / 2 {
+        let across = direction(i, count / 2) * 9.0;
+        add_section(&mut m, Attachment::Free, &[-across, across], 0.2);
+    }
+    m
+}
+
+/// One branch, traced so often.
+fn doubled(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    for _ in 0..count / 3 {
+        let path = [Vec3::ZERO, vec3(3.0, 1.0, 0.0), vec3(6.0, 0.0, 1.0)];
+        add_section(&mut m, Attachment::Free, &path, 0.2);
+    }
+    m
+}
+
+/// Somata that lie on a path of another cell.
+fn somata_on_a_path(count: usize) -> Morphology {
+    let mut m = lone_somata(count / 2);
+    let points: Vec<Vec3> = (0..count / 2).map(|i| vec3(i as f32, 0.3, 0.0)).collect();
+    add_section(&mut m, Attachment::Free, &points, 0.1);
+    m
+}
+
 /// Seconds of the fastest of three runs: what else the machine does only adds.
-fn cost(morphology: &Morphology) -> f64 {
+fn cost(morphology: &Morphology, crossings: Crossings) -> f64 {
+    let options = GenerateOptions {
+        crossings,
+        ..GenerateOptions::default()
+    };
     let seconds = || {
         let clock = Instant::now();
-        let made = generate(morphology, &GenerateOptions::default()).expect("meshed");
+        let made = generate(morphology, &options).expect("meshed");
         assert!(!made.mesh.patches.is_empty());
         clock.elapsed().as_secs_f64()
     };
@@ -197,9 +241,32 @@ fn cost(morphology: &Morphology) -> f64 {
 /// Four times as many must not cost more than this often as much.
 const MOST: f64 = 9.0;
 
+/// A name, what makes so many, and how many.
+type Kind = (&'static str, fn(usize) -> Morphology, usize);
+
+#[expect(clippy::print_stdout, reason = "shown where a test fails")]
+fn assert_no_square(kinds: &[Kind], crossings: Crossings) {
+    let mut failed = Vec::new();
+    for (name, make, count) in kinds {
+        let (few, many) = (make(*count), make(4 * count));
+        cost(&few, crossings); // spheres are factored once
+        // A busy machine may slow one of the two down: three tries.
+        let mut growth = f64::INFINITY;
+        for _ in 0..3 {
+            if growth > MOST {
+                growth = growth.min(cost(&many, crossings) / cost(&few, crossings));
+            }
+        }
+        println!("{name}: {growth:.1} times for 4 times as many");
+        if growth > MOST {
+            failed.push(format!("{name}: {growth:.1}"));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
 #[test]
 fn no_stage_takes_the_square_of_what_it_is_given() {
-    type Kind = (&'static str, fn(usize) -> Morphology, usize);
     let kinds: [Kind; 12] = [
         ("stems all around", stems_all_around, 4_000),
         ("stems in one direction", stems_in_one_direction, 4_000),
@@ -218,17 +285,22 @@ fn no_stage_takes_the_square_of_what_it_is_given() {
         ("free trees", free_trees, 4_000),
         ("a long path", long_path, 8_000),
     ];
-    let mut failed = Vec::new();
-    for (name, make, count) in kinds {
-        let (few, many) = (make(count), make(4 * count));
-        cost(&few); // spheres are factored once
-        // A busy machine may slow one of the two down: three tries.
-        let ratio = |_| cost(&many) / cost(&few);
-        let growth = (0..3).map(ratio).fold(f64::INFINITY, f64::min);
-        println!("{name}: {growth:.1} times for 4 times as many");
-        if growth > MOST {
-            failed.push(format!("{name}: {growth:.1}"));
-        }
-    }
-    assert!(failed.is_empty(), "{failed:?}");
+    assert_no_square(&kinds, Crossings::Keep);
+}
+
+#[test]
+fn moving_branches_apart_takes_no_square_either() {
+    let kinds: [Kind; 10] = [
+        ("stems all around", stems_all_around, 150),
+        ("branches all around", branches_all_around, 150),
+        ("branches in one direction", branches_in_one_direction, 150),
+        ("forks in one place", forks_in_one_place, 200),
+        ("free trees", free_trees, 1_000),
+        ("a long path", long_path, 600),
+        ("crossed pairs", crossed_pairs, 1_000),
+        ("crossed in one place", crossed_in_one_place, 200),
+        ("doubled", doubled, 150),
+        ("somata on a path", somata_on_a_path, 400),
+    ];
+    assert_no_square(&kinds, Crossings::Separate);
 }

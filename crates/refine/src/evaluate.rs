@@ -373,10 +373,7 @@ impl PatchShape {
         let by_y = mix(left.derivative, right.derivative, x) + far.position
             - near.position
             - mix(d - a, c - b, x);
-        (
-            position,
-            by_x.cross(by_y).normalize_or(self.mean_normal()),
-        )
+        (position, by_x.cross(by_y).normalize_or(self.mean_normal()))
     }
 
     /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the

@@ -121,7 +121,12 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
             let turn = wrap(at(one) - middle).clamp(-MOST_TURN, MOST_TURN);
             // The quad's own two corners about the branch, the other two evenly in the rest.
             let rest = TAU - 2.0 * one.half;
-            let around = [-one.half, one.half, one.half + rest / 3.0, one.half + 2.0 * rest / 3.0];
+            let around = [
+                -one.half,
+                one.half,
+                one.half + rest / 3.0,
+                one.half + 2.0 * rest / 3.0,
+            ];
             let mut angles = [0.0; 4];
             for (k, angle) in around.into_iter().enumerate() {
                 angles[(one.side + k) % 4] = middle + turn + angle;
@@ -147,7 +152,12 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
 
 /// Turns a branch around its trunk until it lies within its quad, and up from the trunk where it would
 /// leave too steeply.
-pub(super) fn settle(facing: &mut Facing, path: &PathRings, corners: [[f64; 4]; 2], trunk: &[RoundCone]) {
+pub(super) fn settle(
+    facing: &mut Facing,
+    path: &PathRings,
+    corners: [[f64; 4]; 2],
+    trunk: &[RoundCone],
+) {
     let along = path.chord(facing.ring);
     let (base, way) = beside(path, facing.ring, facing.exit);
     let thick = 0.5 * (path.radii[facing.ring] + path.radii[facing.ring + 1]);

@@ -15,11 +15,11 @@ use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
 use neurotess_morphology::Morphology;
 
 use crate::fork;
+use crate::inset::Layout;
 use crate::joint::Joint;
 use crate::normals::average_normals;
-use crate::inset::Layout;
-use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::prepare::SomaSphere;
+use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::soma::SomaSurface;
 use crate::somata::{self, BuiltSoma};
 
@@ -122,13 +122,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds a soma; `insertions` are the nodes of its rings, in order.
-    fn soma(
-        &mut self,
-        surface: &SomaSurface,
-        center: DVec3,
-        sample: i64,
-        insertions: &[u32],
-    ) {
+    fn soma(&mut self, surface: &SomaSurface, center: DVec3, sample: i64, insertions: &[u32]) {
         let mut owner = vec![NONE; surface.vertices.len()];
         for (&node, ring) in insertions.iter().zip(&surface.rings) {
             let tracing = self.tracing(node, Role::Insertion);

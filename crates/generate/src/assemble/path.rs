@@ -81,7 +81,10 @@ impl Assembly<'_> {
         if let Some(inset) = self.placed(nodes[0]) {
             centers[0] = inset.center;
         }
-        let radii = nodes.iter().map(|&n| self.skeleton.node(n).radius).collect();
+        let radii = nodes
+            .iter()
+            .map(|&n| self.skeleton.node(n).radius)
+            .collect();
         let tangents = self.tangents(&nodes, &centers);
         let frames = self.frames(&nodes, &centers, &tangents);
         PathRings {
@@ -223,9 +226,7 @@ impl Assembly<'_> {
     /// The vertices of all rings: those that there are, and new ones.
     fn rings(&mut self, path: &PathRings, angles: &[[f64; 4]]) -> Vec<Ring> {
         let last = path.nodes.len() - 1;
-        (0..=last)
-            .map(|i| self.ring(path, i, &angles[i]))
-            .collect()
+        (0..=last).map(|i| self.ring(path, i, &angles[i])).collect()
     }
 
     fn ring(&mut self, path: &PathRings, i: usize, angles: &[f64; 4]) -> Ring {
@@ -344,7 +345,12 @@ impl Assembly<'_> {
 
     /// Notes which patches are near a fork: those of two segments from joints and insets, and of the
     /// trunk around a zone.
-    fn note_forks(&mut self, path: &PathRings, zones: &[(usize, Vec<(u32, Inset)>)], first: &[u32]) {
+    fn note_forks(
+        &mut self,
+        path: &PathRings,
+        zones: &[(usize, Vec<(u32, Inset)>)],
+        first: &[u32],
+    ) {
         let last = path.nodes.len() - 1;
         let segments = |from: usize, to: usize| first[from.min(last)]..first[to.min(last)];
         let start = match self.skeleton.node(path.nodes[0]).root {
@@ -356,7 +362,8 @@ impl Assembly<'_> {
             self.fork_patches.push((start, segments(0, 2)));
         }
         if end != NONE {
-            self.fork_patches.push((end, segments(last.saturating_sub(2), last)));
+            self.fork_patches
+                .push((end, segments(last.saturating_sub(2), last)));
         }
         for (ring, insets) in zones {
             for (_, inset) in insets {

@@ -134,7 +134,12 @@ impl<'a> Planner<'a> {
                 if children.len() != 1 {
                     // A joint at the very beginning, or a single point.
                     let joint = self.copy(*root, NONE, node.root);
-                    starts.extend(children.iter().rev().map(|&c| Start::Joint(*root, joint, c)));
+                    starts.extend(
+                        children
+                            .iter()
+                            .rev()
+                            .map(|&c| Start::Joint(*root, joint, c)),
+                    );
                     return;
                 }
                 [*root, children[0]]
@@ -219,7 +224,10 @@ impl<'a> Planner<'a> {
         let own = self.base.node(node).radius;
         let thickened = matches!(
             self.choices[node as usize],
-            ForkChoice::Inset { thickened: true, .. }
+            ForkChoice::Inset {
+                thickened: true,
+                ..
+            }
         );
         if !thickened || self.children.of(node).len() < 2 {
             return own;
@@ -296,7 +304,12 @@ impl<'a> Planner<'a> {
         joint.reach(slot, free[slot].direction)
     }
 
-    fn zones_of(&mut self, start: &Start, way: &Way, path: &Polyline) -> Result<Vec<Group>, Vec<u32>> {
+    fn zones_of(
+        &mut self,
+        start: &Start,
+        way: &Way,
+        path: &Polyline,
+    ) -> Result<Vec<Group>, Vec<u32>> {
         let room = self.room(start, way, path);
         let (mut zones, mut refused) = (Vec::new(), Vec::new());
         let mut buried = Vec::new();
@@ -407,9 +420,11 @@ impl<'a> Planner<'a> {
             parent = match ring.what {
                 RingKind::Point(index) => self.copy(way.nodes[index], parent, Root::Free),
                 RingKind::Zone(begins, ends) => {
-                    let number = |group: Option<usize>| group.map_or(NONE, |g| first_zone + g as u32);
+                    let number =
+                        |group: Option<usize>| group.map_or(NONE, |g| first_zone + g as u32);
                     let nearest = nearest(path, ring.arc);
-                    let node = self.base.node(way.nodes[nearest.clamp(1.min(last), last)]);
+                    let base = way.nodes[nearest.clamp(1.min(last), last)];
+                    let node = self.base.node(base);
                     self.nodes.push(SkeletonNode {
                         center: path.at(ring.arc),
                         radius: path.radius(ring.arc),
@@ -418,6 +433,7 @@ impl<'a> Planner<'a> {
                         marks: Marks {
                             zone_begins: number(begins),
                             zone_ends: number(ends),
+                            base,
                             ..Marks::default()
                         },
                         ..*node
@@ -433,7 +449,10 @@ impl<'a> Planner<'a> {
             starts.extend(children.map(|&child| Start::Joint(fork, joint, child)));
         }
         for group in groups {
-            let members = group.zones.iter().map(|zone| self.begin_inset(zone, path, starts));
+            let members = group
+                .zones
+                .iter()
+                .map(|zone| self.begin_inset(zone, path, starts));
             let members = members.collect();
             self.zones.push(members);
         }
@@ -486,6 +505,7 @@ impl<'a> Planner<'a> {
             root,
             marks: Marks {
                 fork,
+                base: node,
                 ..Marks::default()
             },
             ..*self.base.node(node)
@@ -499,7 +519,10 @@ impl<'a> Planner<'a> {
             radius: start.radius,
             parent: NONE,
             root: Root::Inset(start.inset),
-            marks: Marks::default(),
+            marks: Marks {
+                base: start.fork,
+                ..Marks::default()
+            },
             ..*self.base.node(first)
         });
         self.nodes.len() as u32 - 1
@@ -522,7 +545,10 @@ impl<'a> Planner<'a> {
 
 /// Point of a path nearest to an arc length.
 fn nearest(path: &Polyline, arc: f64) -> usize {
-    let after = path.arcs.partition_point(|&a| a < arc).min(path.arcs.len() - 1);
+    let after = path
+        .arcs
+        .partition_point(|&a| a < arc)
+        .min(path.arcs.len() - 1);
     let before = after.saturating_sub(1);
     if arc - path.arcs[before] < path.arcs[after] - arc {
         before
@@ -592,7 +618,10 @@ fn zone_rings(path: &Polyline, groups: &[Group]) -> Vec<Ring> {
 /// Drops a path's own points that lie too near before a ring that must stay.
 fn give_way(rings: &mut Vec<Ring>, path: &Polyline, arc: f64, share: f64) {
     let near = share * path.radius(arc);
-    while let Some(Ring { arc: before, what: RingKind::Point(_) }) = rings.last()
+    while let Some(Ring {
+        arc: before,
+        what: RingKind::Point(_),
+    }) = rings.last()
         && arc - before < near
     {
         rings.pop();

@@ -42,7 +42,9 @@ impl MeshOptions {
             Some(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
             Some(other) => format!("{other:?}"),
         };
-        format!("{lod} {generate:?} {refine:?} {format:?}")
+        // What earlier versions did not have is left out where it has its default.
+        let generate = format!("{generate:?}").replace(", crossings: Keep", "");
+        format!("{lod} {generate} {refine:?} {format:?}")
     }
 
     /// Checks the options together and translates them.
@@ -134,6 +136,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         sphere_level: args.soma_level,
         rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
+        ..GenerateOptions::default()
     })
 }
 

@@ -74,7 +74,7 @@ impl SomaEdit {
                 self.level.clamp(low, high)
             }),
             rings: self.rings.clone(),
-            kinds: None,
+            ..GenerateOptions::default()
         }
     }
 

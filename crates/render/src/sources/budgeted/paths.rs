@@ -83,7 +83,10 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
 }
 
 fn leaves_soma(mesh: &CoarseMesh, point: u32) -> bool {
-    matches!(mesh.tracing[point as usize].role, Role::Insertion | Role::Inset)
+    matches!(
+        mesh.tracing[point as usize].role,
+        Role::Insertion | Role::Inset
+    )
 }
 
 fn point(mesh: &CoarseMesh, tracing: u32) -> PathPoint {
