@@ -45,6 +45,40 @@ pub fn self_intersections(positions: &[Vec3], faces: &Faces) -> Vec<[u32; 2]> {
     search(positions, faces, Limits::NONE).pairs
 }
 
+/// Those pairs of [`self_intersections`] that have at least one of the `chosen` faces. What changed a few
+/// faces of a mesh without crossings looks at these only.
+///
+/// Panics if a face names a vertex that is not there.
+pub fn self_intersections_of(positions: &[Vec3], faces: &Faces, chosen: &[u32]) -> Vec<[u32; 2]> {
+    let mut is_chosen = vec![false; faces.triangles.len() + faces.quads.len()];
+    for &face in chosen {
+        is_chosen[face as usize] = true;
+    }
+    let triangles = triangles(positions, faces);
+    let boxes = boxes(&triangles, positions);
+    let tree = Bvh::new(&boxes);
+    let mut pairs: Vec<[u32; 2]> = triangles
+        .par_iter()
+        .enumerate()
+        .filter(|(_, triangle)| is_chosen[triangle.face as usize])
+        .flat_map_iter(|(n, a)| {
+            let mut found = Vec::new();
+            tree.overlaps_of(&boxes[n], |m| {
+                let b = &triangles[m as usize];
+                // Of two chosen ones, the first in the row has found the pair.
+                let twice = is_chosen[b.face as usize] && (m as usize) < n;
+                if !twice && a.face != b.face && a.crosses(b, positions) {
+                    found.push([a.face.min(b.face), a.face.max(b.face)]);
+                }
+            });
+            found
+        })
+        .collect();
+    pairs.par_sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
 /// Like [`self_intersections`], in a time that grows with the faces whatever their places.
 pub fn search_self_intersections(positions: &[Vec3], faces: &Faces) -> Search {
     let count = faces.triangles.len() + 2 * faces.quads.len();
@@ -97,11 +131,7 @@ const MOST_BATCH: u64 = 256;
 
 fn search(positions: &[Vec3], faces: &Faces, limits: Limits) -> Search {
     let triangles = triangles(positions, faces);
-    let boxes: Vec<Bounds> = triangles
-        .par_iter()
-        .map(|triangle| Bounds::of(triangle.corners.map(|corner| positions[corner as usize])))
-        .collect();
-    let tree = Bvh::new(&boxes);
+    let tree = Bvh::new(&boxes(&triangles, positions));
     let of_leaf = |leaf: usize| {
         let (mut pairs, mut looked_at) = (Vec::new(), 0);
         tree.overlaps_of_leaf(leaf, |a, b| {
@@ -140,6 +170,12 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits) -> Search {
         complete: next == leaves,
         looked_at,
     }
+}
+
+fn boxes(triangles: &[Triangle], positions: &[Vec3]) -> Vec<Bounds> {
+    let of =
+        |triangle: &Triangle| Bounds::of(triangle.corners.map(|corner| positions[corner as usize]));
+    triangles.par_iter().map(of).collect()
 }
 
 /// A triangle of a face.
@@ -276,5 +312,20 @@ mod tests {
                 .iter()
                 .all(|pair| all.binary_search(pair).is_ok())
         );
+    }
+
+    #[test]
+    fn pairs_of_chosen_faces_are_those_of_all_that_name_one() {
+        let (positions, faces) = pieces((0..60).map(|i| (i as f32 * 0.3 * Vec3::X, 1.0)));
+        let all = self_intersections(&positions, &faces);
+        let chosen = [3, 4, 100, 101, 239];
+        let expected: Vec<[u32; 2]> = all
+            .iter()
+            .filter(|pair| pair.iter().any(|face| chosen.contains(face)))
+            .copied()
+            .collect();
+        assert!(!expected.is_empty() && expected.len() < all.len());
+        assert_eq!(self_intersections_of(&positions, &faces, &chosen), expected);
+        assert!(self_intersections_of(&positions, &faces, &[]).is_empty());
     }
 }

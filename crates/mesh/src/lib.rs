@@ -40,8 +40,9 @@ mod write;
 
 pub use check::{Report, check};
 pub use coarse::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
+pub use forest::Forest;
 pub use format::{Format, UnknownFormat};
-pub use intersect::{Search, search_self_intersections, self_intersections};
+pub use intersect::{Search, search_self_intersections, self_intersections, self_intersections_of};
 pub use measure::{Measure, measure, measure_surface};
 pub use placed::Placed;
 pub use read::{FilePosition, ReadError, read, read_as, read_bytes};
