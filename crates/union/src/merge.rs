@@ -1,7 +1,8 @@
 //! The recipe: find, cut, mend, check, and once more.
 
 use neurotess_mesh::{
-    SurfaceMesh, Topology, measure, search_self_intersections, self_intersections, topology,
+    SurfaceMesh, Topology, measure, search_self_intersections, self_intersections,
+    self_intersections_of, topology,
 };
 
 use crate::options::{UnionError, UnionOptions};
@@ -46,19 +47,24 @@ pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionE
     let mut needles = options.needles;
     while !pairs.is_empty() && report.rounds < options.rounds {
         report.rounds += 1;
-        cut(&mut work, &pairs, &mut report)?;
+        let faces = touch::faces(&work, &pairs);
+        cut(&mut work, &pairs)?;
         let last = report.rounds == options.rounds;
         mend(&mut work, if last { 0.0 } else { needles }, &mut report);
         // What is finer stays: collapsing may be what made the new crossings.
         needles *= 0.6;
-        pairs = crossings(&work);
+        pairs = crossings_of_changed(&work);
+        let pressed = touch::press(&mut work, &pairs, &faces);
+        if pressed > 0 {
+            report.parted += pressed;
+            pairs = crossings_of_changed(&work);
+        }
     }
     if report.rounds > 0 && pairs.is_empty() {
         report.smoothed = smooth(&mut work, options.smoothing);
-        pairs = crossings(&work);
     }
     renew_normals(&mut work);
-    report.pairs = pairs.len();
+    report.pairs = crossings(&work).len();
     after(&work, &mut report);
     report.faces_changed = changed(mesh, &work);
     Ok(Union {
@@ -69,6 +75,11 @@ pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionE
 
 fn crossings(work: &Work) -> Vec<[u32; 2]> {
     self_intersections(&work.positions(), &work.faces())
+}
+
+/// Crossings of faces that are not of the input: the others' were all cut.
+fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
+    self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces())
 }
 
 fn first_pairs(work: &Work) -> Result<Vec<[u32; 2]>, UnionError> {
@@ -84,16 +95,11 @@ fn first_pairs(work: &Work) -> Result<Vec<[u32; 2]>, UnionError> {
 const MOST_RINGS: u32 = 4;
 
 /// Replaces the faces around crossings by their union.
-fn cut(work: &mut Work, pairs: &[[u32; 2]], report: &mut UnionReport) -> Result<(), UnionError> {
-    let faces = touch::faces(work, pairs);
+fn cut(work: &mut Work, pairs: &[[u32; 2]]) -> Result<(), UnionError> {
     let mut fault = None;
     for rings in 1..=MOST_RINGS {
         match splice(work, &around(work, pairs, rings)) {
-            Ok(()) => {
-                let left = crossings(work);
-                report.parted += touch::press(work, &left, &faces);
-                return Ok(());
-            }
+            Ok(()) => return Ok(()),
             Err(new) => fault = Some(new),
         }
     }
@@ -142,14 +148,9 @@ fn after(work: &Work, report: &mut UnionReport) {
     report.handles = shape.genus;
 }
 
-/// Faces of the input that are not there any more: those of the input without those of the result that have
-/// only vertices of the input.
+/// How many faces of the input are no longer there.
 fn changed(mesh: &SurfaceMesh, work: &Work) -> usize {
     let before = mesh.faces.triangles.len() + 2 * mesh.faces.quads.len();
-    let kept = work
-        .triangles
-        .iter()
-        .filter(|face| !work.is_fresh(face))
-        .count();
+    let kept = work.triangles.len() - work.changed_faces().len();
     before.saturating_sub(kept)
 }

@@ -23,7 +23,7 @@ pub(crate) fn places(work: &Work, pairs: &[[u32; 2]]) -> Vec<Place> {
     let found = clusters
         .into_values()
         .map(|pairs| place(work, &pairs, &neighbors));
-    let mut places = joined(found.collect());
+    let mut places = joined(found);
     places.sort_by(|a, b| {
         let key = |p: &Place| (p.points, p.position.to_array().map(f64::to_bits));
         key(a).cmp(&key(b))
@@ -78,8 +78,10 @@ fn balls(work: &Work, face: u32) -> [Ball; 3] {
     })
 }
 
-fn place(work: &Work, pairs: &[[u32; 2]], neighbors: &BTreeSet<[i32; 2]>) -> Place {
+/// A place, and how wide (µm) both surfaces are there together.
+fn place(work: &Work, pairs: &[[u32; 2]], neighbors: &BTreeSet<[i32; 2]>) -> (Place, f64) {
     let mut sum = DVec3::ZERO;
+    let mut width = 0.0_f64;
     let mut deepest: Option<(f64, f64, [i32; 2], [i32; 2])> = None;
     for &[a, b] in pairs {
         for face in [a, b] {
@@ -88,6 +90,7 @@ fn place(work: &Work, pairs: &[[u32; 2]], neighbors: &BTreeSet<[i32; 2]>) -> Pla
         for one in balls(work, a) {
             for other in balls(work, b) {
                 let thinner = one.radius.min(other.radius);
+                width = width.max(2.0 * (one.radius + other.radius));
                 let overlap = one.radius + other.radius - one.center.distance(other.center);
                 let depth = overlap.clamp(0.0, 2.0 * thinner.max(0.0));
                 if deepest.is_none_or(|(most, ..)| depth > most) {
@@ -101,7 +104,7 @@ fn place(work: &Work, pairs: &[[u32; 2]], neighbors: &BTreeSet<[i32; 2]>) -> Pla
     let (depth, thinner, points, sections) = deepest.unwrap_or_default();
     let [a, b] = sections;
     let near = a == b || neighbors.contains(&[a.min(b), a.max(b)]);
-    Place {
+    let place = Place {
         position: work.place(sum / (2.0 * pairs.len() as f64)),
         pairs: pairs.len(),
         points,
@@ -109,36 +112,30 @@ fn place(work: &Work, pairs: &[[u32; 2]], neighbors: &BTreeSet<[i32; 2]>) -> Pla
         depth,
         relative_depth: if thinner > 0.0 { depth / thinner } else { 0.0 },
         kin: if near { Kin::Near } else { Kin::Apart },
-    }
+    };
+    (place, width)
 }
 
-/// Places of the same two sections no further apart than this many radii of the thinner are one: a branch goes
-/// in on one side of another and comes out on the other side.
-const SPAN: f64 = 8.0;
-
-/// Places put together where a branch enters and leaves.
-fn joined(mut places: Vec<Place>) -> Vec<Place> {
-    let mut by_sections: BTreeMap<[i32; 2], Vec<Place>> = BTreeMap::new();
-    for place in places.drain(..) {
+/// Places put together where a branch enters another and leaves it: of the same two sections, no further apart
+/// than both are wide.
+fn joined(places: impl Iterator<Item = (Place, f64)>) -> Vec<Place> {
+    let mut by_sections: BTreeMap<[i32; 2], Vec<(Place, f64)>> = BTreeMap::new();
+    for (place, width) in places {
         let [a, b] = place.sections;
         let same = by_sections.entry([a.min(b), a.max(b)]).or_default();
-        let thinner = |p: &Place| {
-            if p.relative_depth > 0.0 {
-                p.depth / p.relative_depth
-            } else {
-                0.0
-            }
-        };
-        let near = |other: &&mut Place| {
-            let span = SPAN * thinner(&place).max(thinner(other));
-            place.position.distance(other.position) < span
+        let near = |(other, widest): &&mut (Place, f64)| {
+            place.position.distance(other.position) < width.max(*widest)
         };
         match same.iter_mut().find(near) {
-            Some(other) => *other = together(*other, place),
-            None => same.push(place),
+            Some(other) => *other = (together(other.0, place), width.max(other.1)),
+            None => same.push((place, width)),
         }
     }
-    by_sections.into_values().flatten().collect()
+    by_sections
+        .into_values()
+        .flatten()
+        .map(|(place, _)| place)
+        .collect()
 }
 
 fn together(a: Place, b: Place) -> Place {

@@ -14,12 +14,12 @@ const STEPS: usize = 3;
 /// How often vertices near what has gone wrong are put back before all are.
 const TRIES: usize = 5;
 
-/// Moves the vertices that are ours by `share` of the way to the middle of their neighbors, a few times. Where
+/// Moves vertices that cuts made by `share` of the way to the middle of their neighbors, a few times. Where
 /// faces then cross or turn over, vertices go back. Returns how many were moved.
 pub(crate) fn smooth(work: &mut Work, share: f64) -> usize {
     let mut ours = vec![false; work.vertices.len()];
     for &corner in work.triangles.iter().flatten() {
-        ours[corner as usize] = work.fresh[corner as usize];
+        ours[corner as usize] = work.seam[corner as usize];
     }
     let before: Vec<(u32, Vec3)> = (0..)
         .zip(&work.vertices)
@@ -30,7 +30,11 @@ pub(crate) fn smooth(work: &mut Work, share: f64) -> usize {
         return 0;
     }
     let faces: Vec<u32> = (0..work.triangles.len() as u32)
-        .filter(|&face| work.is_fresh(&work.triangles[face as usize]))
+        .filter(|&face| {
+            work.triangles[face as usize]
+                .iter()
+                .any(|&corner| ours[corner as usize])
+        })
         .collect();
     let normals: Vec<DVec3> = faces.iter().map(|&face| normal(work, face)).collect();
     for (vertex, position) in relaxed(work, &before, &faces, share) {

@@ -247,7 +247,7 @@ impl<'a> Sheets<'a> {
             {
                 let copy = !taken.insert(old);
                 let own = if copy {
-                    work.push(work.vertices[old as usize])
+                    work.push(work.vertices[old as usize], false)
                 } else {
                     old
                 };
@@ -256,7 +256,7 @@ impl<'a> Sheets<'a> {
         }
         let mut made = |corner: usize| {
             let root = roots[corner];
-            *vertex[root].get_or_insert_with(|| work.push(self.new_vertex(work, corner)))
+            *vertex[root].get_or_insert_with(|| work.push(self.new_vertex(work, corner), true))
         };
         (0..self.kept.len())
             .map(|n| [3 * n, 3 * n + 1, 3 * n + 2].map(&mut made))
@@ -333,6 +333,7 @@ fn beside(
 fn replace(work: &mut Work, region: &Region, kept: &[Kept], corners: &[[u32; 3]], stays: &[bool]) {
     let mut triangles = Vec::with_capacity(work.triangles.len());
     let mut parts = Vec::with_capacity(work.triangles.len());
+    let mut changed = Vec::with_capacity(work.triangles.len());
     let mut pieces = kept.iter().zip(corners).peekable();
     let mut source = 0;
     for (face, &stays) in stays.iter().enumerate() {
@@ -341,15 +342,18 @@ fn replace(work: &mut Work, region: &Region, kept: &[Kept], corners: &[[u32; 3]]
             while let Some((_, corners)) = pieces.next_if(|(piece, _)| piece.source == source) {
                 triangles.push(*corners);
                 parts.push(part);
+                changed.push(work.changed[face] || region.crossing[source as usize]);
             }
             source += 1;
         } else if stays {
             triangles.push(work.triangles[face]);
             parts.push(part);
+            changed.push(work.changed[face]);
         }
     }
     work.triangles = triangles;
     work.parts = parts;
+    work.changed = changed;
 }
 
 /// The corner after a corner of the same triangle.

@@ -52,9 +52,9 @@ struct Seam<'a> {
 impl<'a> Seam<'a> {
     fn new(work: &'a mut Work) -> Self {
         let mut ring: Vec<u8> = work
-            .fresh
+            .seam
             .iter()
-            .map(|&fresh| if fresh { 0 } else { 9 })
+            .map(|&seam| if seam { 0 } else { 9 })
             .collect();
         for step in 1..=2 {
             let last = ring.clone();
@@ -118,7 +118,7 @@ impl<'a> Seam<'a> {
             let corners = self.work.triangles[face as usize];
             let [a, b] = [corners[side], corners[(side + 1) % 3]];
             // What the tracing gave stays where it is.
-            let collapsed = match [self.fresh(a), self.fresh(b)] {
+            let collapsed = match [self.of_seam(a), self.of_seam(b)] {
                 [true, _] => self.collapse(a, b),
                 [false, true] => self.collapse(b, a),
                 [false, false] => false,
@@ -158,6 +158,7 @@ impl<'a> Seam<'a> {
                 .iter_mut()
                 .filter(|corner| **corner == from)
                 .for_each(|corner| *corner = to);
+            self.work.changed[face as usize] = true;
             self.stars.entry(to).or_default().insert(face);
         }
         true
@@ -191,7 +192,7 @@ impl<'a> Seam<'a> {
             radius: f32::midpoint(a.radius, b.radius),
             ..b
         };
-        let choices = if self.fresh(to) {
+        let choices = if self.of_seam(to) {
             vec![between, b, a]
         } else {
             vec![b]
@@ -251,6 +252,7 @@ impl<'a> Seam<'a> {
             return false;
         }
         for (face, corners) in [face, other].into_iter().zip(new) {
+            self.work.changed[face as usize] = true;
             for corner in std::mem::replace(&mut self.work.triangles[face as usize], corners) {
                 if let Some(star) = self.stars.get_mut(&corner) {
                     star.remove(&face);
@@ -296,8 +298,8 @@ impl<'a> Seam<'a> {
         turns && worst(new) > worst(old)
     }
 
-    fn fresh(&self, vertex: u32) -> bool {
-        self.work.fresh[vertex as usize]
+    fn of_seam(&self, vertex: u32) -> bool {
+        self.work.seam[vertex as usize]
     }
 
     /// Lengths of the sides of a face: from each corner to the next.

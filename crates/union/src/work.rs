@@ -12,9 +12,13 @@ pub(crate) struct Work {
     pub(crate) vertices: Vec<SurfaceVertex>,
     /// For each vertex, whether we made or moved it.
     pub(crate) fresh: Vec<bool>,
+    /// For each vertex, whether a cut made it.
+    pub(crate) seam: Vec<bool>,
     pub(crate) triangles: Vec<[u32; 3]>,
     /// For each triangle, the component of the input that it is of.
     pub(crate) parts: Vec<u32>,
+    /// For each triangle, whether it is not one of the input; one with a vertex of ours is none either.
+    pub(crate) changed: Vec<bool>,
 }
 
 impl Work {
@@ -36,6 +40,8 @@ impl Work {
             origin: mesh.origin,
             vertices: mesh.vertices.clone(),
             fresh: vec![false; count],
+            seam: vec![false; count],
+            changed: vec![false; triangles.len()],
             triangles,
             parts,
         })
@@ -66,10 +72,11 @@ impl Work {
         }
     }
 
-    /// Adds a vertex of ours.
-    pub(crate) fn push(&mut self, vertex: SurfaceVertex) -> u32 {
+    /// Adds a vertex of ours; `seam`: whether a cut made it.
+    pub(crate) fn push(&mut self, vertex: SurfaceVertex, seam: bool) -> u32 {
         self.vertices.push(vertex);
         self.fresh.push(true);
+        self.seam.push(seam);
         self.vertices.len() as u32 - 1
     }
 
@@ -105,6 +112,17 @@ impl Work {
         face.iter().any(|&corner| self.fresh[corner as usize])
     }
 
+    /// Triangles that are not of the input as they are, in order.
+    pub(crate) fn changed_faces(&self) -> Vec<u32> {
+        let faces = self.triangles.iter().zip(&self.changed);
+        let changed = faces.map(|(face, &changed)| changed || self.is_fresh(face));
+        (0..)
+            .zip(changed)
+            .filter(|&(_, changed)| changed)
+            .map(|(face, _)| face)
+            .collect()
+    }
+
     /// Keeps those triangles for which `keep` holds.
     pub(crate) fn retain(&mut self, keep: impl Fn(usize) -> bool) {
         let mut next = 0;
@@ -112,11 +130,13 @@ impl Work {
             if keep(face) {
                 self.triangles[next] = self.triangles[face];
                 self.parts[next] = self.parts[face];
+                self.changed[next] = self.changed[face];
                 next += 1;
             }
         }
         self.triangles.truncate(next);
         self.parts.truncate(next);
+        self.changed.truncate(next);
     }
 }
 
