@@ -7,7 +7,8 @@ use glam::DVec3;
 use crate::region::key;
 use crate::work::Work;
 
-/// How far a vertex goes towards the middle of its own neighbors, try after try.
+/// How far a vertex goes towards the middle of its own neighbors, try after try: of the way there, but at most
+/// of the radius.
 const SHARES: [f64; 3] = [0.05, 0.1, 0.15];
 
 /// Moves vertices that are at one position apart, each a little towards the middle of its own neighbors. Only
@@ -21,7 +22,9 @@ pub(crate) fn part(work: &mut Work) -> usize {
         }
         for (vertex, around) in around(work, &pinched) {
             let at = work.position(vertex).as_dvec3();
-            let to = at + share * (around.middle - at);
+            let radius = f64::from(work.vertices[vertex as usize].radius);
+            let most = if radius > 0.0 { radius } else { f64::INFINITY };
+            let to = at + share * (around.middle - at).clamp_length_max(most);
             work.vertices[vertex as usize].position = to.as_vec3();
             work.fresh[vertex as usize] = true;
         }

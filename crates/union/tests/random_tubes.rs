@@ -72,10 +72,12 @@ proptest! {
     #[test]
     fn volumes_are_those_of_another_way(lines in prop::collection::vec(line(), 1..5)) {
         let mesh = tubes(&lines, 6);
-        let (_, report) = merged(&mesh, &BARE);
+        let (union, report) = merged(&mesh, &BARE);
         let expected = reference_volume(&mesh);
-        // Splinters are left out, cavities filled, and sheets parted.
-        prop_assert!((report.volume - expected).abs() < 1e-3 * expected.abs() + 1e-6,
+        // Splinters are left out. Sheets that touch are parted by a share of the radius: of these short
+        // tubes, with bends like hairpins, that is more.
+        let margin = if union.report.parted == 0 { 1e-3 } else { 2e-2 };
+        prop_assert!((report.volume - expected).abs() < margin * expected.abs() + 1e-6,
             "{} and {}", report.volume, expected);
     }
 
