@@ -125,8 +125,8 @@ impl Bvh {
         }
     }
 
-    /// Calls `visit` with the numbers of all boxes that overlap `query`.
-    pub(crate) fn overlaps_of(&self, query: &Bounds, mut visit: impl FnMut(u32)) {
+    /// Calls `visit` with the numbers of boxes that overlap `query`, until it returns false.
+    pub(crate) fn overlaps_of(&self, query: &Bounds, mut visit: impl FnMut(u32) -> bool) {
         let leaves = self.nodes.len() / 2;
         let mut stack = [0usize; 80];
         stack[0] = 1;
@@ -145,8 +145,8 @@ impl Bvh {
             }
             let first = (node - leaves) * LEAF;
             for n in first..self.order.len().min(first + LEAF) {
-                if self.boxes[n].overlaps(query) {
-                    visit(self.order[n]);
+                if self.boxes[n].overlaps(query) && !visit(self.order[n]) {
+                    return;
                 }
             }
         }

@@ -88,6 +88,7 @@ pub fn self_intersections_of(positions: &[Vec3], faces: &Faces, chosen: &[u32]) 
                 if !twice && is_sound(&half.map(Vec3::as_dvec3)) && cross(half, theirs) {
                     found.push([face.min(other), face.max(other)]);
                 }
+                true
             });
         }
         found

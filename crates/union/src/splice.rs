@@ -240,8 +240,7 @@ impl<'a> Sheets<'a> {
                 taken.insert(corner);
             }
         }
-        for corner in 0..inside {
-            let root = roots[corner];
+        for (corner, &root) in roots[..inside].iter().enumerate() {
             if vertex[root].is_none()
                 && let Some(old) = self.old_vertex(work, corner)
             {

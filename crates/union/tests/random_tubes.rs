@@ -31,13 +31,15 @@ fn reference_volume(mesh: &SurfaceMesh) -> f64 {
     let quads = mesh.faces.quads.iter();
     let halves = quads.flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
     let triangles = mesh.faces.triangles.iter().copied().chain(halves);
-    let mut soup = MeshGL64::default();
-    soup.num_prop = 3;
     let positions = mesh.vertices.iter();
-    soup.vert_properties = positions
-        .flat_map(|v| v.position.as_dvec3().to_array())
-        .collect();
-    soup.tri_verts = triangles.flatten().map(u64::from).collect();
+    let soup = MeshGL64 {
+        num_prop: 3,
+        vert_properties: positions
+            .flat_map(|v| v.position.as_dvec3().to_array())
+            .collect(),
+        tri_verts: triangles.flatten().map(u64::from).collect(),
+        ..MeshGL64::default()
+    };
     Manifold::from_mesh_gl64_robust(&soup)
         .rebuild_solid(WindingRule::Positive)
         .volume()

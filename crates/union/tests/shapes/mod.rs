@@ -27,14 +27,14 @@ pub(crate) fn tube(line: &[Vec3], radius: f32, sides: u32, section: i32) -> Surf
     };
     // One frame, turned from ring to ring.
     let mut across = along(0).any_orthonormal_vector();
-    for ring in 0..=last {
+    for (ring, &center) in line.iter().enumerate() {
         if ring > 0 {
             across = Quat::from_rotation_arc(along(ring - 1), along(ring)) * across;
         }
         for side in 0..sides {
             let angle = std::f32::consts::TAU * side as f32 / sides as f32;
             let normal = Quat::from_axis_angle(along(ring), angle) * across;
-            vertex(line[ring] + radius * normal, normal, ring);
+            vertex(center + radius * normal, normal, ring);
         }
     }
     vertex(line[0], -along(0), 0);
