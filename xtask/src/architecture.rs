@@ -32,6 +32,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["neurotess-morphology", "neurotess-mesh"],
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
+    ("neurotess-union", &["neurotess-mesh"]),
     ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
     ("neurotess-output", &[]),
     (

@@ -11,13 +11,14 @@ use anyhow::Context;
 use crate::steps;
 
 /// Crates with property tests or fuzzers that need no GPU.
-const PACKAGES: [&str; 6] = [
+const PACKAGES: [&str; 7] = [
     "morphology",
     "formats",
     "circuit",
     "mesh",
     "generate",
     "refine",
+    "union",
 ];
 /// Trees of the first round, which is all about trees.
 const TREES: &str = "100000";

@@ -125,6 +125,33 @@ impl Bvh {
         }
     }
 
+    /// Calls `visit` with the numbers of boxes that overlap `query`, until it returns false.
+    pub(crate) fn overlaps_of(&self, query: &Bounds, mut visit: impl FnMut(u32) -> bool) {
+        let leaves = self.nodes.len() / 2;
+        let mut stack = [0usize; 80];
+        stack[0] = 1;
+        let mut top = 1;
+        while top > 0 {
+            top -= 1;
+            let node = stack[top];
+            if !self.nodes[node].overlaps(query) {
+                continue;
+            }
+            if node < leaves {
+                stack[top] = 2 * node + 1;
+                stack[top + 1] = 2 * node;
+                top += 2;
+                continue;
+            }
+            let first = (node - leaves) * LEAF;
+            for n in first..self.order.len().min(first + LEAF) {
+                if self.boxes[n].overlaps(query) && !visit(self.order[n]) {
+                    return;
+                }
+            }
+        }
+    }
+
     fn overlaps_of_leaves(&self, leaf: usize, other: usize, visit: &mut impl FnMut(u32, u32)) {
         let range = |leaf: usize| leaf * LEAF..self.order.len().min((leaf + 1) * LEAF);
         for a in range(leaf) {

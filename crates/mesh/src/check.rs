@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::{SurfaceMesh, search_self_intersections};
+use crate::{Quality, SurfaceMesh, genus_by_component, quality, search_self_intersections};
 
 /// What a mesh is and what is wrong with it. Serialized under these names.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// Vertices, used or not.
     pub vertices: usize,
@@ -27,6 +27,8 @@ pub struct Report {
     pub euler: i64,
     /// Handles; none if the mesh is not closed or not manifold.
     pub genus: Option<i64>,
+    /// Handles of each component, in the order of their lowest vertices; empty if the genus is none.
+    pub handles: Vec<i64>,
     /// Enclosed volume (µm³), positive if the faces turn outwards.
     pub volume: f64,
     /// Area (µm²).
@@ -37,14 +39,17 @@ pub struct Report {
     pub self_intersections: usize,
     /// Whether these are all: among thousands of pieces in one place not every pair is looked at.
     pub self_intersections_complete: bool,
+    /// Shapes of the triangles, and gaps between them.
+    pub quality: Quality,
 }
 
-/// Judges a mesh: [`topology`](crate::topology), [`measure`](crate::measure) and
-/// [`search_self_intersections`](crate::search_self_intersections).
+/// Judges a mesh: [`topology`](crate::topology), [`measure`](crate::measure), [`quality`](crate::quality())
+/// and [`search_self_intersections`](crate::search_self_intersections).
 pub fn check(mesh: &SurfaceMesh) -> Report {
     let topology = mesh.topology();
     let measure = mesh.measure();
     let crossings = search_self_intersections(&mesh.positions(), &mesh.faces);
+    let handles = || genus_by_component(mesh.vertices.len(), &mesh.faces);
     Report {
         vertices: topology.vertices,
         triangles: mesh.faces.triangles.len(),
@@ -56,10 +61,12 @@ pub fn check(mesh: &SurfaceMesh) -> Report {
         components: topology.components,
         euler: topology.euler,
         genus: topology.genus,
+        handles: topology.genus.map(|_| handles()).unwrap_or_default(),
         volume: measure.volume,
         area: measure.area,
         degenerate_faces: topology.degenerate_faces,
         self_intersections: crossings.pairs.len(),
         self_intersections_complete: crossings.complete,
+        quality: quality(mesh),
     }
 }

@@ -93,6 +93,32 @@ pub fn topology(positions: &[Vec3], faces: &Faces) -> Topology {
     }
 }
 
+/// Handles of each component of a closed manifold, the components in the order of their lowest vertices.
+/// Where edges do not have two faces each it says nothing.
+///
+/// Panics if a face names a vertex that is not there.
+pub fn genus_by_component(vertices: usize, faces: &Faces) -> Vec<i64> {
+    let kept = Corners::of(faces);
+    let mut forest = Forest::new(vertices);
+    let mut used = vec![false; vertices];
+    for (_, from, to) in kept.half_edges() {
+        used[from as usize] = true;
+        forest.unite(from, to);
+    }
+    // Twice vertices − edges + faces, an edge being two half-edges.
+    let mut twice_euler = vec![0i64; vertices];
+    let mut add = |vertex: u32, sum: i64| twice_euler[forest.root(vertex) as usize] += sum;
+    for vertex in (0..vertices as u32).filter(|&vertex| used[vertex as usize]) {
+        add(vertex, 2);
+    }
+    kept.triangles.iter().for_each(|face| add(face[0], 2 - 3));
+    kept.quads.iter().for_each(|face| add(face[0], 2 - 4));
+    let components = (0..vertices as u32).filter(|&v| used[v as usize] && forest.root(v) == v);
+    components
+        .map(|vertex| (4 - twice_euler[vertex as usize]) / 4)
+        .collect()
+}
+
 /// Corners of faces in one row: those of triangles, then those of quads. A corner also stands for
 /// the half-edge that leaves it.
 struct Corners<'a> {

@@ -1,7 +1,7 @@
 //! Topology of meshes with known defects.
 
 use glam::Vec3;
-use neurotess_mesh::{Faces, Topology, topology};
+use neurotess_mesh::{Faces, Topology, genus_by_component, topology};
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
@@ -72,16 +72,42 @@ fn cube_of_quads_is_a_sphere() {
     );
 }
 
-#[test]
-fn torus_has_genus_one() {
+fn torus() -> Vec<[u32; 4]> {
     let at = |i: u32, j: u32| (i % 5) * 4 + j % 4;
-    let quads: Vec<_> = (0..5)
+    (0..5)
         .flat_map(|i| (0..4).map(move |j| (i, j)))
         .map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
-        .collect();
-    let topology = of_quads(&quads, 20);
+        .collect()
+}
+
+#[test]
+fn torus_has_genus_one() {
+    let topology = of_quads(&torus(), 20);
     assert!(sound(topology));
     assert_eq!((topology.euler, topology.genus), (0, Some(1)));
+}
+
+#[test]
+fn each_component_has_its_own_handles() {
+    // A cube from vertex 1 on, a torus from 9 on, and a tetrahedron from 30 on.
+    let shifted = |quad: &[u32; 4], by: u32| quad.map(|corner| corner + by);
+    let quads = torus()
+        .iter()
+        .map(|quad| shifted(quad, 9))
+        .collect::<Vec<_>>();
+    let cube = cube()
+        .iter()
+        .map(|quad| shifted(quad, 1))
+        .collect::<Vec<_>>();
+    let faces = Faces {
+        triangles: TETRAHEDRON
+            .map(|face| face.map(|corner| corner + 30))
+            .to_vec(),
+        quads: [quads, cube].concat(),
+    };
+    assert_eq!(genus_by_component(40, &faces), [0, 1, 0]);
+    assert_eq!(topology(&points(40), &faces).genus, Some(1));
+    assert!(genus_by_component(3, &Faces::default()).is_empty());
 }
 
 #[test]

@@ -110,7 +110,8 @@ fn text(verdict: &Verdict) -> String {
          closed {} · manifold at edges {}, at vertices {} · oriented {}\n  \
          components {} · Euler characteristic {} · genus {genus}\n  \
          volume {:.3} µm³ · area {:.3} µm²\n  \
-         self-intersecting pairs of faces: {}{}",
+         self-intersecting pairs of faces: {}{}\n  \
+         {}",
         verdict.file,
         r.vertices,
         r.triangles,
@@ -130,5 +131,36 @@ fn text(verdict: &Verdict) -> String {
             "at least "
         },
         r.self_intersections,
+        shapes(r),
+    )
+}
+
+/// What solvers ask of the triangles, for people.
+fn shapes(r: &Report) -> String {
+    let q = &r.quality;
+    let with_handles = r.handles.iter().filter(|&&handles| handles > 0).count();
+    let most = r.handles.iter().max().copied().unwrap_or_default();
+    let handles = if with_handles > 1 {
+        format!("handles in {with_handles} components, {most} in one of them\n  ")
+    } else {
+        String::new()
+    };
+    let edges = q.edge_over_radius_median.zip(q.edge_over_radius_max);
+    let edges = edges.map_or(String::new(), |(median, most)| {
+        format!(" · edges over radius: median {median:.2}, largest {most:.2}")
+    });
+    let gap = q.least_gap.map_or(String::new(), |gap| {
+        format!(", the least of {gap:.3} of its sides")
+    });
+    format!(
+        "{handles}smallest angles: least {:.2}°, 1 % below {:.2}°, median {:.2}°\n  \
+         aspect: median {:.2}, largest {:.1}{edges}\n  \
+         faces with a gap narrower than their sides: {:.2} %{gap}",
+        q.min_angle,
+        q.min_angle_p1,
+        q.min_angle_median,
+        q.aspect_median,
+        q.aspect_max,
+        100.0 * q.thin_gaps,
     )
 }

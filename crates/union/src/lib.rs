@@ -1,0 +1,58 @@
+//! The exact union of a closed surface with itself: what is enclosed once or more is inside, and no two
+//! triangles cross.
+//!
+//! A surface made of tubes crosses itself where branches were traced through one another, and at tight bends
+//! and forks. [`union`] finds the faces that cross, cuts them along one another, and keeps what bounds the
+//! points of **winding number** 1 or more. All other faces, and their vertices with all attributes, stay to
+//! the bit. Then splinters are left out, sheets that touch are parted, needles and caps at the **seams** are
+//! tidied, seams are smoothed a little, and the result is checked; what still crosses after rounding to 32
+//! bits is cut once more.
+//!
+//! Merging makes **handles**: two branches that cross grow together. [`UnionReport::places`] names each place.
+//!
+//! **Theory.** Q. Zhou, E. Grinspun, D. Zorin, A. Jacobson, Mesh Arrangements for Solid Geometry, 2016, with
+//! the arrangement of the faces near crossings only: the winding numbers of its cells follow from one ray
+//! through the whole surface for each set of cells that hang together.
+//!
+//! **Practice.** Time grows with the faces (a search for crossings, twice or more) and with the crossings.
+//!
+//! ```
+//! use neurotess_mesh::{SurfaceMesh, SurfaceVertex};
+//! use neurotess_union::{UnionOptions, union};
+//!
+//! // Two tetrahedra, one through the other.
+//! let mut mesh = SurfaceMesh::default();
+//! for shift in [0.0_f32, 0.3] {
+//!     let first = mesh.vertices.len() as u32;
+//!     for [x, y, z] in [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]] {
+//!         let position = [x + shift, y + 0.9 * shift, z + 0.8 * shift].into();
+//!         mesh.vertices.push(SurfaceVertex { position, ..Default::default() });
+//!     }
+//!     let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+//!     mesh.faces.triangles.extend(faces.map(|face| face.map(|corner| first + corner)));
+//! }
+//! let merged = union(&mesh, &UnionOptions::default())?;
+//! assert!(merged.report.pairs_before > 0 && merged.report.pairs == 0);
+//! assert_eq!(merged.report.components, 1);
+//! # Ok::<(), neurotess_union::UnionError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod cells;
+mod engine;
+mod merge;
+mod options;
+mod parts;
+mod places;
+mod region;
+mod report;
+mod smooth;
+mod splice;
+mod tidy;
+mod touch;
+mod winding;
+mod work;
+
+pub use merge::{Union, union};
+pub use options::{UnionError, UnionOptions};
+pub use report::{Kin, Part, Place, UnionReport, Why};

@@ -1,0 +1,156 @@
+//! The recipe: find, cut, mend, check, and once more.
+
+use neurotess_mesh::{
+    SurfaceMesh, Topology, measure, search_self_intersections, self_intersections,
+    self_intersections_of, topology,
+};
+
+use crate::options::{UnionError, UnionOptions};
+use crate::parts::{drop_hidden, drop_splinters, least_volume};
+use crate::places::places;
+use crate::region::around;
+use crate::report::UnionReport;
+use crate::smooth::{renew_normals, smooth};
+use crate::splice::{Fault, splice};
+use crate::tidy::tidy;
+use crate::touch;
+use crate::work::Work;
+
+/// A surface without crossings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Union {
+    /// Triangles only. Vertices that no crossing touched are those of the input, in their order.
+    pub mesh: SurfaceMesh,
+    /// What was done.
+    pub report: UnionReport,
+}
+
+/// The union of a closed surface with itself.
+///
+/// Quads are split along the diagonal from their first corner. The result is closed; crossings that are left
+/// after the last round are counted in the report.
+///
+/// # Errors
+/// If the surface is not closed and oriented, is not finite, or crosses itself more often than a search
+/// counts; and if the arrangement fails.
+pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionError> {
+    let mut work = Work::new(mesh)?;
+    let mut report = before(&work)?;
+    let mut pairs = first_pairs(&work)?;
+    report.pairs_before = pairs.len();
+    report.places = places(&work, &pairs);
+    report.dropped = drop_hidden(&mut work, &pairs);
+    if !report.dropped.is_empty() {
+        pairs = crossings(&work);
+    }
+
+    let mut needles = options.needles;
+    while !pairs.is_empty() && report.rounds < options.rounds {
+        report.rounds += 1;
+        let faces = touch::faces(&work, &pairs);
+        cut(&mut work, &pairs)?;
+        let last = report.rounds == options.rounds;
+        mend(&mut work, if last { 0.0 } else { needles }, &mut report);
+        // What is finer stays: collapsing may be what made the new crossings.
+        needles *= 0.6;
+        pairs = crossings_of_changed(&work);
+        let pressed = touch::press(&mut work, &pairs, &faces);
+        if pressed > 0 {
+            report.parted += pressed;
+            pairs = crossings_of_changed(&work);
+        }
+    }
+    if report.rounds > 0 && pairs.is_empty() {
+        report.smoothed = smooth(&mut work, options.smoothing);
+    }
+    renew_normals(&mut work);
+    report.pairs = crossings(&work).len();
+    after(&work, &mut report);
+    report.faces_changed = changed(mesh, &work);
+    Ok(Union {
+        mesh: work.finish(),
+        report,
+    })
+}
+
+fn crossings(work: &Work) -> Vec<[u32; 2]> {
+    self_intersections(&work.positions(), &work.faces())
+}
+
+/// Crossings of faces that are not of the input: the others' were all cut.
+fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
+    self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces())
+}
+
+fn first_pairs(work: &Work) -> Result<Vec<[u32; 2]>, UnionError> {
+    let search = search_self_intersections(&work.positions(), &work.faces());
+    if search.complete {
+        Ok(search.pairs)
+    } else {
+        Err(UnionError::TooMany(search.pairs.len()))
+    }
+}
+
+/// Most rings of neighbors that an arrangement is tried with.
+const MOST_RINGS: u32 = 4;
+
+/// Replaces the faces around crossings by their union.
+fn cut(work: &mut Work, pairs: &[[u32; 2]]) -> Result<(), UnionError> {
+    let mut fault = None;
+    for rings in 1..=MOST_RINGS {
+        match splice(work, &around(work, pairs, rings)) {
+            Ok(()) => return Ok(()),
+            Err(new) => fault = Some(new),
+        }
+    }
+    Err(UnionError::Failed(match fault {
+        Some(Fault::Engine(text)) => text,
+        Some(Fault::Open) => "what is kept does not close".into(),
+        Some(Fault::Inconsistent) | None => "winding numbers contradict one another".into(),
+    }))
+}
+
+/// Makes a fair surface of what the cut has left.
+fn mend(work: &mut Work, needles: f64, report: &mut UnionReport) {
+    let volume = measure(&work.positions(), &work.faces()).volume;
+    let splinters = drop_splinters(work, least_volume(work, volume));
+    report.dropped.extend(splinters.dropped);
+    report.cut_off = splinters.cut_off;
+    report.parted += touch::part(work);
+    if needles > 0.0 {
+        let tidied = tidy(work, needles);
+        report.collapsed += tidied.collapsed;
+        report.flipped += tidied.flipped;
+    }
+}
+
+fn shape(work: &Work) -> Topology {
+    topology(&work.positions(), &work.faces())
+}
+
+fn before(work: &Work) -> Result<UnionReport, UnionError> {
+    let shape = shape(work);
+    if !shape.closed || !shape.oriented {
+        return Err(UnionError::NotClosed);
+    }
+    Ok(UnionReport {
+        volume_before: measure(&work.positions(), &work.faces()).volume,
+        components_before: shape.components,
+        handles_before: shape.genus.unwrap_or_default(),
+        ..UnionReport::default()
+    })
+}
+
+fn after(work: &Work, report: &mut UnionReport) {
+    let shape = shape(work);
+    report.volume = measure(&work.positions(), &work.faces()).volume;
+    report.components = shape.components;
+    report.handles = shape.genus;
+}
+
+/// How many faces of the input are no longer there.
+fn changed(mesh: &SurfaceMesh, work: &Work) -> usize {
+    let before = mesh.faces.triangles.len() + 2 * mesh.faces.quads.len();
+    let kept = work.triangles.len() - work.changed_faces().len();
+    before.saturating_sub(kept)
+}

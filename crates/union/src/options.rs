@@ -1,0 +1,48 @@
+//! What a union is told, and why it may fail.
+
+use thiserror::Error;
+
+/// What a union is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnionOptions {
+    /// How often the surface may be cut: rounding can make new crossings, seldom more than once.
+    pub rounds: u32,
+    /// Faces at seams are tidied if their height or shortest side is below this share of the local radius;
+    /// 0 leaves them.
+    pub needles: f64,
+    /// How far vertices of seams go to the middle of their neighbors in each of three steps: 0 not at all,
+    /// 1 all the way.
+    pub smoothing: f64,
+}
+
+impl Default for UnionOptions {
+    /// What gave meshes without crossings that TetGen takes on real cells.
+    fn default() -> Self {
+        Self {
+            rounds: 4,
+            needles: 0.05,
+            smoothing: 0.4,
+        }
+    }
+}
+
+/// Why there is no union.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum UnionError {
+    /// A face names a vertex that is not there.
+    #[error("a face names vertex {0}, which is not there")]
+    MissingVertex(u32),
+    /// A position is infinite or not a number.
+    #[error("the position of vertex {0} is not finite")]
+    NotFinite(usize),
+    /// The surface has an edge without two faces of opposite direction.
+    #[error("the surface is not closed and oriented: what it encloses is not defined")]
+    NotClosed,
+    /// More faces cross than can be cut in any reasonable time.
+    #[error("more than {0} pairs of faces cross")]
+    TooMany(usize),
+    /// The faces near crossings could not be arranged.
+    #[error("the faces that cross could not be cut: {0}")]
+    Failed(String),
+}
