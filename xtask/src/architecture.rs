@@ -29,7 +29,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     (
         "neurotess-generate",
-        &["neurotess-morphology", "neurotess-mesh"],
+        // It judges forks by their refined patches.
+        &["neurotess-morphology", "neurotess-mesh", "neurotess-refine"],
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
     ("neurotess-union", &["neurotess-mesh"]),
@@ -57,6 +58,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-render",
             "neurotess-color",
             "neurotess-output",
+            "neurotess-union",
         ],
     ),
     ("neurotess-viewer", &["neurotess"]),

@@ -65,7 +65,7 @@ const BLOCK: usize = 1 << 16;
 
 impl SurfaceMesh {
     /// Collects all blocks of a surface.
-    pub fn collect(surface: &impl Surface) -> Self {
+    pub fn collect(surface: &(impl Surface + ?Sized)) -> Self {
         let mut mesh = Self {
             origin: surface.origin(),
             ..Self::default()

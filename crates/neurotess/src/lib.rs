@@ -64,6 +64,7 @@
 //! | [`refine`] | from a coarse mesh to a surface | |
 //! | [`render`] | from coarse meshes to pictures | `render` |
 //! | [`coloring`] | what the colors of pictures tell | `render` |
+//! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files | |
 //! | [`output`] | files that are there whole or not at all | |
 //!
@@ -84,3 +85,4 @@ pub use neurotess_refine as refine;
 pub use neurotess_render as render;
 #[cfg(feature = "synth")]
 pub use neurotess_synth as synth;
+pub use neurotess_union as union;

@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use crate::evaluate::{Corner, EdgeKind, hermite_tangents, loft_controls, soma_controls};
-use crate::{Lod, LodCriterion, LodView, Path};
+use crate::{EdgeRule, Lod, LodCriterion, LodView, Path};
 
 /// Highest level.
 pub const HIGHEST_LEVEL: u32 = 64;
@@ -31,6 +31,9 @@ pub(crate) fn edge_level(
     (a, ta): (&Corner, u32),
     (b, tb): (&Corner, u32),
 ) -> u32 {
+    if let Some(rule) = lod.edges {
+        return by_rule(rule, kind, a, b).clamp(1, HIGHEST_LEVEL);
+    }
     let level = match lod.criterion {
         LodCriterion::Homogeneous(level) => level,
         LodCriterion::PerPoint => {
@@ -57,6 +60,47 @@ pub(crate) fn edge_level(
         ),
     };
     level.clamp(1, HIGHEST_LEVEL)
+}
+
+/// The level that a rule gives an edge; see [`EdgeRule`].
+fn by_rule(rule: EdgeRule, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
+    let lengthwise = matches!(kind, EdgeKind::Along | EdgeKind::Loft);
+    match rule {
+        EdgeRule::Levels { around, along } => {
+            if lengthwise {
+                along
+            } else {
+                around
+            }
+        }
+        EdgeRule::Lengths {
+            radii,
+            aspect,
+            least,
+            most,
+        } => {
+            let piece = radii * a.radius.min(b.radius);
+            let piece = if lengthwise { piece * aspect } else { piece };
+            // The greatest length counts even where it is below the least.
+            let piece = piece.max(least).min(most);
+            let level = (edge_length(kind, a, b) / piece).round();
+            // Also where it is not a number.
+            if level < HIGHEST_LEVEL as f32 {
+                level.max(1.0) as u32
+            } else {
+                HIGHEST_LEVEL
+            }
+        }
+    }
+}
+
+/// Length of an edge (µm), about: that of an arc around a ring, else that of the chord.
+fn edge_length(kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
+    if kind == EdgeKind::Ring {
+        let radius = 0.5 * (a.offset.length() + b.offset.length());
+        return radius * a.radial.angle_between(b.radial);
+    }
+    (b.position - a.position).length()
 }
 
 /// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n²) from its

@@ -41,7 +41,7 @@ pub use bounding_sphere::{patch_sphere, sphere_around};
 pub use coarse_surface::CoarseSurface;
 pub use decode::POINTS_OF_SPHERE;
 pub use level::HIGHEST_LEVEL;
-pub use options::{Caps, Lod, LodCriterion, LodView, Path, RefineOptions};
+pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, RefineOptions};
 pub use pack::{dequantized, pack};
 pub use part::{MeshPart, PATCHES_OF_SPHERE, PartLayout};
 pub use plan::patch_triangles;

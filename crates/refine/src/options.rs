@@ -89,15 +89,52 @@ pub struct Lod<'a> {
     pub view: LodView,
     /// A level, 1 to 64, per tracing point; used by [`LodCriterion::PerPoint`]. Missing ones are 1.
     pub point_levels: &'a [u8],
+    /// Levels of edges by their kind, instead of the criterion: for meshes that are exported. Devices that
+    /// draw have no such rule.
+    pub edges: Option<EdgeRule>,
+}
+
+/// Levels of edges by their kind: along the path of a neurite or around it.
+///
+/// As any level, one depends on its edge alone: the surface stays closed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EdgeRule {
+    /// The same everywhere.
+    Levels {
+        /// Of edges around a neurite and on somata, 1 to 64.
+        around: u32,
+        /// Of edges along a neurite, 1 to 64.
+        along: u32,
+    },
+    /// Pieces about as long as a share of the local radius: triangles that solvers like.
+    Lengths {
+        /// Length of a piece, in radii of the thinner end.
+        radii: f32,
+        /// How many times as long pieces along a neurite may be as those around.
+        aspect: f32,
+        /// Least length of a piece (µm).
+        least: f32,
+        /// Greatest length of a piece (µm), whatever the radius.
+        most: f32,
+    },
 }
 
 impl<'a> Lod<'a> {
+    /// Levels of edges by their kind.
+    pub fn by_edge(rule: EdgeRule) -> Self {
+        Self {
+            edges: Some(rule),
+            ..Self::default()
+        }
+    }
+
     /// Levels by a criterion, in this view.
     pub fn seen_from(criterion: LodCriterion, view: LodView) -> Self {
         Self {
             criterion,
             view,
             point_levels: &[],
+            edges: None,
         }
     }
 
@@ -107,6 +144,7 @@ impl<'a> Lod<'a> {
             criterion: LodCriterion::PerPoint,
             view: LodView::default(),
             point_levels,
+            edges: None,
         }
     }
 }

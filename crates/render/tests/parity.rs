@@ -186,6 +186,7 @@ fn vertices_are_the_reference_s() {
                 criterion: lod,
                 view,
                 point_levels: &values,
+                edges: None,
             };
             let refinement = Refinement::new(&rounded, lod, &settings.options());
             let asked_for = |selected: &SelectedPatch| grid_points(selected, caps);

@@ -19,6 +19,7 @@ use crate::options::types::Types;
   neurotess mesh cell.swc -o cell.ply
   neurotess mesh cell.swc -o cell.glb --max-error 0.05
   neurotess mesh cell.swc -o cell.ply --poisson 0.1 --ring 1=0.5 --ring 2=1.5
+  neurotess mesh cell.swc -o cell.ply --simulation
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
   neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
@@ -49,6 +50,37 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, default_value_t = CapsArg::Round, value_name = "SHAPE",
           help_heading = "Refinement")]
     pub(crate) caps: CapsArg,
+    /// Subdivisions per coarse edge along neurites; --level is then for the edges around them
+    #[arg(long, value_name = "N", conflicts_with = "max_error", help_heading = "Refinement",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) level_along: Option<u32>,
+    /// Edges about F times as long as the local radius, instead of --level [default of F: 1]
+    #[arg(long, value_name = "F", num_args = 0..=1, default_missing_value = "1",
+          conflicts_with_all = ["level", "level_along", "max_error"], value_parser = positive,
+          allow_negative_numbers = true, help_heading = "Refinement")]
+    pub(crate) isotropic: Option<f64>,
+    /// With --isotropic: longest edge (µm)
+    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true,
+          help_heading = "Refinement")]
+    pub(crate) max_edge: Option<f64>,
+    /// With --isotropic: shortest edge (µm) that is asked for
+    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true,
+          help_heading = "Refinement")]
+    pub(crate) min_edge: Option<f64>,
+    /// With --isotropic: how many times as long edges along neurites may be as those around them
+    /// [default: 1]
+    #[arg(long, value_name = "A", value_parser = positive, allow_negative_numbers = true,
+          help_heading = "Refinement")]
+    pub(crate) max_aspect: Option<f64>,
+    /// What becomes of places where the surface crosses itself [default: keep; with --simulation
+    /// separate]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Crossings")]
+    pub(crate) crossings: Option<CrossingsArg>,
+    /// A mesh that solvers take: --crossings separate --isotropic, or an error that says where it
+    /// fails
+    #[arg(long, conflicts_with_all = ["level", "level_along", "max_error", "quads"],
+          help_heading = "Crossings")]
+    pub(crate) simulation: bool,
     /// How the soma is made
     #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD",
           help_heading = "Soma")]
@@ -107,6 +139,17 @@ pub(crate) enum PathArg {
     Hermite,
     /// Straight
     Linear,
+}
+
+/// `--crossings`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CrossingsArg {
+    /// They stay: the surface is made block by block, in little memory
+    Keep,
+    /// The exact union: no two triangles cross, and branches traced through one another grow together
+    Merge,
+    /// Branches traced through one another are moved apart; what crosses at forks and bends is merged
+    Separate,
 }
 
 /// `--caps`

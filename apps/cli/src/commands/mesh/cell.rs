@@ -8,12 +8,13 @@ use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
 use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
-use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
 use super::observed::Observed;
 use super::options::MeshOptions;
 use super::size;
+use super::surface::{CellSurface, CrossingsReport, SeparationReport};
+use super::verdict;
 use crate::io::morphologies::read_morphology;
 use crate::io::output::{Output, OutputError};
 use crate::io::targets::Job;
@@ -40,6 +41,13 @@ pub(crate) struct CellReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
     pub(crate) soma_volume: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) crossings: Option<CrossingsReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) separation: Option<SeparationReport>,
+    /// Shapes of the triangles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) quality: Option<surfaces::Quality>,
     pub(crate) seconds: Seconds,
     pub(crate) warnings: Vec<CellWarning>,
 }
@@ -158,13 +166,28 @@ pub(super) fn finish(
     } = prepared;
     let mut seconds = prepared.seconds;
     let mesh = &generated.mesh;
-    let to = (out, &mut output);
-    let written = write(mesh, options, to, world_from_cell, watchers, &mut seconds);
-    let written = written.map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
+    let failed = |Failure(what)| Failure(format!("{file}: {what}"));
     let clock = Instant::now();
-    let topology = mesh.topology();
+    let cell_surface = CellSurface::new(mesh, options).map_err(failed)?;
+    if options.simulation {
+        verdict::check(&cell_surface, generated).map_err(failed)?;
+    }
+    seconds.refine = clock.elapsed().as_secs_f64();
+    let to = (out, &mut output);
+    let surface = &*cell_surface.surface;
+    let written = write(
+        surface,
+        options,
+        to,
+        world_from_cell,
+        watchers,
+        &mut seconds,
+    );
+    let written = written.map_err(failed)?;
+    let clock = Instant::now();
+    let topology = cell_surface.topology;
     let growth = world_from_cell.map_or(1.0, |transform| transform.matrix3.determinant());
-    let measured = options.measure.then(|| measure(mesh, options));
+    let measured = options.measure.then(|| cell_surface.volume_and_area());
     let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
     seconds.measure = clock.elapsed().as_secs_f64();
     let cell = CellReport {
@@ -175,15 +198,17 @@ pub(super) fn finish(
         triangles: written.triangles,
         quads: written.quads,
         closed: topology.closed,
-        // Refinement does not change the topology.
         euler: topology.euler,
         components: topology.components,
         volume: measured.map(|(volume, _)| volume),
         area: measured.map(|(_, area)| area),
         // Adding 0 turns −0, the sum of no somata, into 0.
         soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
+        crossings: cell_surface.merging.as_ref().map(CrossingsReport::new),
+        separation: generated.separation.as_ref().map(SeparationReport::from),
+        quality: cell_surface.quality,
         seconds,
-        warnings: warnings(&prepared.read, generated),
+        warnings: warnings(&prepared.read, generated, &cell_surface),
     };
     Ok((cell, output))
 }
@@ -196,29 +221,15 @@ struct Written {
 }
 
 fn write(
-    mesh: &CoarseMesh,
+    surface: &dyn Surface,
     options: &MeshOptions,
     (out, output): (&Path, &mut Output),
     world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
     seconds: &mut Seconds,
 ) -> Result<Written, Failure> {
-    let clock = Instant::now();
-    let refinement;
-    let coarse;
-    let surface: &dyn Surface = match options.lod {
-        Some(lod) => {
-            refinement = Refinement::new(mesh, lod, &options.refine);
-            &refinement
-        }
-        None => {
-            coarse = CoarseSurface::new(mesh, options.format.has_quads());
-            &coarse
-        }
-    };
     let placed = world_from_cell.map(|placed| Placed::new(surface, placed));
     let surface: &dyn Surface = placed.as_ref().map_or(surface, |placed| placed);
-    let planned = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
     size::tell(surface, options.format, out, watchers.reporter)?;
@@ -232,7 +243,7 @@ fn write(
     })?;
     let pass = clock.elapsed().as_secs_f64();
     let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
-    seconds.refine = planned + blocks;
+    seconds.refine += blocks;
     seconds.write = pass - blocks;
     Ok(Written {
         vertices: surface.vertex_count(),
@@ -241,18 +252,11 @@ fn write(
     })
 }
 
-/// Volume and area of the written mesh.
-fn measure(mesh: &CoarseMesh, options: &MeshOptions) -> (f64, f64) {
-    match options.lod {
-        Some(lod) => Refinement::new(mesh, lod, &options.refine).volume_and_area(),
-        None => {
-            let measure = mesh.measure();
-            (measure.volume, measure.area)
-        }
-    }
-}
-
-fn warnings(read: &[formats::Warning], generated: &Generated) -> Vec<CellWarning> {
+fn warnings(
+    read: &[formats::Warning],
+    generated: &Generated,
+    surface: &CellSurface<'_>,
+) -> Vec<CellWarning> {
     let of_file = read.iter().map(|w| CellWarning {
         line: w.line,
         sample: None,
@@ -267,5 +271,8 @@ fn warnings(read: &[formats::Warning], generated: &Generated) -> Vec<CellWarning
         message: w.to_string(),
         count: w.count as u64,
     });
-    of_file.chain(of_mesh).collect()
+    let of_surface = surface.merging.iter().flat_map(verdict::warnings);
+    let of_triangles = verdict::of_triangles(surface);
+    let of_surface = of_surface.chain(of_triangles);
+    of_file.chain(of_mesh).chain(of_surface).collect()
 }

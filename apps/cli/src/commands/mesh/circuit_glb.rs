@@ -6,16 +6,16 @@ use std::time::Instant;
 
 use neurotess::circuit::{Circuit, Instance};
 use neurotess::mesh::{Format, GlbNode, Surface, WriteError, write_glb};
-use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
 use super::args::MeshArgs;
 use super::cell::{self, Prepared};
 use super::options::MeshOptions;
+use super::surface::CellSurface;
 use crate::io::inputs::Inputs;
 use crate::io::output::{Output, OutputError, existing};
 use crate::io::workers;
-use crate::report::{Progress, Reporter, bug, count, usage};
+use crate::report::{Failure, Progress, Reporter, bug, count, usage};
 
 /// The object of the JSON list.
 #[derive(Serialize)]
@@ -67,11 +67,12 @@ pub(super) fn run(
     if shown.is_empty() {
         anyhow::bail!("{}: no cell to write: choose others", circuit.file);
     }
-    let surfaces = prepared
+    let surfaces: Vec<CellSurface<'_>> = prepared
         .values()
-        .map(|prepared| surface(prepared, &options));
-    let surfaces: Vec<Box<dyn Surface + '_>> = surfaces.collect();
-    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(|surface| &**surface).collect();
+        .map(|prepared| CellSurface::new(prepared.mesh(), &options))
+        .collect::<Result<_, _>>()
+        .map_err(|Failure(what)| anyhow::anyhow!(what))?;
+    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(|cell| &*cell.surface).collect();
     let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
     let nodes: Vec<GlbNode> = shown
         .iter()
@@ -139,14 +140,6 @@ fn prepare_all(
         }
     }
     Ok(prepared)
-}
-
-fn surface<'p>(prepared: &'p Prepared, options: &MeshOptions) -> Box<dyn Surface + 'p> {
-    let mesh = prepared.mesh();
-    match options.lod {
-        Some(lod) => Box::new(Refinement::new(mesh, lod, &options.refine)),
-        None => Box::new(CoarseSurface::new(mesh, false)),
-    }
 }
 
 fn name(circuit: &Circuit, instance: &Instance) -> String {

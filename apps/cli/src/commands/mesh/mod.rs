@@ -15,6 +15,8 @@ mod observed;
 mod options;
 mod run;
 mod size;
+mod surface;
+mod verdict;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,10 +1,11 @@
 //! From the command line's options to the library's.
 
-use neurotess::generate::{GenerateOptions, SphereKind};
+use neurotess::generate::{Crossings, GenerateOptions, SphereKind};
 use neurotess::mesh::Format;
-use neurotess::refine::{Caps, LodCriterion, Path, RefineOptions};
+use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
-use super::args::{CapsArg, MeshArgs, PathArg, SphereArg};
+use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, SphereArg};
+use super::surface::MeshLevels;
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets;
@@ -15,8 +16,11 @@ use crate::report::usage;
 pub(crate) struct MeshOptions {
     pub(crate) strict: bool,
     pub(crate) generate: GenerateOptions,
-    /// Levels; none: the coarse quads themselves.
-    pub(crate) lod: Option<LodCriterion>,
+    pub(crate) levels: MeshLevels,
+    /// Whether the surface is merged with itself where it crosses.
+    pub(crate) merge: bool,
+    /// Whether the mesh must be one that solvers take.
+    pub(crate) simulation: bool,
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
     pub(crate) force: bool,
@@ -30,21 +34,26 @@ impl MeshOptions {
     pub(crate) fn fingerprint(&self) -> String {
         let Self {
             generate,
-            lod,
+            levels,
+            merge,
+            simulation,
             refine,
             format,
             strict: _,
             force: _,
             measure: _,
         } = self;
-        let lod = match lod {
-            None => "Coarse".to_owned(),
-            Some(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
-            Some(other) => format!("{other:?}"),
+        let lod = match levels {
+            MeshLevels::Coarse => "Coarse".to_owned(),
+            MeshLevels::Criterion(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
+            MeshLevels::Criterion(other) => format!("{other:?}"),
+            MeshLevels::Edges(rule) => format!("{rule:?}"),
         };
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}").replace(", crossings: Keep", "");
-        format!("{lod} {generate} {refine:?} {format:?}")
+        let merged = if *merge { " merged" } else { "" };
+        let simulation = if *simulation { " simulation" } else { "" };
+        format!("{lod} {generate} {refine:?} {format:?}{merged}{simulation}")
     }
 
     /// Checks the options together and translates them.
@@ -55,15 +64,22 @@ impl MeshOptions {
                 "{format} holds triangles only: leave out --quads, or write ply, obj, off or vtu"
             ));
         }
-        let lod = match (args.max_error, args.level) {
-            (Some(error), _) => Some(LodCriterion::MaxError(error as f32)),
-            (None, 0) => None,
-            (None, level) => Some(LodCriterion::Homogeneous(level)),
-        };
+        let crossings = crossings(args);
+        if crossings != CrossingsArg::Keep && args.quads {
+            return usage("merging leaves triangles only: leave out --quads or --crossings");
+        }
         Ok(Self {
             strict: args.strict,
-            generate: generate(args)?,
-            lod,
+            generate: GenerateOptions {
+                crossings: match crossings {
+                    CrossingsArg::Separate => Crossings::Separate,
+                    CrossingsArg::Keep | CrossingsArg::Merge => Crossings::Keep,
+                },
+                ..generate(args)?
+            },
+            levels: levels(args)?,
+            merge: crossings != CrossingsArg::Keep,
+            simulation: args.simulation,
             refine: RefineOptions {
                 path: match args.path {
                     PathArg::Hermite => Path::Hermite,
@@ -80,6 +96,48 @@ impl MeshOptions {
             measure,
         })
     }
+}
+
+fn crossings(args: &MeshArgs) -> CrossingsArg {
+    args.crossings.unwrap_or(if args.simulation {
+        CrossingsArg::Separate
+    } else {
+        CrossingsArg::Keep
+    })
+}
+
+fn levels(args: &MeshArgs) -> anyhow::Result<MeshLevels> {
+    let isotropic = args.isotropic.or(args.simulation.then_some(1.0));
+    let Some(radii) = isotropic else {
+        if args
+            .max_edge
+            .or(args.min_edge)
+            .or(args.max_aspect)
+            .is_some()
+        {
+            return usage("--max-edge, --min-edge and --max-aspect are for --isotropic: add it");
+        }
+        return Ok(match (args.max_error, args.level, args.level_along) {
+            (Some(error), ..) => MeshLevels::Criterion(LodCriterion::MaxError(error as f32)),
+            (None, 0, Some(_)) => return usage("--level-along needs a --level of 1 or more"),
+            (None, 0, None) => MeshLevels::Coarse,
+            (None, around, Some(along)) => MeshLevels::Edges(EdgeRule::Levels { around, along }),
+            (None, level, None) => MeshLevels::Criterion(LodCriterion::Homogeneous(level)),
+        });
+    };
+    let (least, most) = (
+        args.min_edge.unwrap_or(0.0),
+        args.max_edge.unwrap_or(f64::MAX),
+    );
+    if least > most {
+        return usage("--min-edge is longer than --max-edge");
+    }
+    Ok(MeshLevels::Edges(EdgeRule::Lengths {
+        radii: radii as f32,
+        aspect: args.max_aspect.unwrap_or(1.0) as f32,
+        least: least as f32,
+        most: most as f32,
+    }))
 }
 
 fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
@@ -154,7 +212,9 @@ mod tests {
         let mut options = MeshOptions {
             strict: false,
             generate: GenerateOptions::default(),
-            lod: Some(LodCriterion::Homogeneous(4)),
+            levels: MeshLevels::Criterion(LodCriterion::Homogeneous(4)),
+            merge: false,
+            simulation: false,
             refine: RefineOptions::default(),
             format: Format::Ply,
             force: false,
@@ -166,7 +226,7 @@ mod tests {
              sphere_level: None, rings: {}, kinds: None } \
              RefineOptions { path: Hermite, caps: Round, quads: false } Ply"
         );
-        options.lod = None;
+        options.levels = MeshLevels::Coarse;
         options.format = Format::Glb;
         options.generate.rings = BTreeMap::from([(1, 0.5)]);
         options.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
@@ -176,7 +236,7 @@ mod tests {
              sphere_level: None, rings: {1: 0.5}, kinds: Some([NeuriteKind(2)]) } \
              RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
         );
-        options.lod = Some(LodCriterion::MaxError(0.05));
+        options.levels = MeshLevels::Criterion(LodCriterion::MaxError(0.05));
         let text = options.fingerprint();
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
     }

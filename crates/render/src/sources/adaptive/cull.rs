@@ -29,6 +29,7 @@ pub fn decide(
         criterion: settings.lod.scaled(placement.scale),
         view: view.local_view(placement, mesh.origin),
         point_levels: values,
+        edges: None,
     };
     let parts = pack(mesh, &[], values, MOST_PATCHES);
     let mesh = dequantized(mesh, &parts);

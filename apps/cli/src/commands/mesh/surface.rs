@@ -1,0 +1,189 @@
+//! The surface of a cell as it is written: refined block by block, or whole in memory where what crosses is
+//! merged.
+
+use neurotess::generate::Separation;
+use neurotess::mesh::{
+    CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
+};
+use neurotess::refine::{CoarseSurface, EdgeRule, Lod, LodCriterion, Refinement};
+use neurotess::union::{Kin, Place, UnionOptions, UnionReport, union};
+use serde::Serialize;
+
+use super::options::MeshOptions;
+use crate::report::Failure;
+
+/// Levels of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MeshLevels {
+    /// The coarse quads themselves.
+    Coarse,
+    /// By a criterion.
+    Criterion(LodCriterion),
+    /// By kinds of edges.
+    Edges(EdgeRule),
+}
+
+impl MeshLevels {
+    /// The surface of a coarse mesh.
+    pub(crate) fn surface<'m>(
+        self,
+        mesh: &'m CoarseMesh,
+        options: &MeshOptions,
+    ) -> Box<dyn Surface + 'm> {
+        let refined = |lod: Lod<'_>| Box::new(Refinement::new(mesh, lod, &options.refine));
+        match self {
+            Self::Coarse => Box::new(CoarseSurface::new(mesh, options.format.has_quads())),
+            Self::Criterion(criterion) => refined(criterion.into()),
+            Self::Edges(rule) => refined(Lod::by_edge(rule)),
+        }
+    }
+}
+
+/// A surface to be written, and what is known of it.
+pub(super) struct CellSurface<'m> {
+    pub(super) surface: Box<dyn Surface + 'm>,
+    pub(super) topology: Topology,
+    pub(super) merging: Option<UnionReport>,
+    /// Shapes of the triangles, of a mesh for simulators.
+    pub(super) quality: Option<Quality>,
+}
+
+impl<'m> CellSurface<'m> {
+    /// Refines a coarse mesh, and merges what crosses if that is asked for.
+    pub(super) fn new(mesh: &'m CoarseMesh, options: &MeshOptions) -> Result<Self, Failure> {
+        let surface = options.levels.surface(mesh, options);
+        if !options.merge {
+            return Ok(Self {
+                surface,
+                // Refinement does not change the topology.
+                topology: mesh.topology(),
+                merging: None,
+                quality: None,
+            });
+        }
+        let whole = SurfaceMesh::collect(&*surface);
+        let merged = union(&whole, &UnionOptions::default());
+        let merged = merged.map_err(|e| Failure(format!("what crosses cannot be merged: {e}")))?;
+        if merged.report.pairs > 0 {
+            let at = merged.report.places.first().map(|p| p.points);
+            return Err(Failure(format!(
+                "{} pairs of triangles still cross after merging, first near sample {}: try another \
+                 --level",
+                merged.report.pairs,
+                at.map_or(-1, |points| points[0])
+            )));
+        }
+        Ok(Self {
+            topology: merged.mesh.topology(),
+            quality: options.simulation.then(|| quality(&merged.mesh)),
+            surface: Box::new(merged.mesh),
+            merging: Some(merged.report),
+        })
+    }
+
+    /// Volume (µm³) and area (µm²).
+    pub(super) fn volume_and_area(&self) -> (f64, f64) {
+        let measure = measure_surface(&*self.surface);
+        (measure.volume, measure.area)
+    }
+}
+
+/// What became of places where the surface crosses itself, as JSON.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CrossingsReport {
+    /// Pairs of triangles that crossed before merging.
+    pairs_before: usize,
+    /// Pairs that still cross.
+    pairs: usize,
+    /// Volume after merging by volume before, which counts what is enclosed twice twice.
+    volume_ratio: f64,
+    components_before: usize,
+    /// Handles that merging made: each is a short circuit.
+    handles_made: Option<i64>,
+    places: Vec<PlaceReport>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct PlaceReport {
+    /// µm, in the tracing's coordinates.
+    position: [f64; 3],
+    pairs: usize,
+    samples: [i32; 2],
+    sections: [i32; 2],
+    /// µm.
+    depth: f64,
+    /// In radii of the thinner branch.
+    relative_depth: f64,
+    /// `near`: a bend or a fork; `apart`: branches that were traced through one another.
+    kind: &'static str,
+}
+
+impl CrossingsReport {
+    pub(super) fn new(report: &UnionReport) -> Self {
+        let place = |place: &Place| PlaceReport {
+            position: place.position.to_array(),
+            pairs: place.pairs,
+            samples: place.points,
+            sections: place.sections,
+            depth: place.depth,
+            relative_depth: place.relative_depth,
+            kind: match place.kin {
+                Kin::Near => "near",
+                Kin::Apart => "apart",
+            },
+        };
+        Self {
+            pairs_before: report.pairs_before,
+            pairs: report.pairs,
+            volume_ratio: report.volume_ratio(),
+            components_before: report.components_before,
+            handles_made: report.handles_made(),
+            places: report.places.iter().map(place).collect(),
+        }
+    }
+}
+
+/// How branches were moved apart, as JSON.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct SeparationReport {
+    places: Vec<SeparatedReport>,
+    moved_points: usize,
+    /// µm.
+    median_move: f64,
+    largest_move: f64,
+    /// In radii.
+    median_move_radii: f64,
+    largest_move_radii: f64,
+    /// Share of the length of all neurites.
+    length_change: f64,
+    /// Whether all contacts were looked at.
+    complete: bool,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct SeparatedReport {
+    samples: [i64; 2],
+    /// µm, as traced and at the end.
+    depth_before: f64,
+    depth: f64,
+}
+
+impl From<&Separation> for SeparationReport {
+    fn from(report: &Separation) -> Self {
+        let places = report.places.iter().map(|place| SeparatedReport {
+            samples: place.samples,
+            depth_before: place.before,
+            depth: place.after,
+        });
+        Self {
+            places: places.collect(),
+            moved_points: report.moved,
+            median_move: report.median_move,
+            largest_move: report.largest_move,
+            median_move_radii: report.median_move_radii,
+            largest_move_radii: report.largest_move_radii,
+            length_change: report.length_change,
+            complete: report.complete,
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What is said of a merged surface, and what a mesh for simulators must be.
+
+use neurotess::generate::Generated;
+use neurotess::union::{Kin, Part, UnionReport};
+
+use super::cell::CellWarning;
+use super::surface::CellSurface;
+use crate::report::Failure;
+
+/// Solvers lose accuracy, and mesh generators time, where one in a hundred triangles has a smaller angle
+/// (degrees).
+const THIN_TRIANGLES: f64 = 10.0;
+
+/// Fails unless solvers can take the mesh. `CellSurface::new` has seen to crossings.
+pub(super) fn check(surface: &CellSurface<'_>, generated: &Generated) -> Result<(), Failure> {
+    let topology = &surface.topology;
+    if !topology.closed || !topology.oriented || !topology.vertex_manifold {
+        return Err(Failure(
+            "the merged surface is not a closed manifold: use --crossings merge and look at it with \
+             neurotess check"
+                .to_owned(),
+        ));
+    }
+    if let Some(part) = surface.merging.iter().flat_map(|m| &m.cut_off).next() {
+        return Err(Failure(format!(
+            "a piece of the tracing near sample {} was cut off: mend the tracing there, or use \
+             --crossings merge",
+            part.point
+        )));
+    }
+    let components = generated.mesh.topology().components;
+    if topology.components > components {
+        return Err(Failure(format!(
+            "the surface fell into {} pieces, of {components} in the tracing: use --crossings merge and \
+             look at it with neurotess check",
+            topology.components
+        )));
+    }
+    Ok(())
+}
+
+/// What merging changed.
+pub(super) fn warnings(report: &UnionReport) -> Vec<CellWarning> {
+    let warning = |code, sample: i32, count: usize, message: String| CellWarning {
+        line: None,
+        sample: Some(i64::from(sample)),
+        code,
+        message,
+        count: count as u64,
+    };
+    let mut warnings = Vec::new();
+    let apart = report.places.iter().filter(|place| place.kin == Kin::Apart);
+    let deepest = apart.clone().max_by(|a, b| a.depth.total_cmp(&b.depth));
+    if let Some(deepest) = deepest {
+        let [a, b] = deepest.points;
+        let places = apart.count();
+        warnings.push(warning(
+            "branches_merged",
+            a,
+            places,
+            format!(
+                "branches that cross grew together in {places} places, deepest at samples {a} and {b} \
+                 ({:.2} µm): a short circuit for voltage and diffusion",
+                deepest.depth
+            ),
+        ));
+    }
+    let handles = report.handles_made().unwrap_or(0);
+    if handles > 0 {
+        let first = report.places.first().map_or(-1, |place| place.points[0]);
+        let count = usize::try_from(handles).unwrap_or(0);
+        let message = format!("merging closed {handles} loops (handles)");
+        warnings.push(warning("handles", first, count, message));
+    }
+    for (code, parts, what) in [
+        (
+            "parts_dropped",
+            &report.dropped,
+            "inside others, or splinters: left out",
+        ),
+        (
+            "parts_cut_off",
+            &report.cut_off,
+            "no longer hang together with the rest",
+        ),
+    ] {
+        if let Some(Part { point, .. }) = parts.first() {
+            let message = format!("{} pieces of the surface {what}", parts.len());
+            warnings.push(warning(code, *point, parts.len(), message));
+        }
+    }
+    warnings
+}
+
+/// What is said of the triangles of a mesh for simulators.
+pub(super) fn of_triangles(surface: &CellSurface<'_>) -> Option<CellWarning> {
+    let quality = surface.quality?;
+    (quality.min_angle_p1 < THIN_TRIANGLES).then(|| CellWarning {
+        line: None,
+        sample: None,
+        code: "thin_triangles",
+        message: format!(
+            "one in a hundred triangles has an angle below {:.1}°: try another --isotropic, or a smaller \
+             --max-aspect",
+            quality.min_angle_p1
+        ),
+        count: 1,
+    })
+}
