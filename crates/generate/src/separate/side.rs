@@ -22,8 +22,8 @@ const COURSE: f64 = 4.0;
 /// Points that a walk along a branch passes, at most.
 const MOST_STEPS: usize = 64;
 
-/// Directions from `b` to `a`, by pair of segments. It is asked for pairs and never listed: the order of a
-/// hash map is no one's.
+/// Directions from `b` to `a`, by pair of segments. It is only looked up, never gone through, so the order of
+/// a hash map changes nothing.
 pub(super) type Sides = HashMap<(u32, u32), DVec3>;
 
 /// A contact with its side; zero as long as there is none.

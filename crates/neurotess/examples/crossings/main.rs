@@ -43,12 +43,12 @@ fn lines(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
         for (samples, count) in crossing.samples.iter().take(3) {
             lines += &format!("\n    {count} pairs at samples {samples:?}");
         }
-        lines += &generated.separation.map(said).unwrap_or_default();
+        lines += &generated.separation.as_ref().map(said).unwrap_or_default();
     }
     Ok(lines)
 }
 
-fn said(separation: Separation) -> String {
+fn said(separation: &Separation) -> String {
     let left: Vec<_> = separation.places.iter().filter(|p| p.after > 0.0).collect();
     let mut text = format!(
         "\n    {} places, {} left; {} points moved, by {:.3} µm or {:.2} radii (median), {:.2} µm or {:.1} radii \
