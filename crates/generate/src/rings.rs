@@ -14,15 +14,20 @@ use glam::DVec3;
 use neurotess_morphology::{Morphology, shape};
 
 use crate::prepare::SomaSphere;
-use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
+use crate::skeleton::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
-use crate::{GenerateOptions, SomaMethod};
+use crate::{GenerateOptions, SomaMethod, SphereKind};
 
 /// Least way from position 1 to 2, in radii of the soma: many tracings begin on its sphere, where
 /// twice nothing is nothing.
 const LEAST_BEYOND: f64 = 0.5;
 /// Least way between a ring and a fork or an end beyond it, in radii of the thicker one.
 const LEAST_WAY: f64 = 1.5;
+/// A neurite whose radius is at most this share of its soma's leaves it through an inset: pulled to a
+/// ring this small, a quad of the soma would crease.
+const THIN: f64 = 0.2;
+/// Height of an inset's corners over the soma, in radii of the neurite.
+pub(crate) const SOMA_LIFT: f64 = 0.4;
 /// A path that turns back towards the soma ends a ring's way: least cosine to the ray.
 const LEAST_OUTWARDS: f64 = 0.5;
 
@@ -33,6 +38,8 @@ pub(crate) struct RingRequests<'a> {
     positions: &'a BTreeMap<u32, f64>,
     /// Whether the soma's method can follow requests.
     supported: bool,
+    /// Whether thin neurites leave through insets.
+    insets: bool,
 }
 
 impl<'a> RingRequests<'a> {
@@ -41,6 +48,7 @@ impl<'a> RingRequests<'a> {
             neurites: shape::neurites(morphology),
             positions: &options.rings,
             supported: matches!(options.soma, SomaMethod::Fem | SomaMethod::Profile),
+            insets: options.soma == SomaMethod::Fem && options.sphere == SphereKind::Cube,
         }
     }
 
@@ -105,10 +113,12 @@ pub(crate) fn insert(
             continue;
         };
         let stem = Stem::new(skeleton, children, i as u32, soma_sphere);
-        let site = stem.site(
-            requests.of(node),
-            farthest[soma as usize] * soma_sphere.radius,
-        );
+        let request = requests.of(node);
+        let over = stem
+            .over_soma()
+            .filter(|_| requests.insets && request.is_none());
+        let far = farthest[soma as usize] * soma_sphere.radius;
+        let site = over.unwrap_or_else(|| stem.site(request, far));
         let mut here = i as u32;
         while here != site.next {
             passed[here as usize] = true;
@@ -130,6 +140,8 @@ struct Site {
     position: f64,
     requested: Option<f64>,
     farther: bool,
+    /// Whether the ring stands over the soma's surface as an inset.
+    inset: bool,
 }
 
 /// A neurite as it leaves its soma.
@@ -210,7 +222,40 @@ impl<'a> Stem<'a> {
             position,
             requested: None,
             farther: false,
+            inset: false,
         }
+    }
+
+    /// An inset right over the sphere, if the neurite is thin and leads away from it.
+    fn over_soma(&self) -> Option<Site> {
+        let (soma, radius) = (
+            self.soma_sphere.radius,
+            self.skeleton.node(self.root).radius,
+        );
+        if radius > THIN * soma {
+            return None;
+        }
+        let lifted = soma + SOMA_LIFT * radius;
+        let at = (lifted * lifted - radius * radius).sqrt();
+        if self.distance >= at + radius {
+            let site = self.on_ray(at);
+            return Some(Site {
+                inset: true,
+                ..site
+            });
+        }
+        // The first points are too near: along the path to where it is free.
+        let way = at + 0.5 * radius - self.distance;
+        let unit = self.gap().max(LEAST_BEYOND * soma);
+        let site = (self.branches == 1).then(|| self.on_path(1.0 + way / unit, 1.35 * soma))?;
+        let center = site
+            .added
+            .map_or(self.skeleton.node(site.next).center, |(center, _)| center);
+        let distance = center.distance(self.soma_sphere.center);
+        (distance >= at).then_some(Site {
+            inset: true,
+            ..site
+        })
     }
 
     fn on_ray(&self, at: f64) -> Site {
@@ -326,6 +371,7 @@ fn insert_at(
                     ring.distance(soma_sphere.center) / soma_sphere.radius
                 }),
             });
+            node.marks.on_soma = site.inset && site.added.is_none();
             match site.added {
                 None => node.root = Root::Insertion(site.soma),
                 Some((center, radius)) => {
@@ -335,6 +381,10 @@ fn insert_at(
                         radius,
                         parent: NONE,
                         root: Root::Insertion(site.soma),
+                        marks: Marks {
+                            on_soma: site.inset,
+                            ..node.marks
+                        },
                         ..node
                     });
                     node.parent = parent;

@@ -41,6 +41,8 @@ pub(crate) struct Marks {
     pub(crate) fork: u32,
     /// Its own node there, or the nearest.
     pub(crate) base: u32,
+    /// Whether it is the first ring of a neurite so thin that it leaves its soma through an inset.
+    pub(crate) on_soma: bool,
 }
 
 impl Default for Marks {
@@ -50,6 +52,7 @@ impl Default for Marks {
             zone_ends: NONE,
             fork: NONE,
             base: NONE,
+            on_soma: false,
         }
     }
 }

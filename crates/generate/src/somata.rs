@@ -257,6 +257,7 @@ fn insertion(node: &SkeletonNode, soma_sphere: &SomaSphere) -> Insertion {
         direction: offset.try_normalize().unwrap_or(DVec3::Y),
         distance: offset.length(),
         radius: node.radius,
+        inset: node.marks.on_soma,
     }
 }
 
@@ -269,7 +270,7 @@ fn move_rings(
 ) {
     let (mut shapes, _) = skeleton.shapes();
     let dropped: BTreeSet<usize> = surface.dropped.iter().copied().collect();
-    let (mut rings, mut insertions) = (Vec::new(), Vec::new());
+    let (mut rings, mut insets, mut insertions) = (Vec::new(), Vec::new(), Vec::new());
     for (slot, &node) in nodes.iter().enumerate() {
         let insertion = surface.insertions[slot];
         if dropped.contains(&slot) {
@@ -280,9 +281,10 @@ fn move_rings(
         shapes.set_center(node, center);
         shapes.set_radius(node, insertion.radius);
         rings.push(surface.rings[slot]);
+        insets.push(surface.insets[slot]);
         insertions.push(insertion);
     }
-    (surface.rings, surface.insertions) = (rings, insertions);
+    (surface.rings, surface.insets, surface.insertions) = (rings, insets, insertions);
 }
 
 fn warn(surface: &SomaSurface, warnings: &mut Warnings) {
@@ -336,7 +338,10 @@ fn measure(surface: &SomaSurface, radius: f64) -> SomaReport {
         area += a;
         volume += v;
     }
-    volume += surface.rings.iter().map(|ring| quad(ring).1).sum::<f64>();
+    // Closed where neurites leave.
+    let open = surface.rings.iter().zip(&surface.insets);
+    let open = open.map(|(ring, inset)| inset.as_ref().unwrap_or(ring));
+    volume += open.map(|ring| quad(ring).1).sum::<f64>();
     SomaReport {
         volume,
         area,

@@ -15,10 +15,11 @@ use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
 use neurotess_morphology::Morphology;
 
 use crate::fork;
-use crate::inset::Layout;
+use crate::inset::{self, Layout};
 use crate::joint::Joint;
 use crate::normals::average_normals;
 use crate::prepare::SomaSphere;
+use crate::rings;
 use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::soma::SomaSurface;
 use crate::somata::{self, BuiltSoma};
@@ -124,8 +125,11 @@ impl<'a> Assembly<'a> {
     /// Adds a soma; `insertions` are the nodes of its rings, in order.
     fn soma(&mut self, surface: &SomaSurface, center: DVec3, sample: i64, insertions: &[u32]) {
         let mut owner = vec![NONE; surface.vertices.len()];
-        for (&node, ring) in insertions.iter().zip(&surface.rings) {
-            let tracing = self.tracing(node, Role::Insertion);
+        for ((&node, ring), inset) in insertions.iter().zip(&surface.rings).zip(&surface.insets) {
+            let tracing = match inset {
+                Some(_) => self.soma_inset(node, center),
+                None => self.tracing(node, Role::Insertion),
+            };
             ring.iter().for_each(|&v| owner[v as usize] = tracing);
         }
         let first = self.mesh.vertices.len() as u32;
@@ -152,6 +156,11 @@ impl<'a> Assembly<'a> {
             });
         }
         let shift = |q: [u32; 4]| q.map(|v| v + first);
+        for (ring, quad) in surface.rings.iter().zip(&surface.insets) {
+            if let Some(quad) = quad {
+                self.lofts(shift(*quad), shift(*ring));
+            }
+        }
         let patches = surface.quads.iter();
         self.mesh.patches.extend(patches.map(|&q| Patch {
             corners: shift(q),
@@ -160,6 +169,34 @@ impl<'a> Assembly<'a> {
         let rings = insertions.iter().zip(&surface.rings);
         self.insertion_rings
             .extend(rings.map(|(&node, &ring)| (node, shift(ring))));
+    }
+
+    /// The tracing point of a ring that stands over its soma's surface.
+    fn soma_inset(&mut self, node: u32, soma: DVec3) -> u32 {
+        let SkeletonNode { center, radius, .. } = *self.skeleton.node(node);
+        let tracing = self.tracing(node, Role::Inset);
+        let point = &mut self.mesh.tracing[tracing as usize];
+        point.tangent = (center - soma).normalize_or(DVec3::Y).as_vec3();
+        point.collar = inset::collar(rings::SOMA_LIFT * radius, radius, 1.0) as f32;
+        tracing
+    }
+
+    /// Patches from the sides of a quad to a ring over it, corner by corner.
+    fn lofts(&mut self, quad: [u32; 4], ring: Ring) {
+        for v in ring {
+            let vertex = &mut self.mesh.vertices[v as usize];
+            let point = &self.mesh.tracing[vertex.tracing as usize];
+            if point.role == Role::Inset && vertex.normal == Vec3::ZERO {
+                vertex.normal = (vertex.position - point.center).normalize_or(Vec3::Y);
+            }
+        }
+        for k in 0..4 {
+            let next = (k + 1) % 4;
+            self.mesh.patches.push(Patch {
+                corners: [quad[k], quad[next], ring[next], ring[k]],
+                kind: PatchKind::Loft,
+            });
+        }
     }
 
     /// Adds joints and paths, and returns the mesh, and which patches are near which fork.

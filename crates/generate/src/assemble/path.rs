@@ -326,17 +326,12 @@ impl Assembly<'_> {
         let (near, far) = (rings[ring], rings[ring + 1]);
         let after = (side + 1) % 4;
         let outer = [near[side], near[after], far[after], far[side]];
+        let inner = [inner[0], inner[1], inner[2], inner[3]];
         let first = self.mesh.patches.len() as u32;
-        for k in 0..4 {
-            let next = (k + 1) % 4;
-            self.mesh.patches.push(Patch {
-                corners: [outer[k], outer[next], inner[next], inner[k]],
-                kind: PatchKind::Loft,
-            });
-        }
+        self.lofts(outer, inner);
         self.fork_patches.push((inset.fork, first..first + 4));
         self.placed[facing.inset as usize] = Some(PlacedInset {
-            ring: [inner[0], inner[1], inner[2], inner[3]],
+            ring: inner,
             center: shape.center,
             direction: shape.direction,
         });

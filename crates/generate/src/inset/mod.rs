@@ -29,7 +29,7 @@ use glam::DVec3;
 use crate::skeleton::Skeleton;
 
 pub(crate) use cone::{RoundCone, outwards};
-pub(crate) use shape::InsetSite;
+pub(crate) use shape::{InsetSite, collar};
 pub(crate) use zone::not_too_steep;
 
 /// What a fork becomes.

@@ -506,6 +506,7 @@ impl<'a> Planner<'a> {
             marks: Marks {
                 fork,
                 base: node,
+                on_soma: self.base.node(node).marks.on_soma,
                 ..Marks::default()
             },
             ..*self.base.node(node)

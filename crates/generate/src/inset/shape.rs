@@ -12,6 +12,12 @@ const COLLAR: f64 = 0.7;
 /// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
 const MOST_SHEAR: f64 = 2.2;
 
+/// Length (µm) over which lofts run along a branch that stands so high over its trunk; `steep`: cosine of
+/// the angle between the two's directions.
+pub(crate) fn collar(height: f64, radius: f64, steep: f64) -> f64 {
+    COLLAR * height.max(0.2 * radius) / steep
+}
+
 /// The ring that a branch begins with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InsetShape {
@@ -73,7 +79,7 @@ impl InsetSite {
             corners,
             radials,
             direction: self.direction,
-            collar: COLLAR * height.max(0.2 * self.radius) / steep,
+            collar: collar(height, self.radius, steep),
             reach: reaches.into_iter().fold(0.0, f64::max),
         }
     }

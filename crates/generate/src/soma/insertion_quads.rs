@@ -15,12 +15,31 @@ pub(crate) struct Insertion {
     pub(crate) distance: f64,
     /// Radius of the first ring.
     pub(crate) radius: f64,
+    /// Whether the ring stands over its quad, which stays in the surface, instead of taking its corners.
+    pub(crate) inset: bool,
 }
+
+/// Distance of the corners of an inset's quad from its neurite's axis, in radii of the neurite: half the
+/// quad is 1.7 radii wide.
+const QUAD_REACH: f64 = 2.4;
 
 impl Insertion {
     /// Angle that the ring's radius takes seen from the soma's center.
     pub(crate) fn angle(&self) -> f64 {
         (self.radius / self.distance).atan()
+    }
+
+    /// Angle that an inset's quad takes.
+    pub(crate) fn quad_angle(&self) -> f64 {
+        (QUAD_REACH * self.radius / self.distance).atan()
+    }
+
+    /// Angle that nothing else may be in.
+    fn taken(&self) -> f64 {
+        match self.inset {
+            true => self.quad_angle() / GAP,
+            false => self.angle(),
+        }
     }
 }
 
@@ -58,7 +77,7 @@ pub(crate) fn make_room(insertions: &mut [Insertion], gap: f64) -> (usize, usize
 }
 
 fn needed(a: &Insertion, b: &Insertion, gap: f64) -> f64 {
-    GAP * (a.angle() + b.angle()) + gap
+    GAP * (a.taken() + b.taken()) + gap
 }
 
 fn between(a: &Insertion, b: &Insertion) -> f64 {

@@ -37,6 +37,8 @@ pub(crate) struct SomaSurface {
     pub(crate) quads: Vec<[u32; 4]>,
     /// The four vertices of each neurite's first ring, counter-clockwise about its direction.
     pub(crate) rings: Vec<[u32; 4]>,
+    /// Of a neurite that leaves its quad through an inset: the quad, corner by corner of the ring.
+    pub(crate) insets: Vec<Option<[u32; 4]>>,
     /// The insertions as they were in the end: direction, distance and radius.
     pub(crate) insertions: Vec<Insertion>,
     /// Rings made smaller to find room, or to avoid folds.
@@ -135,6 +137,7 @@ fn lone(request: &SomaRequest) -> SomaSurface {
             .collect(),
         quads: sphere.quads.clone(),
         rings: Vec::new(),
+        insets: Vec::new(),
         insertions: Vec::new(),
         shrunk: 0,
         turned: 0,
@@ -176,14 +179,17 @@ fn without_thinnest(request: &SomaRequest, insertions: &[Insertion]) -> SomaSurf
     let subset: Vec<Insertion> = kept.iter().map(|&k| insertions[k]).collect();
     let mut surface = rebuild(request, &subset);
     let mut rings = vec![[0; 4]; insertions.len()];
+    let mut insets = vec![None; insertions.len()];
     let mut all = insertions.to_vec();
     for (slot, &k) in kept.iter().enumerate() {
         rings[k] = surface.rings[slot];
+        insets[k] = surface.insets[slot];
         all[k] = surface.insertions[slot];
     }
     let inner = surface.dropped.iter().map(|&slot| kept[slot]);
     surface.dropped = dropped.iter().copied().chain(inner).collect();
     surface.rings = rings;
+    surface.insets = insets;
     surface.insertions = all;
     surface
 }
@@ -252,12 +258,26 @@ fn deform(
     if request.method == SomaMethod::Profile {
         profile::apply(&mut nodes[..sphere.surface], request.radius, insertions);
     }
-    let rings: Vec<[u32; 4]> = insertion_quads
+    let mut rings: Vec<[u32; 4]> = insertion_quads
         .quads
         .iter()
         .map(|&q| sphere.quads[q])
         .collect();
-    for (ring, goals) in rings.iter().zip(&warp.rings) {
+    // What stands off the surface: rings of insets.
+    let mut lifted = Vec::new();
+    let mut insets = vec![None; rings.len()];
+    for ((ring, goals), (insertion, inset)) in rings
+        .iter_mut()
+        .zip(&warp.rings)
+        .zip(insertions.iter().zip(&mut insets))
+    {
+        if insertion.inset {
+            *inset = Some(*ring);
+            let first = (sphere.surface + lifted.len()) as u32;
+            *ring = [0, 1, 2, 3].map(|k| first + k);
+            lifted.extend_from_slice(goals);
+            continue;
+        }
         for (&vertex, &goal) in ring.iter().zip(goals) {
             nodes[vertex as usize] = goal / request.radius;
         }
@@ -289,9 +309,11 @@ fn deform(
         vertices: nodes[..sphere.surface]
             .iter()
             .map(|&x| request.center + x * request.radius)
+            .chain(lifted.iter().map(|&x| request.center + x))
             .collect(),
         quads,
         rings,
+        insets,
         insertions: insertions.to_vec(),
         shrunk: 0,
         turned: 0,
@@ -322,11 +344,15 @@ fn pull(
 ) -> Vec<DVec3> {
     let sphere = &reference.sphere;
     let mut prescribed = Vec::with_capacity(4 * insertions.len());
-    for (&quad, insertion) in insertion_quads.quads.iter().zip(insertions) {
+    let pulled = insertion_quads.quads.iter().zip(insertions);
+    for (&quad, insertion) in pulled.filter(|(_, insertion)| !insertion.inset) {
         let reach = insertion.distance.hypot(insertion.radius) / request.radius;
         for vertex in sphere.quads[quad] {
             prescribed.push((vertex, sphere.nodes[vertex as usize] * (reach - 1.0)));
         }
+    }
+    if prescribed.is_empty() {
+        return sphere.nodes.clone();
     }
     let solved = reference.elasticity().and_then(|e| e.solve(&prescribed));
     let Some(displacement) = solved else {
@@ -358,7 +384,10 @@ impl Flow {
             let corners = warp::rotate(insertion_quads.rotation, corners);
             let goals = warp::ring_directions(insertion.direction, insertion.angle(), corners);
             from.extend(corners);
-            to.extend(goals);
+            to.extend(match insertion.inset {
+                true => warp::ring_directions(insertion.direction, insertion.quad_angle(), corners),
+                false => goals,
+            });
             let reach = insertion.distance.hypot(insertion.radius);
             rings.push(goals.map(|goal| goal * reach));
         }
