@@ -58,6 +58,24 @@ fn lattice_line() -> impl Strategy<Value = Vec<[f32; 3]>> {
     })
 }
 
+/// A soak found it: sheets so near to one another that rounding made them cross after each cut.
+#[test]
+fn sheets_that_nearly_coincide_are_pressed_apart() {
+    let lines = [
+        vec![[0.0, 2.0, 0.0], [0.0, 0.0, 0.0]],
+        vec![[0.0, 0.0, -2.0], [2.0, 0.0, 0.0]],
+        vec![[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        vec![
+            [2.0, 0.0, -2.0],
+            [4.0, 0.0, 2.0],
+            [0.0, 0.0, -2.0],
+            [4.0, 0.0, 0.0],
+        ],
+        vec![[2.0, -2.0, -2.0], [4.0, 0.0, 0.0]],
+    ];
+    merged(&tubes(&lines, 8), &UnionOptions::default());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
