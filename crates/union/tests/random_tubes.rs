@@ -76,6 +76,16 @@ fn sheets_that_nearly_coincide_are_pressed_apart() {
     merged(&tubes(&lines, 8), &UnionOptions::default());
 }
 
+/// A soak found it: a tube that folds onto itself touches along an edge whose ends are one fan each.
+#[test]
+fn an_edge_of_four_faces_becomes_two() {
+    let lines = [
+        vec![[0.0, -2.0, -4.0], [0.0, -2.0, 0.0]],
+        vec![[0.0, 0.0, -4.0], [0.0, -2.0, -4.0], [2.0, 0.0, -4.0]],
+    ];
+    merged(&tubes(&lines, 3), &UnionOptions::default());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
