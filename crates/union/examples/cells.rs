@@ -61,6 +61,7 @@ fn judge(
         Err(error) => return Ok(format!("{name} {level}: FAILED {error}")),
     };
     let seconds = start.elapsed().as_secs_f64();
+    let peak = peak_mib();
     let start = Instant::now();
     let (r, c) = (&merged.report, check(&merged.mesh));
     let checked = start.elapsed().as_secs_f64();
@@ -75,7 +76,7 @@ fn judge(
         "{name} {level}: {} faces {faces} → {}, {:.2} s, {} rounds, pairs {} → {} ({}), volume × {:.4}, \
          components {} → {}, handles {} → {:?}, places {} ({} apart), changed {:.2} %, dropped {}, cut off {}, \
          collapsed {}, flipped {}, parted {}, smoothed {}, degenerate {}, checked in {checked:.2} s, \
-         smallest angles {:.3}° and {:.2}°, peak {} MiB",
+         smallest angles {:.3}° and {:.2}°, peak {peak} MiB",
         if good { "good" } else { "BAD" },
         c.triangles,
         seconds,
@@ -100,7 +101,6 @@ fn judge(
         c.degenerate_faces,
         c.quality.min_angle,
         c.quality.min_angle_p1,
-        peak_mib(),
     ))
 }
 

@@ -8,13 +8,12 @@ use neurotess_mesh::SurfaceVertex;
 
 use crate::work::Work;
 
-/// Sides up to this many times what counts as bad are collapsed where faces turn little, ...
+/// Sides up to this many times what counts as bad are collapsed. With 6 for flat faces that cannot be flipped,
+/// a tenth of the smallest angles went, but vd130423 at level 2 had to be cut three times instead of twice.
 const SHORT: f64 = 2.0;
-/// ... and where a flat face can have no other edge, up to this many.
-const FAR: f64 = 6.0;
-/// Cosines of how far faces may turn then; by eye.
-const TURN_NEAR: f64 = 0.3;
-const TURN_FAR: f64 = 0.95;
+
+/// Cosine of how far a face may turn when a side is collapsed; by eye.
+const TURN: f64 = 0.3;
 
 /// What was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,29 +122,26 @@ impl<'a> Seam<'a> {
             .min_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))
             .unwrap_or(0);
         let near = share * self.scale(face);
-        if lengths[side] < SHORT * near && self.collapse_side(face, side, TURN_NEAR) {
+        if lengths[side] < SHORT * near && self.collapse_side(face, side) {
             done.collapsed += 1;
         } else if self.flip(face) {
             done.flipped += 1;
-        } else if lengths[side] < FAR * near && self.collapse_side(face, side, TURN_FAR) {
-            done.collapsed += 1;
         }
     }
 
     /// Collapses a side of a face if one of its ends is ours: what the tracing gave stays where it is.
-    fn collapse_side(&mut self, face: u32, side: usize, turn: f64) -> bool {
+    fn collapse_side(&mut self, face: u32, side: usize) -> bool {
         let corners = self.work.triangles[face as usize];
         let [a, b] = [corners[side], corners[(side + 1) % 3]];
         match [self.of_seam(a), self.of_seam(b)] {
-            [true, _] => self.collapse(a, b, turn),
-            [false, true] => self.collapse(b, a, turn),
+            [true, _] => self.collapse(a, b),
+            [false, true] => self.collapse(b, a),
             [false, false] => false,
         }
     }
 
-    /// Makes one vertex of one of ours and another, if the surface keeps its shape and stays a surface: faces
-    /// may turn to this cosine.
-    fn collapse(&mut self, from: u32, to: u32, turn: f64) -> bool {
+    /// Makes one vertex of one of ours and another, if the surface keeps its shape and stays a surface.
+    fn collapse(&mut self, from: u32, to: u32) -> bool {
         let (Some(star), Some(other)) = (self.stars.get(&from), self.stars.get(&to)) else {
             return false;
         };
@@ -153,7 +149,7 @@ impl<'a> Seam<'a> {
         if !self.may_join(star, other, &shared, [from, to]) {
             return false;
         }
-        let Some(joined) = self.joined(from, to, &shared, turn) else {
+        let Some(joined) = self.joined(from, to, &shared) else {
             return false;
         };
         self.work.vertices[to as usize] = joined;
@@ -198,7 +194,7 @@ impl<'a> Seam<'a> {
     }
 
     /// The vertex that two become: at one of them, or between two of ours.
-    fn joined(&self, from: u32, to: u32, shared: &[u32], turn: f64) -> Option<SurfaceVertex> {
+    fn joined(&self, from: u32, to: u32, shared: &[u32]) -> Option<SurfaceVertex> {
         let [a, b] = [from, to].map(|vertex| self.work.vertices[vertex as usize]);
         let between = SurfaceVertex {
             position: (a.position + b.position) / 2.0,
@@ -215,14 +211,14 @@ impl<'a> Seam<'a> {
                 let mut faces = self.stars[vertex]
                     .iter()
                     .filter(|face| !shared.contains(face));
-                faces.all(|&face| self.may_move(face, *vertex, choice.position.as_dvec3(), turn))
+                faces.all(|&face| self.may_move(face, *vertex, choice.position.as_dvec3()))
             })
         };
         choices.into_iter().find(fits)
     }
 
     /// Whether a face turns and flattens little when one corner moves.
-    fn may_move(&self, face: u32, vertex: u32, to: DVec3, turn: f64) -> bool {
+    fn may_move(&self, face: u32, vertex: u32, to: DVec3) -> bool {
         let before = self.work.corners(face);
         let mut after = before;
         for (corner, position) in self.work.triangles[face as usize].iter().zip(&mut after) {
@@ -232,7 +228,7 @@ impl<'a> Seam<'a> {
         }
         let [old, new] = [normal(&before), normal(&after)];
         let [good, better] = [quality(&before), quality(&after)];
-        let turns = old.dot(new) < turn * old.length() * new.length() && good > POOR;
+        let turns = old.dot(new) < TURN * old.length() * new.length() && good > POOR;
         let flattens = better < POOR && better < 0.8 * good;
         new.length() > 0.0 && !turns && !flattens
     }
