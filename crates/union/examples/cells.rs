@@ -61,7 +61,10 @@ fn judge(
         Err(error) => return Ok(format!("{name} {level}: FAILED {error}")),
     };
     let seconds = start.elapsed().as_secs_f64();
+    let peak = peak_mib();
+    let start = Instant::now();
     let (r, c) = (&merged.report, check(&merged.mesh));
+    let checked = start.elapsed().as_secs_f64();
     if let Some(folder) = out {
         let mut file = BufWriter::new(File::create(folder.join(format!("{name}.{level}.ply")))?);
         write(&merged.mesh, Format::Ply, &mut file)?;
@@ -72,7 +75,8 @@ fn judge(
     Ok(format!(
         "{name} {level}: {} faces {faces} → {}, {:.2} s, {} rounds, pairs {} → {} ({}), volume × {:.4}, \
          components {} → {}, handles {} → {:?}, places {} ({} apart), changed {:.2} %, dropped {}, cut off {}, \
-         collapsed {}, flipped {}, parted {}, smoothed {}, degenerate {}, peak {} MiB",
+         collapsed {}, flipped {}, parted {}, smoothed {}, degenerate {}, checked in {checked:.2} s, \
+         smallest angles {:.3}° and {:.2}°, peak {peak} MiB",
         if good { "good" } else { "BAD" },
         c.triangles,
         seconds,
@@ -95,7 +99,8 @@ fn judge(
         r.parted,
         r.smoothed,
         c.degenerate_faces,
-        peak_mib(),
+        c.quality.min_angle,
+        c.quality.min_angle_p1,
     ))
 }
 

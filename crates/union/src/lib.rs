@@ -46,6 +46,7 @@ mod parts;
 mod places;
 mod region;
 mod report;
+mod sheets;
 mod smooth;
 mod splice;
 mod tidy;

@@ -47,6 +47,14 @@ pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionE
     let mut needles = options.needles;
     while !pairs.is_empty() && report.rounds < options.rounds {
         report.rounds += 1;
+        if report.rounds > EXACT_ROUNDS {
+            let times = f64::from(report.rounds - EXACT_ROUNDS);
+            report.parted += touch::press_all(&mut work, &pairs, times);
+            pairs = crossings_of_changed(&work);
+            if pairs.is_empty() {
+                break;
+            }
+        }
         let faces = touch::faces(&work, &pairs);
         cut(&mut work, &pairs)?;
         let last = report.rounds == options.rounds;
@@ -90,6 +98,9 @@ fn first_pairs(work: &Work) -> Result<Vec<[u32; 2]>, UnionError> {
         Err(UnionError::TooMany(search.pairs.len()))
     }
 }
+
+/// Rounds after which crossings are no longer cut only, but pressed apart too. Real cells need two at most.
+const EXACT_ROUNDS: u32 = 2;
 
 /// Most rings of neighbors that an arrangement is tried with.
 const MOST_RINGS: u32 = 4;

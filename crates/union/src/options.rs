@@ -5,7 +5,8 @@ use thiserror::Error;
 /// What a union is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnionOptions {
-    /// How often the surface may be cut: rounding can make new crossings, seldom more than once.
+    /// How often the surface may be cut: rounding can make new crossings, seldom more than once. From the third
+    /// time on, what crosses is pressed in a little beforehand.
     pub rounds: u32,
     /// Faces at seams are tidied if their height or shortest side is below this share of the local radius;
     /// 0 leaves them.
@@ -19,7 +20,7 @@ impl Default for UnionOptions {
     /// What gave meshes without crossings that TetGen takes on real cells.
     fn default() -> Self {
         Self {
-            rounds: 4,
+            rounds: 8,
             needles: 0.05,
             smoothing: 0.4,
         }

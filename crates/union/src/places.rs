@@ -65,8 +65,9 @@ struct Ball {
     section: i32,
 }
 
-fn balls(work: &Work, face: u32) -> [Ball; 3] {
-    work.triangles[face as usize].map(|corner| {
+/// The two balls furthest apart of those that the corners of a face are on: on a tube, a piece of its axis.
+fn axis(work: &Work, face: u32) -> [Ball; 2] {
+    let [a, b, c] = work.triangles[face as usize].map(|corner| {
         let vertex = &work.vertices[corner as usize];
         let radius = f64::from(vertex.radius);
         Ball {
@@ -75,7 +76,35 @@ fn balls(work: &Work, face: u32) -> [Ball; 3] {
             point: vertex.point,
             section: vertex.section,
         }
-    })
+    });
+    let far = |a: &Ball, b: &Ball| a.center.distance_squared(b.center);
+    let lengths = [far(&a, &b), far(&b, &c), far(&c, &a)];
+    let longest = lengths.iter().copied().fold(0.0, f64::max);
+    if lengths[0] == longest {
+        [a, b]
+    } else if lengths[1] == longest {
+        [b, c]
+    } else {
+        [c, a]
+    }
+}
+
+/// Where two segments are closest, as shares of their ways (C. Ericson, Real-Time Collision Detection, 2005,
+/// 5.1.9).
+fn closest([p, q]: [DVec3; 2], [r, s]: [DVec3; 2]) -> [f64; 2] {
+    let (along, across, from) = (q - p, s - r, p - r);
+    let (a, e, f) = (along.dot(along), across.dot(across), across.dot(from));
+    let (b, c) = (along.dot(across), along.dot(from));
+    let share = |of: f64, by: f64| {
+        if by > 0.0 {
+            (of / by).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    };
+    let on_first = share(b * f - c * e, a * e - b * b);
+    let on_second = share(b * on_first + f, e);
+    [share(b * on_second - c, a), on_second]
 }
 
 /// A place, and how wide (µm) both surfaces are there together.
@@ -87,18 +116,27 @@ fn place(work: &Work, pairs: &[[u32; 2]], neighbors: &BTreeSet<[i32; 2]>) -> (Pl
         for face in [a, b] {
             sum += work.corners(face).iter().sum::<DVec3>() / 3.0;
         }
-        for one in balls(work, a) {
-            for other in balls(work, b) {
-                let thinner = one.radius.min(other.radius);
-                width = width.max(2.0 * (one.radius + other.radius));
-                let overlap = one.radius + other.radius - one.center.distance(other.center);
-                let depth = overlap.clamp(0.0, 2.0 * thinner.max(0.0));
-                if deepest.is_none_or(|(most, ..)| depth > most) {
-                    let (points, sections) =
-                        ([one.point, other.point], [one.section, other.section]);
-                    deepest = Some((depth, thinner, points, sections));
-                }
-            }
+        let [one, other] = [axis(work, a), axis(work, b)];
+        let places = closest(
+            one.each_ref().map(|ball| ball.center),
+            other.each_ref().map(|ball| ball.center),
+        );
+        let at = |[from, to]: &[Ball; 2], share: f64| {
+            let center = from.center.lerp(to.center, share);
+            (center, from.radius + share * (to.radius - from.radius))
+        };
+        let ((center, radius), (far, wide)) = (at(&one, places[0]), at(&other, places[1]));
+        let thinner = radius.min(wide).max(0.0);
+        width = width.max(2.0 * (radius + wide));
+        let depth = (radius + wide - center.distance(far)).clamp(0.0, 2.0 * thinner);
+        if deepest.is_none_or(|(most, ..)| depth > most) {
+            let nearest = |ends: &[Ball; 2], share: f64| {
+                let end = &ends[usize::from(share > 0.5)];
+                (end.point, end.section)
+            };
+            let (first, second) = (nearest(&one, places[0]), nearest(&other, places[1]));
+            let (points, sections) = ([first.0, second.0], [first.1, second.1]);
+            deepest = Some((depth, thinner, points, sections));
         }
     }
     let (depth, thinner, points, sections) = deepest.unwrap_or_default();

@@ -69,8 +69,8 @@ pub struct Place {
     pub points: [i32; 2],
     /// Their sections.
     pub sections: [i32; 2],
-    /// How deep (µm) one surface is within the other: an estimate, from the balls whose skin the faces
-    /// are. 0 if the vertices have no radius.
+    /// How deep (µm) one surface is within the other: an estimate, from the axes of the tubes whose
+    /// skin the faces are. 0 if the vertices have no radius.
     pub depth: f64,
     /// That depth in radii of the thinner one.
     pub relative_depth: f64,

@@ -100,27 +100,42 @@ fn around(work: &Work, vertices: &[u32]) -> Vec<(u32, Around)> {
         .collect()
 }
 
-/// Of the mean distance to its neighbors, how far a vertex is pressed in; by eye.
+/// Of the radius and of the mean distance to its neighbors, how far a vertex is pressed in; by eye.
 const PRESS: f64 = 1e-3;
 
 /// Where faces touch without crossing there is nothing to cut: their corners are pressed in a little. `pairs`
 /// are the faces that still meet, `before` what [`faces`] was before the cut. Returns how many vertices were
 /// moved.
 pub(crate) fn press(work: &mut Work, pairs: &[[u32; 2]], before: &HashSet<FaceKey>) -> usize {
-    let uncut = |face: u32| before.contains(&face_key(work, face));
-    let mut vertices: Vec<u32> = pairs
-        .iter()
-        .filter(|pair| pair.iter().all(|&face| uncut(face)))
-        .flatten()
-        .flat_map(|&face| work.triangles[face as usize])
-        .collect();
+    let uncut = |face: &u32| before.contains(&face_key(work, *face));
+    let stuck = pairs.iter().filter(|pair| pair.iter().all(uncut));
+    let faces: Vec<u32> = stuck.flatten().copied().collect();
+    press_corners(work, &faces, 1.0)
+}
+
+/// Presses the corners of all faces that meet in, `times` as far: sheets nearer to one another than 32 bits
+/// tell apart cross anew whenever they are cut and rounded.
+pub(crate) fn press_all(work: &mut Work, pairs: &[[u32; 2]], times: f64) -> usize {
+    let faces: Vec<u32> = pairs.iter().flatten().copied().collect();
+    press_corners(work, &faces, times)
+}
+
+fn press_corners(work: &mut Work, faces: &[u32], times: f64) -> usize {
+    let corners = faces.iter().flat_map(|&face| work.triangles[face as usize]);
+    let mut vertices: Vec<u32> = corners.collect();
     vertices.sort_unstable();
     vertices.dedup();
     for (vertex, around) in around(work, &vertices) {
         let at = work.position(vertex);
+        let radius = f64::from(work.vertices[vertex as usize].radius);
+        let reach = if radius > 0.0 {
+            around.reach.min(radius)
+        } else {
+            around.reach
+        };
         // At least some steps of what 32 bits tell apart.
         let least = 8.0 * f64::from(f32::EPSILON * at.abs().max_element());
-        let by = (PRESS * around.reach).max(least);
+        let by = times * (PRESS * reach).max(least);
         let inwards = -around.normal.try_normalize().unwrap_or_default();
         work.vertices[vertex as usize].position = (at.as_dvec3() + by * inwards).as_vec3();
         work.fresh[vertex as usize] = true;

@@ -136,6 +136,41 @@ fn a_body_inside_out_takes_its_part_of_another() {
     assert_near(report.volume, 64.0 - 0.9 * 0.8 * 2.7, 1e-6);
 }
 
+/// A beam, and a slab inside out through it at a place.
+fn cut_beam(x: f32) -> SurfaceMesh {
+    let slab = brick([x, -1.0, -1.2], [x + 1.0, 2.0, 2.3]);
+    let mut mesh = together(&[brick([0.0; 3], [10.0, 1.0, 1.0]), inverted(slab)]);
+    mesh.vertices
+        .iter_mut()
+        .for_each(|vertex| vertex.radius = 0.5);
+    mesh
+}
+
+#[test]
+fn a_piece_with_a_volume_that_is_cut_off_stays_and_is_told() {
+    let (union, report) = merged(&cut_beam(4.0), &BARE);
+    assert_eq!(report.components, 2);
+    assert_near(report.volume, 9.0, 1e-6);
+    assert!(union.report.dropped.is_empty());
+    let [part] = union.report.cut_off[..] else {
+        panic!("{:?}", union.report.cut_off);
+    };
+    assert_eq!(part.why, Why::CutOff);
+    assert_near(part.volume, 4.0, 1e-6);
+}
+
+#[test]
+fn a_splinter_is_left_out_and_told() {
+    let (union, report) = merged(&cut_beam(5e-4), &BARE);
+    assert_eq!(report.components, 1);
+    let [part] = union.report.dropped[..] else {
+        panic!("{:?}", union.report.dropped);
+    };
+    assert_eq!(part.why, Why::Tiny);
+    assert_near(part.volume, 5e-4, 1e-3);
+    assert!(union.report.cut_off.is_empty());
+}
+
 #[test]
 fn bodies_with_a_common_face_become_one() {
     let bodies = [

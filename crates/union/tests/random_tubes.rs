@@ -58,6 +58,34 @@ fn lattice_line() -> impl Strategy<Value = Vec<[f32; 3]>> {
     })
 }
 
+/// A soak found it: sheets so near to one another that rounding made them cross after each cut.
+#[test]
+fn sheets_that_nearly_coincide_are_pressed_apart() {
+    let lines = [
+        vec![[0.0, 2.0, 0.0], [0.0, 0.0, 0.0]],
+        vec![[0.0, 0.0, -2.0], [2.0, 0.0, 0.0]],
+        vec![[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        vec![
+            [2.0, 0.0, -2.0],
+            [4.0, 0.0, 2.0],
+            [0.0, 0.0, -2.0],
+            [4.0, 0.0, 0.0],
+        ],
+        vec![[2.0, -2.0, -2.0], [4.0, 0.0, 0.0]],
+    ];
+    merged(&tubes(&lines, 8), &UnionOptions::default());
+}
+
+/// A soak found it: a tube that folds onto itself touches along an edge whose ends are one fan each.
+#[test]
+fn an_edge_of_four_faces_becomes_two() {
+    let lines = [
+        vec![[0.0, -2.0, -4.0], [0.0, -2.0, 0.0]],
+        vec![[0.0, 0.0, -4.0], [0.0, -2.0, -4.0], [2.0, 0.0, -4.0]],
+    ];
+    merged(&tubes(&lines, 3), &UnionOptions::default());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 

@@ -122,7 +122,7 @@ pub(crate) fn inverted(mut mesh: SurfaceMesh) -> SurfaceMesh {
 
 /// No tidying and no smoothing: the union itself.
 pub(crate) const BARE: UnionOptions = UnionOptions {
-    rounds: 4,
+    rounds: 8,
     needles: 0.0,
     smoothing: 0.0,
 };
