@@ -24,8 +24,9 @@ const LEAST_BEYOND: f64 = 0.5;
 /// Least way between a ring and a fork or an end beyond it, in radii of the thicker one.
 const LEAST_WAY: f64 = 1.5;
 /// A neurite whose radius is at most this share of its soma's leaves it through an inset: pulled to a
-/// ring this small, a quad of the soma would crease.
-const THIN: f64 = 0.2;
+/// ring this small, a quad of the soma creases like a star. Thicker ones pull the soma out towards them,
+/// as in García-Cantero et al. 2017; at 0.2 most real somata would stay plain spheres.
+const THIN: f64 = 0.1;
 /// Height of an inset's corners over the soma, in radii of the neurite.
 pub(crate) const SOMA_LIFT: f64 = 0.4;
 /// A path that turns back towards the soma ends a ring's way: least cosine to the ray.
