@@ -287,6 +287,7 @@ mod tests {
             direction: direction.normalize_or_zero(),
             distance: 1.2,
             radius,
+            inset: false,
         }
     }
 
