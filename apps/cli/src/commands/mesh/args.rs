@@ -25,7 +25,8 @@ use crate::options::types::Types;
   neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
-and radius (µm).")]
+and radius (µm). In MSH (Gmsh) each section is a surface and each type a physical group; in POLY and
+SMESH (TetGen) facets are marked by type.")]
 pub(crate) struct MeshArgs {
     /// Morphology files, folders (searched recursively) or globs, - for standard input; or one
     /// circuit, whose cells are written in its coordinates
@@ -77,7 +78,8 @@ pub(crate) struct MeshArgs {
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,
-    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu
+    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu, msh,
+    /// poly, smesh
     #[arg(long, value_name = "FORMAT", help_heading = "Output")]
     pub(crate) format: Option<Format>,
     /// Quads instead of triangles (ply, obj, off, vtu)

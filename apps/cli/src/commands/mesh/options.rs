@@ -96,13 +96,15 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     }
     if is_standard(out) && args.format.is_none() {
         return usage(
-            "standard output has no extension: say --format ply, obj, stl, glb, off or vtu",
+            "standard output has no extension: say --format ply, obj, stl, glb, off, vtu, msh, \
+             poly or smesh",
         );
     }
     match (args.format, from_name) {
         (Some(format), _) | (None, Ok(format)) => Ok(format),
         (None, Err(_)) => usage(format!(
-            "{} has no extension of a mesh: use .ply, .obj, .stl, .glb, .off or .vtu, or --format",
+            "{} has no extension of a mesh: use .ply, .obj, .stl, .glb, .off, .vtu, .msh, \
+             .poly or .smesh, or --format",
             out.display()
         )),
     }
