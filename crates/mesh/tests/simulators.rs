@@ -150,7 +150,7 @@ fn gmsh_faults_name_their_place() {
     };
     for (from, to, message) in [
         ("4.1 0 8", "2.2 0 8", "line 2: MSH version '2.2'"),
-        ("2 2 3 9\n3 1", "2 2 3 8\n3 1", "line 29: node 8"),
+        ("2 2 3 9\n3 1", "2 2 3 8\n3 1", "line 27: node 8"),
         ("3\n5\n9\n0 0 0", "3\n5\n5\n0 0 0", "node 5 a second time"),
         ("3 1 4 1\n3 20", "3 1 99 1\n3 20", "element type 99"),
         ("$EndElements\n", "", "its $End is missing"),

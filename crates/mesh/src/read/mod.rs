@@ -9,6 +9,7 @@ mod builder;
 mod glb;
 mod lines;
 mod msh;
+mod numbers;
 mod obj;
 mod off;
 mod ply;

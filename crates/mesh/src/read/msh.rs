@@ -10,18 +10,14 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::builder::Builder;
+use super::numbers::{Encoding, Numbers};
 use super::regions::{Region, Regions};
 use super::{FilePosition, ReadError, malformed, shown};
-use crate::{SurfaceMesh, SurfaceVertex, type_of_region};
+use crate::{SurfaceMesh, type_of_region};
 
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
     let mut file = File {
-        input: Input {
-            bytes,
-            at: 0,
-            line: 1,
-            encoding: Encoding::Text,
-        },
+        input: Numbers::of(bytes),
         ours: false,
         codes: HashMap::new(),
         indices: HashMap::new(),
@@ -34,7 +30,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
 }
 
 struct File<'a> {
-    input: Input<'a>,
+    input: Numbers<'a>,
     /// Written by neurotess: entities are sections, physical groups are types.
     ours: bool,
     /// Physical groups of surfaces, by the tag of the surface.
@@ -229,7 +225,7 @@ impl File<'_> {
             index[n] = builder.vertex_count() as u32;
             if used[n] {
                 let vertex = regions.vertex(n);
-                builder.vertex(at, position, SurfaceVertex { ..vertex })?;
+                builder.vertex(at, position, vertex)?;
             }
         }
         for (corners, face) in corners() {
@@ -277,150 +273,4 @@ fn nodes_of(kind: i32, at: FilePosition) -> Result<usize, ReadError> {
             });
         }
     })
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Encoding {
-    Text,
-    Little,
-    Big,
-}
-
-/// Numbers of the file, whatever its encoding.
-struct Input<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    /// In text, the number of the line.
-    line: usize,
-    encoding: Encoding,
-}
-
-impl<'a> Input<'a> {
-    fn place(&self) -> FilePosition {
-        match self.encoding {
-            Encoding::Text => FilePosition::Line(self.line),
-            _ => FilePosition::Byte(self.at),
-        }
-    }
-
-    /// Skips white space, and the rest of a line that holds something else, up to a line that begins
-    /// a section.
-    fn next_section(&mut self) -> Option<&'a [u8]> {
-        while self.at < self.bytes.len() {
-            let line = self.line_of_text();
-            if line.starts_with(b"$") {
-                return Some(line.trim_ascii_end());
-            }
-        }
-        None
-    }
-
-    /// Goes behind the line that ends a section.
-    fn leave(&mut self, section: &[u8]) -> Result<(), ReadError> {
-        let mut end = b"$End".to_vec();
-        end.extend_from_slice(&section[1..]);
-        while self.at < self.bytes.len() {
-            if self.line_of_text().trim_ascii() == end {
-                return Ok(());
-            }
-        }
-        Err(ReadError::Truncated {
-            at: self.place(),
-            what: "a section: its $End is missing",
-        })
-    }
-
-    /// What stands before the end of a section, as text.
-    fn rest_of_section(&self) -> String {
-        let rest = self.bytes.get(self.at..).unwrap_or_default();
-        let end = rest.iter().position(|&byte| byte == b'$');
-        String::from_utf8_lossy(&rest[..end.unwrap_or(rest.len())]).into_owned()
-    }
-
-    /// The rest of the line, without its end; goes to the next one.
-    fn line_of_text(&mut self) -> &'a [u8] {
-        let rest = self.bytes.get(self.at..).unwrap_or_default();
-        let length = rest.iter().position(|&byte| byte == b'\n');
-        self.at += length.map_or(rest.len(), |length| length + 1);
-        self.line += 1;
-        &rest[..length.unwrap_or(rest.len())]
-    }
-
-    fn end_of_line(&mut self) {
-        self.line_of_text();
-    }
-
-    /// The next word of a text.
-    fn word(&mut self) -> Result<&'a [u8], ReadError> {
-        let bytes = self.bytes;
-        while bytes.get(self.at).is_some_and(u8::is_ascii_whitespace) {
-            self.line += usize::from(bytes[self.at] == b'\n');
-            self.at += 1;
-        }
-        let rest = bytes.get(self.at..).unwrap_or_default();
-        let length = rest.iter().position(u8::is_ascii_whitespace);
-        let word = &rest[..length.unwrap_or(rest.len())];
-        if word.is_empty() {
-            let at = self.place();
-            return Err(ReadError::Truncated {
-                at,
-                what: "the numbers",
-            });
-        }
-        self.at += word.len();
-        Ok(word)
-    }
-
-    fn take(&mut self, count: usize, what: &'static str) -> Result<&'a [u8], ReadError> {
-        let at = self.place();
-        let end = self.at.saturating_add(count);
-        let taken = self.bytes.get(self.at..end);
-        self.at = end.min(self.bytes.len());
-        taken.ok_or(ReadError::Truncated { at, what })
-    }
-
-    fn whole<T: std::str::FromStr>(&mut self) -> Result<T, ReadError> {
-        let word = self.word()?;
-        super::lines::whole(Some(word), self.place())
-    }
-
-    fn int(&mut self) -> Result<i32, ReadError> {
-        if self.encoding == Encoding::Text {
-            return self.whole();
-        }
-        let bytes = self.array()?;
-        Ok(match self.encoding {
-            Encoding::Big => i32::from_be_bytes(bytes),
-            _ => i32::from_le_bytes(bytes),
-        })
-    }
-
-    fn size(&mut self) -> Result<u64, ReadError> {
-        if self.encoding == Encoding::Text {
-            return self.whole();
-        }
-        self.eight_bytes()
-    }
-
-    fn real(&mut self) -> Result<f64, ReadError> {
-        if self.encoding == Encoding::Text {
-            let word = self.word()?;
-            return super::lines::number(Some(word), self.place());
-        }
-        self.eight_bytes().map(f64::from_bits)
-    }
-
-    fn eight_bytes(&mut self) -> Result<u64, ReadError> {
-        let bytes = self.array()?;
-        Ok(match self.encoding {
-            Encoding::Big => u64::from_be_bytes(bytes),
-            _ => u64::from_le_bytes(bytes),
-        })
-    }
-
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], ReadError> {
-        let mut array = [0; N];
-        array.copy_from_slice(self.take(N, "the numbers")?);
-        Ok(array)
-    }
 }

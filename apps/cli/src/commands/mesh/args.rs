@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use neurotess::mesh::Format;
+use neurotess::mesh::{Format, Unit};
 
 use crate::options::cells::CellArgs;
 use crate::options::numbers::positive;
@@ -21,6 +21,7 @@ use crate::options::types::Types;
   neurotess mesh cell.swc -o cell.ply --poisson 0.1 --ring 1=0.5 --ring 2=1.5
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
+  neurotess mesh cell.swc -o cell.msh --unit m --table cell.csv
   neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
   neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
 
@@ -85,6 +86,14 @@ pub(crate) struct MeshArgs {
     /// Quads instead of triangles (ply, obj, off, vtu)
     #[arg(long, help_heading = "Output")]
     pub(crate) quads: bool,
+    /// Unit of coordinates and radii in OUT
+    #[arg(long, value_enum, default_value_t = UnitArg::Um, value_name = "UNIT",
+          help_heading = "Output")]
+    pub(crate) unit: UnitArg,
+    /// Also write a row for each triangle: its sample, section, place along the section and SWC type
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["quads", "resume", "shard"],
+          help_heading = "Output")]
+    pub(crate) table: Option<PathBuf>,
     /// Do every N-th input only, from the I-th on, 1 ≤ I ≤ N
     #[arg(long, value_name = "I/N", help_heading = "Many inputs")]
     pub(crate) shard: Option<Shard>,
@@ -127,6 +136,24 @@ pub(crate) enum SphereArg {
     Octahedron,
     /// Six faces of quads
     Cube,
+}
+
+/// `--unit`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum UnitArg {
+    /// Micrometers, as in the tracing
+    Um,
+    /// Meters: SI, as STEPS wants them
+    M,
+}
+
+impl UnitArg {
+    pub(crate) fn unit(self) -> Unit {
+        match self {
+            Self::Um => Unit::Micrometer,
+            Self::M => Unit::Meter,
+        }
+    }
 }
 
 fn poisson(text: &str) -> Result<f64, String> {

@@ -7,15 +7,16 @@ use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
-use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
+use neurotess::mesh::{self as surfaces, CoarseMesh, InUnit, Placed, Surface, Unit, WriteError};
+use neurotess::morphology::Morphology;
 use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
 use super::observed::Observed;
 use super::options::MeshOptions;
-use super::size;
+use super::{size, table};
 use crate::io::morphologies::read_morphology;
-use crate::io::output::{Output, OutputError};
+use crate::io::output::{Output, OutputError, begin};
 use crate::io::targets::Job;
 use crate::report::{Failure, Progress, Reporter};
 
@@ -82,6 +83,8 @@ pub(crate) struct Prepared {
     generated: Generated,
     read: Vec<formats::Warning>,
     seconds: Seconds,
+    /// The tracing, if a table is to tell where on it triangles are.
+    morphology: Option<Morphology>,
     /// Center of the soma in the tracing's coordinates (µm).
     pub(crate) soma_center: DVec3,
 }
@@ -93,15 +96,40 @@ impl Prepared {
     }
 }
 
-/// Generates the mesh of one cell and writes it into a temporary file.
+/// A cell in temporary files.
+pub(super) struct Made {
+    pub(super) report: CellReport,
+    pub(super) mesh: Output,
+    /// The table of triangles, if there is to be one.
+    pub(super) table: Option<Output>,
+}
+
+/// Generates the mesh of one cell and writes it, with its table if there is to be one.
 pub(super) fn mesh(
     job: &Job,
     options: &MeshOptions,
     output: Output,
     watchers: Watchers<'_>,
-) -> Result<(CellReport, Output), Failure> {
+) -> Result<Made, Failure> {
+    let file = job.input.display();
+    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    // Before the work: it may be in the way.
+    let path = options.table.as_deref();
+    let table = path.map(|path| begin(path, options.force)).transpose();
+    let mut table = table.map_err(failed)?;
     let prepared = prepare(&job.input, options)?;
-    finish(&prepared, options, &job.out, output, None, watchers)
+    let (report, mesh) = finish(&prepared, options, &job.out, output, None, watchers)?;
+    if let (Some(path), Some(table)) = (path, &mut table)
+        && let Some(morphology) = &prepared.morphology
+    {
+        let surface = surface(prepared.mesh(), options);
+        table::write(&*surface, morphology, table.file()).map_err(|e| failed(broken(path, e)))?;
+    }
+    Ok(Made {
+        report,
+        mesh,
+        table,
+    })
 }
 
 /// What is informed while a cell is written.
@@ -139,6 +167,7 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
         file,
         generated,
         soma_center: soma_center(&read.morphology),
+        morphology: options.table.is_some().then_some(read.morphology),
         read: read.warnings,
         seconds,
     })
@@ -204,32 +233,22 @@ fn write(
     seconds: &mut Seconds,
 ) -> Result<Written, Failure> {
     let clock = Instant::now();
-    let refinement;
-    let coarse;
-    let surface: &dyn Surface = match options.lod {
-        Some(lod) => {
-            refinement = Refinement::new(mesh, lod, &options.refine);
-            &refinement
-        }
-        None => {
-            coarse = CoarseSurface::new(mesh, options.format.has_quads());
-            &coarse
-        }
-    };
+    let surface = surface(mesh, options);
+    let surface: &dyn Surface = &*surface;
     let placed = world_from_cell.map(|placed| Placed::new(surface, placed));
     let surface: &dyn Surface = placed.as_ref().map_or(surface, |placed| placed);
+    let scaled = InUnit::new(surface, options.unit);
+    let surface: &dyn Surface = match options.unit {
+        Unit::Micrometer => surface,
+        Unit::Meter => &scaled,
+    };
     let planned = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
     size::tell(surface, options.format, out, watchers.reporter)?;
     let observed = Observed::new(surface, watchers.progress);
-    surfaces::write(&observed, options.format, output.file()).map_err(|e| {
-        let broken = match e {
-            surfaces::WriteError::Io(e) => OutputError::broken(out, e),
-            other => OutputError::broken(out, std::io::Error::other(other)),
-        };
-        Failure(broken.to_string())
-    })?;
+    surfaces::write(&observed, options.format, output.file())
+        .map_err(|e| Failure(broken(out, e).to_string()))?;
     let pass = clock.elapsed().as_secs_f64();
     let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
     seconds.refine = planned + blocks;
@@ -241,7 +260,22 @@ fn write(
     })
 }
 
-/// Volume and area of the written mesh.
+fn broken(out: &Path, error: WriteError) -> OutputError {
+    match error {
+        WriteError::Io(e) => OutputError::broken(out, e),
+        other => OutputError::broken(out, std::io::Error::other(other)),
+    }
+}
+
+/// The surface of a cell in the tracing's own coordinates (µm).
+pub(super) fn surface<'m>(mesh: &'m CoarseMesh, options: &MeshOptions) -> Box<dyn Surface + 'm> {
+    match options.lod {
+        Some(lod) => Box::new(Refinement::new(mesh, lod, &options.refine)),
+        None => Box::new(CoarseSurface::new(mesh, options.format.has_quads())),
+    }
+}
+
+/// Volume (µm³) and area (µm²) of the written mesh.
 fn measure(mesh: &CoarseMesh, options: &MeshOptions) -> (f64, f64) {
     match options.lod {
         Some(lod) => Refinement::new(mesh, lod, &options.refine).volume_and_area(),

@@ -12,7 +12,7 @@ use std::time::Instant;
 use neurotess::circuit::{Circuit, Instance};
 
 use super::args::MeshArgs;
-use super::cell::{self, NodeName, Watchers};
+use super::cell::{self, Made, NodeName, Watchers};
 use super::circuit_glb;
 use super::entry::{self, Entry};
 use super::messages::{summarize, tell};
@@ -179,9 +179,13 @@ fn mesh_all(
                     let out = &instance_job.job.out;
                     let written =
                         cell::finish(prepared, options, out, output, Some(placed), watchers);
-                    written.map(|(mut cell, output)| {
-                        cell.node = Some(instance_job.node.clone());
-                        (cell, output)
+                    written.map(|(mut report, mesh)| {
+                        report.node = Some(instance_job.node.clone());
+                        Made {
+                            report,
+                            mesh,
+                            table: None,
+                        }
                     })
                 }
                 Err(failure) => Err(Failure(format!(

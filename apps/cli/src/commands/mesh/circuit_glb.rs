@@ -6,7 +6,6 @@ use std::time::Instant;
 
 use neurotess::circuit::{Circuit, Instance};
 use neurotess::mesh::{Format, GlbNode, Surface, WriteError, write_glb};
-use neurotess::refine::{CoarseSurface, Refinement};
 use serde::Serialize;
 
 use super::args::MeshArgs;
@@ -69,7 +68,7 @@ pub(super) fn run(
     }
     let surfaces = prepared
         .values()
-        .map(|prepared| surface(prepared, &options));
+        .map(|prepared| cell::surface(prepared.mesh(), &options));
     let surfaces: Vec<Box<dyn Surface + '_>> = surfaces.collect();
     let surfaces: Vec<&dyn Surface> = surfaces.iter().map(|surface| &**surface).collect();
     let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
@@ -78,8 +77,8 @@ pub(super) fn run(
         .map(|instance| GlbNode {
             name: name(circuit, instance),
             surface: numbers[&instance.template.0],
-            world_from_surface: instance
-                .world_from_cell(prepared[&instance.template.0].soma_center),
+            world_from_surface: options.unit.unit_from_um()
+                * instance.world_from_cell(prepared[&instance.template.0].soma_center),
         })
         .collect();
     let mut output = Output::create(out, existing(options.force))?;
@@ -139,14 +138,6 @@ fn prepare_all(
         }
     }
     Ok(prepared)
-}
-
-fn surface<'p>(prepared: &'p Prepared, options: &MeshOptions) -> Box<dyn Surface + 'p> {
-    let mesh = prepared.mesh();
-    match options.lod {
-        Some(lod) => Box::new(Refinement::new(mesh, lod, &options.refine)),
-        None => Box::new(CoarseSurface::new(mesh, false)),
-    }
 }
 
 fn name(circuit: &Circuit, instance: &Instance) -> String {

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use neurotess::mesh::{Faces, Surface, SurfaceVertex};
+use neurotess::mesh::{Faces, Surface, SurfaceVertex, Unit};
 
 use crate::report::Progress;
 
@@ -46,6 +46,10 @@ impl<'a> Observed<'a> {
 impl Surface for Observed<'_> {
     fn origin(&self) -> glam::DVec3 {
         self.surface.origin()
+    }
+
+    fn unit(&self) -> Unit {
+        self.surface.unit()
     }
 
     fn vertex_count(&self) -> usize {

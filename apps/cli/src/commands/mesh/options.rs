@@ -1,7 +1,9 @@
 //! From the command line's options to the library's.
 
+use std::path::PathBuf;
+
 use neurotess::generate::{GenerateOptions, SphereKind};
-use neurotess::mesh::Format;
+use neurotess::mesh::{Format, Unit};
 use neurotess::refine::{Caps, LodCriterion, Path, RefineOptions};
 
 use super::args::{CapsArg, MeshArgs, PathArg, SphereArg};
@@ -19,6 +21,9 @@ pub(crate) struct MeshOptions {
     pub(crate) lod: Option<LodCriterion>,
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
+    pub(crate) unit: Unit,
+    /// Where a row for each triangle goes.
+    pub(crate) table: Option<PathBuf>,
     pub(crate) force: bool,
     /// Whether volume and area are measured, which takes a pass over the surface.
     pub(crate) measure: bool,
@@ -33,7 +38,9 @@ impl MeshOptions {
             lod,
             refine,
             format,
+            unit,
             strict: _,
+            table: _,
             force: _,
             measure: _,
         } = self;
@@ -42,7 +49,11 @@ impl MeshOptions {
             Some(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
             Some(other) => format!("{other:?}"),
         };
-        format!("{lod} {generate:?} {refine:?} {format:?}")
+        let unit = match unit {
+            Unit::Micrometer => "",
+            Unit::Meter => " Meter",
+        };
+        format!("{lod} {generate:?} {refine:?} {format:?}{unit}")
     }
 
     /// Checks the options together and translates them.
@@ -58,6 +69,11 @@ impl MeshOptions {
             (None, 0) => None,
             (None, level) => Some(LodCriterion::Homogeneous(level)),
         };
+        if args.table.is_some() && lod.is_none() && format.has_quads() {
+            return usage(format!(
+                "--table counts triangles, and level 0 of {format} is quads: use --level 1, or msh"
+            ));
+        }
         Ok(Self {
             strict: args.strict,
             generate: generate(args)?,
@@ -74,6 +90,8 @@ impl MeshOptions {
                 quads: args.quads,
             },
             format,
+            unit: args.unit.unit(),
+            table: args.table.clone(),
             force: args.out.force,
             measure,
         })
@@ -156,6 +174,8 @@ mod tests {
             lod: Some(LodCriterion::Homogeneous(4)),
             refine: RefineOptions::default(),
             format: Format::Ply,
+            unit: Unit::Micrometer,
+            table: None,
             force: false,
             measure: false,
         };
@@ -176,7 +196,9 @@ mod tests {
              RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
         );
         options.lod = Some(LodCriterion::MaxError(0.05));
+        options.unit = Unit::Meter;
         let text = options.fingerprint();
+        assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
     }
 }
