@@ -109,7 +109,7 @@ def with_gmsh(path):
     """Gmsh reads the file as a model: sections are its surfaces, types their physical groups."""
     import gmsh
 
-    gmsh.initialize(["gmsh", "-noenv"])
+    gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.open(str(path))
     nodes, points, _ = gmsh.model.mesh.getNodes()

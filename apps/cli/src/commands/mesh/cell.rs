@@ -246,7 +246,7 @@ fn write(
 
     let clock = Instant::now();
     size::tell(surface, options.format, out, watchers.reporter)?;
-    let observed = Observed::new(surface, watchers.progress);
+    let observed = Observed::new(surface, options.format, watchers.progress);
     surfaces::write(&observed, options.format, output.file())
         .map_err(|e| Failure(broken(out, e).to_string()))?;
     let pass = clock.elapsed().as_secs_f64();
