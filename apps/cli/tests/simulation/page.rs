@@ -111,11 +111,11 @@ fn the_page_runs_from_tracing_to_calcium() {
     let filled = check(&read(&out.join("gmsh.msh")).expect("Gmsh's file"));
     assert_eq!(filled.triangles, surface.triangles);
     assert!(filled.closed && filled.oriented && filled.vertices == surface.vertices);
-    steps_file_is_in_meters(&out.join("steps.msh"), surface.volume * 1e-18);
+    tetrahedra_are_in_meters(&out.join("steps.msh"), surface.volume * 1e-18);
 }
 
-/// meshio and Gmsh read the file for STEPS: the group of the tetrahedra, and their volume in m³.
-fn steps_file_is_in_meters(file: &Path, volume: f64) {
+/// meshio and Gmsh read a file in meters: the group of the tetrahedra, and their volume in m³.
+fn tetrahedra_are_in_meters(file: &Path, volume: f64) {
     let script = "
 import sys, meshio, numpy, gmsh
 mesh = meshio.read(sys.argv[1])
@@ -146,6 +146,27 @@ print(volume, *names)
     let mut names: Vec<&str> = words.collect();
     names.sort_unstable();
     assert_eq!(names, ["axon", "basal_dendrite", "intracellular", "soma"]);
+}
+
+#[neurotess_testing::test(needs(simulators))]
+fn surfaces_in_meters_are_filled() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let printed = run(
+        folder.path(),
+        "neurotess mesh samples/granule.swc --level 1 --unit m -o out/cell.msh\n\
+         neurotess mesh samples/granule.swc --level 1 -o out/um.msh\n\
+         python docs/simulation/fill_tetgen.py out/cell.msh out/tetgen.vtu\n\
+         python docs/simulation/fill_gmsh.py out/cell.msh out/gmsh.msh\n",
+    );
+    assert!(
+        printed.contains("TetGen: ") && printed.contains("Gmsh: "),
+        "{printed}"
+    );
+    let out = folder.path().join("out");
+    let um = check(&read(&out.join("um.msh")).expect("our file")).volume;
+    let filled = check(&read(&out.join("gmsh.msh")).expect("Gmsh's file"));
+    assert!(filled.closed && (filled.volume / (um * 1e-18) - 1.0).abs() < 1e-6);
+    tetrahedra_are_in_meters(&out.join("gmsh.msh"), um * 1e-18);
 }
 
 #[neurotess_testing::test(needs(tetgen_program))]

@@ -70,9 +70,10 @@ impl<'s> VertexBlocks<'s> {
             }
         }
         let made = blocks.into_iter().map(|block| {
-            let mut vertices = Vec::new();
+            let range = self.starts[block]..self.starts[block + 1];
+            let mut vertices = Vec::with_capacity(range.len());
             self.surface.vertices(block, &mut vertices);
-            (self.starts[block], vertices)
+            (range.start, vertices)
         });
         Corners(made.collect())
     }
