@@ -19,22 +19,31 @@ pub enum Format {
     Off,
     /// VTK unstructured grid, XML with raw binary data; normals and attributes.
     Vtu,
+    /// Gmsh 4.1, binary; triangles with a surface for each section and a physical group for each type.
+    Msh,
+    /// TetGen's piecewise linear complex, text; triangles with their type as facet marker.
+    Poly,
+    /// TetGen's simple form of it, with a line for each facet.
+    Smesh,
 }
 
 /// No format has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown mesh format '{0}': use ply, obj, stl, glb, off or vtu")]
+#[error("unknown mesh format '{0}': use ply, obj, stl, glb, off, vtu, msh, poly or smesh")]
 pub struct UnknownFormat(pub String);
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 9] = [
         Self::Ply,
         Self::Obj,
         Self::Stl,
         Self::Glb,
         Self::Off,
         Self::Vtu,
+        Self::Msh,
+        Self::Poly,
+        Self::Smesh,
     ];
 
     /// The extension of files, without a dot.
@@ -46,6 +55,9 @@ impl Format {
             Self::Glb => "glb",
             Self::Off => "off",
             Self::Vtu => "vtu",
+            Self::Msh => "msh",
+            Self::Poly => "poly",
+            Self::Smesh => "smesh",
         }
     }
 
@@ -57,7 +69,7 @@ impl Format {
 
     /// Whether files of this format can hold quads.
     pub fn has_quads(self) -> bool {
-        !matches!(self, Self::Stl | Self::Glb)
+        matches!(self, Self::Ply | Self::Obj | Self::Off | Self::Vtu)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3, Mat3};
 
-use crate::{Faces, Surface, SurfaceVertex};
+use crate::{Faces, Surface, SurfaceVertex, Unit};
 
 /// A surface under a rotation, a uniform scale and a translation. Nothing is copied: blocks are moved
 /// when they are asked for.
@@ -35,6 +35,10 @@ impl<'a> Placed<'a> {
 impl Surface for Placed<'_> {
     fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    fn unit(&self) -> Unit {
+        self.surface.unit()
     }
 
     fn vertex_count(&self) -> usize {

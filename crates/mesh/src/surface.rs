@@ -2,6 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::Unit;
+
 /// A vertex of a surface with the attributes that are exported.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceVertex {
@@ -33,6 +35,10 @@ pub struct Faces {
 pub trait Surface: Sync {
     /// What to add to every position to get the tracing's own coordinates (µm).
     fn origin(&self) -> DVec3;
+    /// The unit of positions and radii, which files name where they can.
+    fn unit(&self) -> Unit {
+        Unit::Micrometer
+    }
     /// Number of vertices of all blocks.
     fn vertex_count(&self) -> usize;
     /// Number of triangles of all blocks.

@@ -1,4 +1,4 @@
-//! Our files in the hands of others: trimesh, meshio and pygltflib must read what we wrote.
+//! Our files in the hands of others: trimesh, meshio, pygltflib, Gmsh and TetGen must read what we wrote.
 
 mod shapes;
 
@@ -16,8 +16,14 @@ fn python() -> Result<(), String> {
     python_with("trimesh").map(drop)
 }
 
+/// The need of the test of simulators.
+fn mesh_generators() -> Result<(), String> {
+    python_with("gmsh")?;
+    python_with("tetgen").map(drop)
+}
+
 /// What the readers say of files of a mesh in all formats.
-fn judge(python: &Path, name: &str, mesh: &SurfaceMesh) -> Vec<Value> {
+fn judge(python: &Path, flag: Option<&str>, name: &str, mesh: &SurfaceMesh) -> Vec<Value> {
     let folder = tempfile::tempdir().expect("a folder");
     let files = Format::ALL.map(|format| {
         let path = folder.path().join(format!("{name}.{format}"));
@@ -27,6 +33,7 @@ fn judge(python: &Path, name: &str, mesh: &SurfaceMesh) -> Vec<Value> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/read_meshes.py");
     let output = Command::new(python)
         .arg(script)
+        .args(flag)
         .args(files)
         .output()
         .expect("Python runs");
@@ -64,7 +71,10 @@ fn compare(mesh: &SurfaceMesh, results: &[Value]) {
             found == [Some(split), Some(0)] || found == whole,
             "{what}: {found:?}"
         );
-        if result["reader"] == "meshio" {
+        let keeps = result["file"]
+            .as_str()
+            .is_some_and(|file| !file.ends_with(".msh"));
+        if result["reader"] == "meshio" && keeps {
             assert_eq!(found, whole, "{what}");
         }
         assert_eq!(result["watertight"], true, "{what}");
@@ -114,17 +124,48 @@ fn others_read_what_we_write() {
     let python = python_with("trimesh").expect("the test has needs(python)");
     for origin in [DVec3::ZERO, DVec3::new(5000.125, -3000.5, 12000.0625)] {
         let mixed = torus(48, 16, origin);
-        let results = judge(&python, "mixed", &mixed);
-        assert_eq!(results.len(), 8);
+        let results = judge(&python, None, "mixed", &mixed);
+        assert_eq!(results.len(), 9);
         compare(&mixed, &results);
 
         let mut triangles = mixed.clone();
         for [a, b, c, d] in std::mem::take(&mut triangles.faces.quads) {
             triangles.faces.triangles.extend([[a, b, c], [a, c, d]]);
         }
-        let results = judge(&python, "triangles", &triangles);
-        assert_eq!(results.len(), 10);
+        let results = judge(&python, None, "triangles", &triangles);
+        assert_eq!(results.len(), 11);
         compare(&triangles, &results);
+    }
+}
+
+#[neurotess_testing::test(needs(mesh_generators))]
+fn mesh_generators_take_what_we_write() {
+    let python = python_with("gmsh").expect("the test has needs(mesh_generators)");
+    for origin in [DVec3::ZERO, DVec3::new(5000.125, -3000.5, 12000.0625)] {
+        let mut mesh = torus(48, 16, origin);
+        for vertex in &mut mesh.vertices {
+            vertex.kind = 1 + vertex.section % 4;
+        }
+        let results = judge(&python, Some("--simulators"), "mixed", &mesh);
+        assert_eq!(results.len(), 3);
+        compare(&mesh, &results);
+        for result in &results {
+            let found = &result["attributes"]["type"];
+            assert_eq!(
+                (found[0].as_f64(), found[1].as_f64()),
+                (Some(1.0), Some(4.0))
+            );
+        }
+        let sections = &results[0]["attributes"]["section"];
+        assert_eq!(results[0]["reader"], "gmsh");
+        assert_near(&sections[0], 0.0, 0.0, "section");
+        let vertices = &mesh.vertices;
+        let last = vertices.last().map_or(0.0, |last| f64::from(last.section));
+        assert!(
+            sections[1]
+                .as_f64()
+                .is_some_and(|found| found > 0.8 * last && found <= last)
+        );
     }
 }
 

@@ -199,6 +199,17 @@ fn blocks_leave_no_trace_in_binary_files() {
     }
 }
 
+/// Labels of faces are looked up in blocks that are made again: 77 vertices each, or all in one.
+#[test]
+fn blocks_leave_no_trace_in_files_with_types() {
+    let mesh = split(&torus(300, 200, DVec3::new(9000.5, 0.0, -1.0)));
+    for format in [Format::Msh, Format::Poly, Format::Smesh] {
+        let mut file = Cursor::new(Vec::new());
+        write(&Blocks(mesh.clone(), 77), format, &mut file).expect("memory");
+        assert!(file.into_inner() == written(&mesh, format), "{format}");
+    }
+}
+
 /// Announces what it likes.
 struct Claims {
     vertices: usize,
@@ -291,7 +302,7 @@ fn a_vertex_that_is_not_finite_is_an_error() {
 
 #[test]
 fn blocks_that_hold_less_than_announced_are_an_error() {
-    for format in [Format::Ply, Format::Obj, Format::Off, Format::Glb] {
+    for format in Format::ALL {
         let result = write(
             &Claims {
                 vertices: 3,

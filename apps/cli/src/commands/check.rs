@@ -19,11 +19,11 @@ use crate::report::{Entry, Failure, Reporter, place};
 A mesh that is not closed is a verdict, not a failure: the exit code is 0 if all could be read."
 )]
 pub(crate) struct CheckArgs {
-    /// Mesh files (ply, obj, stl, glb, off, vtu), folders (searched recursively) or globs; - for
-    /// standard input, with --format
+    /// Mesh files (ply, obj, stl, glb, off, vtu, msh, poly, smesh), folders (searched recursively)
+    /// or globs; - for standard input, with --format
     #[arg(required = true, value_name = "MESH")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu
+    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu, msh, poly, smesh
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
     /// Merge vertices of identical position first
@@ -57,8 +57,8 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
     let file = input.path.display().to_string();
     let read = match (is_standard(&input.path), args.format) {
         (true, None) => {
-            let what =
-                "standard input has no extension: say --format ply, obj, stl, glb, off or vtu";
+            let what = "standard input has no extension: say --format ply, obj, stl, glb, off, vtu, msh, \
+                 poly or smesh";
             return Err(Failure(format!("{file}: {what}")));
         }
         (true, Some(format)) => {

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use neurotess::mesh::Format;
 use serde_json::Value;
 
 use crate::work::{BROKEN, SMALL, Work};
@@ -63,7 +64,7 @@ fn report_has_the_keys_and_agrees_with_check() {
 
 #[neurotess_testing::test]
 fn every_format_is_written_and_closed() {
-    for format in ["ply", "obj", "stl", "glb", "off", "vtu"] {
+    for format in Format::ALL.map(Format::extension) {
         let (work, mesh) = meshed(&format!("-o cell.{format} --level 2"));
         let merge = if format == "stl" { "--merge" } else { "" };
         let check = checked(&work, &format!("cell.{format} {merge}"));

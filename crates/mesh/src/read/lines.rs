@@ -46,8 +46,25 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
+/// The next line with something on it, without a comment that `#` begins.
+pub(super) fn data_line<'a>(
+    lines: &mut Lines<'a>,
+    what: &'static str,
+) -> Result<&'a [u8], ReadError> {
+    for line in lines.by_ref() {
+        let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
+        if words(line).next().is_some() {
+            return Ok(line);
+        }
+    }
+    Err(ReadError::Truncated {
+        at: lines.place(),
+        what,
+    })
+}
+
 /// Words of a line.
-pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     line.split(u8::is_ascii_whitespace)
         .filter(|word| !word.is_empty())
 }

@@ -8,10 +8,14 @@ mod base64;
 mod builder;
 mod glb;
 mod lines;
+mod msh;
+mod numbers;
 mod obj;
 mod off;
 mod ply;
+mod regions;
 mod stl;
+mod tetgen;
 mod vtu;
 mod xml;
 
@@ -136,6 +140,9 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<SurfaceMesh, ReadError
         Format::Glb => glb::read(bytes),
         Format::Off => off::read(bytes),
         Format::Vtu => vtu::read(bytes),
+        Format::Msh => msh::read(bytes),
+        Format::Poly => tetgen::read_poly(bytes),
+        Format::Smesh => tetgen::read_smesh(bytes),
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::builder::Builder;
-use super::lines::{Lines, number, whole, words};
+use super::lines::{Lines, data_line, number, whole, words};
 use super::{ReadError, malformed, shown};
 use crate::{SurfaceMesh, SurfaceVertex};
 
@@ -73,18 +73,4 @@ fn keyword(word: &[u8], lines: &Lines<'_>) -> Result<(), ReadError> {
         });
     }
     Ok(())
-}
-
-/// The next line with something on it, without its comment.
-fn data_line<'a>(lines: &mut Lines<'a>, what: &'static str) -> Result<&'a [u8], ReadError> {
-    for line in lines.by_ref() {
-        let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
-        if words(line).next().is_some() {
-            return Ok(line);
-        }
-    }
-    Err(ReadError::Truncated {
-        at: lines.place(),
-        what,
-    })
 }

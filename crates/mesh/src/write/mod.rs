@@ -6,11 +6,14 @@
 //! format wants one after the other are written side by side, each from its own place in the file;
 //! that is what `Seek` is for.
 
+pub(crate) mod corners;
 mod glb;
+mod msh;
 mod obj;
 mod off;
 mod ply;
 mod stl;
+mod tetgen;
 mod vtu;
 
 pub use glb::GlbNode;
@@ -21,6 +24,8 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
+#[cfg(doc)]
+use crate::FaceLabel;
 use crate::{Faces, Format, Surface, SurfaceVertex};
 
 /// Why a surface could not be written.
@@ -75,9 +80,12 @@ pub enum WriteError {
 /// | GLB | binary | f32, the origin is the node's translation | all | split |
 /// | OFF | text | shortest that reads back exactly | none | kept |
 /// | VTU | XML, raw binary | f32; f64 if the origin is not zero | all | kept |
+/// | MSH | binary, little endian | f64 | type and section of each face | split |
+/// | POLY, SMESH | text | shortest that reads back exactly | type of each face | split |
 ///
 /// Writes are large, `out` needs no buffer. STL repeats positions for each face and so holds those
-/// of all vertices; the others hold a few blocks. An empty surface gives a valid empty file.
+/// of all vertices; the others hold a few blocks. Formats whose faces have a type (see [`FaceLabel`])
+/// take several passes. An empty surface gives a valid empty file.
 pub fn write<W: Write + Seek>(
     surface: &dyn Surface,
     format: Format,
@@ -86,8 +94,7 @@ pub fn write<W: Write + Seek>(
     if surface.vertex_count() > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(surface.vertex_count()));
     }
-    let base = out.stream_position()?;
-    let mut file = File { out, base, at: 0 };
+    let mut file = File::begin(out)?;
     match format {
         Format::Ply => ply::write(surface, &mut file),
         Format::Obj => obj::write(surface, &mut file),
@@ -95,6 +102,9 @@ pub fn write<W: Write + Seek>(
         Format::Glb => glb::write(surface, &mut file),
         Format::Off => off::write(surface, &mut file),
         Format::Vtu => vtu::write(surface, &mut file),
+        Format::Msh => msh::write(surface, &mut file),
+        Format::Poly => tetgen::write_poly(surface, &mut file),
+        Format::Smesh => tetgen::write_smesh(surface, &mut file),
     }?;
     file.out.flush()?;
     Ok(())
@@ -114,27 +124,32 @@ pub fn write_glb<W: Write + Seek>(
     if let Some(most) = most.filter(|&most| most > u32::MAX as usize) {
         return Err(WriteError::TooManyVertices(most));
     }
-    let base = out.stream_position()?;
-    let mut file = File { out, base, at: 0 };
+    let mut file = File::begin(out)?;
     glb::write_all(surfaces, nodes, &mut file)?;
     file.out.flush()?;
     Ok(())
 }
 
-trait WriteSeek: Write + Seek {}
+pub(crate) trait WriteSeek: Write + Seek {}
 
 impl<W: Write + Seek> WriteSeek for W {}
 
 /// The output with its position, counted from where we began.
-struct File<'a> {
-    out: &'a mut dyn WriteSeek,
+pub(crate) struct File<'a> {
+    pub(crate) out: &'a mut dyn WriteSeek,
     base: u64,
     at: u64,
 }
 
-impl File<'_> {
+impl<'a> File<'a> {
+    /// Begins where the stream is.
+    pub(crate) fn begin<W: Write + Seek>(out: &'a mut W) -> io::Result<Self> {
+        let base = out.stream_position()?;
+        Ok(Self { out, base, at: 0 })
+    }
+
     /// Writes at a place and moves the place behind it.
-    fn put(&mut self, place: &mut u64, bytes: &[u8]) -> Result<(), WriteError> {
+    pub(crate) fn put(&mut self, place: &mut u64, bytes: &[u8]) -> Result<(), WriteError> {
         if bytes.is_empty() {
             return Ok(());
         }
@@ -161,6 +176,16 @@ impl File<'_> {
         places: &mut [u64; N],
         encode: impl Fn(&[SurfaceVertex], &mut [Vec<u8>; N]) + Sync,
     ) -> Result<(), WriteError> {
+        self.vertices_of_blocks(surface, places, |_, group, buffers| encode(group, buffers))
+    }
+
+    /// Writes all vertices; `encode` is also told which blocks a group is made of.
+    fn vertices_of_blocks<const N: usize>(
+        &mut self,
+        surface: &dyn Surface,
+        places: &mut [u64; N],
+        encode: impl Fn(Range<usize>, &[SurfaceVertex], &mut [Vec<u8>; N]) + Sync,
+    ) -> Result<(), WriteError> {
         let announced = surface.vertex_count();
         let mut found = 0;
         let groups = groups(surface.vertex_blocks(), announced);
@@ -173,7 +198,7 @@ impl File<'_> {
                         surface.vertices(block, &mut group);
                     }
                     let mut buffers = [const { Vec::new() }; N];
-                    encode(&group, &mut buffers);
+                    encode(blocks.clone(), &group, &mut buffers);
                     let lost = group.iter().position(|v| !v.position.is_finite());
                     (group.len(), lost, buffers)
                 })
@@ -233,7 +258,7 @@ impl File<'_> {
     }
 }
 
-fn agree(what: &'static str, announced: usize, found: usize) -> Result<(), WriteError> {
+pub(crate) fn agree(what: &'static str, announced: usize, found: usize) -> Result<(), WriteError> {
     if announced == found {
         return Ok(());
     }
@@ -248,7 +273,7 @@ fn agree(what: &'static str, announced: usize, found: usize) -> Result<(), Write
 const GROUP: usize = 1 << 15;
 
 /// Blocks, so many together that a group is worth a write.
-fn groups(blocks: usize, items: usize) -> Vec<Range<usize>> {
+pub(crate) fn groups(blocks: usize, items: usize) -> Vec<Range<usize>> {
     let each = (GROUP * blocks).checked_div(items).unwrap_or(blocks).max(1);
     (0..blocks)
         .step_by(each)
@@ -256,8 +281,17 @@ fn groups(blocks: usize, items: usize) -> Vec<Range<usize>> {
         .collect()
 }
 
+/// The faces of a group.
+pub(crate) fn faces_of(surface: &dyn Surface, blocks: Range<usize>) -> Faces {
+    let mut faces = Faces::default();
+    for block in blocks {
+        surface.faces(block, &mut faces);
+    }
+    faces
+}
+
 /// Groups made at a time.
-fn window() -> usize {
+pub(crate) fn window() -> usize {
     2 * rayon::current_num_threads()
 }
 

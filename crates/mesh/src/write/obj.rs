@@ -6,7 +6,8 @@ use crate::Surface;
 pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
     let origin = surface.origin();
     let mut place = 0;
-    file.put(&mut place, b"# neurotess, units: micrometer\n")?;
+    let header = format!("# neurotess, units: {}\n", surface.unit());
+    file.put(&mut place, header.as_bytes())?;
     let mut places = [place];
     file.vertices(surface, &mut places, |group, [text]| {
         text.reserve(72 * group.len());

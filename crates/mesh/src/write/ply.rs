@@ -51,7 +51,7 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
 
 fn header(surface: &dyn Surface, double: bool) -> String {
     let real = if double { "double" } else { "float" };
-    let vertices = surface.vertex_count();
+    let (unit, vertices) = (surface.unit(), surface.vertex_count());
     let faces = surface.triangle_count() + surface.quad_count();
     // The indices are written unsigned; readers that take `int` read the same below 2³¹.
     let index = if vertices > i32::MAX as usize {
@@ -63,7 +63,7 @@ fn header(surface: &dyn Surface, double: bool) -> String {
         "ply\n\
          format binary_little_endian 1.0\n\
          comment neurotess\n\
-         comment units: micrometer\n\
+         comment units: {unit}\n\
          element vertex {vertices}\n\
          property {real} x\nproperty {real} y\nproperty {real} z\n\
          property float nx\nproperty float ny\nproperty float nz\n\

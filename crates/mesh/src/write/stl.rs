@@ -18,7 +18,8 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
     };
     // Must not begin with `solid`: that is how readers know the text form.
     let mut header = [b' '; 84];
-    header[..28].copy_from_slice(b"neurotess, units: micrometer");
+    let title = format!("neurotess, units: {}", surface.unit());
+    header[..title.len()].copy_from_slice(title.as_bytes());
     header[80..].copy_from_slice(&count.to_le_bytes());
     let mut place = 0;
     file.put(&mut place, &header)?;

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::{File, WriteError, absolute, record};
-use crate::Surface;
+use crate::{Surface, Unit};
 
 const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
@@ -33,7 +33,7 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
         offsets[n + 1] = offsets[n] + 8 + size;
     }
 
-    let header = header(vertices, cells, double, &offsets);
+    let header = header(surface.unit(), vertices, cells, double, &offsets);
     let start = header.len() as u64;
     file.put(&mut 0, header.as_bytes())?;
     let data: [u64; 9] = std::array::from_fn(|n| start + offsets[n] + 8);
@@ -116,7 +116,7 @@ fn cells_of(
     Ok(())
 }
 
-fn header(vertices: u64, cells: u64, double: bool, offsets: &[u64; 10]) -> String {
+fn header(unit: Unit, vertices: u64, cells: u64, double: bool, offsets: &[u64; 10]) -> String {
     let real = if double { "Float64" } else { "Float32" };
     let array = |n: usize, kind: &str, name: &str, components: usize| {
         format!(
@@ -127,7 +127,7 @@ fn header(vertices: u64, cells: u64, double: bool, offsets: &[u64; 10]) -> Strin
     };
     format!(
         r#"<?xml version="1.0"?>
-<!-- neurotess, units: micrometer -->
+<!-- neurotess, units: {unit} -->
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <UnstructuredGrid>
     <Piece NumberOfPoints="{vertices}" NumberOfCells="{cells}">

@@ -1,6 +1,6 @@
 """Opens each mesh file with the independent readers that know its format; prints JSON.
 
-usage: read_meshes.py FILE...
+usage: read_meshes.py [--simulators] FILE...
 
 One object per file and reader: file, reader, vertices, triangles, quads, watertight, winding,
 volume, low, high, attributes (name: [min, max]). Nothing is merged, except positions of STL.
@@ -71,6 +71,10 @@ def with_meshio(path):
     quads = cells.get("quad", numpy.zeros((0, 4), dtype=int))
     result = judged(mesh.points, triangles, quads)
     result["attributes"] = ranges(mesh.point_data, OWN)
+    if path.suffix == ".msh":
+        assert set(numpy.concatenate(mesh.cell_data["gmsh:physical"])) == {
+            code for code, dimension in mesh.field_data.values() if dimension == 2
+        }
     return result
 
 
@@ -101,6 +105,60 @@ def with_pygltflib(path):
     return result
 
 
+def with_gmsh(path):
+    """Gmsh reads the file as a model: sections are its surfaces, types their physical groups."""
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.open(str(path))
+    nodes, points, _ = gmsh.model.mesh.getNodes()
+    row = numpy.empty(int(nodes.max()) + 1, dtype=int)
+    row[nodes] = numpy.arange(len(nodes))
+    triangles, kinds, sections = [], [], []
+    for code in (tag for dimension, tag in gmsh.model.getPhysicalGroups(2) if dimension == 2):
+        for surface in gmsh.model.getEntitiesForPhysicalGroup(2, code):
+            _, [tags], [corners] = gmsh.model.mesh.getElements(2, surface)
+            triangles.append(row[corners].reshape(-1, 3))
+            kinds.append(code)
+            sections.append(surface - 1)
+            name = gmsh.model.getPhysicalName(2, code)
+            assert name == NAMES.get(code, f"custom_{code}"), name
+    gmsh.finalize()
+    result = judged(points.reshape(-1, 3), numpy.concatenate(triangles), numpy.zeros((0, 4), int))
+    result["attributes"] = ranges({"type": kinds, "section": sections}, OWN)
+    return result
+
+
+NAMES = {1: "soma", 2: "axon", 3: "basal_dendrite", 4: "apical_dendrite"}
+
+
+def with_tetgen(path):
+    """TetGen's own words for its files, and TetGen to fill what they describe."""
+    import tetgen
+
+    words = [line.split("#")[0].split() for line in path.read_text().splitlines()]
+    words = [line for line in words if line]
+    count = int(words[0][0])
+    points = numpy.array(words[1 : count + 1], dtype=float)[:, 1:]
+    facets = int(words[count + 1][0])
+    rest = words[count + 2 : -2]
+    if path.suffix == ".poly":
+        rest = [corners + [head[2]] for head, corners in zip(rest[::2], rest[1::2])]
+    assert len(rest) == facets and words[-2:] == [["0"], ["0"]]
+    rest = numpy.array(rest, dtype=int)
+    triangles, markers = rest[:, 1:4], rest[:, 4]
+    result = judged(points, triangles, numpy.zeros((0, 4), int))
+    filled = tetgen.TetGen(points, triangles.astype(numpy.int32), markers.astype(numpy.int32))
+    nodes, tetrahedra, *_ = filled.tetrahedralize(plc=True, nobisect=True)
+    a, b, c, d = (nodes[tetrahedra[:, n]] for n in range(4))
+    volume = abs(numpy.einsum("ij,ij->i", b - a, numpy.cross(c - a, d - a))).sum() / 6
+    assert abs(volume / result["volume"] - 1) < 1e-6, (volume, result["volume"])
+    assert set(filled.triface_markers[filled.triface_markers != -1]) == set(markers)
+    result["attributes"] = ranges({"type": markers}, OWN)
+    return result
+
+
 READERS = {
     ".ply": [with_trimesh, with_meshio],
     ".obj": [with_trimesh, with_meshio],
@@ -108,7 +166,11 @@ READERS = {
     ".glb": [with_trimesh, with_pygltflib],
     ".off": [with_trimesh, with_meshio],
     ".vtu": [with_meshio],
+    ".msh": [with_meshio],
 }
+
+# With --simulators.
+SIMULATORS = {".msh": [with_gmsh], ".poly": [with_tetgen], ".smesh": [with_tetgen]}
 
 # These readers want faces of one kind: trimesh in binary PLY, meshio in OFF.
 TRIANGLES_ONLY = [(with_trimesh, "mixed.ply"), (with_meshio, "mixed.off")]
@@ -116,8 +178,10 @@ TRIANGLES_ONLY = [(with_trimesh, "mixed.ply"), (with_meshio, "mixed.off")]
 
 def main():
     results = []
-    for path in map(Path, sys.argv[1:]):
-        for reader in READERS[path.suffix]:
+    simulators = "--simulators" in sys.argv
+    readers = SIMULATORS if simulators else READERS
+    for path in map(Path, sys.argv[1 + simulators :]):
+        for reader in readers.get(path.suffix, []):
             if (reader, path.name) in TRIANGLES_ONLY:
                 continue
             name = reader.__name__.removeprefix("with_")

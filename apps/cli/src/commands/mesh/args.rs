@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use neurotess::mesh::Format;
+use neurotess::mesh::{Format, Unit};
 
 use crate::options::cells::CellArgs;
 use crate::options::numbers::positive;
@@ -22,11 +22,13 @@ use crate::options::types::Types;
   neurotess mesh cell.swc -o cell.ply --simulation
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
+  neurotess mesh cell.swc -o cell.msh --unit m --table cell.csv
   neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
   neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
-and radius (µm).")]
+and radius (µm). In MSH (Gmsh) each section is a surface and each type a physical group; in POLY and
+SMESH (TetGen) facets are marked by type.")]
 pub(crate) struct MeshArgs {
     /// Morphology files, folders (searched recursively) or globs, - for standard input; or one
     /// circuit, whose cells are written in its coordinates
@@ -109,12 +111,21 @@ pub(crate) struct MeshArgs {
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,
-    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu
+    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu, msh,
+    /// poly, smesh
     #[arg(long, value_name = "FORMAT", help_heading = "Output")]
     pub(crate) format: Option<Format>,
     /// Quads instead of triangles (ply, obj, off, vtu)
     #[arg(long, help_heading = "Output")]
     pub(crate) quads: bool,
+    /// Unit of coordinates and radii in OUT
+    #[arg(long, value_enum, default_value_t = UnitArg::Um, value_name = "UNIT",
+          help_heading = "Output")]
+    pub(crate) unit: UnitArg,
+    /// Also write a row for each triangle: its sample, section, place along the section and SWC type
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["quads", "resume", "shard"],
+          help_heading = "Output")]
+    pub(crate) table: Option<PathBuf>,
     /// Do every N-th input only, from the I-th on, 1 ≤ I ≤ N
     #[arg(long, value_name = "I/N", help_heading = "Many inputs")]
     pub(crate) shard: Option<Shard>,
@@ -168,6 +179,24 @@ pub(crate) enum SphereArg {
     Octahedron,
     /// Six faces of quads
     Cube,
+}
+
+/// `--unit`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum UnitArg {
+    /// Micrometers, as in the tracing
+    Um,
+    /// Meters: SI, as STEPS wants them
+    M,
+}
+
+impl UnitArg {
+    pub(crate) fn unit(self) -> Unit {
+        match self {
+            Self::Um => Unit::Micrometer,
+            Self::M => Unit::Meter,
+        }
+    }
 }
 
 fn poisson(text: &str) -> Result<f64, String> {

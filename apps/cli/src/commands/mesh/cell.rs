@@ -7,16 +7,16 @@ use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
-use neurotess::mesh::{self as surfaces, CoarseMesh, Placed, Surface};
+use neurotess::mesh::{self as surfaces, CoarseMesh, InUnit, Placed, Surface, Unit, WriteError};
+use neurotess::morphology::Morphology;
 use serde::Serialize;
 
 use super::observed::Observed;
 use super::options::MeshOptions;
-use super::size;
 use super::surface::{CellSurface, CrossingsReport, SeparationReport};
-use super::verdict;
+use super::{size, table, verdict};
 use crate::io::morphologies::read_morphology;
-use crate::io::output::{Output, OutputError};
+use crate::io::output::{Output, OutputError, begin};
 use crate::io::targets::Job;
 use crate::report::{Failure, Progress, Reporter};
 
@@ -90,6 +90,8 @@ pub(crate) struct Prepared {
     generated: Generated,
     read: Vec<formats::Warning>,
     seconds: Seconds,
+    /// The tracing, if a table is to tell where on it triangles are.
+    morphology: Option<Morphology>,
     /// Center of the soma in the tracing's coordinates (µm).
     pub(crate) soma_center: DVec3,
 }
@@ -99,17 +101,54 @@ impl Prepared {
     pub(super) fn mesh(&self) -> &CoarseMesh {
         &self.generated.mesh
     }
+
+    /// The surface that is written.
+    pub(super) fn surface(&self, options: &MeshOptions) -> Result<CellSurface<'_>, Failure> {
+        let failed = |Failure(what)| Failure(format!("{}: {what}", self.file));
+        let surface = CellSurface::new(&self.generated.mesh, options).map_err(failed)?;
+        if options.simulation {
+            verdict::check(&surface, &self.generated).map_err(failed)?;
+        }
+        Ok(surface)
+    }
 }
 
-/// Generates the mesh of one cell and writes it into a temporary file.
+/// A cell in temporary files.
+pub(super) struct Made {
+    pub(super) report: CellReport,
+    pub(super) mesh: Output,
+    /// The table of triangles, if there is to be one.
+    pub(super) table: Option<Output>,
+}
+
+/// Generates the mesh of one cell and writes it, with its table if there is to be one.
 pub(super) fn mesh(
     job: &Job,
     options: &MeshOptions,
     output: Output,
     watchers: Watchers<'_>,
-) -> Result<(CellReport, Output), Failure> {
+) -> Result<Made, Failure> {
+    let file = job.input.display();
+    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    // Before the work: it may be in the way.
+    let path = options.table.as_deref();
+    let table = path.map(|path| begin(path, options.force)).transpose();
+    let mut table = table.map_err(failed)?;
     let prepared = prepare(&job.input, options)?;
-    finish(&prepared, options, &job.out, output, None, watchers)
+    let surface = prepared.surface(options)?;
+    let to = (&*job.out, output);
+    let (report, mesh) = finish(&prepared, &surface, options, to, None, watchers)?;
+    if let (Some(path), Some(table)) = (path, &mut table)
+        && let Some(morphology) = &prepared.morphology
+    {
+        table::write(&*surface.surface, morphology, table.file())
+            .map_err(|e| failed(broken(path, e)))?;
+    }
+    Ok(Made {
+        report,
+        mesh,
+        table,
+    })
 }
 
 /// What is informed while a cell is written.
@@ -147,17 +186,18 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
         file,
         generated,
         soma_center: soma_center(&read.morphology),
+        morphology: options.table.is_some().then_some(read.morphology),
         read: read.warnings,
         seconds,
     })
 }
 
-/// Refines a cell and writes it, perhaps at a placement.
+/// Writes a cell's surface, perhaps at a placement.
 pub(super) fn finish(
     prepared: &Prepared,
+    cell_surface: &CellSurface<'_>,
     options: &MeshOptions,
-    out: &Path,
-    mut output: Output,
+    (out, mut output): (&Path, Output),
     world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
 ) -> Result<(CellReport, Output), Failure> {
@@ -165,14 +205,8 @@ pub(super) fn finish(
         file, generated, ..
     } = prepared;
     let mut seconds = prepared.seconds;
-    let mesh = &generated.mesh;
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
-    let clock = Instant::now();
-    let cell_surface = CellSurface::new(mesh, options).map_err(failed)?;
-    if options.simulation {
-        verdict::check(&cell_surface, generated).map_err(failed)?;
-    }
-    seconds.refine = clock.elapsed().as_secs_f64();
+    seconds.refine = cell_surface.seconds;
     let to = (out, &mut output);
     let surface = &*cell_surface.surface;
     let written = write(
@@ -185,7 +219,7 @@ pub(super) fn finish(
     );
     let written = written.map_err(failed)?;
     let clock = Instant::now();
-    let topology = cell_surface.topology;
+    let topology = &cell_surface.topology;
     let growth = world_from_cell.map_or(1.0, |transform| transform.matrix3.determinant());
     let measured = options.measure.then(|| cell_surface.volume_and_area());
     let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
@@ -208,7 +242,7 @@ pub(super) fn finish(
         separation: generated.separation.as_ref().map(SeparationReport::from),
         quality: cell_surface.quality,
         seconds,
-        warnings: warnings(&prepared.read, generated, &cell_surface),
+        warnings: warnings(&prepared.read, generated, cell_surface),
     };
     Ok((cell, output))
 }
@@ -230,17 +264,17 @@ fn write(
 ) -> Result<Written, Failure> {
     let placed = world_from_cell.map(|placed| Placed::new(surface, placed));
     let surface: &dyn Surface = placed.as_ref().map_or(surface, |placed| placed);
+    let scaled = InUnit::new(surface, options.unit);
+    let surface: &dyn Surface = match options.unit {
+        Unit::Micrometer => surface,
+        Unit::Meter => &scaled,
+    };
 
     let clock = Instant::now();
     size::tell(surface, options.format, out, watchers.reporter)?;
-    let observed = Observed::new(surface, watchers.progress);
-    surfaces::write(&observed, options.format, output.file()).map_err(|e| {
-        let broken = match e {
-            surfaces::WriteError::Io(e) => OutputError::broken(out, e),
-            other => OutputError::broken(out, std::io::Error::other(other)),
-        };
-        Failure(broken.to_string())
-    })?;
+    let observed = Observed::new(surface, options.format, watchers.progress);
+    surfaces::write(&observed, options.format, output.file())
+        .map_err(|e| Failure(broken(out, e).to_string()))?;
     let pass = clock.elapsed().as_secs_f64();
     let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
     seconds.refine += blocks;
@@ -250,6 +284,13 @@ fn write(
         triangles: surface.triangle_count(),
         quads: surface.quad_count(),
     })
+}
+
+fn broken(out: &Path, error: WriteError) -> OutputError {
+    match error {
+        WriteError::Io(e) => OutputError::broken(out, e),
+        other => OutputError::broken(out, std::io::Error::other(other)),
+    }
 }
 
 fn warnings(

@@ -12,7 +12,7 @@ use std::time::Instant;
 use neurotess::circuit::{Circuit, Instance};
 
 use super::args::MeshArgs;
-use super::cell::{self, NodeName, Watchers};
+use super::cell::{self, Made, NodeName, Watchers};
 use super::circuit_glb;
 use super::entry::{self, Entry};
 use super::messages::{summarize, tell};
@@ -177,11 +177,17 @@ fn mesh_all(
                 Ok(prepared) => {
                     let placed = instance_job.instance.world_from_cell(prepared.soma_center);
                     let out = &instance_job.job.out;
-                    let written =
-                        cell::finish(prepared, options, out, output, Some(placed), watchers);
-                    written.map(|(mut cell, output)| {
-                        cell.node = Some(instance_job.node.clone());
-                        (cell, output)
+                    let written = prepared.surface(options).and_then(|surface| {
+                        let to = (&**out, output);
+                        cell::finish(prepared, &surface, options, to, Some(placed), watchers)
+                    });
+                    written.map(|(mut report, mesh)| {
+                        report.node = Some(instance_job.node.clone());
+                        Made {
+                            report,
+                            mesh,
+                            table: None,
+                        }
                     })
                 }
                 Err(failure) => Err(Failure(format!(

@@ -79,8 +79,8 @@ pub(super) fn run(
         .map(|instance| GlbNode {
             name: name(circuit, instance),
             surface: numbers[&instance.template.0],
-            world_from_surface: instance
-                .world_from_cell(prepared[&instance.template.0].soma_center),
+            world_from_surface: options.unit.unit_from_um()
+                * instance.world_from_cell(prepared[&instance.template.0].soma_center),
         })
         .collect();
     let mut output = Output::create(out, existing(options.force))?;

@@ -16,6 +16,7 @@ mod options;
 mod run;
 mod size;
 mod surface;
+mod table;
 mod verdict;
 
 use std::path::{Path, PathBuf};
@@ -44,6 +45,9 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if let [path] = &circuits[..]
         && others.is_empty()
     {
+        if args.table.is_some() {
+            return usage("--table is of one cell, not of a circuit: leave it out");
+        }
         return circuit::run(args, path, reporter);
     }
     if !circuits.is_empty() {
@@ -56,6 +60,15 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
+    if let Some(table) = &args.table {
+        if !inputs.one_file {
+            return usage("--table is of one cell: give one input file");
+        }
+        if table == out {
+            return usage("--table and -o name the same file: give two");
+        }
+        output::reserve_standard(table, reporter)?;
+    }
     let options = MeshOptions::new(args, &inputs, measure)?;
     let named = Format::from_extension(out).ok().map(Format::extension);
     reporter.warn_of_name(out, options.format.extension(), named);

@@ -1,9 +1,9 @@
 //! A surface that measures how long its blocks take, and counts them for the progress bar.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use neurotess::mesh::{Faces, Surface, SurfaceVertex};
+use neurotess::mesh::{Faces, Format, Surface, SurfaceVertex, Unit};
 
 use crate::report::Progress;
 
@@ -12,18 +12,27 @@ pub(crate) struct Observed<'a> {
     surface: &'a dyn Surface,
     progress: Option<&'a Progress<'a>>,
     nanoseconds: AtomicU64,
+    /// Blocks that the progress bar still expects: of some formats more are made than is foreseen.
+    expected: AtomicUsize,
 }
 
 impl<'a> Observed<'a> {
-    /// Measures a surface; the progress bar, if there is one, counts its blocks.
-    pub(crate) fn new(surface: &'a dyn Surface, progress: Option<&'a Progress<'a>>) -> Self {
+    /// Measures a surface that goes into a file; the progress bar, if there is one, counts its blocks.
+    pub(crate) fn new(
+        surface: &'a dyn Surface,
+        format: Format,
+        progress: Option<&'a Progress<'a>>,
+    ) -> Self {
+        let (vertices, faces) = passes(format);
+        let expected = vertices * surface.vertex_blocks() + faces * surface.face_blocks();
         if let Some(progress) = progress {
-            progress.expect(surface.vertex_blocks() + surface.face_blocks());
+            progress.expect(expected);
         }
         Self {
             surface,
             progress,
             nanoseconds: AtomicU64::new(0),
+            expected: AtomicUsize::new(expected),
         }
     }
 
@@ -37,15 +46,31 @@ impl<'a> Observed<'a> {
         make();
         let nanoseconds = u64::try_from(clock.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.nanoseconds.fetch_add(nanoseconds, Ordering::Relaxed);
-        if let Some(progress) = self.progress {
+        let one_less = |left: usize| left.checked_sub(1);
+        let order = Ordering::Relaxed;
+        let foreseen = self.expected.fetch_update(order, order, one_less).is_ok();
+        if let Some(progress) = self.progress.filter(|_| foreseen) {
             progress.done();
         }
+    }
+}
+
+/// How often a format has the blocks of vertices and of faces made, about.
+fn passes(format: Format) -> (usize, usize) {
+    match format {
+        Format::Msh => (4, 2),
+        Format::Poly | Format::Smesh => (3, 1),
+        _ => (1, 1),
     }
 }
 
 impl Surface for Observed<'_> {
     fn origin(&self) -> glam::DVec3 {
         self.surface.origin()
+    }
+
+    fn unit(&self) -> Unit {
+        self.surface.unit()
     }
 
     fn vertex_count(&self) -> usize {

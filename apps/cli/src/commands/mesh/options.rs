@@ -1,7 +1,9 @@
 //! From the command line's options to the library's.
 
+use std::path::PathBuf;
+
 use neurotess::generate::{Crossings, GenerateOptions, SphereKind};
-use neurotess::mesh::Format;
+use neurotess::mesh::{Format, Unit};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
 use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, SphereArg};
@@ -23,6 +25,9 @@ pub(crate) struct MeshOptions {
     pub(crate) simulation: bool,
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
+    pub(crate) unit: Unit,
+    /// Where a row for each triangle goes.
+    pub(crate) table: Option<PathBuf>,
     pub(crate) force: bool,
     /// Whether volume and area are measured, which takes a pass over the surface.
     pub(crate) measure: bool,
@@ -39,7 +44,9 @@ impl MeshOptions {
             simulation,
             refine,
             format,
+            unit,
             strict: _,
+            table: _,
             force: _,
             measure: _,
         } = self;
@@ -51,9 +58,13 @@ impl MeshOptions {
         };
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}").replace(", crossings: Keep", "");
+        let unit = match unit {
+            Unit::Micrometer => "",
+            Unit::Meter => " Meter",
+        };
         let merged = if *merge { " merged" } else { "" };
         let simulation = if *simulation { " simulation" } else { "" };
-        format!("{lod} {generate} {refine:?} {format:?}{merged}{simulation}")
+        format!("{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}")
     }
 
     /// Checks the options together and translates them.
@@ -67,6 +78,11 @@ impl MeshOptions {
         let crossings = crossings(args);
         if crossings != CrossingsArg::Keep && args.quads {
             return usage("merging leaves triangles only: leave out --quads or --crossings");
+        }
+        if args.table.is_some() && levels(args)? == MeshLevels::Coarse && format.has_quads() {
+            return usage(format!(
+                "--table counts triangles, and level 0 of {format} is quads: use --level 1, or msh"
+            ));
         }
         Ok(Self {
             strict: args.strict,
@@ -92,6 +108,8 @@ impl MeshOptions {
                 quads: args.quads,
             },
             format,
+            unit: args.unit.unit(),
+            table: args.table.clone(),
             force: args.out.force,
             measure,
         })
@@ -156,13 +174,15 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     }
     if is_standard(out) && args.format.is_none() {
         return usage(
-            "standard output has no extension: say --format ply, obj, stl, glb, off or vtu",
+            "standard output has no extension: say --format ply, obj, stl, glb, off, vtu, msh, \
+             poly or smesh",
         );
     }
     match (args.format, from_name) {
         (Some(format), _) | (None, Ok(format)) => Ok(format),
         (None, Err(_)) => usage(format!(
-            "{} has no extension of a mesh: use .ply, .obj, .stl, .glb, .off or .vtu, or --format",
+            "{} has no extension of a mesh: use .ply, .obj, .stl, .glb, .off, .vtu, .msh, \
+             .poly or .smesh, or --format",
             out.display()
         )),
     }
@@ -217,6 +237,8 @@ mod tests {
             simulation: false,
             refine: RefineOptions::default(),
             format: Format::Ply,
+            unit: Unit::Micrometer,
+            table: None,
             force: false,
             measure: false,
         };
@@ -237,7 +259,9 @@ mod tests {
              RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
         );
         options.levels = MeshLevels::Criterion(LodCriterion::MaxError(0.05));
+        options.unit = Unit::Meter;
         let text = options.fingerprint();
+        assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
     }
 }

@@ -1,6 +1,6 @@
 //! A run over many cells: which of them are skipped, claimed, recorded and logged.
 
-use super::cell::CellReport;
+use super::cell::Made;
 use super::entry::{Entry, skipped};
 use super::messages::tell_states;
 use super::options::MeshOptions;
@@ -66,7 +66,7 @@ impl MeshRun<'_> {
         &self,
         job: &Job,
         record: &OutputRecord,
-        make: impl FnOnce(Output) -> Result<(CellReport, Output), Failure>,
+        make: impl FnOnce(Output) -> Result<Made, Failure>,
     ) -> Entry {
         let file = job.input.display();
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
@@ -79,8 +79,12 @@ impl MeshRun<'_> {
             Err(failure) => Err(failure),
         };
         let failure = match result {
-            Ok((cell, output)) => {
-                let cell = Box::new(cell);
+            Ok(Made {
+                report,
+                mesh: output,
+                table,
+            }) => {
+                let cell = Box::new(report);
                 if self.records
                     && let Err(e) = record.add(job, output.part())
                 {
@@ -92,7 +96,10 @@ impl MeshRun<'_> {
                 }
                 let entry = Entry::Done(cell);
                 self.log(&entry);
-                match output.finish().map_err(failed) {
+                let finished = output
+                    .finish()
+                    .and_then(|()| table.map_or(Ok(()), Output::finish));
+                match finished.map_err(failed) {
                     Ok(()) => return entry,
                     Err(failure) => failure,
                 }

@@ -54,9 +54,12 @@ pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
         Format::Stl => [0, 50, 100],
         Format::Glb => [40, 12, 24],
         Format::Vtu => [40, 21, 25],
+        Format::Msh => [32, 32, 64],
         // Measured on a cell with a million faces.
         Format::Obj => [64, 48, 64],
         Format::Off => [30, 26, 34],
+        Format::Poly => [36, 30, 60],
+        Format::Smesh => [36, 26, 52],
     };
     vertices * vertex + triangles * triangle + quads * quad
 }

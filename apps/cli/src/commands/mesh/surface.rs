@@ -1,6 +1,8 @@
 //! The surface of a cell as it is written: refined block by block, or whole in memory where what crosses is
 //! merged.
 
+use std::time::Instant;
+
 use neurotess::generate::Separation;
 use neurotess::mesh::{
     CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
@@ -46,11 +48,14 @@ pub(super) struct CellSurface<'m> {
     pub(super) merging: Option<UnionReport>,
     /// Shapes of the triangles, of a mesh for simulators.
     pub(super) quality: Option<Quality>,
+    /// Seconds that it took.
+    pub(super) seconds: f64,
 }
 
 impl<'m> CellSurface<'m> {
     /// Refines a coarse mesh, and merges what crosses if that is asked for.
     pub(super) fn new(mesh: &'m CoarseMesh, options: &MeshOptions) -> Result<Self, Failure> {
+        let clock = Instant::now();
         let surface = options.levels.surface(mesh, options);
         if !options.merge {
             return Ok(Self {
@@ -59,6 +64,7 @@ impl<'m> CellSurface<'m> {
                 topology: mesh.topology(),
                 merging: None,
                 quality: None,
+                seconds: clock.elapsed().as_secs_f64(),
             });
         }
         let whole = SurfaceMesh::collect(&*surface);
@@ -78,6 +84,7 @@ impl<'m> CellSurface<'m> {
             quality: options.simulation.then(|| quality(&merged.mesh)),
             surface: Box::new(merged.mesh),
             merging: Some(merged.report),
+            seconds: clock.elapsed().as_secs_f64(),
         })
     }
 
