@@ -26,6 +26,7 @@ impl Tubes {
             sample,
             kind: 3,
             section: sample as i32,
+            marks: crate::skeleton::Marks::default(),
         });
         sample as u32 - 1
     }
