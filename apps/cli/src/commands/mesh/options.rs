@@ -50,7 +50,10 @@ impl MeshOptions {
             MeshLevels::Edges(rule) => format!("{rule:?}"),
         };
         // What earlier versions did not have is left out where it has its default.
-        let generate = format!("{generate:?}").replace(", crossings: Keep", "");
+        let generate = format!("{generate:?}");
+        let generate = generate
+            .replace(", crossings: Keep", "")
+            .replace(", smooth: None", "");
         let merged = if *merge { " merged" } else { "" };
         let simulation = if *simulation { " simulation" } else { "" };
         format!("{lod} {generate} {refine:?} {format:?}{merged}{simulation}")
@@ -194,6 +197,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         sphere_level: args.soma_level,
         rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
+        smooth: args.smooth.unwrap_or_default(),
         ..GenerateOptions::default()
     })
 }
@@ -202,6 +206,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
 mod tests {
     use std::collections::BTreeMap;
 
+    use neurotess::generate::Smooth;
     use neurotess::morphology::NeuriteKind;
 
     use super::*;
@@ -239,5 +244,8 @@ mod tests {
         options.levels = MeshLevels::Criterion(LodCriterion::MaxError(0.05));
         let text = options.fingerprint();
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
+        options.generate.smooth = Smooth::Length(2.0);
+        let text = options.fingerprint();
+        assert!(text.contains(", smooth: Length(2.0) } "), "{text}");
     }
 }
