@@ -2,13 +2,16 @@
 //! 120°, at levels 2 and 4.
 //!
 //! ```text
-//! cargo run --release -p neurotess-generate --example forks -- FILES…
+//! cargo run --release -p neurotess-generate --example forks -- [--smooth LENGTH|auto] FILES…
 //! ```
+//!
+//! With `--smooth` also the change of length and the median and largest move, in radii.
 
+use std::iter::Peekable;
 use std::time::Instant;
 
 use glam::Vec3;
-use neurotess_generate::{GenerateOptions, generate};
+use neurotess_generate::{GenerateOptions, Smooth, generate};
 use neurotess_mesh::{SurfaceMesh, self_intersections, topology};
 use neurotess_morphology::{Attachment, Morphology};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
@@ -16,7 +19,12 @@ use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sums = [[0; 3]; 2];
     println!("file samples ms | level 2: pairs near forks, all pairs, folded | level 4");
-    for file in std::env::args().skip(1) {
+    let mut args = std::env::args().skip(1).peekable();
+    let options = GenerateOptions {
+        smooth: smooth(&mut args)?,
+        ..GenerateOptions::default()
+    };
+    for file in args {
         let read = match neurotess_formats::read(&file, &neurotess_formats::ReadOptions::default())
         {
             Ok(read) => read,
@@ -27,7 +35,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         for morphology in [&read.morphology] {
             let start = Instant::now();
-            let mesh = generate(morphology, &GenerateOptions::default())?.mesh;
+            let generated = generate(morphology, &options)?;
+            let mesh = generated.mesh;
             let seconds = start.elapsed().as_secs_f64();
             let name = std::path::Path::new(&file).file_name().unwrap_or_default();
             let name = name.to_string_lossy();
@@ -54,11 +63,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     if sound { "closed" } else { "OPEN" }
                 );
             }
+            if let Some(smoothing) = generated.smoothing {
+                print!(
+                    " | length {:+.2} % moved {:.2} {:.2} radii",
+                    100.0 * smoothing.length_change,
+                    smoothing.median_move_radii,
+                    smoothing.largest_move_radii
+                );
+            }
             println!();
         }
     }
     println!("sums: {sums:?}");
     Ok(())
+}
+
+/// Takes `--smooth` and its value, if they come first.
+fn smooth(
+    args: &mut Peekable<impl Iterator<Item = String>>,
+) -> Result<Smooth, Box<dyn std::error::Error>> {
+    if args.next_if(|arg| arg == "--smooth").is_none() {
+        return Ok(Smooth::None);
+    }
+    let value = args.next().ok_or("--smooth needs a length or auto")?;
+    Ok(match value.as_str() {
+        "auto" => Smooth::Auto,
+        length => Smooth::Length(length.parse()?),
+    })
 }
 
 /// Forks with their radii.

@@ -16,6 +16,7 @@ mod prepare;
 mod rings;
 mod separate;
 mod skeleton;
+mod smooth;
 mod soma;
 mod somata;
 mod stems;
@@ -25,8 +26,9 @@ mod uncross;
 mod warning;
 
 pub use error::GenerateError;
-pub use options::{Crossings, GenerateOptions, SomaMethod, SphereKind};
+pub use options::{Crossings, GenerateOptions, Smooth, SomaMethod, SphereKind};
 pub use separate::{SeparatedPlace, Separation};
+pub use smooth::Smoothing;
 pub use warning::Warning;
 
 use glam::DVec3;
@@ -49,6 +51,8 @@ pub struct Generated {
     pub rings: Vec<FirstRing>,
     /// What was mended, counted by cause.
     pub warnings: Vec<Warning>,
+    /// How far [`Smooth`] moved points; none where it was not asked for.
+    pub smoothing: Option<Smoothing>,
     /// What [`Crossings::Separate`] found and did; none without it.
     pub separation: Option<Separation>,
     /// Seconds that somata took, by the clock of [`generate_timed`]; 0 without one.
@@ -114,6 +118,7 @@ pub fn generate_timed(
     prepare::merge_coincident(&mut skeleton, &mut warnings);
     let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
+    let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
     let start = clock();
     let requests = RingRequests::new(morphology, options);
@@ -162,6 +167,7 @@ pub fn generate_timed(
         somata: reports.collect(),
         rings: built.rings,
         warnings: warnings.into_vec(),
+        smoothing,
         separation: separated.map(|s| s.report),
         soma_seconds,
     })

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use glam::{Vec3, vec3};
-use neurotess_generate::{Crossings, GenerateOptions, generate};
+use neurotess_generate::{Crossings, GenerateOptions, Smooth, generate};
 use neurotess_morphology::{
     Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
 };
@@ -224,14 +224,10 @@ fn somata_on_a_path(count: usize) -> Morphology {
 }
 
 /// Seconds of the fastest of three runs: what else the machine does only adds.
-fn cost(morphology: &Morphology, crossings: Crossings) -> f64 {
-    let options = GenerateOptions {
-        crossings,
-        ..GenerateOptions::default()
-    };
+fn cost(morphology: &Morphology, options: &GenerateOptions) -> f64 {
     let seconds = || {
         let clock = Instant::now();
-        let made = generate(morphology, &options).expect("meshed");
+        let made = generate(morphology, options).expect("meshed");
         assert!(!made.mesh.patches.is_empty());
         clock.elapsed().as_secs_f64()
     };
@@ -245,16 +241,16 @@ const MOST: f64 = 9.0;
 type Kind = (&'static str, fn(usize) -> Morphology, usize);
 
 #[expect(clippy::print_stdout, reason = "shown where a test fails")]
-fn assert_no_square(kinds: &[Kind], crossings: Crossings) {
+fn assert_no_square(kinds: &[Kind], options: &GenerateOptions) {
     let mut failed = Vec::new();
     for (name, make, count) in kinds {
         let (few, many) = (make(*count), make(4 * count));
-        cost(&few, crossings); // spheres are factored once
+        cost(&few, options); // spheres are factored once
         // A busy machine may slow one of the two down: three tries.
         let mut growth = f64::INFINITY;
         for _ in 0..3 {
             if growth > MOST {
-                growth = growth.min(cost(&many, crossings) / cost(&few, crossings));
+                growth = growth.min(cost(&many, options) / cost(&few, options));
             }
         }
         println!("{name}: {growth:.1} times for 4 times as many");
@@ -285,7 +281,7 @@ fn no_stage_takes_the_square_of_what_it_is_given() {
         ("free trees", free_trees, 4_000),
         ("a long path", long_path, 8_000),
     ];
-    assert_no_square(&kinds, Crossings::Keep);
+    assert_no_square(&kinds, &GenerateOptions::default());
 }
 
 #[test]
@@ -302,5 +298,26 @@ fn moving_branches_apart_takes_no_square_either() {
         ("doubled", doubled, 150),
         ("somata on a path", somata_on_a_path, 400),
     ];
-    assert_no_square(&kinds, Crossings::Separate);
+    let options = GenerateOptions {
+        crossings: Crossings::Separate,
+        ..GenerateOptions::default()
+    };
+    assert_no_square(&kinds, &options);
+}
+
+#[test]
+fn smoothing_takes_no_square_either() {
+    let kinds: [Kind; 4] = [
+        ("branches all around", branches_all_around, 4_000),
+        ("forks in a row", forks_in_a_row, 4_000),
+        ("free trees", free_trees, 4_000),
+        ("a long path", long_path, 8_000),
+    ];
+    for smooth in [Smooth::Auto, Smooth::Length(1e3)] {
+        let options = GenerateOptions {
+            smooth,
+            ..GenerateOptions::default()
+        };
+        assert_no_square(&kinds, &options);
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use neurotess::generate::Smooth;
 use neurotess::mesh::{Format, Unit};
 
 use crate::options::cells::CellArgs;
@@ -108,6 +109,10 @@ pub(crate) struct MeshArgs {
     pub(crate) soma_level: Option<u32>,
     #[command(flatten)]
     pub(crate) rings: RingArgs,
+    /// Smooth the noise of the tracing away: half-width (µm) of what each point is averaged over; auto:
+    /// 1.5 radii; 0: none. Forks and ends stay
+    #[arg(long, value_name = "LENGTH", value_parser = smooth, allow_negative_numbers = true)]
+    pub(crate) smooth: Option<Smooth>,
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,
@@ -203,5 +208,15 @@ fn poisson(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if (0.0..0.5).contains(&number) => Ok(number),
         _ => Err("a number from 0 to below 0.5 is needed".into()),
+    }
+}
+
+/// 0 gives what no `--smooth` gives, to its fingerprint.
+fn smooth(text: &str) -> Result<Smooth, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(Smooth::Auto),
+        Ok(0.0) => Ok(Smooth::None),
+        Ok(length) if length > 0.0 && f64::is_finite(length) => Ok(Smooth::Length(length)),
+        _ => Err("a length of 0 or more (µm) or auto is needed".into()),
     }
 }

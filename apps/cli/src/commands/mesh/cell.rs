@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use super::observed::Observed;
 use super::options::MeshOptions;
+use super::smoothing::SmoothingReport;
 use super::surface::{CellSurface, CrossingsReport, SeparationReport};
 use super::{size, table, verdict};
 use crate::io::morphologies::read_morphology;
@@ -41,6 +42,8 @@ pub(crate) struct CellReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
     pub(crate) soma_volume: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) smoothing: Option<SmoothingReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) crossings: Option<CrossingsReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -238,6 +241,7 @@ pub(super) fn finish(
         area: measured.map(|(_, area)| area),
         // Adding 0 turns −0, the sum of no somata, into 0.
         soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
+        smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
         crossings: cell_surface.merging.as_ref().map(CrossingsReport::new),
         separation: generated.separation.as_ref().map(SeparationReport::from),
         quality: cell_surface.quality,

@@ -15,6 +15,7 @@ mod observed;
 mod options;
 mod run;
 mod size;
+mod smoothing;
 mod surface;
 mod table;
 mod verdict;

@@ -57,7 +57,10 @@ impl MeshOptions {
             MeshLevels::Edges(rule) => format!("{rule:?}"),
         };
         // What earlier versions did not have is left out where it has its default.
-        let generate = format!("{generate:?}").replace(", crossings: Keep", "");
+        let generate = format!("{generate:?}");
+        let generate = generate
+            .replace(", crossings: Keep", "")
+            .replace(", smooth: None", "");
         let unit = match unit {
             Unit::Micrometer => "",
             Unit::Meter => " Meter",
@@ -214,6 +217,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         sphere_level: args.soma_level,
         rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
+        smooth: args.smooth.unwrap_or_default(),
         ..GenerateOptions::default()
     })
 }
@@ -222,6 +226,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
 mod tests {
     use std::collections::BTreeMap;
 
+    use neurotess::generate::Smooth;
     use neurotess::morphology::NeuriteKind;
 
     use super::*;
@@ -263,5 +268,8 @@ mod tests {
         let text = options.fingerprint();
         assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
+        options.generate.smooth = Smooth::Length(2.0);
+        let text = options.fingerprint();
+        assert!(text.contains(", smooth: Length(2.0) } "), "{text}");
     }
 }
