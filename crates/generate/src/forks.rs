@@ -67,6 +67,9 @@ fn buried(sample: i64, warnings: &mut Warnings) {
     );
 }
 
+/// A fork of more children is split over several joints, and not judged: its patches are too many.
+const MOST_CHILDREN: usize = 5;
+
 const fn inset(lift: f64, thickened: bool) -> ForkChoice {
     ForkChoice::Inset { lift, thickened }
 }
@@ -78,7 +81,7 @@ pub(crate) struct ForkTrials {
     trials: BTreeMap<u32, Trial>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Trial {
     current: usize,
     /// Faults of each choice that was tried.
@@ -89,17 +92,18 @@ struct Trial {
 impl ForkTrials {
     pub(crate) fn new(skeleton: &Skeleton) -> Self {
         let children = skeleton.children();
-        let nodes = 0..skeleton.nodes().len() as u32;
-        let forks = nodes.filter(|&n| children.of(n).len() > 1);
-        let trial = Trial {
-            current: 0,
-            faults: [None; CHOICES.len()],
-            settled: false,
-        };
-        Self {
-            choices: vec![CHOICES[0]; skeleton.nodes().len()],
-            trials: forks.map(|fork| (fork, trial)).collect(),
+        let mut choices = vec![CHOICES[0]; skeleton.nodes().len()];
+        let mut trials = BTreeMap::new();
+        for fork in 0..skeleton.nodes().len() as u32 {
+            match children.of(fork).len() {
+                0 | 1 => {}
+                2..=MOST_CHILDREN => {
+                    trials.insert(fork, Trial::default());
+                }
+                _ => choices[fork as usize] = ForkChoice::Joint,
+            }
         }
+        Self { choices, trials }
     }
 
     /// By node of the skeleton.
