@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 use glam::{DQuat, DVec3};
 
-use super::path::PathRings;
+use super::path_rings::PathRings;
 use super::twist::{FACING, Target};
 use crate::inset::{Inset, RoundCone, not_too_steep, outwards};
 

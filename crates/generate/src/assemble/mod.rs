@@ -6,6 +6,7 @@
 
 mod facing;
 mod path;
+mod path_rings;
 mod twist;
 
 use std::ops::Range;

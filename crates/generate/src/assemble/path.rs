@@ -4,51 +4,12 @@ use glam::DVec3;
 use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint};
 
 use super::facing::{self, Facing};
+use super::path_rings::PathRings;
 use super::twist::{FIXED, Target, relax};
 use super::{Assembly, PlacedInset, Ring};
 use crate::frame;
-use crate::inset::{Inset, InsetSite, RoundCone};
+use crate::inset::{Inset, InsetSite};
 use crate::skeleton::{NONE, Root};
-
-/// Segments of the trunk to either side that an inset stands over.
-const TRUNK_SEGMENTS: usize = 3;
-
-/// A path as it becomes rings.
-pub(super) struct PathRings {
-    pub(super) nodes: Vec<u32>,
-    pub(super) centers: Vec<DVec3>,
-    pub(super) radii: Vec<f64>,
-    pub(super) tangents: Vec<DVec3>,
-    pub(super) frames: Vec<DVec3>,
-}
-
-impl PathRings {
-    /// Angle of a direction about a ring, from its frame on.
-    pub(super) fn angle(&self, ring: usize, direction: DVec3) -> f64 {
-        let side = self.tangents[ring].cross(self.frames[ring]);
-        f64::atan2(direction.dot(side), direction.dot(self.frames[ring]))
-    }
-
-    /// Unit direction to the next ring.
-    pub(super) fn chord(&self, ring: usize) -> DVec3 {
-        let way = self.centers[ring + 1] - self.centers[ring];
-        way.try_normalize().unwrap_or(self.tangents[ring])
-    }
-
-    /// Cones of the segments around one of them.
-    fn cones(&self, segment: usize) -> Vec<RoundCone> {
-        let first = segment.saturating_sub(TRUNK_SEGMENTS);
-        let end = (segment + TRUNK_SEGMENTS + 1).min(self.centers.len() - 1);
-        (first..end)
-            .map(|i| RoundCone {
-                a: self.centers[i],
-                b: self.centers[i + 1],
-                radius_a: self.radii[i],
-                radius_b: self.radii[i + 1],
-            })
-            .collect()
-    }
-}
 
 impl Assembly<'_> {
     /// Builds the tubes from a fork, root or inset down to the next fork or end; what leaves through
@@ -218,8 +179,9 @@ impl Assembly<'_> {
             })
             .collect();
         let angles = relax(&stiffness, &targets);
-        for i in usize::from(starts_fixed)..=last {
-            path.frames[i] = frame::turn(path.frames[i], path.tangents[i], angles[i]);
+        let turned = path.frames.iter_mut().zip(&path.tangents).zip(angles);
+        for ((frame, &tangent), angle) in turned.skip(usize::from(starts_fixed)) {
+            *frame = frame::turn(*frame, tangent, angle);
         }
     }
 

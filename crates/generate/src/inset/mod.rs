@@ -19,7 +19,9 @@
 
 mod arrange;
 mod cone;
+mod leave;
 mod path;
+mod path_rings;
 mod polyline;
 mod shape;
 mod zone;
