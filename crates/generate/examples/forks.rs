@@ -7,6 +7,12 @@
 //!
 //! With `--smooth` also the change of length and the median and largest move, in radii.
 
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "this is its output"
+)]
+
 use std::iter::Peekable;
 use std::time::Instant;
 

@@ -117,7 +117,7 @@ mod tests {
         for slant in [0.0_f64, 0.5, -0.8] {
             let site = InsetSite {
                 exit: DVec3::new(0.0, 1.0, 0.0),
-                direction: DVec3::new(slant, 1.0, 0.0).normalize(),
+                direction: DVec3::new(slant, 1.0, 0.0).normalize_or(DVec3::Y),
                 radius: 0.4,
                 lift: 0.4,
                 along: DVec3::X,
