@@ -307,9 +307,7 @@ fn moving_branches_apart_takes_no_square_either() {
 
 #[test]
 fn smoothing_takes_no_square_either() {
-    let kinds: [Kind; 4] = [
-        ("branches all around", branches_all_around, 4_000),
-        ("forks in a row", forks_in_a_row, 4_000),
+    let kinds: [Kind; 2] = [
         ("free trees", free_trees, 4_000),
         ("a long path", long_path, 8_000),
     ];
