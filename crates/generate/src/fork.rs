@@ -10,6 +10,9 @@ use crate::warning::Warnings;
 /// Free way between a joint and a neighbor's ring, in radii of that ring.
 const FREE_WAY: f64 = 0.35;
 
+/// A fork of more children will be split over several joints; as one, it would take the cube of them.
+const MOST_CHILDREN: usize = 8;
+
 /// Neighbors of a fork, the parent first if there is one.
 pub(crate) fn neighbors(children: &Children, skeleton: &Skeleton, fork: u32) -> Vec<u32> {
     let parent = Some(skeleton.node(fork).parent).filter(|&p| p != NONE);
@@ -52,7 +55,8 @@ pub(crate) fn clear_the_way(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         let mut keep = vec![true; skeleton.nodes().len()];
         let mut dropped = 0;
         for fork in 0..skeleton.nodes().len() as u32 {
-            if children.of(fork).len() < 2 || !changed[fork as usize] {
+            let joins = 2..=MOST_CHILDREN;
+            if !joins.contains(&children.of(fork).len()) || !changed[fork as usize] {
                 continue;
             }
             changed[fork as usize] = false;
