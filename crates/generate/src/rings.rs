@@ -23,7 +23,7 @@ use crate::{GenerateOptions, SomaMethod, SphereKind};
 const LEAST_BEYOND: f64 = 0.5;
 /// Least way between a ring and a fork or an end beyond it, in radii of the thicker one.
 const LEAST_WAY: f64 = 1.5;
-/// A neurite whose radius is at most this share of its soma's leaves it through an inset: pulled to a
+/// A neurite whose radius is below this share of its soma's leaves it through an inset: pulled to a
 /// ring this small, a quad of the soma creases like a star. Thicker ones pull the soma out towards them,
 /// as in García-Cantero et al. 2017; at 0.2 most real somata would stay plain spheres.
 const THIN: f64 = 0.1;
@@ -233,7 +233,7 @@ impl<'a> Stem<'a> {
             self.soma_sphere.radius,
             self.skeleton.node(self.root).radius,
         );
-        if radius > THIN * soma {
+        if radius >= THIN * soma {
             return None;
         }
         let lifted = soma + SOMA_LIFT * radius;

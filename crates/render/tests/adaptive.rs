@@ -121,8 +121,8 @@ fn a_picture_is_that_of_the_stored_surface() {
     note!("{differing} of {drawn} pixels differ");
     assert!(drawn > 3000, "{drawn}");
     // Normals are stored in 32 bits there; diagonals of grids between two sizes differ. Measured on
-    // lavapipe: 4 of 4088.
-    assert!(differing * 500 < drawn, "{differing} of {drawn}");
+    // lavapipe: 10 of 4086; 4 before there were lofts, narrow patches whose normals turn fast.
+    assert!(differing * 300 < drawn, "{differing} of {drawn}");
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -59,8 +59,10 @@ pub(crate) fn cell(seed: u64, twigs: usize) -> CoarseMesh {
         assert!(mesh.patches.iter().any(|p| p.kind == kind), "{kind:?}");
     }
     assert!(
-        mesh.tracing.iter().any(|t| t.role == Role::Joint),
-        "no joint"
+        mesh.tracing
+            .iter()
+            .any(|t| matches!(t.role, Role::Joint | Role::Inset)),
+        "no fork"
     );
     mesh
 }
