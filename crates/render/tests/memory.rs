@@ -27,7 +27,7 @@ fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
 }
 
 #[neurotess_testing::test(needs(gpu, shared))]
-fn real_cells_take_24_bytes_a_point() {
+fn real_cells_take_26_bytes_a_point() {
     let gpu = device();
     let entries = std::fs::read_dir(shared_data().join("swc")).expect("tracings");
     let mut paths: Vec<_> = entries
@@ -52,7 +52,7 @@ fn real_cells_take_24_bytes_a_point() {
         if points >= 2000 {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             note!("{each:6.2} bytes a point, {points:6} points: {name}");
-            assert!(each <= 24.0, "{name}: {each}");
+            assert!(each <= 26.0, "{name}: {each}");
         }
     }
 }
