@@ -15,6 +15,7 @@ use super::observed::Observed;
 use super::options::MeshOptions;
 use super::smoothing::SmoothingReport;
 use super::surface::{CellSurface, CrossingsReport, SeparationReport};
+use super::warning::CellWarning;
 use super::{size, table, verdict};
 use crate::io::morphologies::read_morphology;
 use crate::io::output::{Output, OutputError, begin};
@@ -75,16 +76,6 @@ pub(crate) struct Seconds {
     pub(crate) write: f64,
     /// Topology, volume and area, for the report only.
     pub(crate) measure: f64,
-}
-
-/// A warning about the file (with a line), or about a repair of the mesh (with a sample).
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct CellWarning {
-    pub(crate) line: Option<u64>,
-    pub(crate) sample: Option<i64>,
-    pub(crate) code: &'static str,
-    pub(crate) message: String,
-    pub(crate) count: u64,
 }
 
 /// A cell read and generated, to be written once or several times.

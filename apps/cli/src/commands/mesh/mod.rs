@@ -19,6 +19,7 @@ mod smoothing;
 mod surface;
 mod table;
 mod verdict;
+mod warning;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -7,11 +7,21 @@ use neurotess::mesh::{Format, Unit};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
 use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, SphereArg};
-use super::surface::MeshLevels;
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets;
 use crate::report::usage;
+
+/// Levels of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MeshLevels {
+    /// The coarse quads themselves.
+    Coarse,
+    /// By a criterion.
+    Criterion(LodCriterion),
+    /// By kinds of edges.
+    Edges(EdgeRule),
+}
 
 /// All that a cell's mesh depends on.
 #[derive(Clone, Debug)]

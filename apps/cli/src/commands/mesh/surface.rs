@@ -7,39 +7,12 @@ use neurotess::generate::Separation;
 use neurotess::mesh::{
     CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
 };
-use neurotess::refine::{CoarseSurface, EdgeRule, Lod, LodCriterion, Refinement};
+use neurotess::refine::{CoarseSurface, Lod, Refinement};
 use neurotess::union::{Kin, Place, UnionOptions, UnionReport, union};
 use serde::Serialize;
 
-use super::options::MeshOptions;
+use super::options::{MeshLevels, MeshOptions};
 use crate::report::Failure;
-
-/// Levels of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum MeshLevels {
-    /// The coarse quads themselves.
-    Coarse,
-    /// By a criterion.
-    Criterion(LodCriterion),
-    /// By kinds of edges.
-    Edges(EdgeRule),
-}
-
-impl MeshLevels {
-    /// The surface of a coarse mesh.
-    pub(crate) fn surface<'m>(
-        self,
-        mesh: &'m CoarseMesh,
-        options: &MeshOptions,
-    ) -> Box<dyn Surface + 'm> {
-        let refined = |lod: Lod<'_>| Box::new(Refinement::new(mesh, lod, &options.refine));
-        match self {
-            Self::Coarse => Box::new(CoarseSurface::new(mesh, options.format.has_quads())),
-            Self::Criterion(criterion) => refined(criterion.into()),
-            Self::Edges(rule) => refined(Lod::by_edge(rule)),
-        }
-    }
-}
 
 /// A surface to be written, and what is known of it.
 pub(super) struct CellSurface<'m> {
@@ -56,7 +29,7 @@ impl<'m> CellSurface<'m> {
     /// Refines a coarse mesh, and merges what crosses if that is asked for.
     pub(super) fn new(mesh: &'m CoarseMesh, options: &MeshOptions) -> Result<Self, Failure> {
         let clock = Instant::now();
-        let surface = options.levels.surface(mesh, options);
+        let surface = refined(mesh, options);
         if !options.merge {
             return Ok(Self {
                 surface,
@@ -92,6 +65,16 @@ impl<'m> CellSurface<'m> {
     pub(super) fn volume_and_area(&self) -> (f64, f64) {
         let measure = measure_surface(&*self.surface);
         (measure.volume, measure.area)
+    }
+}
+
+/// The surface of a coarse mesh, made block by block.
+fn refined<'m>(mesh: &'m CoarseMesh, options: &MeshOptions) -> Box<dyn Surface + 'm> {
+    let refined = |lod: Lod<'_>| Box::new(Refinement::new(mesh, lod, &options.refine));
+    match options.levels {
+        MeshLevels::Coarse => Box::new(CoarseSurface::new(mesh, options.format.has_quads())),
+        MeshLevels::Criterion(criterion) => refined(criterion.into()),
+        MeshLevels::Edges(rule) => refined(Lod::by_edge(rule)),
     }
 }
 

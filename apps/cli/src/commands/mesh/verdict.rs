@@ -3,8 +3,8 @@
 use neurotess::generate::Generated;
 use neurotess::union::{Kin, Part, UnionReport};
 
-use super::cell::CellWarning;
 use super::surface::CellSurface;
+use super::warning::CellWarning;
 use crate::report::Failure;
 
 /// Solvers lose accuracy, and mesh generators time, where one in a hundred triangles has a smaller angle

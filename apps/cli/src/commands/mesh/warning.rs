@@ -1,0 +1,13 @@
+//! A warning of a cell, as JSON.
+
+use serde::Serialize;
+
+/// A warning about the file (with a line), or about a repair of the mesh (with a sample).
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CellWarning {
+    pub(crate) line: Option<u64>,
+    pub(crate) sample: Option<i64>,
+    pub(crate) code: &'static str,
+    pub(crate) message: String,
+    pub(crate) count: u64,
+}
