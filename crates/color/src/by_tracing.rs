@@ -80,7 +80,7 @@ fn by_type(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
     // The soma's points have the soma's type, whatever the file says.
     let kind = |point: &TracingPoint| match point.role {
         Role::Soma => NeuriteKind::SOMA.0,
-        _ => point.kind,
+        _ => point.kind.0,
     };
     let mut kinds: BTreeMap<i32, u32> = BTreeMap::new();
     for point in cells.iter().flat_map(|cell| &cell.mesh.tracing) {
@@ -135,7 +135,7 @@ fn categorical(
     for cell in cells {
         let numbers = number(cell.morphology);
         let of_point = |point: &TracingPoint| {
-            let section = usize::try_from(point.section - 1).ok();
+            let section = point.section.index();
             let number = section.and_then(|section| numbers.get(section));
             // 0 is the soma.
             number.map_or(category(0), |number| category(1 + next + number))
@@ -232,7 +232,7 @@ fn continuous(
 fn branch_orders(cell: &Cell<'_>) -> Vec<Option<f32>> {
     let orders = shape::branch_orders(cell.morphology);
     let of_point = |point: &TracingPoint| {
-        let section = usize::try_from(point.section - 1).ok();
+        let section = point.section.index();
         section.and_then(|section| orders.get(section).map(|&order| order as f32))
     };
     cell.mesh.tracing.iter().map(of_point).collect()

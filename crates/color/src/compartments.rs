@@ -56,7 +56,7 @@ pub(super) fn on_cell(cell: &Cell<'_>, compartments: &[Compartment]) -> Vec<u32>
     let points = cell.mesh.tracing.iter().zip(path_distances(cell));
     points
         .map(|(point, distance)| {
-            let section = usize::try_from(point.section - 1).ok();
+            let section = point.section.index();
             let section = section.filter(|&section| section < of_section.len());
             let compartment = match (point.role, section, distance) {
                 (Role::Soma, ..) => soma,
@@ -110,7 +110,7 @@ mod tests {
         let color_keys = on_cell(&cell, &compartments);
         let mut seen = [0; 4];
         for (point, color_key) in cell.mesh.tracing.iter().zip(color_keys) {
-            let expected = match (point.role, point.kind) {
+            let expected = match (point.role, point.kind.0) {
                 (Role::Soma, _) => 0,
                 (_, 2) => 1,
                 (_, _) if point.center.y < 55.0 => 2,

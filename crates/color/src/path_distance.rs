@@ -21,7 +21,7 @@ pub fn path_distances(cell: &Cell<'_>) -> Vec<Option<f32>> {
         Role::Soma => None,
         _ => Some(
             of_sample
-                .get(&i64::from(point.sample))
+                .get(&i64::from(point.sample.0))
                 .copied()
                 .unwrap_or(0.0),
         ),

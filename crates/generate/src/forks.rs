@@ -3,7 +3,8 @@
 //!
 //! No rule from angles and radii foretells which does best on a real tracing: points are too dense, bend
 //! too tightly, or another branch is in the way. So forks whose patches cross or fold over get the next
-//! choice, until all are sound or all choices were tried.
+//! choice, until all are sound or all choices were tried. After the first try only the neighborhoods of
+//! such forks are laid out again, and in the end the whole once more.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,176 +13,127 @@ use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
 use crate::assemble::{Assembly, Somata};
+use crate::fork_trials::ForkTrials;
 use crate::inset::{self, ForkChoice};
 use crate::judge::faults;
+use crate::neighborhood::Neighborhood;
 use crate::skeleton::Skeleton;
 use crate::warning::Warnings;
 use crate::{crowd, fork, uncross};
 
-/// What is tried, in this order. The lift decides most: 0.4 keeps the branch closest to the tracing,
-/// higher ones cross the trunk's bends less.
-const CHOICES: [ForkChoice; 6] = [
-    inset(0.4, false),
-    inset(0.7, false),
-    inset(1.0, false),
-    inset(0.4, true),
-    inset(1.0, true),
-    ForkChoice::Joint,
-];
-const JOINT: usize = CHOICES.len() - 1;
+/// Whether a path may go straight from one node to another below it.
+type MayJoin<'a> = dyn Fn(u32, u32) -> bool + 'a;
 
-/// The mesh of a skeleton with the best choice for each fork. `may_join`: whether a path may go straight
-/// from one node to another below it.
+/// The mesh of a skeleton with the best choice for each fork.
 pub(crate) fn mesh(
     skeleton: &Skeleton,
     somata: &Somata<'_>,
-    may_join: &dyn Fn(u32, u32) -> bool,
+    may_join: &MayJoin<'_>,
     warnings: &mut Warnings,
 ) -> CoarseMesh {
     let mut trials = ForkTrials::new(skeleton);
+    let made = Made::new(skeleton, trials.choices(), Some(somata), may_join);
+    let first = trials.choices().to_vec();
+    judge(&mut trials, &made, &|fork| fork);
     loop {
-        let mut found = Warnings::default();
-        let mut layout = inset::lay_out(skeleton, trials.choices());
-        for &twig in &layout.buried {
-            buried(skeleton.node(twig).sample, &mut found);
+        let open = trials.open();
+        if open.is_empty() {
+            break;
         }
-        crowd::split_crowded_forks(&mut layout.skeleton, &mut found);
-        fork::clear_the_way(&mut layout.skeleton, &mut found);
-        let orientations =
-            uncross::uncross_rings(&mut layout, somata.soma_spheres, may_join, &mut found);
-        let mut assembly = Assembly::new(&layout, &orientations);
-        assembly.somata(somata);
-        let (mesh, patches) = assembly.finish();
-        if !trials.advance(&mesh, patches, &layout.refused) {
-            warnings.extend(found);
-            return mesh;
-        }
-    }
-}
-
-fn buried(sample: i64, warnings: &mut Warnings) {
-    warnings.add(
-        "buried_twig",
-        Some(sample),
-        "twig ends inside the neurite that it branches from: left out of the mesh",
-    );
-}
-
-/// A fork of more children is split over several joints, and not judged: its patches are too many.
-const MOST_CHILDREN: usize = 5;
-
-const fn inset(lift: f64, thickened: bool) -> ForkChoice {
-    ForkChoice::Inset { lift, thickened }
-}
-
-/// Choices as they are tried.
-pub(crate) struct ForkTrials {
-    choices: Vec<ForkChoice>,
-    /// By fork.
-    trials: BTreeMap<u32, Trial>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Trial {
-    current: usize,
-    /// Faults of each choice that was tried.
-    faults: [Option<usize>; CHOICES.len()],
-    settled: bool,
-}
-
-impl ForkTrials {
-    pub(crate) fn new(skeleton: &Skeleton) -> Self {
-        let children = skeleton.children();
-        let mut choices = vec![CHOICES[0]; skeleton.nodes().len()];
-        let mut trials = BTreeMap::new();
-        for fork in 0..skeleton.nodes().len() as u32 {
-            match children.of(fork).len() {
-                0 | 1 => {}
-                2..=MOST_CHILDREN => {
-                    trials.insert(fork, Trial::default());
-                }
-                _ => choices[fork as usize] = ForkChoice::Joint,
-            }
-        }
-        Self { choices, trials }
-    }
-
-    /// By node of the skeleton.
-    pub(crate) fn choices(&self) -> &[ForkChoice] {
-        &self.choices
-    }
-
-    /// Judges the forks that are not settled, and goes on to what is tried next. Whether anything is.
-    /// `refused`: forks that became joints for lack of room.
-    pub(crate) fn advance(
-        &mut self,
-        mesh: &CoarseMesh,
-        patches: Vec<(u32, Range<u32>)>,
-        refused: &[u32],
-    ) -> bool {
-        for fork in refused {
-            if let Some(trial) = self.trials.get_mut(fork) {
-                trial.refuse();
-            }
-        }
-        let mut near: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (fork, range) in patches {
-            let open = self.trials.get(&fork).is_some_and(|trial| !trial.settled);
-            if open {
-                near.entry(fork).or_default().extend(range);
-            }
-        }
-        let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
-        let judged: Vec<(u32, usize)> = near
-            .par_iter()
-            .map(|(fork, patches)| (*fork, faults(mesh, patches)))
+        let near = Neighborhood::new(skeleton, &open);
+        let old = |node: u32| near.nodes[node as usize];
+        let choices: Vec<ForkChoice> = near
+            .nodes
+            .iter()
+            .map(|&node| trials.choices()[node as usize])
             .collect();
-        let faults: BTreeMap<u32, usize> = judged.into_iter().collect();
-        let mut changed = false;
-        for (fork, trial) in self.trials.iter_mut().filter(|(_, trial)| !trial.settled) {
-            let before = CHOICES[trial.current];
-            // A fork without patches was left out with its branch.
-            trial.faults[trial.current] = Some(faults.get(fork).copied().unwrap_or(0));
-            trial.next();
-            self.choices[*fork as usize] = CHOICES[trial.current];
-            changed |= CHOICES[trial.current] != before;
+        let may_join = |from: u32, to: u32| may_join(old(from), old(to));
+        let made = Made::new(&near.skeleton, &choices, None, &may_join);
+        judge(&mut trials, &made, &old);
+    }
+    let made = if trials.choices() == first {
+        made
+    } else {
+        Made::new(skeleton, trials.choices(), Some(somata), may_join)
+    };
+    warnings.extend(made.warnings);
+    made.mesh
+}
+
+/// A mesh, and what became of the forks.
+struct Made {
+    mesh: CoarseMesh,
+    /// Patches near a fork, by the fork's node.
+    patches: Vec<(u32, Range<u32>)>,
+    refused: Vec<u32>,
+    warnings: Warnings,
+}
+
+impl Made {
+    /// Without somata their neurites are closed by caps.
+    fn new(
+        skeleton: &Skeleton,
+        choices: &[ForkChoice],
+        somata: Option<&Somata<'_>>,
+        may_join: &MayJoin<'_>,
+    ) -> Self {
+        let mut warnings = Warnings::default();
+        let mut layout = inset::lay_out(skeleton, choices);
+        warn(&layout, skeleton, &mut warnings);
+        crowd::split_crowded_forks(&mut layout.skeleton, &mut warnings);
+        fork::clear_the_way(&mut layout.skeleton, &mut warnings);
+        let spheres = somata.map_or(&[][..], |somata| somata.soma_spheres);
+        let orientations = uncross::uncross_rings(&mut layout, spheres, may_join, &mut warnings);
+        let mut assembly = Assembly::new(&layout, &orientations);
+        if let Some(somata) = somata {
+            assembly.somata(somata);
         }
-        changed
+        let (mesh, patches) = assembly.finish();
+        Self {
+            mesh,
+            patches,
+            refused: layout.refused,
+            warnings,
+        }
     }
 }
 
-impl Trial {
-    /// There is no room for an inset of this thickness, whatever its lift.
-    fn refuse(&mut self) {
-        let thick = |choice: &ForkChoice| {
-            matches!(
-                choice,
-                ForkChoice::Inset {
-                    thickened: true,
-                    ..
-                }
-            )
-        };
-        for (choice, faults) in CHOICES.iter().zip(&mut self.faults).take(JOINT) {
-            if thick(choice) == thick(&CHOICES[self.current]) {
-                faults.get_or_insert(usize::MAX);
-            }
-        }
-        self.current = JOINT;
+/// Judges the forks that are not settled. `old`: a node of the skeleton by that of the mesh's.
+fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32) {
+    for &fork in &made.refused {
+        trials.refuse(old(fork));
     }
-
-    /// Goes on to the first choice that was not tried, or back to the best if all were or one is sound.
-    fn next(&mut self) {
-        let sound = self.faults[self.current] == Some(0);
-        let untried = self.faults.iter().position(Option::is_none);
-        match untried.filter(|_| !sound) {
-            Some(next) => self.current = next,
-            None => {
-                self.settled = true;
-                let tried = self.faults.iter().enumerate();
-                let best = tried.min_by_key(|(i, faults)| (faults.unwrap_or(usize::MAX), *i));
-                self.current = best.map_or(self.current, |(i, _)| i);
-            }
+    let mut near: BTreeMap<u32, Vec<u32>> = trials
+        .open()
+        .into_iter()
+        .map(|fork| (fork, Vec::new()))
+        .collect();
+    for (fork, range) in &made.patches {
+        if let Some(patches) = near.get_mut(&old(*fork)) {
+            patches.extend(range.clone());
         }
+    }
+    let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
+    let judged: Vec<(u32, usize)> = near
+        .par_iter()
+        .map(|(fork, patches)| (*fork, faults(&made.mesh, patches)))
+        .collect();
+    trials.advance(&judged.into_iter().collect());
+}
+
+fn warn(layout: &inset::Layout, skeleton: &Skeleton, warnings: &mut Warnings) {
+    for &twig in &layout.buried {
+        warnings.add(
+            "buried_twig",
+            Some(skeleton.node(twig).sample),
+            "twig ends inside the neurite that it branches from: left out of the mesh",
+        );
+    }
+    for &fork in &layout.thickened {
+        warnings.add(
+            "fork_thickened",
+            Some(skeleton.node(fork).sample),
+            "sample at a fork is thinner than two of its neighbors: meshed as thick as the thinner of them",
+        );
     }
 }

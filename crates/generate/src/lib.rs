@@ -5,11 +5,13 @@ mod assemble;
 mod crowd;
 mod error;
 mod fork;
+mod fork_trials;
 mod forks;
 mod frame;
 mod inset;
 mod joint;
 mod judge;
+mod neighborhood;
 mod normals;
 mod options;
 mod prepare;
@@ -158,7 +160,7 @@ pub fn generate_timed(
     mesh.origin = morphology.origin;
     let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
     if let Some(vertex) = mesh.vertices.iter().find(lost) {
-        let sample = i64::from(mesh.tracing[vertex.tracing as usize].sample);
+        let sample = i64::from(mesh.tracing[vertex.tracing as usize].sample.0);
         return Err(GenerateError::NotFinite { sample });
     }
     let reports = built.somata.iter().flatten().map(|soma| soma.report);

@@ -55,7 +55,8 @@ impl<'a> RingRequests<'a> {
 
     /// Number of a node's neurite.
     pub(crate) fn neurite(&self, node: &SkeletonNode) -> u32 {
-        self.neurites[(node.section - 1) as usize]
+        let section = node.section.index().expect("nodes lie on neurites");
+        self.neurites[section]
     }
 
     fn of(&self, node: &SkeletonNode) -> Option<f64> {

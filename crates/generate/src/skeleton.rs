@@ -6,6 +6,7 @@
 use std::cell::OnceCell;
 
 use glam::DVec3;
+use neurotess_mesh::{SectionNumber, SwcType};
 use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
 
 /// Stands for "no node" where an index of one is stored.
@@ -22,10 +23,10 @@ pub(crate) struct SkeletonNode {
     pub(crate) root: Root,
     /// The file's own number of the sample.
     pub(crate) sample: i64,
-    /// SWC type.
-    pub(crate) kind: i32,
-    /// Section of the morphology plus one.
-    pub(crate) section: i32,
+    /// Type of its section.
+    pub(crate) kind: SwcType,
+    /// The section that it lies on.
+    pub(crate) section: SectionNumber,
     /// What insets and joints need to find again.
     pub(crate) marks: Marks,
 }
@@ -173,8 +174,8 @@ impl Skeleton {
                     parent,
                     root: if parent == NONE { root } else { Root::Free },
                     sample: morphology.sample_ids.get(point).copied().unwrap_or(-1),
-                    kind: section.kind.0,
-                    section: id as i32 + 1,
+                    kind: SwcType(section.kind.0),
+                    section: SectionNumber(id as i32 + 1),
                     marks: Marks::default(),
                 });
                 parent = new_index[point];

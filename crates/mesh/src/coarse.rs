@@ -70,11 +70,39 @@ pub struct TracingPoint {
     /// the trunk, as the last leg of their cubics; 0 for all others.
     pub collar: f32,
     /// SWC type of the section.
-    pub kind: i32,
-    /// The file's own number of the sample.
-    pub sample: i32,
-    /// Section: that of the morphology plus one; 0 for the soma.
-    pub section: i32,
+    pub kind: SwcType,
+    /// The sample that it was traced as.
+    pub sample: SampleId,
+    /// The section that it lies on.
+    pub section: SectionNumber,
+}
+
+/// Type of a section as SWC numbers it: 1 soma, 2 axon, 3 basal dendrite, 4 apical dendrite, others as the
+/// file means them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SwcType(pub i32);
+
+impl SwcType {
+    /// The type of somata.
+    pub const SOMA: Self = Self(1);
+}
+
+/// The file's own number of a sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SampleId(pub i32);
+
+/// A section as surfaces number it: 0 is the soma, all others are those of the morphology plus one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SectionNumber(pub i32);
+
+impl SectionNumber {
+    /// The soma.
+    pub const SOMA: Self = Self(0);
+
+    /// Index of the section in its morphology; none for the soma.
+    pub fn index(self) -> Option<usize> {
+        usize::try_from(i64::from(self.0) - 1).ok()
+    }
 }
 
 /// What a patch covers, and so how it is refined.

@@ -45,7 +45,9 @@ mod weld;
 mod write;
 
 pub use check::{Report, check};
-pub use coarse::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
+pub use coarse::{
+    CoarseMesh, Patch, PatchKind, Role, SampleId, SectionNumber, SwcType, TracingPoint, Vertex,
+};
 pub use forest::Forest;
 pub use format::{Format, UnknownFormat};
 pub use in_unit::InUnit;

@@ -51,9 +51,9 @@ impl Surface for CoarseSurface<'_> {
             SurfaceVertex {
                 position: vertex.position,
                 normal: vertex.normal,
-                kind: tracing.kind,
-                point: tracing.sample,
-                section: tracing.section,
+                kind: tracing.kind.0,
+                point: tracing.sample.0,
+                section: tracing.section.0,
                 radius: tracing.radius,
             }
         }));

@@ -268,9 +268,9 @@ fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32)
     SurfaceVertex {
         position,
         normal,
-        kind,
-        point: sample,
-        section,
+        kind: kind.0,
+        point: sample.0,
+        section: section.0,
         radius,
     }
 }

@@ -7,7 +7,7 @@ use common::{cell, extent, smooth_cell};
 use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
-use neurotess_mesh::{CoarseMesh, Surface};
+use neurotess_mesh::{CoarseMesh, Surface, SwcType};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_render::color::{ColorTable, Palette, category};
 use neurotess_render::{
@@ -50,7 +50,7 @@ fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, size: [u32
 fn color_keys(mesh: &CoarseMesh) -> Vec<u32> {
     mesh.tracing
         .iter()
-        .map(|t| category(u32::from(t.kind == 1)))
+        .map(|t| category(u32::from(t.kind == SwcType::SOMA)))
         .collect()
 }
 

@@ -15,7 +15,7 @@ use neurotess_testing::{note, shared, shared_data};
 /// Bytes per point, and how many points.
 fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
     // As many colors as coloring by section needs.
-    let color_keys: Vec<u32> = mesh.tracing.iter().map(|t| t.section as u32).collect();
+    let color_keys: Vec<u32> = mesh.tracing.iter().map(|t| t.section.0 as u32).collect();
     let template = Template {
         mesh,
         color_keys: &color_keys,

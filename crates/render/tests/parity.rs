@@ -220,7 +220,7 @@ fn vertices_are_the_reference_s() {
                         assert!(apart <= 1e-5 * reference.radius, "radius");
                     }
                     let point = &mesh.tracing[vertex.color_key as usize];
-                    assert_eq!(point.sample, reference.point, "{selected:?} {at:?}");
+                    assert_eq!(point.sample.0, reference.point, "{selected:?} {at:?}");
                 }
             }
         }

@@ -5,7 +5,7 @@ mod renderer;
 
 use adapter::{device, gpu};
 use glam::{DQuat, DVec3};
-use neurotess_mesh::{CoarseMesh, PatchKind, Role};
+use neurotess_mesh::{CoarseMesh, PatchKind, Role, SectionNumber};
 use neurotess_render::pick::{PickHit, PickTarget, ProxyPickTargets};
 use neurotess_render::state::{WITHOUT_NEURITES, WITHOUT_SOMA};
 use neurotess_render::{Clip, Exploration, Instance, Placement, Proxy, Template};
@@ -181,7 +181,7 @@ fn ids_of_exploration_name_what_those_of_patches_do() {
     let (_, ids) = renderer.ids().expect("no fault").expect("arrived");
     let chunks = ids.into_iter().map(|id| resolver.resolve(id));
     let section = |hit: &PickHit| match hit.target {
-        _ if is_soma(&mesh, hit) => 0,
+        _ if is_soma(&mesh, hit) => SectionNumber::SOMA,
         PickTarget::Point(point) | PickTarget::Soma(point) => mesh.tracing[point as usize].section,
         PickTarget::Patch(patch) => {
             let corner = mesh.patches[patch as usize].corners[2];

@@ -160,8 +160,9 @@ pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Op
     let section = mesh.tracing[tracing as usize].section;
     let part = match soma {
         true => CellPart::Soma,
-        // Section 0 is the soma.
-        false => u32::try_from(section - 1).map_or(CellPart::Soma, CellPart::Section),
+        false => section
+            .index()
+            .map_or(CellPart::Soma, |index| CellPart::Section(index as u32)),
     };
     Some(CursorHit {
         picked: Picked {

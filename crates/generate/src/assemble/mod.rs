@@ -12,7 +12,9 @@ mod twist;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, TracingPoint, Vertex};
+use neurotess_mesh::{
+    CoarseMesh, Patch, PatchKind, Role, SampleId, SectionNumber, SwcType, TracingPoint, Vertex,
+};
 use neurotess_morphology::Morphology;
 
 use crate::fork;
@@ -142,9 +144,9 @@ impl<'a> Assembly<'a> {
                     tangent: Vec3::ZERO,
                     role: Role::Soma,
                     collar: 0.0,
-                    kind: 1,
+                    kind: SwcType::SOMA,
                     sample: clamp_id(sample),
-                    section: 0,
+                    section: SectionNumber::SOMA,
                 });
                 self.mesh.tracing.len() as u32 - 1
             } else {
@@ -335,6 +337,6 @@ fn inset_roots(layout: &Layout) -> Vec<u32> {
 }
 
 /// Sample numbers beyond 32 bits cannot be exported: they saturate.
-fn clamp_id(id: i64) -> i32 {
-    id.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+fn clamp_id(id: i64) -> SampleId {
+    SampleId(id.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
 }

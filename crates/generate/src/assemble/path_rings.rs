@@ -33,13 +33,6 @@ impl PathRings {
     pub(super) fn cones(&self, segment: usize) -> Vec<RoundCone> {
         let first = segment.saturating_sub(TRUNK_SEGMENTS);
         let end = (segment + TRUNK_SEGMENTS + 1).min(self.centers.len() - 1);
-        (first..end)
-            .map(|i| RoundCone {
-                a: self.centers[i],
-                b: self.centers[i + 1],
-                radius_a: self.radii[i],
-                radius_b: self.radii[i + 1],
-            })
-            .collect()
+        RoundCone::along(&self.centers, &self.radii, first..end)
     }
 }

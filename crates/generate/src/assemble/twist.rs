@@ -1,4 +1,4 @@
-//! How far rings turn about their path: as little as possible between fixed ends and wishes.
+//! How far rings turn about their path: as little as possible between fixed ends and targets.
 
 /// How a ring should stand: an angle and its weight; a weight of 0 for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

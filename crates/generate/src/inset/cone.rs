@@ -12,6 +12,22 @@ pub(crate) struct RoundCone {
 }
 
 impl RoundCone {
+    /// Cones of the segments of a path, by their first points.
+    pub(crate) fn along(
+        centers: &[DVec3],
+        radii: &[f64],
+        segments: impl Iterator<Item = usize>,
+    ) -> Vec<Self> {
+        segments
+            .map(|i| Self {
+                a: centers[i],
+                b: centers[i + 1],
+                radius_a: radii[i],
+                radius_b: radii[i + 1],
+            })
+            .collect()
+    }
+
     /// Signed distance (µm) of a point from the surface, negative inside: I. Quilez, "Round cone",
     /// whose three regions are the two spheres and the cone between their circles of contact.
     pub(crate) fn distance(&self, p: DVec3) -> f64 {

@@ -5,7 +5,7 @@ use super::arrange::{Group, arrange};
 use super::cone::distance;
 use super::path::{Beginning, Planner, Start, Way};
 use super::polyline::Polyline;
-use super::shape::{InsetShape, InsetSite};
+use super::shape::InsetShape;
 use super::zone::{Branch, NoZone, Zone};
 use crate::fork;
 use crate::joint::{Joint, Neighbor};
@@ -34,7 +34,7 @@ impl Planner<'_> {
             let ForkChoice::Inset { lift, .. } = self.choices[fork as usize] else {
                 continue;
             };
-            let line = self.branch_line(fork, child);
+            let (line, ends) = self.branch_line(fork, child);
             let branch = Branch {
                 fork,
                 child,
@@ -44,7 +44,7 @@ impl Planner<'_> {
             };
             match branch.zone(path, path.arcs[index], room) {
                 Ok(zone) if self.goes_on(&zone, path).is_some() => zones.push(zone),
-                Err(NoZone::Inside) if self.is_twig(child) => buried.push(child),
+                Err(NoZone::Inside) if ends => buried.push(child),
                 Ok(_) | Err(_) => refused.push(fork),
             }
         }
@@ -56,43 +56,33 @@ impl Planner<'_> {
         Ok(groups)
     }
 
-    /// From a fork along a branch's main children, as thick as the branch's first point.
-    fn branch_line(&self, fork: u32, child: u32) -> Polyline {
+    /// From a fork along a branch's main children, as thick as the branch's first point; and whether that
+    /// is all of the branch.
+    fn branch_line(&self, fork: u32, child: u32) -> (Polyline, bool) {
+        let mut forks = false;
         let mut nodes = vec![fork, child];
         while nodes.len() < MOST_LOOKED_AT {
             let (before, here) = (nodes[nodes.len() - 2], nodes[nodes.len() - 1]);
             match self.children.of(here) {
                 [] => break,
                 [only] => nodes.push(*only),
-                _ => nodes.push(self.main_child(before, here)),
+                _ => {
+                    forks = true;
+                    nodes.push(self.main_child(before, here));
+                }
             }
         }
+        let ends = !forks && self.children.of(nodes[nodes.len() - 1]).is_empty();
         let radius = self.base.node(child).radius;
         let centers = nodes.iter().map(|&n| self.base.node(n).center).collect();
-        Polyline::new(centers, vec![radius; nodes.len()])
-    }
-
-    /// Whether nothing branches off.
-    fn is_twig(&self, mut node: u32) -> bool {
-        while let [only] = self.children.of(node) {
-            node = *only;
-        }
-        self.children.of(node).is_empty()
+        (Polyline::new(centers, vec![radius; nodes.len()]), ends)
     }
 
     /// The inset's shape over the path as traced, and where the branch goes on from it. None if it forks
     /// before it is clear of its trunk.
     pub(super) fn goes_on(&self, zone: &Zone, path: &Polyline) -> Option<(InsetShape, Beginning)> {
-        let reach = 8.0 * zone.trunk_radius;
-        let cones = path.cones([zone.foot - reach, zone.foot + reach]);
-        let site = InsetSite {
-            exit: zone.exit,
-            direction: zone.direction,
-            radius: zone.radius,
-            lift: zone.lift,
-            along: path.tangent(zone.foot, 0.5 * zone.trunk_radius),
-        };
-        let shape = site.shape(&cones);
+        let cones = zone.cones(path);
+        let shape = zone.site(path).shape(&cones);
         let mut ahead = None;
         let mut here = zone.child;
         loop {

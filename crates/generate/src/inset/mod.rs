@@ -31,8 +31,7 @@ use glam::DVec3;
 use crate::skeleton::Skeleton;
 
 pub(crate) use cone::{RoundCone, outwards};
-pub(crate) use shape::{InsetSite, collar};
-pub(crate) use zone::not_too_steep;
+pub(crate) use shape::{InsetSite, collar, not_too_steep};
 
 /// What a fork becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +70,8 @@ pub(crate) struct Layout {
     pub(crate) zones: Vec<Vec<u32>>,
     /// Forks that were to have insets, and have no room for them.
     pub(crate) refused: Vec<u32>,
+    /// Forks that became thicker than they were traced.
+    pub(crate) thickened: Vec<u32>,
     /// First nodes of branches that end inside their trunk, and are left out.
     pub(crate) buried: Vec<u32>,
 }

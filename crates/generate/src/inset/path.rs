@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::arrange::Group;
 use super::path_rings::{RingKind, nearest, rings};
 use super::polyline::Polyline;
-use super::shape::{InsetShape, InsetSite};
+use super::shape::InsetShape;
 use super::zone::Zone;
 use super::{ForkChoice, Inset, Layout};
 use crate::fork;
@@ -55,6 +55,7 @@ pub(crate) struct Planner<'a> {
     insets: Vec<Inset>,
     zones: Vec<Vec<u32>>,
     refused: Vec<u32>,
+    thickened: Vec<u32>,
     pub(super) buried: Vec<u32>,
 }
 
@@ -77,6 +78,7 @@ impl<'a> Planner<'a> {
             insets: Vec::new(),
             zones: Vec::new(),
             refused: Vec::new(),
+            thickened: Vec::new(),
             buried: Vec::new(),
         }
     }
@@ -96,6 +98,7 @@ impl<'a> Planner<'a> {
             insets: self.insets,
             zones: self.zones,
             refused: self.refused,
+            thickened: self.thickened,
             buried: self.buried,
         }
     }
@@ -251,6 +254,13 @@ impl<'a> Planner<'a> {
         starts: &mut Vec<Start>,
     ) {
         let room = self.room(start, way, path);
+        for &(index, _) in &way.branches {
+            let fork = way.nodes[index];
+            let known = self.thickened.last() == Some(&fork);
+            if !known && path.radii[index] > self.base.node(fork).radius {
+                self.thickened.push(fork);
+            }
+        }
         let first_zone = self.zones.len() as u32;
         let last = way.nodes.len() - 1;
         let mut parent = match start {
@@ -313,16 +323,8 @@ impl<'a> Planner<'a> {
             .goes_on(zone, path)
             // Pushed along the trunk it may not be clear any more.
             .unwrap_or_else(|| {
-                let site = InsetSite {
-                    exit: zone.exit,
-                    direction: zone.direction,
-                    radius: zone.radius,
-                    lift: zone.lift,
-                    along: path.tangent(zone.foot, 0.5 * zone.trunk_radius),
-                };
-                let reach = 8.0 * zone.trunk_radius;
-                let cones = path.cones([zone.foot - reach, zone.foot + reach]);
-                (site.shape(&cones), Beginning::At(zone.child))
+                let cones = zone.cones(path);
+                (zone.site(path).shape(&cones), Beginning::At(zone.child))
             });
         starts.push(Start::Inset(Box::new(InsetStart {
             inset,

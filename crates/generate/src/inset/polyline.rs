@@ -89,14 +89,7 @@ impl Polyline {
 
     /// Cones of the segments that reach into `range`.
     pub(crate) fn cones(&self, range: [f64; 2]) -> Vec<RoundCone> {
-        self.segments(range)
-            .map(|i| RoundCone {
-                a: self.centers[i],
-                b: self.centers[i + 1],
-                radius_a: self.radii[i],
-                radius_b: self.radii[i + 1],
-            })
-            .collect()
+        RoundCone::along(&self.centers, &self.radii, self.segments(range))
     }
 
     fn segments(&self, range: [f64; 2]) -> std::ops::Range<usize> {

@@ -5,8 +5,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use glam::DVec3;
 
 use super::cone::{RoundCone, distance, outwards};
-use super::zone::LEAST_STEEP;
 
+/// Steepest that a branch leaves its trunk, by the cosine of the angle to the trunk's normal: 60°.
+pub(super) const LEAST_STEEP: f64 = 0.5;
 /// Share of the way from the trunk to the ring over which the lofts run along the branch.
 const COLLAR: f64 = 0.7;
 /// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
@@ -100,6 +101,17 @@ impl InsetSite {
         }
         up
     }
+}
+
+/// A direction turned up to [`LEAST_STEEP`] from the surface's normal.
+pub(crate) fn not_too_steep(direction: DVec3, normal: DVec3) -> DVec3 {
+    let up = direction.dot(normal);
+    if up >= LEAST_STEEP {
+        return direction;
+    }
+    let flat = (direction - normal * up).try_normalize();
+    let flat = flat.unwrap_or_else(|| normal.any_orthonormal_vector());
+    normal * LEAST_STEEP + flat * (1.0 - LEAST_STEEP * LEAST_STEEP).sqrt()
 }
 
 #[cfg(test)]

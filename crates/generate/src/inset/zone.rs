@@ -3,11 +3,12 @@
 
 use glam::DVec3;
 
-use super::cone::{distance, outwards};
+use super::cone::{RoundCone, distance, outwards};
 use super::polyline::Polyline;
+use super::shape::{InsetSite, LEAST_STEEP, not_too_steep};
 
-/// Steepest that a branch leaves its trunk, by the cosine of the angle to the trunk's normal: 60°.
-pub(crate) const LEAST_STEEP: f64 = 0.5;
+/// Stretch of the trunk that is looked at to either side, in its radii.
+const TRUNK_REACH: f64 = 8.0;
 /// Steps of the walk out of the trunk at most: thin branches of thick trunks take finer ones.
 const MOST_STEPS: f64 = 2000.0;
 /// A branch that is thicker than this share of its trunk, where it leaves it, gets a joint.
@@ -39,7 +40,7 @@ pub(crate) struct Zone {
 /// What there is instead of a zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NoZone {
-    /// The branch does not leave the trunk.
+    /// All of the branch that was looked at lies within the trunk.
     Inside,
     /// The trunk has no room for it.
     NoRoom,
@@ -59,7 +60,7 @@ impl Branch<'_> {
     /// The zone on `trunk`, whose fork lies at arc length `at`; `room`: arc lengths that are free.
     pub(crate) fn zone(&self, trunk: &Polyline, at: f64, room: [f64; 2]) -> Result<Zone, NoZone> {
         let near = trunk.radius(at);
-        let around = [at - 8.0 * near, at + 8.0 * near];
+        let around = [at - TRUNK_REACH * near, at + TRUNK_REACH * near];
         let cones = trunk.cones(around);
         let exit_arc = self.exit(near, |p| distance(&cones, p))?;
         let exit = self.path.at(exit_arc);
@@ -132,7 +133,9 @@ impl Branch<'_> {
             }
         }
         let Some(first) = first else {
-            return Err(NoZone::Inside);
+            // Farther out it may well leave the trunk.
+            let all = self.path.length() <= reach;
+            return Err(if all { NoZone::Inside } else { NoZone::NoRoom });
         };
         // Outside up to the end of what was looked at, however short, counts as for good.
         let first = match inside {
@@ -153,6 +156,23 @@ impl Branch<'_> {
 }
 
 impl Zone {
+    /// Cones of the trunk around it.
+    pub(crate) fn cones(&self, trunk: &Polyline) -> Vec<RoundCone> {
+        let reach = TRUNK_REACH * self.trunk_radius;
+        trunk.cones([self.foot - reach, self.foot + reach])
+    }
+
+    /// What the inset's ring is made of, on the trunk as traced.
+    pub(crate) fn site(&self, trunk: &Polyline) -> InsetSite {
+        InsetSite {
+            exit: self.exit,
+            direction: self.direction,
+            radius: self.radius,
+            lift: self.lift,
+            along: trunk.tangent(self.foot, 0.5 * self.trunk_radius),
+        }
+    }
+
     /// Moves the exit along the trunk, and the foot with it.
     fn move_exit(&mut self, by: f64, trunk: &Polyline) {
         let to = (self.foot + by).clamp(0.0, trunk.length());
@@ -172,15 +192,4 @@ impl Zone {
         let way = self.exit - trunk.at(self.foot);
         way.try_normalize().unwrap_or(DVec3::Y)
     }
-}
-
-/// A direction turned up to [`LEAST_STEEP`] from the surface's normal.
-pub(crate) fn not_too_steep(direction: DVec3, normal: DVec3) -> DVec3 {
-    let up = direction.dot(normal);
-    if up >= LEAST_STEEP {
-        return direction;
-    }
-    let flat = (direction - normal * up).try_normalize();
-    let flat = flat.unwrap_or_else(|| normal.any_orthonormal_vector());
-    normal * LEAST_STEEP + flat * (1.0 - LEAST_STEEP * LEAST_STEEP).sqrt()
 }

@@ -24,8 +24,8 @@ impl Tubes {
             parent,
             root,
             sample,
-            kind: 3,
-            section: sample as i32,
+            kind: neurotess_mesh::SwcType(3),
+            section: neurotess_mesh::SectionNumber(sample as i32),
             marks: crate::skeleton::Marks::default(),
         });
         sample as u32 - 1

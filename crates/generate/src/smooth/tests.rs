@@ -16,8 +16,8 @@ fn node(center: DVec3, radius: f64, parent: u32, number: usize) -> SkeletonNode 
         parent,
         root: Root::Free,
         sample: number as i64 + 7,
-        kind: (number % 3) as i32 + 2,
-        section: number as i32 / 4 + 1,
+        kind: neurotess_mesh::SwcType((number % 3) as i32 + 2),
+        section: neurotess_mesh::SectionNumber(number as i32 / 4 + 1),
         marks: Marks::default(),
     }
 }

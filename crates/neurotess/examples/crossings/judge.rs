@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use neurotess::mesh::{CoarseMesh, SurfaceMesh, SurfaceVertex, search_self_intersections};
+use neurotess::mesh::{
+    CoarseMesh, SectionNumber, SurfaceMesh, SurfaceVertex, search_self_intersections,
+};
 use neurotess::morphology::{Attachment, Morphology, Section};
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 
@@ -78,8 +80,11 @@ impl<'a> Tree<'a> {
             soma: vec![None; count],
             facet: vec![0.0; count],
         };
-        let neurites = mesh.tracing.iter().filter(|t| t.section != 0);
-        let kept: BTreeSet<i64> = neurites.map(|t| i64::from(t.sample)).collect();
+        let neurites = mesh
+            .tracing
+            .iter()
+            .filter(|t| t.section != SectionNumber::SOMA);
+        let kept: BTreeSet<i64> = neurites.map(|t| i64::from(t.sample.0)).collect();
         for section in &morphology.sections {
             tree.add_section(section, &kept);
         }

@@ -52,7 +52,10 @@ pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
 
 /// Color keys and table by type.
 pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColorTable) {
-    let color_keys = mesh.tracing.iter().map(|t| category(t.kind.max(0) as u32));
+    let color_keys = mesh
+        .tracing
+        .iter()
+        .map(|t| category(t.kind.0.max(0) as u32));
     let table = ColorTable {
         scale: Vec::new(),
         categories: (0..8).map(|kind| Palette::NeuroM.of_type(kind)).collect(),

@@ -51,7 +51,7 @@ pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
 fn color_keys(mesh: &CoarseMesh) -> Vec<u32> {
     let color_key = |point: &neurotess::mesh::TracingPoint| match point.role {
         Role::Soma => category(1),
-        _ => category(point.kind.clamp(0, TYPES - 1) as u32),
+        _ => category(point.kind.0.clamp(0, TYPES - 1) as u32),
     };
     mesh.tracing.iter().map(color_key).collect()
 }

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, SurfaceVertex};
+use neurotess_mesh::{CoarseMesh, Role, SampleId, SurfaceMesh, SurfaceVertex};
 use neurotess_refine::wgsl::ShaderParts;
 use neurotess_refine::{Lod, RefineOptions, Refinement};
 
@@ -200,7 +200,7 @@ impl Prerefined {
             // place, the color key is found by it.
             let mut numbered = source.mesh.clone();
             for (point, number) in numbered.tracing.iter_mut().zip(0..) {
-                point.sample = number;
+                point.sample = SampleId(number);
             }
             let refined = Refinement::new(&numbered, lod(index), options);
             for (level, edges) in refined.level_histogram() {
