@@ -89,8 +89,10 @@ pub use gpu::error::DeviceError;
 pub use output::image::{Image, PngWriter};
 pub use output::meter::{FrameTime, Meter};
 pub use output::progressive::{ProgressiveRenderer, Steps, ViewParams};
+pub use output::static_picture::{KeyColors, StaticPicture, VisibleKey};
 pub use output::still::{
-    Cost, LARGEST, Occlusion, PictureError, PictureOptions, StillRenderer, Viewpoint, render_still,
+    Cost, LARGEST, Occlusion, PictureError, PictureOptions, StaticError, StillRenderer, Viewpoint,
+    render_still,
 };
 pub use output::watch::Watch;
 pub use scene::templates::{Template, Templates};

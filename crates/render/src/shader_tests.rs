@@ -6,6 +6,9 @@ use neurotess_refine::{assert_layout, testing};
 
 use crate::gpu::shader;
 use crate::output::ids::ids_shader;
+use crate::output::static_picture::collect::{Span, Weighed, collect_shader};
+use crate::output::static_picture::matrix::Weight;
+use crate::output::static_picture::recolor::{Recolor, recolor_shader};
 use crate::scene::templates::Base;
 use crate::shading::finish::{Finish, Last, finish_shader};
 use crate::shading::present::{Present, mask_shader, present_shader};
@@ -42,7 +45,7 @@ fn adaptive_shaders_are_valid_in_every_language_and_have_our_structs() {
             slope,
             flat,
             smallest,
-            wireframe,
+            flat_indices,
             first_explicit,
             levels
         ]
@@ -119,6 +122,26 @@ fn adaptive_shaders_are_valid_in_every_language_and_have_our_structs() {
         ExpandedVertex,
         [position, normal, axis, radius, color_key, instance, grid]
     );
+}
+
+#[test]
+fn shaders_of_static_pictures_are_valid_in_every_language_and_have_our_structs() {
+    let (collect, _) = testing::check(&collect_shader(4, 2));
+    assert_layout!(
+        &collect,
+        "Weighed",
+        Weighed,
+        [color_key, instance, low, high]
+    );
+    assert_layout!(&collect, "Span", Span, [first, count, white, coverage]);
+    let (recolor, _) = testing::check(&recolor_shader());
+    assert_layout!(
+        &recolor,
+        "Recolor",
+        Recolor,
+        [background, edge, pixels, row, transparent, empty]
+    );
+    assert_layout!(&recolor, "Weight", Weight, [color, low, high]);
 }
 
 #[test]

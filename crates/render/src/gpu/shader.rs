@@ -16,8 +16,9 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 28] = [
+pub(crate) const FILES: [WgslFile; 35] = [
     file!("sources", "surface_vertex.wgsl"),
+    file!("sources", "surface_keys.wgsl"),
     file!("sources/adaptive", "placed.wgsl"),
     file!("sources/adaptive", "clusters.wgsl"),
     file!("sources/adaptive", "shown.wgsl"),
@@ -33,18 +34,24 @@ pub(crate) const FILES: [WgslFile; 28] = [
     file!("sources/adaptive", "vertices.wgsl"),
     file!("sources/adaptive", "expand.wgsl"),
     file!("sources/adaptive", "surface_id.wgsl"),
+    file!("sources/adaptive", "vertex_keys.wgsl"),
     file!("sources/prerefined", "prerefined.wgsl"),
     file!("sources/budgeted", "budgeted.wgsl"),
     file!("sources/budgeted", "select.wgsl"),
     file!("sources/budgeted", "visible_chunks.wgsl"),
     file!("sources/budgeted", "visible_chunks_id.wgsl"),
+    file!("sources/budgeted", "visible_chunk_keys.wgsl"),
     file!("shading", "shade.wgsl"),
+    file!("shading", "keyed.wgsl"),
+    file!("shading", "srgb.wgsl"),
     file!("shading", "finish.wgsl"),
     file!("shading", "occlusion.wgsl"),
     file!("shading", "accumulate.wgsl"),
     file!("shading", "mask.wgsl"),
     file!("shading", "present.wgsl"),
     file!("output", "ids.wgsl"),
+    file!("output/static_picture", "collect.wgsl"),
+    file!("output/static_picture", "recolor.wgsl"),
 ];
 
 /// A shader file of this crate.

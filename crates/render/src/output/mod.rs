@@ -1,4 +1,4 @@
-//! Pictures: drawn in tiles for a file, or step by step for a window; overlays; picking ids.
+//! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; overlays; picking ids.
 
 pub(crate) mod ids;
 pub(crate) mod image;
@@ -6,6 +6,7 @@ pub(crate) mod legend;
 pub(crate) mod meter;
 pub(crate) mod overlay;
 pub(crate) mod progressive;
+pub(crate) mod static_picture;
 pub(crate) mod still;
 pub(crate) mod text;
 pub(crate) mod tiles;

@@ -12,6 +12,8 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
+use crate::output::static_picture::StaticPicture;
+use crate::output::static_picture::matrix::Layer;
 use crate::output::tiles::{Finishing, TileRenderer};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb};
@@ -132,6 +134,39 @@ struct Parting {
     occlusion: Option<(f32, f32)>,
 }
 
+impl Parting {
+    fn finishing(&self, options: &PictureOptions) -> Finishing {
+        Finishing {
+            scale: self.scale,
+            margin: self.margin,
+            occlusion: self.occlusion,
+            background: options.background,
+        }
+    }
+
+    /// The frame of the tile whose upper left pixel is at `[left, top]` of a picture of this size.
+    fn frame(&self, view: &Viewpoint, size: [u32; 2], [left, top]: [u32; 2]) -> Frame {
+        let Self {
+            scale,
+            margin,
+            step,
+            ..
+        } = *self;
+        let place = |n: u32| (n * scale) as i32 - margin as i32;
+        Frame {
+            camera: view.camera,
+            near: view.near,
+            size: size.map(|n| n * scale),
+            tile: Tile {
+                x: place(left),
+                y: place(top),
+                width: step[0] * scale + 2 * margin,
+                height: step[1] * scale + 2 * margin,
+            },
+        }
+    }
+}
+
 impl PictureOptions {
     /// Number of samples that a pixel gets: the greatest possible number that is not above
     /// `samples`.
@@ -237,8 +272,16 @@ impl StillRenderer {
         &mut self,
         gpu: &Gpu,
         source: &dyn VertexSource,
-        key: PipelineKey,
+        table: &ColorTable,
+        options: &PictureOptions,
+        parting: &Parting,
     ) -> Result<&mut TileRenderer, DeviceError> {
+        let key = PipelineKey {
+            source: source.key(),
+            samples: parting.samples,
+            cut: options.look.clip.is_some(),
+            valued: table.values.instances() > 0,
+        };
         let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {
@@ -248,6 +291,7 @@ impl StillRenderer {
         };
         let renderer = &mut self.renderers[place];
         renderer.set_states(gpu, &self.states);
+        renderer.set_table(gpu, table);
         Ok(renderer)
     }
 
@@ -266,49 +310,19 @@ impl StillRenderer {
         mut take: impl FnMut(u32, Image) -> Result<(), E>,
     ) -> Result<Cost, PictureError<E>> {
         let clock = Instant::now();
-        let Viewpoint { camera, near } = *view;
-        let parting = options.parting(gpu, &camera);
-        let Parting {
-            scale,
-            margin,
-            step,
-            ..
-        } = parting;
-        let cut = options.look.clip.is_some();
-        let key = PipelineKey {
-            source: source.key(),
-            samples: parting.samples,
-            cut,
-            valued: table.values.instances() > 0,
-        };
+        let parting = options.parting(gpu, &view.camera);
+        let step = parting.step;
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, key)?;
-        renderer.set_table(gpu, table);
+        let renderer = self.renderer(gpu, source, table, options, &parting)?;
         renderer.timer.reset();
-        let finishing = Finishing {
-            scale,
-            margin,
-            occlusion: parting.occlusion,
-            background: options.background,
-        };
+        let finishing = parting.finishing(options);
         let [width, height] = options.size.map(|n| n.max(1));
         let mut tiles = 0;
         for top in (0..height).step_by(step[1] as usize) {
             let rows = step[1].min(height - top);
             let mut band = Image::new(width, rows);
             for left in (0..width).step_by(step[0] as usize) {
-                let place = |n: u32| (n * scale) as i32 - margin as i32;
-                let frame = Frame {
-                    camera,
-                    near,
-                    size: [width * scale, height * scale],
-                    tile: Tile {
-                        x: place(left),
-                        y: place(top),
-                        width: step[0] * scale + 2 * margin,
-                        height: step[1] * scale + 2 * margin,
-                    },
-                };
+                let frame = parting.frame(view, [width, height], [left, top]);
                 let watch = watch.as_ref();
                 if watch.is_some_and(Watch::is_stopped) {
                     return Err(PictureError::Stopped);
@@ -332,4 +346,66 @@ impl StillRenderer {
             target_bytes: renderer.target_bytes(),
         })
     }
+
+    /// Makes a picture that can be colored anew, with the pixels that [`StillRenderer::render`]
+    /// gives. `table`: colors, of which only those of the [`StaticPicture`] matter.
+    ///
+    /// # Errors
+    /// The device reports an error; the watch has stopped the picture; or the picture cannot be
+    /// colored anew, since it has a wireframe or the source does not support it.
+    pub fn render_static(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        view: &Viewpoint,
+        table: &ColorTable,
+        options: &PictureOptions,
+    ) -> Result<StaticPicture, StaticError> {
+        if options.look.wire > 0.0 {
+            return Err(StaticError::Wireframe);
+        }
+        let parting = options.parting(gpu, &view.camera);
+        let watch = self.watch.clone();
+        let renderer = self.renderer(gpu, source, table, options, &parting)?;
+        let collector = renderer.collector(gpu, source, parting.scale);
+        let mut collector = collector.ok_or(StaticError::Source)?;
+        let finishing = parting.finishing(options);
+        let size = options.size.map(|n| n.max(1));
+        let step = parting.step.map(|n| n as usize);
+        let mut layer = Layer::new(size);
+        for top in (0..size[1]).step_by(step[1]) {
+            for left in (0..size[0]).step_by(step[0]) {
+                if watch.as_ref().is_some_and(Watch::is_stopped) {
+                    return Err(StaticError::Stopped);
+                }
+                let frame = parting.frame(view, size, [left, top]);
+                let look = &options.look;
+                let collected =
+                    renderer.collect(gpu, source, &frame, look, &finishing, &mut collector)?;
+                if let Some(collected) = collected {
+                    layer.add([left, top], &collected);
+                }
+                watch.iter().for_each(Watch::note_tile);
+            }
+        }
+        let (look, background) = (&options.look, options.background);
+        Ok(StaticPicture::new(gpu, size, &[layer], look, background)?)
+    }
+}
+
+/// Why a static picture was not made.
+#[derive(Debug, Error)]
+pub enum StaticError {
+    /// The device reports an error.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// Lines of a wireframe have colors of their own.
+    #[error("a picture with a wireframe cannot be colored anew")]
+    Wireframe,
+    /// The source has no color keys to look up.
+    #[error("a picture of a surface that was refined beforehand cannot be colored anew")]
+    Source,
+    /// It was stopped by a [`Watch`].
+    #[error("stopped")]
+    Stopped,
 }

@@ -14,6 +14,7 @@ use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::{Pass, Timer};
+use crate::output::static_picture::collect::{Collected, Collector, Wanted};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb, linear};
 use crate::shading::finish::{Finish, Finisher, Last};
@@ -36,6 +37,11 @@ pub(crate) struct Finishing {
 }
 
 impl Finishing {
+    /// Bytes of a pixel where nothing is.
+    fn empty_pixel(&self) -> [u8; 4] {
+        self.background.map_or([0; 4], |[r, g, b]| [r, g, b, 255])
+    }
+
     /// The frame of the part of the tile that is kept.
     fn without_margin(&self, frame: &Frame) -> Frame {
         let mut kept = *frame;
@@ -71,6 +77,14 @@ impl TilePass {
             within: None,
         }
     }
+}
+
+/// A tile whose samples and occlusion are drawn.
+struct Drawn {
+    /// The shading's group, and that of the passes that finish a tile.
+    groups: [wgpu::BindGroup; 2],
+    /// Width and height (pixels) of what is kept of it.
+    kept: [u32; 2],
 }
 
 /// Draws tiles, with pipelines for one kind of source.
@@ -160,18 +174,95 @@ impl TileRenderer {
         watch: Option<&Watch>,
     ) -> Result<Option<Vec<u8>>, DeviceError> {
         let size = [frame.tile.width, frame.tile.height];
-        let empty = finishing
-            .background
-            .map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        let empty = finishing.empty_pixel();
         if !source.shows(&finishing.without_margin(frame)) {
             let pixel = finishing.scale * finishing.scale;
             let [width, height] = size.map(|n| n - 2 * finishing.margin);
             return Ok(Some(empty.repeat((width * height / pixel) as usize)));
         }
-        self.make_targets(gpu, size)?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let Drawn { groups, kept } =
+            self.draw_tile(gpu, source, frame, look, finishing, &mut encoder)?;
         let Some(targets) = &self.targets else {
             return Ok(None);
         };
+        let over = |n: u32| n.div_ceil(8);
+        let pixels = [over(kept[0]), over(kept[1])];
+        self.compute(
+            &self.finisher.last,
+            &groups[1],
+            pixels,
+            Pass::Gather,
+            &mut encoder,
+        );
+        let bytes = 4 * u64::from(kept[0]) * u64::from(kept[1]);
+        encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
+        self.timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let Some(pixels) = read_watched(gpu, &targets.read, bytes, watch)? else {
+            // The device may still be copying into the buffer that is read, so it cannot be used
+            // again.
+            self.targets = None;
+            return Ok(None);
+        };
+        self.timer.read(gpu)?;
+        Ok(Some(pixels))
+    }
+
+    /// Draws a tile and collects the color keys of its pixels, without the margins; none if nothing
+    /// shows.
+    pub(crate) fn collect(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        frame: &Frame,
+        look: &Look,
+        finishing: &Finishing,
+        collector: &mut Collector,
+    ) -> Result<Option<Collected>, DeviceError> {
+        if !source.shows(&finishing.without_margin(frame)) {
+            return Ok(None);
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let Drawn { groups, kept } =
+            self.draw_tile(gpu, source, frame, look, finishing, &mut encoder)?;
+        self.timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let groups = [&groups[0], &groups[1]];
+        let collected = collector.collect(gpu, source, frame, groups, kept)?;
+        Ok(Some(collected))
+    }
+
+    /// What collects color keys for its kind of source: none if the source has none to look up.
+    pub(crate) fn collector(
+        &self,
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        scale: u32,
+    ) -> Option<Collector> {
+        let wanted = Wanted {
+            key: self.key,
+            scale,
+            shade_layout: &self.shader.layout,
+            finish_layout: &self.finisher.layout,
+        };
+        Collector::new(gpu, source, &wanted)
+    }
+
+    /// Draws a tile's samples and their occlusion.
+    fn draw_tile(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        frame: &Frame,
+        look: &Look,
+        finishing: &Finishing,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<Drawn, DeviceError> {
+        let size = [frame.tile.width, frame.tile.height];
+        let empty = finishing.empty_pixel();
+        self.make_targets(gpu, size)?;
+        let targets = self.targets.as_ref().expect("targets were just made");
         let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
         let [r, g, b] = linear(finishing.background.unwrap_or_default());
@@ -192,41 +283,24 @@ impl TileRenderer {
         queue.write_buffer(&self.finish, 0, bytemuck::bytes_of(&finish));
         let (shade_group, finish_group) = self.groups(gpu, targets);
 
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
             let timestamps = self.timer.compute(Pass::Select);
-            source.select(round, &mut encoder, timestamps);
+            source.select(round, encoder, timestamps);
             let part = TilePass::round(round, rounds);
-            self.draw(source, &part, targets, &shade_group, &mut encoder);
+            self.draw(source, &part, targets, &shade_group, encoder);
         }
         let over = |n: u32| n.div_ceil(8);
         // Without occlusion the passes are empty, since their times are read.
         let all = |n: u32| if radius > 0.0 { over(n) } else { 0 };
         let (occlude, blur) = (&self.finisher.occlude, &self.finisher.blur);
         for (pipeline, name) in [(occlude, Pass::Occlude), (blur, Pass::Blur)] {
-            self.compute(pipeline, &finish_group, size.map(all), name, &mut encoder);
+            self.compute(pipeline, &finish_group, size.map(all), name, encoder);
         }
-        let pixels = [over(kept[0]), over(kept[1])];
-        self.compute(
-            &self.finisher.last,
-            &finish_group,
-            pixels,
-            Pass::Gather,
-            &mut encoder,
-        );
-        let bytes = 4 * u64::from(kept[0]) * u64::from(kept[1]);
-        encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
-        self.timer.resolve(&mut encoder);
-        queue.submit([encoder.finish()]);
-        let Some(pixels) = read_watched(gpu, &targets.read, bytes, watch)? else {
-            // The device may still be copying into the buffer that is read, so it cannot be used
-            // again.
-            self.targets = None;
-            return Ok(None);
-        };
-        self.timer.read(gpu)?;
-        Ok(Some(pixels))
+        Ok(Drawn {
+            groups: [shade_group, finish_group],
+            kept,
+        })
     }
 
     /// Selects and draws a frame and waits for it, without reading it back: for measurements.

@@ -70,6 +70,14 @@ impl InstanceValues {
     pub fn instances(&self) -> usize {
         self.first.len()
     }
+
+    /// The value of an instance at an index, as [`InstanceValues::push`] got it, clamped; none if
+    /// there is none.
+    pub(crate) fn value(&self, instance: u32, index: u32) -> Option<f32> {
+        let first = *self.first.get(instance as usize)?;
+        let four = self.fours.get(first as usize + index as usize / 4)?;
+        Some(four[index as usize % 4]).filter(|&value| value >= 0.0)
+    }
 }
 
 const NO_VALUE: f32 = -1.0;

@@ -6,8 +6,11 @@ use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 
 use crate::gpu::shader::{FILES, file};
 use crate::output::ids::ids_shader;
+use crate::output::static_picture::collect::{self, collect_shader};
+use crate::output::static_picture::recolor::{self, recolor_shader};
 use crate::scene::templates;
 use crate::shading::finish::{self, Last, finish_shader};
+use crate::shading::keyed::keyed_shader;
 use crate::shading::present::{gather_entries, mask_shader, present_shader, show_entries};
 use crate::shading::shade::{self, PipelineKey, shade_shader};
 use crate::sources::adaptive::expand::{self, expand_shader};
@@ -116,16 +119,16 @@ fn passes_of_exploration_bind_what_their_shaders_have() {
 #[test]
 fn pictures_bind_what_their_shaders_have() {
     let adaptive = (0..Refiner::SHADERS).map(|shader| {
-        let id = Some("surface_id.wgsl");
-        (Refiner::vertex_shader(shader), drawing_entries(), id)
+        let more = Some(["surface_id.wgsl", "vertex_keys.wgsl"]);
+        (Refiner::vertex_shader(shader), drawing_entries(), more)
     });
     let budgeted = (
         budgeted::passes::vertex_shader(),
         budgeted::passes::drawing_entries(),
-        Some("visible_chunks_id.wgsl"),
+        Some(["visible_chunks_id.wgsl", "visible_chunk_keys.wgsl"]),
     );
     let prerefined = (prerefined::vertex_shader(true), prerefined::entries(), None);
-    for (source, entries, id) in adaptive.chain([budgeted, prerefined]) {
+    for (source, entries, more) in adaptive.chain([budgeted, prerefined]) {
         let groups = vec![entries, shade::entries()];
         for samples in [1, 4] {
             let key = PipelineKey {
@@ -137,10 +140,20 @@ fn pictures_bind_what_their_shaders_have() {
             assert_bindings(&shader, "vertex", &groups);
             assert_bindings(&shader, "fragment", &groups);
         }
-        if let Some(id) = id {
-            let shader = ids_shader(&source, file(id));
-            assert_bindings(&shader, "vertex_id", &groups);
-            assert_bindings(&shader, "fragment_id", &groups);
+        let Some([id, keys]) = more else {
+            continue;
+        };
+        let shader = ids_shader(&source, file(id));
+        assert_bindings(&shader, "vertex_id", &groups);
+        assert_bindings(&shader, "fragment_id", &groups);
+        for samples in [1, 4] {
+            let key = PipelineKey {
+                samples,
+                ..PipelineKey::default()
+            };
+            let shader = keyed_shader(&source, file(keys), key);
+            assert_bindings(&shader, "vertex_keyed", &groups);
+            assert_bindings(&shader, "fragment_keyed", &groups);
         }
     }
     for samples in [1, 4] {
@@ -151,10 +164,17 @@ fn pictures_bind_what_their_shaders_have() {
                 assert_bindings(&shader, entry, &groups);
             }
         }
+        let groups = vec![
+            finish::entries(samples > 1, Last::Gather),
+            collect::entries(samples > 1),
+        ];
+        assert_bindings(&collect_shader(samples, 2), "collect", &groups);
         let groups = vec![gather_entries(samples)];
         assert_bindings(&mask_shader(samples), "gather", &groups);
     }
     assert_bindings(&present_shader(), "show", &vec![show_entries()]);
+    let groups = vec![recolor::entries()];
+    assert_bindings(&recolor_shader(), "recolor_pixels", &groups);
 }
 
 #[test]
@@ -183,10 +203,12 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "expand",
         "vertices",
         "surface_id",
+        "vertex_keys",
         "prerefined",
         "select",
         "visible_chunks",
         "visible_chunks_id",
+        "visible_chunk_keys",
         "shade",
         "finish",
         "occlusion",
@@ -194,6 +216,9 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "mask",
         "present",
         "ids",
+        "keyed",
+        "collect",
+        "recolor",
     ];
     for file in &FILES {
         let WgslFile { name, text } = file;

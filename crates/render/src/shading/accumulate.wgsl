@@ -31,7 +31,5 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     sum /= f32(finish.spare + 1u);
-    let color = encoded(sum.rgb + finish.background.rgb * (1.0 - sum.a));
-    let bytes = vec4<u32>(floor(vec4(color, 1.0) * 255.0 + 0.5));
-    pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+    pixels[at] = screen_bytes(vec4(sum.rgb + finish.background.rgb * (1.0 - sum.a), 1.0));
 }

@@ -1,6 +1,8 @@
 // What the passes after the drawing share; and the last of them, from samples to the bytes of a
 // picture. Called by tiles.rs. Rust twin: finish.rs.
 
+#import srgb.wgsl
+
 struct Finish {
     tile_size: vec2<u32>,
     tile_origin: vec2<i32>,
@@ -82,12 +84,6 @@ fn occlusion_at(p: vec2<i32>) -> f32 {
     return select(1.0, sum / weights, weights > 0.0);
 }
 
-// IEC 61966-2-1.
-fn encoded(linear: vec3<f32>) -> vec3<f32> {
-    let c = clamp(linear, vec3(0.0), vec3(1.0));
-    return select(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3(0.0031308));
-}
-
 @compute @workgroup_size(8, 8)
 fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= finish.kept) {
@@ -114,7 +110,5 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     if finish.clear == 1u {
         out = vec4(sum.rgb / sum.a, sum.a);
     }
-    // Not by pack4x8unorm, whose rounding depends on the driver.
-    let bytes = vec4<u32>(floor(vec4(encoded(out.rgb), out.a) * 255.0 + 0.5));
-    pixels[at] = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+    pixels[at] = screen_bytes(out);
 }

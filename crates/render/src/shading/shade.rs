@@ -184,6 +184,11 @@ impl Shade {
     }
 }
 
+/// Linear color of the edges of this look; all 0 without edges.
+pub(crate) fn edge_color(look: &Look) -> [f32; 4] {
+    edge(look.contrast.filter(|_| look.light != Light::Flat))
+}
+
 /// Color of edges on a background, and the background's luminance; a luminance above 1 gives no
 /// edges.
 fn edge(background: Option<Rgb>) -> [f32; 4] {
@@ -211,12 +216,42 @@ pub(crate) struct Shader {
 
 impl Shader {
     pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, key: PipelineKey) -> Self {
+        let layout = group_layout(&gpu.device, "shade", &entries());
+        let pass = DrawPass {
+            label: "shade",
+            shader: &|shader| shade_shader(&source.shader(shader), key),
+            entry_points: ["vertex", "fragment"],
+            formats: [COLOR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT],
+        };
+        let pipelines = pass.pipelines(gpu, source, key, &layout);
+        Self { pipelines, layout }
+    }
+}
+
+/// A pass that draws a source's vertices.
+pub(crate) struct DrawPass<'a> {
+    pub(crate) label: &'static str,
+    /// The composed shader for each of the source's.
+    pub(crate) shader: &'a dyn Fn(usize) -> Composed,
+    /// Of the vertex and the fragment stage.
+    pub(crate) entry_points: [&'static str; 2],
+    pub(crate) formats: [wgpu::TextureFormat; 3],
+}
+
+impl DrawPass<'_> {
+    /// A pipeline for each of the source's shaders. `layout`: that of group 1.
+    pub(crate) fn pipelines(
+        &self,
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        key: PipelineKey,
+        layout: &wgpu::BindGroupLayout,
+    ) -> Vec<wgpu::RenderPipeline> {
         let PipelineKey { samples, cut, .. } = key;
         let device = &gpu.device;
-        let layout = group_layout(device, "shade", &entries());
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("shade"),
-            bind_group_layouts: &[Some(source.layout()), Some(&layout)],
+            label: Some(self.label),
+            bind_group_layouts: &[Some(source.layout()), Some(layout)],
             immediate_size: 0,
         });
         let target = |format: wgpu::TextureFormat| {
@@ -227,13 +262,13 @@ impl Shader {
             })
         };
         let pipeline = |shader: usize| {
-            let module = gpu.shader_module(&shade_shader(&source.shader(shader), key));
+            let module = gpu.shader_module(&(self.shader)(shader));
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("shade"),
+                label: Some(self.label),
                 layout: Some(&pipeline_layout),
                 vertex: wgpu::VertexState {
                     module: &module,
-                    entry_point: Some("vertex"),
+                    entry_point: Some(self.entry_points[0]),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     buffers: &[],
                 },
@@ -254,16 +289,15 @@ impl Shader {
                 },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
-                    entry_point: Some("fragment"),
+                    entry_point: Some(self.entry_points[1]),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[COLOR_FORMAT, NORMAL_FORMAT, DISTANCE_FORMAT].map(target),
+                    targets: &self.formats.map(target),
                 }),
                 multiview_mask: None,
                 cache: None,
             })
         };
-        let pipelines = (0..source.shaders()).map(pipeline).collect();
-        Self { pipelines, layout }
+        (0..source.shaders()).map(pipeline).collect()
     }
 }
 

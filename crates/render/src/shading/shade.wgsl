@@ -58,7 +58,8 @@ struct Shade {
 struct Varying {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
-    @location(1) color: vec3<f32>,
+    // Where a pixel is covered in part, colors are those of the part: not extrapolated.
+    @location(1) @interpolate(perspective, centroid) color: vec3<f32>,
     @location(2) relative: vec3<f32>,
     @location(3) grid: vec2<f32>,
     @location(4) coverage: f32,
@@ -66,8 +67,9 @@ struct Varying {
     @location(5) thin: f32,
     // 1: the instance has an outline.
     @location(6) @interpolate(flat) outline: u32,
-    // Share of the edge's color at edges.
-    @location(7) edge: f32,
+    // Share of the edge's color at edges, and before it the color times that share: so what is
+    // interpolated is what corners would look like, and linear in their colors.
+    @location(7) @interpolate(perspective, centroid) edge: vec4<f32>,
 }
 
 fn category_entry(category: u32) -> u32 {
@@ -198,10 +200,10 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     coverage = shown_part(state, v.radius, coverage);
     out.normal = v.normal;
     out.color = color.rgb;
-    out.edge = edge;
     if (state & HIGHLIGHTED) != 0u {
         out.color = mix(out.color, shade.highlighted.rgb, shade.highlighted.a);
     }
+    out.edge = vec4(edge * out.color, edge);
     out.relative = relative;
     out.grid = v.grid;
     out.coverage = coverage;
@@ -232,10 +234,20 @@ struct Sample {
 #endif
 }
 
+// How a surface is lit, whatever its color.
+struct Lights {
+    // Share of its color that it returns.
+    diffuse: f32,
+    // White that is added.
+    sheen: f32,
+    // Light from behind along the outline: returned in its color, and a quarter of it white.
+    rim: f32,
+}
+
 // A key light from the upper left, a weak fill light from the lower right, and a sky brighter than
 // the ground. The weights were chosen by eye on real cells, so that a surface that faces the viewer
 // has the color of the legend.
-fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+fn lights(n: vec3<f32>, to_eye: vec3<f32>) -> Lights {
     let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
     let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
     let sky = 0.5 + 0.5 * n.y;
@@ -243,10 +255,15 @@ fn light(albedo: vec3<f32>, n: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     // A broad highlight, so that the shape of black things shows.
     let half = normalize(shade.key + to_eye);
     let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
-    // Light from behind along the outline, which makes a thing stand out from what is behind it.
+    // The rim makes a thing stand out from what is behind it.
     let grazing = 1.0 - max(dot(n, to_eye), 0.0);
     let rim = 0.16 * grazing * grazing * grazing * mix(0.4, 1.0, sky);
-    return albedo * diffuse + sheen + rim * (0.25 + albedo);
+    return Lights(diffuse, sheen, rim);
+}
+
+// A color in these lights; `white`: how much of it there is, 0 to 1.
+fn light(albedo: vec3<f32>, white: f32, l: Lights) -> vec3<f32> {
+    return albedo * l.diffuse + l.sheen * white + l.rim * (0.25 * white + albedo);
 }
 
 // Coverage by the wireframe: lines run where x, y or x + y is a whole number.
@@ -279,38 +296,56 @@ fn left_by_clip(relative: vec3<f32>, coverage: f32) -> f32 {
     return select(coverage, 0.0, dot(shade.clip.xyz, relative) + shade.clip.w < 0.0);
 }
 
-@fragment
-fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
+// The surface at a fragment, in the view: right, up, backward.
+struct Facet {
+    normal: vec3<f32>,
+    to_eye: vec3<f32>,
+    // How strong an edge is: rises towards the outline.
+    edge: f32,
+    // Coverage after the cut.
+    coverage: f32,
+}
+
+fn facet(world_normal: vec3<f32>, relative: vec3<f32>, coverage: f32, thin: f32, front: bool) -> Facet {
     // Back faces show only where the surface is cut: with the plane's normal it looks as if it were
     // filled.
-    let world = select(-shade.clip.xyz, normalize(in.normal), front);
+    let world = select(-shade.clip.xyz, normalize(world_normal), front);
     let axes = mat3x3(shade.right, shade.up, shade.backward);
-    let left = left_by_clip(in.relative, in.coverage);
-    let to_eye = -normalize(in.relative) * axes;
+    let to_eye = -normalize(relative) * axes;
     // A thin line is lit like a surface that faces the viewer, so that it has the color of the
     // legend. With the mean over all its sides it was a third darker, and thin neurites looked
     // gray.
-    let n = normalize(mix(world * axes, to_eye, in.thin));
+    let n = normalize(mix(world * axes, to_eye, thin));
+    let facing = dot(world * axes, to_eye);
+    let across = sqrt(max(1.0 - facing * facing, 0.0));
+    return Facet(n, to_eye, smoothstep(0.5, 0.85, across), left_by_clip(relative, coverage));
+}
+
+@fragment
+fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
+    let f = facet(in.normal, in.relative, in.coverage, in.thin, front);
     var color = in.color;
+    var edged = in.edge;
     if shade.wire > 0.0 {
         let line = select(vec3(0.22), color * 0.06, luminance(color) > 0.06);
         color = mix(color, line, wireframe(in.grid) * (1.0 - in.thin));
+        edged = vec4(color * edged.a, edged.a);
     }
     if shade.lit > 0.0 {
-        color = light(color, n, to_eye);
+        let l = lights(f.normal, f.to_eye);
+        color = light(color, 1.0, l);
+        edged = vec4(light(edged.rgb, edged.a, l), edged.a);
     }
-    let facing = dot(world * axes, to_eye);
-    let across = sqrt(max(1.0 - facing * facing, 0.0));
-    color = mix(color, shade.edge.rgb, 0.7 * in.edge * smoothstep(0.5, 0.85, across));
+    color += 0.7 * f.edge * (shade.edge.rgb * edged.a - edged.rgb);
     var out: Sample;
     out.color = vec4(color, 1.0);
-    out.normal = vec4(n * 0.5 + 0.5, f32(in.outline) / 255.0);
+    out.normal = vec4(f.normal * 0.5 + 0.5, f32(in.outline) / 255.0);
     out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
 #ifdef MULTISAMPLED
-    out.mask = mask_of(left, in.position);
+    out.mask = mask_of(f.coverage, in.position);
 #else
     // A mask of one sample: it is drawn or not.
-    if mask_of(left, in.position) == 0u { discard; }
+    if mask_of(f.coverage, in.position) == 0u { discard; }
 #endif
     return out;
 }

@@ -59,6 +59,21 @@ pub trait VertexSource {
         None
     }
 
+    /// WGSL that is added to [`VertexSource::shader`] for pictures that are colored anew: defines
+    /// `surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys`, see
+    /// surface_keys.wgsl. None if the source does not support them.
+    fn key_shader(&self) -> Option<WgslFile> {
+        None
+    }
+
+    /// As [`VertexSource::prepare`], for shaders with [`VertexSource::key_shader`].
+    ///
+    /// # Errors
+    /// The device reports an error.
+    fn prepare_keyed(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        self.prepare(gpu, frame)
+    }
+
     /// Layout of bind group 0.
     fn layout(&self) -> &wgpu::BindGroupLayout;
 

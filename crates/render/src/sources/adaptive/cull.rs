@@ -12,7 +12,9 @@ use neurotess_refine::{
 
 use crate::scene::Placement;
 use crate::scene::templates::MOST_PATCHES;
-use crate::sources::adaptive::settings::{AdaptiveSettings, CullView, FrameUniforms, Placed};
+use crate::sources::adaptive::settings::{
+    AdaptiveSettings, CullView, FlatIndices, FrameUniforms, Placed,
+};
 
 /// What the device must decide for every patch of a mesh at a placement: nothing if it is culled,
 /// else the levels of its four sides. `values`: a level per tracing point.
@@ -23,7 +25,7 @@ pub fn decide(
     view: &CullView,
     settings: &AdaptiveSettings,
 ) -> Vec<Option<[u32; 4]>> {
-    let frame = FrameUniforms::new(view, settings);
+    let frame = FrameUniforms::new(view, settings, FlatIndices::default());
     let placed = Placed::new(view, placement, mesh.origin);
     let lod = Lod {
         criterion: settings.lod.scaled(placement.scale),

@@ -41,9 +41,9 @@ fn flatten(
     let p = patch_at(place.base, slot - place.first_slot);
     var corners: vec4<u32>;
     for (var k = 0u; k < 4u; k += 1u) {
-        // Wireframes need to know which corner of its patch a vertex is.
-        let own = select(0u, k << FLAT_CORNER_SHIFT, frame.wireframe != 0u);
-        corners[k] = coarse_place(place, p.corners[k]) | own;
+        let own = select(0u, k << FLAT_CORNER_SHIFT, frame.flat_indices != FLAT_PLACES);
+        let named = select(coarse_place(place, p.corners[k]), slot, frame.flat_indices == FLAT_SLOTS);
+        corners[k] = named | own;
     }
     let at = FLAT_INDICES * (atomicLoad(&marks[flat_mark(cluster)]) + before);
     flat_indices[at] = corners.x;

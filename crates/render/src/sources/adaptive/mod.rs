@@ -40,8 +40,9 @@ pub struct Adaptive {
     plan: FramePlan,
     bounds: Option<Vec<BoundingSphere>>,
     keeps: bool,
-    /// The view and settings that the lists on the device are for, while they are kept.
-    kept: Option<(CullView, AdaptiveSettings)>,
+    /// The view and settings that the lists on the device are for, and whether they are for shaders
+    /// that look color keys up; while they are kept.
+    kept: Option<(CullView, AdaptiveSettings, bool)>,
     /// Whether those lists are still to be written.
     stale: AtomicBool,
 }
@@ -146,6 +147,33 @@ impl Adaptive {
     pub fn bytes_per_point(&self) -> f64 {
         self.scene.templates().bytes_per_point()
     }
+
+    fn prepare_lists(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame,
+        keyed: bool,
+    ) -> Result<usize, DeviceError> {
+        let view = CullView {
+            eye: frame.camera.eye(),
+            forward: -frame.camera.axes()[2],
+            planes: frame.frustum(),
+            slope: frame.slope() * self.sub_pixels,
+            near: frame.near,
+        };
+        let requested = Some((view, self.settings, keyed));
+        if self.kept != requested {
+            self.kept = None;
+            self.refiner.set_keyed(keyed);
+            self.plan = self
+                .refiner
+                .prepare(gpu, &self.scene, &view, &self.settings)?;
+            *self.stale.get_mut() = true;
+            let keeps = self.keeps && self.plan.batches.len() == 1;
+            self.kept = requested.filter(|_| keeps);
+        }
+        Ok(self.plan.batches.len())
+    }
 }
 
 impl VertexSource for Adaptive {
@@ -178,24 +206,15 @@ impl VertexSource for Adaptive {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
-        let view = CullView {
-            eye: frame.camera.eye(),
-            forward: -frame.camera.axes()[2],
-            planes: frame.frustum(),
-            slope: frame.slope() * self.sub_pixels,
-            near: frame.near,
-        };
-        let requested = Some((view, self.settings));
-        if self.kept != requested {
-            self.kept = None;
-            self.plan = self
-                .refiner
-                .prepare(gpu, &self.scene, &view, &self.settings)?;
-            *self.stale.get_mut() = true;
-            let keeps = self.keeps && self.plan.batches.len() == 1;
-            self.kept = requested.filter(|_| keeps);
-        }
-        Ok(self.plan.batches.len())
+        self.prepare_lists(gpu, frame, false)
+    }
+
+    fn key_shader(&self) -> Option<WgslFile> {
+        Some(shader::file("vertex_keys.wgsl"))
+    }
+
+    fn prepare_keyed(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
+        self.prepare_lists(gpu, frame, true)
     }
 
     fn select(

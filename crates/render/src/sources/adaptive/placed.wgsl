@@ -11,8 +11,8 @@ struct Frame {
     slope: f32,
     flat: f32,
     smallest: f32,
-    // Whether no two patches share corners, as wireframes need.
-    wireframe: u32,
+    // What the indices of flat patches say: see FlatIndices in settings.rs.
+    flat_indices: u32,
     // Index of the first explicit vertex, the same in every batch: behind the slots of the largest.
     first_explicit: u32,
     @align(16) levels: LodCriterion,

@@ -27,7 +27,7 @@ use crate::sources::adaptive::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
 use crate::sources::adaptive::layouts::WorkLayouts;
 use crate::sources::adaptive::passes::Passes;
 use crate::sources::adaptive::settings::{
-    AdaptiveSettings, BatchUniforms, CullView, FrameUniforms, Placed, constants,
+    AdaptiveSettings, BatchUniforms, CullView, FlatIndices, FrameUniforms, Placed, constants,
 };
 use crate::sources::adaptive::work::{Sizes, Work};
 
@@ -41,6 +41,8 @@ pub struct Refiner {
     pub(crate) work: Work,
     /// By page of the scene that was prepared last.
     drawing_groups: Vec<wgpu::BindGroup>,
+    /// Whether frames are prepared for shaders that look color keys up.
+    keyed: bool,
 }
 
 impl Refiner {
@@ -65,6 +67,7 @@ impl Refiner {
             buckets,
             work,
             drawing_groups: Vec::new(),
+            keyed: false,
         })
     }
 
@@ -94,6 +97,11 @@ impl Refiner {
         &self.work_layouts.drawing
     }
 
+    /// Whether frames are prepared for shaders with vertex_keys.wgsl from now on.
+    pub(crate) fn set_keyed(&mut self, keyed: bool) {
+        self.keyed = keyed;
+    }
+
     /// Culls whole parts, uploads the placements of the others, and cuts them into batches.
     ///
     /// # Errors
@@ -105,7 +113,12 @@ impl Refiner {
         view: &CullView,
         settings: &AdaptiveSettings,
     ) -> Result<FramePlan, DeviceError> {
-        let mut frame = FrameUniforms::new(view, settings);
+        let flat = match (self.keyed, settings.wireframe) {
+            (true, _) => FlatIndices::Slots,
+            (false, true) => FlatIndices::Corners,
+            (false, false) => FlatIndices::Places,
+        };
+        let mut frame = FrameUniforms::new(view, settings, flat);
         let (mut placed, patches) = place_all(scene, view, &frame);
         // A stable sort: within a page the scene's order stays.
         placed.sort_by_key(|&(page, _)| page);

@@ -106,7 +106,8 @@ pub(crate) struct FrameUniforms {
     pub(crate) slope: f32,
     pub(crate) flat: f32,
     pub(crate) smallest: f32,
-    pub(crate) wireframe: u32,
+    /// Number of a [`FlatIndices`].
+    pub(crate) flat_indices: u32,
     /// Index of the first explicit vertex, the same in every batch.
     pub(crate) first_explicit: u32,
     pad: [u32; 3],
@@ -114,14 +115,27 @@ pub(crate) struct FrameUniforms {
     pad_end: [u32; 3],
 }
 
+/// What the index of a vertex of a flat patch says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum FlatIndices {
+    /// The corner's place among the batch's corners, which patches share.
+    #[default]
+    Places,
+    /// The same, and which corner of its patch it is: for wireframes.
+    Corners,
+    /// The patch's slot, and which of its corners it is: for color keys.
+    Slots,
+}
+
 impl FrameUniforms {
-    pub(crate) fn new(view: &CullView, settings: &AdaptiveSettings) -> Self {
+    pub(crate) fn new(view: &CullView, settings: &AdaptiveSettings, flat: FlatIndices) -> Self {
         Self {
             planes: view.planes.map(|plane| plane.to_array()),
             slope: view.slope as f32,
             flat: 0.0,
             smallest: settings.smallest.max(0.0),
-            wireframe: u32::from(settings.wireframe),
+            flat_indices: flat as u32,
             first_explicit: 0,
             pad: [0; 3],
             levels: GpuLodCriterion::new(settings.lod, &settings.options()),
@@ -218,6 +232,8 @@ pub(crate) fn constants() -> Constants {
         ("FLAT_INDICES", FLAT_INDICES),
         ("FLAT_CORNER_SHIFT", FLAT_CORNER_SHIFT),
         ("FLAT_LEVELS", FLAT_LEVELS),
+        ("FLAT_PLACES", FlatIndices::Places as u32),
+        ("FLAT_SLOTS", FlatIndices::Slots as u32),
         ("QUEUED_LEVEL_SHIFT", QUEUED_LEVEL_SHIFT),
         ("QUEUE_PLAIN", QUEUE_PLAIN),
         ("QUEUE_ASKED", QUEUE_ASKED),

@@ -27,7 +27,12 @@ struct Bucket {
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     if (DRAWS == DRAWS_FLAT) {
         let corner = vertex_index >> FLAT_CORNER_SHIFT;
-        return flat_vertex(vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u), grid_of_corner(corner));
+        let named = vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u);
+#ifdef KEYED
+        return flat_vertex(place_of_corner(named, corner), grid_of_corner(corner));
+#else
+        return flat_vertex(named, grid_of_corner(corner));
+#endif
     }
     let bucket = buckets[vertex_index >> INDEX_BUCKET_SHIFT];
     let k = (vertex_index >> INDEX_PATCH_SHIFT) & INDEX_PATCH_MASK;
@@ -60,10 +65,15 @@ fn listed_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
 
 // A patch at level 1 has no vertices but its corners.
 fn listed_flat_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
-    let part = placed[owners[listed.x / CLUSTER]];
-    let p = patch_at(part.base, listed.x - part.first_slot);
     let corner = select(min(i, 1u), 3u - min(i, 1u), j > 0u);
-    return flat_vertex(coarse_place(part, p.corners[corner]), grid_of_corner(corner));
+    return flat_vertex(place_of_corner(listed.x, corner), grid_of_corner(corner));
+}
+
+// Index of a corner of a patch among the corners of the batch.
+fn place_of_corner(slot: u32, corner: u32) -> u32 {
+    let part = placed[owners[slot / CLUSTER]];
+    let p = patch_at(part.base, slot - part.first_slot);
+    return coarse_place(part, p.corners[corner]);
 }
 
 fn grid_of_corner(corner: u32) -> vec2<f32> {

@@ -240,6 +240,10 @@ impl VertexSource for Exploration {
         Some(shader::file("visible_chunks_id.wgsl"))
     }
 
+    fn key_shader(&self) -> Option<WgslFile> {
+        Some(shader::file("visible_chunk_keys.wgsl"))
+    }
+
     fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.passes.drawing
     }

@@ -1,0 +1,234 @@
+//! The passes that find out which color keys show in which pixels, and with what weights.
+
+use bytemuck::{Pod, Zeroable};
+use neurotess_refine::wgsl::{Shader, ShaderParts};
+
+use crate::gpu::buffers::{group_layout, make, read_back, storage, texture_binding};
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::gpu::shader;
+use crate::shading::finish::BLUR;
+use crate::shading::keyed::{KeyedShader, KeyedTargets};
+use crate::shading::shade::PipelineKey;
+use crate::sources::VertexSource;
+use crate::view::frame::Frame;
+
+/// What a color key adds to a pixel. Twin of the struct in collect.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Weighed {
+    pub(crate) color_key: u32,
+    pub(crate) instance: u32,
+    pub(crate) low: u32,
+    pub(crate) high: u32,
+}
+
+/// A pixel: its color keys, and what does not depend on colors. Twin of the struct in collect.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Span {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    pub(crate) white: f32,
+    pub(crate) coverage: f32,
+}
+
+/// The pixels of a tile.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Collected {
+    /// Width and height.
+    pub(crate) size: [u32; 2],
+    /// By pixel.
+    pub(crate) spans: Vec<Span>,
+    pub(crate) weighed: Vec<Weighed>,
+}
+
+/// Color keys of a pixel for which there is room at first, on average.
+const EXPECTED: u64 = 3;
+
+/// Pipelines and buffers for one kind of source.
+pub(crate) struct Collector {
+    key: PipelineKey,
+    keyed: KeyedShader,
+    targets: Option<KeyedTargets>,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    spans: wgpu::Buffer,
+    weighed: wgpu::Buffer,
+    cursor: wgpu::Buffer,
+}
+
+/// The shader of the pass after the drawing. `scale`: sub-pixels along a pixel's side.
+pub(crate) fn collect_shader(samples: u32, scale: u32) -> Shader {
+    let mut parts = ShaderParts::new(&[shader::file("collect.wgsl")]);
+    if samples > 1 {
+        parts.constants.flag("MULTISAMPLED");
+    }
+    parts.constants.i32("BLUR", BLUR as i32);
+    parts.constants.u32("SAMPLES", samples);
+    parts
+        .constants
+        .u32("MOST_NAMED", 3 * samples * scale * scale);
+    shader::shader("collect", &parts)
+}
+
+/// Group 1 of the pass; group 0 is that of the passes that finish a tile.
+pub(crate) fn entries(multisampled: bool) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let compute = wgpu::ShaderStages::COMPUTE;
+    let whole = wgpu::TextureSampleType::Uint;
+    vec![
+        texture_binding(0, compute, whole, multisampled),
+        texture_binding(1, compute, whole, multisampled),
+        texture_binding(2, compute, whole, multisampled),
+        storage(3, compute, false),
+        storage(4, compute, false),
+        storage(5, compute, false),
+    ]
+}
+
+/// What a [`Collector`] is made for.
+pub(crate) struct Wanted<'a> {
+    pub(crate) key: PipelineKey,
+    /// Sub-pixels along a pixel's side.
+    pub(crate) scale: u32,
+    /// Of the shading's group 1.
+    pub(crate) shade_layout: &'a wgpu::BindGroupLayout,
+    /// Of the group of the passes that finish a tile.
+    pub(crate) finish_layout: &'a wgpu::BindGroupLayout,
+}
+
+impl Collector {
+    /// None if the source has no color keys to look up.
+    pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, wanted: &Wanted<'_>) -> Option<Self> {
+        let Wanted { key, scale, .. } = *wanted;
+        let keyed = KeyedShader::new(gpu, source, key, wanted.shade_layout)?;
+        let device = &gpu.device;
+        let layout = group_layout(device, "collect", &entries(key.samples > 1));
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("collect"),
+            bind_group_layouts: &[Some(wanted.finish_layout), Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("collect"),
+            layout: Some(&pipeline_layout),
+            module: &gpu.shader_module(&collect_shader(key.samples, scale)),
+            entry_point: Some("collect"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let written = |label, size| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+            make(gpu, label, size, usage | wgpu::BufferUsages::COPY_DST)
+        };
+        Some(Self {
+            key,
+            keyed,
+            targets: None,
+            pipeline,
+            layout,
+            spans: written("spans", 16),
+            weighed: written("weights", 16),
+            cursor: written("cursor", 16),
+        })
+    }
+
+    /// Draws a tile whose depths and occlusion are there, and collects `kept` pixels of it. `groups`:
+    /// the shading's, and that of the passes that finish a tile.
+    pub(crate) fn collect(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        frame: &Frame,
+        groups: [&wgpu::BindGroup; 2],
+        kept: [u32; 2],
+    ) -> Result<Collected, DeviceError> {
+        self.make_room(gpu, [frame.tile.width, frame.tile.height], kept)?;
+        let Some(targets) = &self.targets else {
+            return Ok(Collected::default());
+        };
+        let rounds = source.prepare_keyed(gpu, frame)?.max(1);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for round in 0..rounds {
+            source.select(round, &mut encoder, None);
+            self.keyed
+                .draw(source, round, targets, groups[0], &mut encoder);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let count = loop {
+            self.dispatch(gpu, groups[1], kept);
+            let count: Vec<u32> = read_back(gpu, &self.cursor, 1)?;
+            let needed = u64::from(count[0]) * size_of::<Weighed>() as u64;
+            if needed <= self.weighed.size() {
+                break count[0];
+            }
+            self.make_weighed(gpu, needed)?;
+        };
+        let pixels = kept[0] as usize * kept[1] as usize;
+        Ok(Collected {
+            size: kept,
+            spans: read_back(gpu, &self.spans, pixels)?,
+            weighed: read_back(gpu, &self.weighed, count as usize)?,
+        })
+    }
+
+    fn dispatch(&self, gpu: &Gpu, finish_group: &wgpu::BindGroup, kept: [u32; 2]) {
+        let Some(targets) = &self.targets else {
+            return;
+        };
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view = wgpu::BindingResource::TextureView;
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("collect"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, view(&targets.weights)),
+                entry(1, view(&targets.keys)),
+                entry(2, view(&targets.owners)),
+                entry(3, self.spans.as_entire_binding()),
+                entry(4, self.weighed.as_entire_binding()),
+                entry(5, self.cursor.as_entire_binding()),
+            ],
+        });
+        gpu.queue.write_buffer(&self.cursor, 0, &[0; 16]);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("collect"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, finish_group, &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.dispatch_workgroups(kept[0].div_ceil(8), kept[1].div_ceil(8), 1);
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn make_room(&mut self, gpu: &Gpu, size: [u32; 2], kept: [u32; 2]) -> Result<(), DeviceError> {
+        let fits = |targets: &KeyedTargets| targets.size == size;
+        if !self.targets.as_ref().is_some_and(fits) {
+            self.targets = None;
+            self.targets = Some(KeyedTargets::new(gpu, size, self.key.samples));
+        }
+        let pixels = u64::from(kept[0]) * u64::from(kept[1]);
+        let spans = pixels * size_of::<Span>() as u64;
+        if self.spans.size() < spans {
+            self.spans = make(gpu, "spans", spans, self.spans.usage());
+        }
+        let weighed = EXPECTED * pixels * size_of::<Weighed>() as u64;
+        if self.weighed.size() < weighed {
+            self.make_weighed(gpu, weighed)?;
+        }
+        gpu.check()
+    }
+
+    fn make_weighed(&mut self, gpu: &Gpu, bytes: u64) -> Result<(), DeviceError> {
+        let most = gpu.largest_binding();
+        if bytes > most {
+            let what = "the color keys of a picture";
+            return Err(DeviceError::TooLarge { what, bytes, most });
+        }
+        self.weighed = make(gpu, "weights", bytes, self.weighed.usage());
+        gpu.check()
+    }
+}

@@ -1,0 +1,146 @@
+//! Static pictures: made once, and colored anew without being drawn anew.
+//!
+//! **Theory.** In linear light a pixel is a sum over its samples, and light and occlusion do not
+//! depend on colors. So a picture is a sparse matrix, whose rows are pixels and whose columns are the
+//! color keys that show, times the colors of these keys, plus a constant. Another frame of a
+//! recording, another range or color map is one product, whatever the scene; and only keys that show
+//! need values. Heras Ciechomski et al. (2008) describe such a static mode for circuits.
+//!
+//! ```text
+//! source ─▶ depths, occlusion ─┐
+//! source ─▶ keyed.wgsl ────────┴▶ collect.wgsl ─▶ matrix.rs ─▶ recolor.wgsl ─▶ bytes
+//!           (samples)             (tile by tile)   (once)       (by picture)
+//! ```
+
+pub(crate) mod collect;
+mod key_color;
+pub(crate) mod matrix;
+pub(crate) mod recolor;
+
+use crate::gpu::buffers::read_back;
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::output::image::Image;
+use crate::scene::color::{ColorTable, Rgb, linear};
+use crate::shading::shade::{Look, edge_color};
+
+use key_color::Contrast;
+use matrix::{Layer, Matrix};
+use recolor::{Product, Recolor};
+
+pub use matrix::VisibleKey;
+
+/// A picture whose colors can be changed: see [`StillRenderer::render_static`].
+///
+/// [`StillRenderer::render_static`]: crate::StillRenderer::render_static
+pub struct StaticPicture {
+    size: [u32; 2],
+    keys: Vec<VisibleKey>,
+    weights: usize,
+    product: Product,
+    look: Look,
+}
+
+/// The colors of a static picture.
+#[derive(Clone, Copy, Debug)]
+pub struct KeyColors<'a> {
+    /// Scale and categories; and values of instances, if `values` has none.
+    pub table: &'a ColorTable,
+    /// States of instances: of these, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) changes colors.
+    pub states: &'a [u32],
+    /// A value for each of [`StaticPicture::keys`], 0 to 1 or NaN: the color keys that are not
+    /// categories are then not looked up in the table's values.
+    pub values: Option<&'a [f32]>,
+}
+
+impl StaticPicture {
+    /// `layers`: of all samples, or of those of each step.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        size: [u32; 2],
+        layers: &[Layer],
+        look: &Look,
+        background: Option<Rgb>,
+    ) -> Result<Self, DeviceError> {
+        let matrix = Matrix::new(layers);
+        let [r, g, b] = linear(background.unwrap_or_default());
+        let empty = background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        let settings = Recolor {
+            background: [r, g, b, 1.0],
+            edge: edge_color(look),
+            transparent: u32::from(background.is_none()),
+            empty: u32::from_le_bytes(empty),
+            ..Recolor::default()
+        };
+        let product = Product::new(gpu, &matrix, settings)?;
+        Ok(Self {
+            size,
+            weights: matrix.weights.len(),
+            keys: matrix.keys,
+            product,
+            look: *look,
+        })
+    }
+
+    /// What shows: each color key of each instance once, in order.
+    pub fn keys(&self) -> &[VisibleKey] {
+        &self.keys
+    }
+
+    /// Number of weights: of all pixels' color keys.
+    pub fn weights(&self) -> usize {
+        self.weights
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.product.bytes
+    }
+
+    /// Colors the picture anew.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    ///
+    /// # Panics
+    /// If there are values, but not one for each key.
+    pub fn recolor(&self, gpu: &Gpu, colors: &KeyColors<'_>) -> Result<(), DeviceError> {
+        let values = colors.values;
+        assert!(
+            values.is_none_or(|values| values.len() == self.keys.len()),
+            "a value for each key"
+        );
+        let contrast = Contrast::new(&self.look);
+        let linear = colors.table.linear();
+        let colored: Vec<[f32; 4]> = self
+            .keys
+            .iter()
+            .enumerate()
+            .map(|(index, key)| {
+                let value = values.map(|values| values[index]);
+                let color = contrast.key_color(colors.table, &linear, key, value);
+                let state = colors.states.get(key.instance as usize).copied();
+                contrast.in_state(color, state.unwrap_or_default())
+            })
+            .collect();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.product.multiply(gpu, &colored, &mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.check()
+    }
+
+    /// The picture, as it was colored last. Waits for the device.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub fn image(&self, gpu: &Gpu) -> Result<Image, DeviceError> {
+        let [width, height] = self.size;
+        let count = width as usize * height as usize;
+        let pixels: Vec<u32> = read_back(gpu, &self.product.pixels, count)?;
+        Ok(Image {
+            width,
+            height,
+            pixels: bytemuck::cast_slice(&pixels).to_vec(),
+        })
+    }
+}
