@@ -18,6 +18,8 @@ mod recording;
 #[cfg(feature = "circuit")]
 mod report_frame;
 mod scheme;
+#[cfg(feature = "circuit")]
+mod visible;
 
 #[cfg(feature = "circuit")]
 pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
@@ -30,3 +32,5 @@ pub use recording::{DECAY, Recording, RecordingError};
 #[cfg(feature = "circuit")]
 pub use report_frame::ReportFrame;
 pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};
+#[cfg(feature = "circuit")]
+pub use visible::VisibleValues;

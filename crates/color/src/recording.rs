@@ -66,15 +66,15 @@ pub struct Recording {
     /// Times (ms) of its frames, or of steps through spikes.
     pub time: TimeAxis,
     color_keys: Vec<Vec<u32>>,
-    has_values: Vec<bool>,
-    source: Source,
+    pub(crate) has_values: Vec<bool>,
+    pub(crate) source: Source,
 }
 
 /// The instances that show each node of a population of spikes, by id.
-type InstancesOfNode = HashMap<u64, Vec<usize>>;
+pub(crate) type InstancesOfNode = HashMap<u64, Vec<usize>>;
 
 #[derive(Debug)]
-enum Source {
+pub(crate) enum Source {
     Report(Report, Vec<PopulationMatch>),
     /// Spikes, and the instances by population of the file.
     Spikes(Spikes, Vec<InstancesOfNode>),
@@ -255,15 +255,19 @@ impl Recording {
             frame_values.read(population, part, frame, shows)?;
         }
         if !any {
-            let axis = &self.time;
-            return Err(RecordingError::NoValues {
-                file: self.file.clone(),
-                time,
-                start: axis.start,
-                end: axis.time_of(axis.frames),
-            });
+            return Err(self.no_values(time));
         }
         Ok(frame_values)
+    }
+
+    pub(crate) fn no_values(&self, time: f64) -> RecordingError {
+        let axis = &self.time;
+        RecordingError::NoValues {
+            file: self.file.clone(),
+            time,
+            start: axis.start,
+            end: axis.time_of(axis.frames),
+        }
     }
 
     fn flashes(

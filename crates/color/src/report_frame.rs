@@ -14,11 +14,11 @@ pub struct ReportFrame {
 
 /// The instances that show neurons of a report's population, and their compartments.
 #[derive(Debug, Default)]
-pub(super) struct PopulationMatch {
+pub(crate) struct PopulationMatch {
     /// Compartments of all instances, one after another.
-    pub(super) compartments: Vec<u64>,
+    pub(crate) compartments: Vec<u64>,
     /// Instances, each with the range of its compartments in the list.
-    pub(super) spans: Vec<(usize, Range<usize>)>,
+    pub(crate) spans: Vec<(usize, Range<usize>)>,
 }
 
 impl ReportFrame {

@@ -6,7 +6,7 @@ use neurotess_refine::{assert_layout, testing};
 
 use crate::gpu::shader;
 use crate::output::ids::ids_shader;
-use crate::output::static_picture::collect::{Span, Weighed, collect_shader};
+use crate::output::static_picture::collect::{Weighed, collect_shader};
 use crate::output::static_picture::matrix::Weight;
 use crate::output::static_picture::recolor::{Recolor, recolor_shader};
 use crate::scene::templates::Base;
@@ -126,14 +126,13 @@ fn adaptive_shaders_are_valid_in_every_language_and_have_our_structs() {
 
 #[test]
 fn shaders_of_static_pictures_are_valid_in_every_language_and_have_our_structs() {
-    let (collect, _) = testing::check(&collect_shader(4, 2));
+    let (collect, _) = testing::check(&collect_shader(4));
     assert_layout!(
         &collect,
         "Weighed",
         Weighed,
-        [color_key, instance, low, high]
+        [pixel, color_key, instance, low, high]
     );
-    assert_layout!(&collect, "Span", Span, [first, count, white, coverage]);
     let (recolor, _) = testing::check(&recolor_shader());
     assert_layout!(
         &recolor,

@@ -13,7 +13,7 @@ use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
 use crate::output::static_picture::StaticPicture;
-use crate::output::static_picture::matrix::Layer;
+use crate::output::static_picture::matrix::Weights;
 use crate::output::tiles::{Finishing, TileRenderer};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb};
@@ -367,12 +367,12 @@ impl StillRenderer {
         let parting = options.parting(gpu, &view.camera);
         let watch = self.watch.clone();
         let renderer = self.renderer(gpu, source, table, options, &parting)?;
-        let collector = renderer.collector(gpu, source, parting.scale);
+        let collector = renderer.collector(gpu, source);
         let mut collector = collector.ok_or(StaticError::Source)?;
         let finishing = parting.finishing(options);
         let size = options.size.map(|n| n.max(1));
         let step = parting.step.map(|n| n as usize);
-        let mut layer = Layer::new(size);
+        let mut weights = Weights::new(size);
         for top in (0..size[1]).step_by(step[1]) {
             for left in (0..size[0]).step_by(step[0]) {
                 if watch.as_ref().is_some_and(Watch::is_stopped) {
@@ -383,13 +383,13 @@ impl StillRenderer {
                 let collected =
                     renderer.collect(gpu, source, &frame, look, &finishing, &mut collector)?;
                 if let Some(collected) = collected {
-                    layer.add([left, top], &collected);
+                    weights.add([left, top], &collected);
                 }
                 watch.iter().for_each(Watch::note_tile);
             }
         }
         let (look, background) = (&options.look, options.background);
-        Ok(StaticPicture::new(gpu, size, &[layer], look, background)?)
+        Ok(StaticPicture::new(gpu, size, &weights, look, background)?)
     }
 }
 

@@ -234,15 +234,9 @@ impl TileRenderer {
     }
 
     /// What collects color keys for its kind of source: none if the source has none to look up.
-    pub(crate) fn collector(
-        &self,
-        gpu: &Gpu,
-        source: &dyn VertexSource,
-        scale: u32,
-    ) -> Option<Collector> {
+    pub(crate) fn collector(&self, gpu: &Gpu, source: &dyn VertexSource) -> Option<Collector> {
         let wanted = Wanted {
             key: self.key,
-            scale,
             shade_layout: &self.shader.layout,
             finish_layout: &self.finisher.layout,
         };

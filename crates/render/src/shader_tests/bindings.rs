@@ -168,7 +168,7 @@ fn pictures_bind_what_their_shaders_have() {
             finish::entries(samples > 1, Last::Gather),
             collect::entries(samples > 1),
         ];
-        assert_bindings(&collect_shader(samples, 2), "collect", &groups);
+        assert_bindings(&collect_shader(samples), "collect", &groups);
         let groups = vec![gather_entries(samples)];
         assert_bindings(&mask_shader(samples), "gather", &groups);
     }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use neurotess::coloring::{self, Cell, ColorScheme, Coloring, DECAY, Recording, by_attribute};
+use neurotess::coloring::{
+    self, Cell, ColorScheme, Coloring, DECAY, Recording, VisibleValues, by_attribute,
+};
+use neurotess::render::VisibleKey;
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
 
@@ -30,10 +33,11 @@ struct RecordedSeries {
 impl PictureColors {
     /// Color table and legend of a picture. In a series only the values differ.
     pub(crate) fn picture(&self, number: usize) -> anyhow::Result<(ColorTable, Legend)> {
-        let Coloring { table, legend, .. } = &self.coloring;
+        let Coloring { table, .. } = &self.coloring;
+        let legend = self.legend(number);
         let time = |series: &RecordedSeries| series.times.get(number).copied();
         let Some((series, time)) = self.series.as_ref().and_then(|f| Some((f, time(f)?))) else {
-            return Ok((table.clone(), legend.clone()));
+            return Ok((table.clone(), legend));
         };
         let frame = series.recording.at(time, DECAY, &|_| true).map_err(whole)?;
         let table = ColorTable {
@@ -41,7 +45,53 @@ impl PictureColors {
             categories: table.categories.clone(),
             values: frame.values(series.range),
         };
-        Ok((table, legend.clone().noted(&time_text(&series.times, time))))
+        Ok((table, legend))
+    }
+
+    /// Whether pictures show one recording at several times.
+    pub(crate) fn is_series(&self) -> bool {
+        self.series
+            .as_ref()
+            .is_some_and(|series| series.times.len() > 1)
+    }
+
+    /// Legend of a picture.
+    pub(crate) fn legend(&self, number: usize) -> Legend {
+        let legend = self.coloring.legend.clone();
+        let series = self.series.as_ref();
+        match series.and_then(|series| Some((series, *series.times.get(number)?))) {
+            Some((series, time)) => legend.noted(&time_text(&series.times, time)),
+            None => legend,
+        }
+    }
+
+    /// Where the recording holds what shows in a static picture.
+    pub(crate) fn visible(&self, keys: &[VisibleKey]) -> VisibleValues {
+        let series = self.series.as_ref();
+        series.map_or_else(VisibleValues::default, |series| {
+            series.recording.visible(keys)
+        })
+    }
+
+    /// Values of what shows in a picture: fractions of the range.
+    pub(crate) fn visible_values(
+        &self,
+        number: usize,
+        visible: &VisibleValues,
+    ) -> anyhow::Result<Vec<f32>> {
+        let time = |series: &RecordedSeries| series.times.get(number).copied();
+        let Some((series, time)) = self.series.as_ref().and_then(|s| Some((s, time(s)?))) else {
+            return Ok(Vec::new());
+        };
+        let [low, high] = series.range;
+        let values = series
+            .recording
+            .visible_at(time, DECAY, visible)
+            .map_err(whole)?;
+        Ok(values
+            .iter()
+            .map(|value| (value - low) / (high - low))
+            .collect())
     }
 }
 

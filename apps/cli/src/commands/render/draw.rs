@@ -12,10 +12,11 @@ use neurotess::render::{
 use super::args::RenderArgs;
 use super::cameras;
 use super::coloring::PictureColors;
+use super::film::Film;
 use super::job::RenderJob;
 use super::stats::{Stage, Stages, Stats};
 use super::values::Fit;
-use super::vertex_source::PictureSource;
+use super::vertex_source::{PictureSource, SourceStats};
 use crate::io::output::{self, OutputError};
 use crate::report::{Progress, Reporter, count};
 
@@ -76,17 +77,25 @@ pub(super) fn draw(
     let mut source = PictureSource::new(gpu, &options, job)?;
     let mut renderer = StillRenderer::new();
     stages.end(Stage::Upload);
+    let mut film = Film::new(gpu, job, &options, &mut source, &mut renderer)?;
     let mut stats = Stats::new(gpu, placements.len());
+    let mut counted = SourceStats::default();
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
         let near = camera.near(spheres);
-        let (table, legend) = colored.picture(number)?;
+        let legend = colored.legend(number);
         let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);
         let cost = write(file, args, |take| {
-            let lay = |top: u32, mut band: Image| {
+            let mut lay = |top: u32, mut band: Image| {
                 overlay.lay_on(top, &mut band);
                 take(&band)
             };
+            if let Some(film) = &mut film {
+                let (picture, cost) = film.picture(gpu, colored, number)?;
+                lay(0, picture)?;
+                return Ok(cost);
+            }
+            let (table, _) = colored.picture(number)?;
             renderer
                 .render(
                     gpu,
@@ -101,7 +110,12 @@ pub(super) fn draw(
                 )
                 .map_err(|e| anyhow::anyhow!("{e}"))
         })?;
-        stats.add(&cost, source.stats(gpu, camera, near, &options)?);
+        // Every picture of a film shows the same surface.
+        if film.is_none() || number == 0 {
+            counted = source.stats(gpu, camera, near, &options)?;
+        }
+        stats.add(&cost, counted.clone());
+        stats.film = film.as_ref().map(Film::stats);
         if let Some(lowered) = stats.lowered() {
             reporter.warning(&lowered);
         }

@@ -12,6 +12,7 @@ mod checks;
 mod circuit_instances;
 mod coloring;
 mod draw;
+mod film;
 mod job;
 mod scene;
 mod session;

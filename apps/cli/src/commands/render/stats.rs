@@ -8,6 +8,7 @@ use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
 
 use super::cells::MeshedCell;
+use super::film::FilmStats;
 use super::vertex_source::SourceStats;
 use crate::report::{Entry, Failed};
 
@@ -31,6 +32,9 @@ pub(crate) struct Stats {
     seconds: Stages,
     #[serde(skip_serializing_if = "Option::is_none")]
     exploration: Option<BudgetStats>,
+    /// Of a film whose pictures are one picture, colored anew.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) film: Option<FilmStats>,
 }
 
 /// Seconds since the command began, stage by stage.

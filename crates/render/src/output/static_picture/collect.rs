@@ -17,20 +17,11 @@ use crate::view::frame::Frame;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Weighed {
+    pub(crate) pixel: u32,
     pub(crate) color_key: u32,
     pub(crate) instance: u32,
     pub(crate) low: u32,
     pub(crate) high: u32,
-}
-
-/// A pixel: its color keys, and what does not depend on colors. Twin of the struct in collect.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub(crate) struct Span {
-    pub(crate) first: u32,
-    pub(crate) count: u32,
-    pub(crate) white: f32,
-    pub(crate) coverage: f32,
 }
 
 /// The pixels of a tile.
@@ -38,8 +29,9 @@ pub(crate) struct Span {
 pub(crate) struct Collected {
     /// Width and height.
     pub(crate) size: [u32; 2],
-    /// By pixel.
-    pub(crate) spans: Vec<Span>,
+    /// By pixel: what does not depend on colors, white and coverage.
+    pub(crate) fixed: Vec<[f32; 2]>,
+    /// In any order; a color key may come more than once in a pixel.
     pub(crate) weighed: Vec<Weighed>,
 }
 
@@ -53,22 +45,19 @@ pub(crate) struct Collector {
     targets: Option<KeyedTargets>,
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
-    spans: wgpu::Buffer,
+    fixed: wgpu::Buffer,
     weighed: wgpu::Buffer,
     cursor: wgpu::Buffer,
 }
 
-/// The shader of the pass after the drawing. `scale`: sub-pixels along a pixel's side.
-pub(crate) fn collect_shader(samples: u32, scale: u32) -> Shader {
+/// The shader of the pass after the drawing.
+pub(crate) fn collect_shader(samples: u32) -> Shader {
     let mut parts = ShaderParts::new(&[shader::file("collect.wgsl")]);
     if samples > 1 {
         parts.constants.flag("MULTISAMPLED");
     }
     parts.constants.i32("BLUR", BLUR as i32);
     parts.constants.u32("SAMPLES", samples);
-    parts
-        .constants
-        .u32("MOST_NAMED", 3 * samples * scale * scale);
     shader::shader("collect", &parts)
 }
 
@@ -89,8 +78,6 @@ pub(crate) fn entries(multisampled: bool) -> Vec<wgpu::BindGroupLayoutEntry> {
 /// What a [`Collector`] is made for.
 pub(crate) struct Wanted<'a> {
     pub(crate) key: PipelineKey,
-    /// Sub-pixels along a pixel's side.
-    pub(crate) scale: u32,
     /// Of the shading's group 1.
     pub(crate) shade_layout: &'a wgpu::BindGroupLayout,
     /// Of the group of the passes that finish a tile.
@@ -100,7 +87,7 @@ pub(crate) struct Wanted<'a> {
 impl Collector {
     /// None if the source has no color keys to look up.
     pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, wanted: &Wanted<'_>) -> Option<Self> {
-        let Wanted { key, scale, .. } = *wanted;
+        let key = wanted.key;
         let keyed = KeyedShader::new(gpu, source, key, wanted.shade_layout)?;
         let device = &gpu.device;
         let layout = group_layout(device, "collect", &entries(key.samples > 1));
@@ -112,7 +99,7 @@ impl Collector {
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("collect"),
             layout: Some(&pipeline_layout),
-            module: &gpu.shader_module(&collect_shader(key.samples, scale)),
+            module: &gpu.shader_module(&collect_shader(key.samples)),
             entry_point: Some("collect"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
@@ -127,7 +114,7 @@ impl Collector {
             targets: None,
             pipeline,
             layout,
-            spans: written("spans", 16),
+            fixed: written("fixed", 16),
             weighed: written("weights", 16),
             cursor: written("cursor", 16),
         })
@@ -167,7 +154,7 @@ impl Collector {
         let pixels = kept[0] as usize * kept[1] as usize;
         Ok(Collected {
             size: kept,
-            spans: read_back(gpu, &self.spans, pixels)?,
+            fixed: read_back(gpu, &self.fixed, pixels)?,
             weighed: read_back(gpu, &self.weighed, count as usize)?,
         })
     }
@@ -185,7 +172,7 @@ impl Collector {
                 entry(0, view(&targets.weights)),
                 entry(1, view(&targets.keys)),
                 entry(2, view(&targets.owners)),
-                entry(3, self.spans.as_entire_binding()),
+                entry(3, self.fixed.as_entire_binding()),
                 entry(4, self.weighed.as_entire_binding()),
                 entry(5, self.cursor.as_entire_binding()),
             ],
@@ -211,9 +198,8 @@ impl Collector {
             self.targets = Some(KeyedTargets::new(gpu, size, self.key.samples));
         }
         let pixels = u64::from(kept[0]) * u64::from(kept[1]);
-        let spans = pixels * size_of::<Span>() as u64;
-        if self.spans.size() < spans {
-            self.spans = make(gpu, "spans", spans, self.spans.usage());
+        if self.fixed.size() < 8 * pixels {
+            self.fixed = make(gpu, "fixed", 8 * pixels, self.fixed.usage());
         }
         let weighed = EXPECTED * pixels * size_of::<Weighed>() as u64;
         if self.weighed.size() < weighed {

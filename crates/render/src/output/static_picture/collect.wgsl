@@ -9,19 +9,12 @@
 #import finish.wgsl
 
 struct Weighed {
+    pixel: u32,
     color_key: u32,
     instance: u32,
     // a and a * s, then b * s and s: see packed.
     low: u32,
     high: u32,
-}
-
-struct Span {
-    first: u32,
-    count: u32,
-    // Sum of b, and coverage.
-    white: f32,
-    coverage: f32,
 }
 
 #ifdef MULTISAMPLED
@@ -33,7 +26,8 @@ struct Span {
 @group(1) @binding(1) var keys: texture_2d<u32>;
 @group(1) @binding(2) var owners: texture_2d<u32>;
 #endif
-@group(1) @binding(3) var<storage, read_write> spans: array<Span>;
+// By pixel: sum of b, and coverage.
+@group(1) @binding(3) var<storage, read_write> fixed: array<vec2<f32>>;
 @group(1) @binding(4) var<storage, read_write> weighed: array<Weighed>;
 @group(1) @binding(5) var<storage, read_write> cursor: atomic<u32>;
 
@@ -42,21 +36,38 @@ fn packed(sums: vec2<f32>) -> u32 {
     return pack2x16unorm(0.5 * sums);
 }
 
-// Three for each sample.
-var<private> named: array<vec2<u32>, MOST_NAMED>;
-var<private> sums: array<vec4<f32>, MOST_NAMED>;
-var<private> names: u32;
+// The two color keys that came last, and their sums: neighboring samples mostly have the same. What
+// drops out of them is written. So a pixel may have a color key more than once, and in any order; the
+// host adds these up. A list of all color keys of a pixel took a processor ten times as long.
+var<private> names: array<vec2<u32>, 2>;
+var<private> sums: array<vec4<f32>, 2>;
+var<private> filled: u32;
 
-fn add(name: vec2<u32>, sum: vec4<f32>) {
-    for (var k = 0u; k < names; k++) {
-        if all(named[k] == name) {
-            sums[k] += sum;
-            return;
-        }
+fn write(pixel: u32, name: vec2<u32>, sum: vec4<f32>) {
+    let place = atomicAdd(&cursor, 1u);
+    // With too little room the host makes more and asks again.
+    if place < arrayLength(&weighed) {
+        weighed[place] = Weighed(pixel, name.x, name.y, packed(sum.xy), packed(sum.zw));
     }
-    named[names] = name;
-    sums[names] = sum;
-    names += 1u;
+}
+
+fn add(pixel: u32, name: vec2<u32>, sum: vec4<f32>) {
+    if filled > 0u && all(names[0] == name) {
+        sums[0] += sum;
+        return;
+    }
+    if filled > 1u && all(names[1] == name) {
+        sums[1] += sum;
+        return;
+    }
+    if filled == 2u {
+        write(pixel, names[1], sums[1]);
+    }
+    names[1] = names[0];
+    sums[1] = sums[0];
+    names[0] = name;
+    sums[0] = sum;
+    filled = min(filled + 1u, 2u);
 }
 
 @compute @workgroup_size(8, 8)
@@ -64,50 +75,42 @@ fn collect(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= finish.kept) {
         return;
     }
+    let pixel = id.y * finish.kept.x + id.x;
     let share = 1.0 / f32(finish.scale * finish.scale * SAMPLES);
-    names = 0u;
-    var white = 0.0;
-    var coverage = 0.0;
+    var whole = vec2(0.0);
+    filled = 0u;
     for (var y = 0u; y < finish.scale; y++) {
         for (var x = 0u; x < finish.scale; x++) {
             let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.margin);
-            var light = -1.0;
+            if textureLoad(colors, p, 0).a == 0.0 {
+                continue;
+            }
+            var light = share;
+            if finish.radius > 0.0 {
+                light *= occlusion_at(p);
+            }
             for (var k = 0; k < i32(SAMPLES); k++) {
-                let packed_weights = textureLoad(weights, p, k);
-                if packed_weights.w == 0u {
+                let bits = textureLoad(weights, p, k);
+                if bits.w == 0u {
                     continue;
                 }
-                if light < 0.0 {
-                    light = 1.0;
-                    if finish.radius > 0.0 {
-                        light = occlusion_at(p);
-                    }
-                }
-                let w = vec3<f32>(packed_weights.xyz) / 65535.0 * vec3(2.0, 2.0, 1.0);
+                let w = vec3<f32>(bits.xyz) / 65535.0 * vec3(2.0, 2.0, 1.0);
+                whole += vec2(w.y * light, share);
+                let sum = vec4(w.x, w.x * w.z, w.y * w.z, w.z) * light / 255.0;
                 let key = textureLoad(keys, p, k);
                 let owner = textureLoad(owners, p, k);
+                let named = vec3(key.x, key.z, owner.x) | (vec3(key.y, key.w, owner.y) << vec3(16u));
                 let instance = owner.z | (owner.w << 16u);
-                let sum = vec4(w.x, w.x * w.z, w.y * w.z, w.z) * light * share;
-                let bytes = vec2(packed_weights.w & 0xffu, packed_weights.w >> 8u);
-                add(vec2(key.x | (key.y << 16u), instance), sum * f32(bytes.x) / 255.0);
-                if bytes.y > 0u {
-                    add(vec2(key.z | (key.w << 16u), instance), sum * f32(bytes.y) / 255.0);
+                let bytes = vec2(bits.w & 0xffu, bits.w >> 8u);
+                let shares = vec3(bytes, 255u - min(bytes.x + bytes.y, 255u));
+                for (var j = 0u; j < 3u && shares[j] > 0u; j++) {
+                    add(pixel, vec2(named[j], instance), sum * f32(shares[j]));
                 }
-                let rest = 255u - min(bytes.x + bytes.y, 255u);
-                if rest > 1u {
-                    add(vec2(owner.x | (owner.y << 16u), instance), sum * f32(rest) / 255.0);
-                }
-                white += w.y * light * share;
-                coverage += share;
             }
         }
     }
-    let first = atomicAdd(&cursor, names);
-    spans[id.y * finish.kept.x + id.x] = Span(first, names, white, coverage);
-    // With too little room the host makes more and asks again.
-    if first + names <= arrayLength(&weighed) {
-        for (var k = 0u; k < names; k++) {
-            weighed[first + k] = Weighed(named[k].x, named[k].y, packed(sums[k].xy), packed(sums[k].zw));
-        }
+    for (var k = 0u; k < filled; k++) {
+        write(pixel, names[k], sums[k]);
     }
+    fixed[pixel] = whole;
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::collect::{Collected, Span, Weighed};
+use super::collect::{Collected, Weighed};
 
 /// A color key of an instance, of which something shows in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,91 +34,92 @@ pub(crate) struct Matrix {
     pub(crate) weights: Vec<Weight>,
 }
 
-/// One picture of the samples: all of them, or those of one step.
+/// What was collected of a whole picture: of all its samples, or of those of each of several steps.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Layer {
+pub(crate) struct Weights {
     size: [u32; 2],
-    spans: Vec<Span>,
+    fixed: Vec<[f32; 2]>,
     weighed: Vec<Weighed>,
 }
 
-impl Layer {
-    /// A layer in which nothing shows.
+impl Weights {
+    /// Of a picture in which nothing shows.
     pub(crate) fn new(size: [u32; 2]) -> Self {
         Self {
             size,
-            spans: vec![Span::default(); size[0] as usize * size[1] as usize],
+            fixed: vec![[0.0; 2]; size[0] as usize * size[1] as usize],
             weighed: Vec::new(),
         }
     }
 
     /// Adds the pixels of a tile whose upper left pixel is at `[left, top]`.
     pub(crate) fn add(&mut self, [left, top]: [u32; 2], tile: &Collected) {
-        let before = self.weighed.len() as u32;
-        self.weighed.extend_from_slice(&tile.weighed);
-        let width = self.size[0].saturating_sub(left).min(tile.size[0]) as usize;
-        let rows = tile.spans.chunks(tile.size[0].max(1) as usize);
-        for (y, row) in (top..self.size[1]).zip(rows) {
-            let at = y as usize * self.size[0] as usize + left as usize;
-            for (to, from) in self.spans[at..at + width].iter_mut().zip(row) {
-                *to = Span {
-                    first: from.first + before,
-                    ..*from
-                };
+        let [width, height] = self.size;
+        let tile_width = tile.size[0].max(1);
+        let within = |pixel: u32| {
+            let [x, y] = [left + pixel % tile_width, top + pixel / tile_width];
+            (x < width && y < height).then(|| y * width + x)
+        };
+        for (&[white, coverage], pixel) in tile.fixed.iter().zip(0..) {
+            if let Some(pixel) = within(pixel) {
+                let sum = &mut self.fixed[pixel as usize];
+                *sum = [sum[0] + white, sum[1] + coverage];
             }
         }
-    }
-
-    fn of_pixel(&self, pixel: usize) -> (Span, &[Weighed]) {
-        let span = self.spans[pixel];
-        let first = span.first as usize;
-        (span, &self.weighed[first..first + span.count as usize])
+        let moved = tile.weighed.iter().filter_map(|one| {
+            let pixel = within(one.pixel)?;
+            Some(Weighed { pixel, ..*one })
+        });
+        self.weighed.extend(moved);
     }
 }
 
 impl Matrix {
-    /// The mean of layers of the same size.
-    pub(crate) fn new(layers: &[Layer]) -> Self {
-        let share = 1.0 / layers.len().max(1) as f32;
+    /// `steps`: how often each pixel was collected.
+    pub(crate) fn new(weights: &Weights, steps: u32) -> Self {
         let mut numbers = Numbers::default();
-        let mut made = Self::default();
-        let mut sums: Vec<(u32, [f32; 4])> = Vec::new();
-        for pixel in 0..layers.first().map_or(0, |layer| layer.spans.len()) {
-            sums.clear();
-            let mut fixed = [0.0; 2];
-            for layer in layers {
-                let (span, weighed) = layer.of_pixel(pixel);
-                fixed = [
-                    fixed[0] + span.white * share,
-                    fixed[1] + span.coverage * share,
-                ];
-                for one in weighed {
-                    let number = numbers.of(VisibleKey {
-                        instance: one.instance,
-                        color_key: one.color_key,
-                    });
-                    let [[a, b], [c, d]] = [unpacked(one.low), unpacked(one.high)];
-                    let add = [a, b, c, d].map(|weight| weight * share);
-                    match sums.iter_mut().find(|(known, _)| *known == number) {
-                        Some((_, sum)) => *sum = [0, 1, 2, 3].map(|k| sum[k] + add[k]),
-                        None => sums.push((number, add)),
-                    }
-                }
-            }
+        let mut sorted: Vec<(u32, u32, [u32; 2])> = weights
+            .weighed
+            .iter()
+            .map(|one| {
+                let key = VisibleKey {
+                    instance: one.instance,
+                    color_key: one.color_key,
+                };
+                (one.pixel, numbers.of(key), [one.low, one.high])
+            })
+            .collect();
+        let (keys, new) = numbers.sorted();
+        for (_, number, _) in &mut sorted {
+            *number = new[*number as usize];
+        }
+        // Sums of whole numbers, so that the order in which the device wrote does not matter.
+        sorted.sort_unstable_by_key(|&(pixel, number, _)| (pixel, number));
+        let mut made = Self {
+            keys,
+            ..Self::default()
+        };
+        let mut rest = sorted.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).peekable();
+        for (&fixed, pixel) in weights.fixed.iter().zip(0..) {
+            let fixed = fixed.map(|sum| sum / steps as f32);
             made.rows.push([made.weights.len() as u32, packed(fixed)]);
-            made.weights
-                .extend(sums.iter().map(|&(color, [a, b, c, d])| Weight {
-                    color,
-                    low: packed([a, b]),
-                    high: packed([c, d]),
-                }));
+            while let Some(same) = rest.next_if(|same| same[0].0 == pixel) {
+                let sum = |half: usize, shift: u32| -> u32 {
+                    let all = same
+                        .iter()
+                        .map(|(_, _, bits)| (bits[half] >> shift) & 0xffff);
+                    (all.sum::<u32>() + steps / 2) / steps
+                };
+                let both =
+                    |half: usize| sum(half, 0).min(0xffff) | (sum(half, 16).min(0xffff) << 16);
+                made.weights.push(Weight {
+                    color: same[0].1,
+                    low: both(0),
+                    high: both(1),
+                });
+            }
         }
         made.rows.push([made.weights.len() as u32, 0]);
-        made.keys = numbers.sorted(&mut made.weights);
-        // On the device neither the threads nor their order decide on anything.
-        for row in made.rows.windows(2) {
-            made.weights[row[0][0] as usize..row[1][0] as usize].sort_unstable_by_key(|w| w.color);
-        }
         made
     }
 }
@@ -144,17 +145,14 @@ impl Numbers {
         number
     }
 
-    /// All keys in order, by which the weights are numbered from then on.
-    fn sorted(self, weights: &mut [Weight]) -> Vec<VisibleKey> {
+    /// All keys in order, and the place of each by its number.
+    fn sorted(self) -> (Vec<VisibleKey>, Vec<u32>) {
         let ordered: BTreeMap<VisibleKey, u32> = self.all.into_iter().collect();
         let mut new = vec![0; ordered.len()];
-        for (&old, number) in ordered.values().zip(0..) {
-            new[old as usize] = number;
+        for (&old, place) in ordered.values().zip(0..) {
+            new[old as usize] = place;
         }
-        for weight in weights {
-            weight.color = new[weight.color as usize];
-        }
-        ordered.into_keys().collect()
+        (ordered.into_keys().collect(), new)
     }
 }
 
@@ -164,44 +162,42 @@ fn packed(pair: [f32; 2]) -> u32 {
     low | (high << 16)
 }
 
-fn unpacked(bits: u32) -> [f32; 2] {
-    [bits & 0xffff, bits >> 16].map(|n| n as f32 / 65535.0 * 2.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn weighed(color_key: u32, instance: u32, weights: [f32; 4]) -> Weighed {
+    fn weighed(pixel: u32, color_key: u32, instance: u32, weight: f32) -> Weighed {
         Weighed {
+            pixel,
             color_key,
             instance,
-            low: packed([weights[0], weights[1]]),
-            high: packed([weights[2], weights[3]]),
+            low: packed([weight, 0.0]),
+            high: 0,
         }
     }
 
-    fn one_pixel(all: &[Weighed]) -> Layer {
-        let mut layer = Layer::new([2, 1]);
-        let tile = Collected {
-            size: [1, 1],
-            spans: vec![Span {
-                first: 0,
-                count: all.len() as u32,
-                white: 0.5,
-                coverage: 1.0,
-            }],
-            weighed: all.to_vec(),
-        };
-        layer.add([1, 0], &tile);
-        layer
+    fn factor(weight: &Weight) -> f32 {
+        (weight.low & 0xffff) as f32 / 65535.0 * 2.0
     }
 
     #[test]
-    fn layers_are_averaged_by_key_and_keys_are_in_order() {
-        let a = weighed(7, 1, [1.0, 0.0, 0.5, 0.25]);
-        let b = weighed(3, 0, [2.0, 0.0, 0.0, 0.0]);
-        let matrix = Matrix::new(&[one_pixel(&[a]), one_pixel(&[b, a])]);
+    fn steps_are_averaged_by_key_and_keys_are_in_order() {
+        let mut weights = Weights::new([2, 1]);
+        let first = [weighed(0, 7, 1, 1.0)];
+        let second = [
+            weighed(0, 3, 0, 1.5),
+            weighed(0, 7, 1, 0.6),
+            weighed(0, 3, 0, 0.5),
+        ];
+        for step in [&first[..], &second[..]] {
+            let tile = Collected {
+                size: [1, 1],
+                fixed: vec![[0.5, 1.0]],
+                weighed: step.to_vec(),
+            };
+            weights.add([1, 0], &tile);
+        }
+        let matrix = Matrix::new(&weights, 2);
         let key = |instance, color_key| VisibleKey {
             instance,
             color_key,
@@ -209,39 +205,55 @@ mod tests {
         assert_eq!(matrix.keys, [key(0, 3), key(1, 7)]);
         let firsts: Vec<u32> = matrix.rows.iter().map(|row| row[0]).collect();
         assert_eq!(firsts, [0, 0, 2]);
-        let sums: Vec<_> = matrix
+        let found: Vec<_> = matrix
             .weights
             .iter()
-            .map(|w| (w.color, unpacked(w.low)[0]))
+            .map(|w| (w.color, factor(w)))
             .collect();
-        assert!(
-            sums.iter().all(|(_, sum)| (sum - 1.0).abs() < 1e-4),
-            "{sums:?}"
-        );
-        assert_eq!(
-            sums.iter().map(|(color, _)| *color).collect::<Vec<_>>(),
-            [0, 1]
-        );
-        let fixed = unpacked(matrix.rows[1][1]);
-        assert!((fixed[0] - 0.5).abs() < 1e-4 && (fixed[1] - 1.0).abs() < 1e-4);
+        for ((color, factor), expected) in found.iter().zip([(0, 1.0), (1, 0.8)]) {
+            assert!(
+                *color == expected.0 && (factor - expected.1).abs() < 1e-4,
+                "{found:?}"
+            );
+        }
+        assert_eq!(matrix.rows[1][1], packed([0.5, 1.0]));
+    }
+
+    #[test]
+    fn the_order_of_what_was_collected_does_not_matter() {
+        let all: Vec<Weighed> = (0..40)
+            .map(|k| weighed(k % 4, k % 3, k % 2, 0.01 * k as f32))
+            .collect();
+        let made = |all: Vec<Weighed>| {
+            let mut weights = Weights::new([2, 2]);
+            let fixed = vec![[0.0, 1.0]; 4];
+            let size = [2, 2];
+            weights.add(
+                [0, 0],
+                &Collected {
+                    size,
+                    fixed,
+                    weighed: all,
+                },
+            );
+            Matrix::new(&weights, 1)
+        };
+        let backward: Vec<Weighed> = all.iter().rev().copied().collect();
+        let (a, b) = (made(all), made(backward));
+        assert_eq!((a.keys, a.rows, a.weights), (b.keys, b.rows, b.weights));
     }
 
     #[test]
     fn what_lies_beyond_the_picture_is_left_out() {
-        let mut layer = Layer::new([2, 2]);
-        let span = Span {
-            first: 0,
-            count: 1,
-            white: 0.0,
-            coverage: 1.0,
-        };
+        let mut weights = Weights::new([2, 2]);
         let tile = Collected {
             size: [4, 4],
-            spans: vec![span; 16],
-            weighed: vec![Weighed::default()],
+            fixed: vec![[0.0, 1.0]; 16],
+            weighed: (0..16).map(|pixel| weighed(pixel, 0, 0, 1.0)).collect(),
         };
-        layer.add([1, 1], &tile);
-        let covered: Vec<bool> = layer.spans.iter().map(|s| s.coverage > 0.0).collect();
+        weights.add([1, 1], &tile);
+        let covered: Vec<bool> = weights.fixed.iter().map(|fixed| fixed[1] > 0.0).collect();
         assert_eq!(covered, [false, false, false, true]);
+        assert_eq!(Matrix::new(&weights, 1).weights.len(), 1);
     }
 }

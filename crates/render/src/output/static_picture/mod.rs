@@ -25,7 +25,7 @@ use crate::scene::color::{ColorTable, Rgb, linear};
 use crate::shading::shade::{Look, edge_color};
 
 use key_color::Contrast;
-use matrix::{Layer, Matrix};
+use matrix::{Matrix, Weights};
 use recolor::{Product, Recolor};
 
 pub use matrix::VisibleKey;
@@ -54,15 +54,14 @@ pub struct KeyColors<'a> {
 }
 
 impl StaticPicture {
-    /// `layers`: of all samples, or of those of each step.
     pub(crate) fn new(
         gpu: &Gpu,
         size: [u32; 2],
-        layers: &[Layer],
+        weights: &Weights,
         look: &Look,
         background: Option<Rgb>,
     ) -> Result<Self, DeviceError> {
-        let matrix = Matrix::new(layers);
+        let matrix = Matrix::new(weights, 1);
         let [r, g, b] = linear(background.unwrap_or_default());
         let empty = background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let settings = Recolor {

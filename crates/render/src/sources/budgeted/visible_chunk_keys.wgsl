@@ -15,10 +15,12 @@ fn surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys {
     let halvings = lod_halvings(visible_chunk.lod);
     let strips = max(lod_strips(visible_chunk.lod), 1u);
     let tube_quads = (segments(chunk, level) << halvings) * strips;
-    if (lod_what(visible_chunk.lod) != WHAT_TUBE || index >= tube_quads) {
-        // A cap, a soma, a sphere: one color.
-        let key = surface_vertex(vertex_index, instance_index).color_key;
-        return SurfaceKeys(vec4(key), 0u, visible_chunk.instance);
+    if (lod_what(visible_chunk.lod) != WHAT_TUBE) {
+        return SurfaceKeys(vec4(color_key_at(chunk, 0u)), 0u, visible_chunk.instance);
+    }
+    if (index >= tube_quads) {
+        let end = stored(chunk, 0u, cap_point(chunk, index - tube_quads)).point;
+        return SurfaceKeys(vec4(color_key_at(chunk, end)), 0u, visible_chunk.instance);
     }
     let segment = (index / strips) >> halvings;
     let part = index / strips + u32((vertex_index & 3u) >= 2u) - (segment << halvings);

@@ -179,13 +179,15 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
     );
 }
 
+// The point that a cap's quad is around.
+fn cap_point(chunk: Chunk, index: u32) -> u32 {
+    let of_start = index < DOME_QUADS && (chunk.flags & CHUNK_FREE_START) != 0u;
+    return select(segments(chunk, 0u), 0u, of_start);
+}
+
 // The round cap at a free end of a path.
 fn cap_vertex(visible_chunk: VisibleChunk, chunk: Chunk, instance_pose: GpuInstance, index: u32, corner: u32) -> SurfaceVertex {
-    var point = segments(chunk, 0u);
-    if (index < DOME_QUADS && (chunk.flags & CHUNK_FREE_START) != 0u) {
-        point = 0u;
-    }
-    let end = stored(chunk, 0u, point);
+    let end = stored(chunk, 0u, cap_point(chunk, index));
     let width = lod_width(visible_chunk.lod);
     let radius = end.radius * instance_pose.scale * width;
     var v = sphere_vertex(relative(instance_pose, end.position), radius, WHAT_DOME, index % DOME_QUADS, corner);

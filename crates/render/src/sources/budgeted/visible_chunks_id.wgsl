@@ -24,6 +24,5 @@ fn leads_to(visible_chunk: VisibleChunk, index: u32) -> u32 {
     if (index < tube_quads) {
         return stored(chunk, level, ((index / strips) >> halvings) + 1u).point;
     }
-    let of_start = index - tube_quads < DOME_QUADS && (chunk.flags & CHUNK_FREE_START) != 0u;
-    return select(segments(chunk, 0u), 0u, of_start);
+    return cap_point(chunk, index - tube_quads);
 }

@@ -1,0 +1,107 @@
+//! Films of a recording from a fixed camera: one static picture, colored anew for each time.
+
+use std::time::Instant;
+
+use neurotess::coloring::VisibleValues;
+use neurotess::render::{
+    Cost, Gpu, Image, KeyColors, PictureOptions, StaticError, StaticPicture, StillRenderer,
+    Viewpoint,
+};
+
+use super::coloring::PictureColors;
+use super::job::RenderJob;
+use super::vertex_source::PictureSource;
+
+/// Most pixels of a picture that is held as a whole, with its weights: larger ones are drawn anew.
+const MOST_PIXELS: u64 = 1 << 24;
+
+/// A picture, and where the values are of what shows in it.
+pub(super) struct Film {
+    picture: StaticPicture,
+    visible: VisibleValues,
+    cost: Cost,
+}
+
+/// What a film holds and reads, for `--stats`.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub(super) struct FilmStats {
+    visible_keys: usize,
+    compartments_read: usize,
+    weights: usize,
+    bytes: u64,
+}
+
+impl Film {
+    /// Draws the picture; none if the pictures of the job must be drawn one by one.
+    pub(super) fn new(
+        gpu: &Gpu,
+        job: &RenderJob<'_>,
+        options: &PictureOptions,
+        source: &mut PictureSource,
+        renderer: &mut StillRenderer,
+    ) -> anyhow::Result<Option<Self>> {
+        let [width, height] = options.size.map(u64::from);
+        let fixed = job.cameras.windows(2).all(|pair| pair[0] == pair[1]);
+        let Some(camera) = job.cameras.first().filter(|_| fixed) else {
+            return Ok(None);
+        };
+        if job.files.len() < 2 || !job.colored.is_series() || width * height > MOST_PIXELS {
+            return Ok(None);
+        }
+        let clock = Instant::now();
+        let view = Viewpoint {
+            camera: *camera,
+            near: camera.near(job.spheres),
+        };
+        let (table, _) = job.colored.picture(0)?;
+        let made = renderer.render_static(gpu, source.as_vertex_source(), &view, &table, options);
+        let picture = match made {
+            Ok(picture) => picture,
+            Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),
+            Err(e) => anyhow::bail!("{e}"),
+        };
+        let visible = job.colored.visible(picture.keys());
+        let cost = Cost {
+            cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
+            tiles: options.tiles(gpu, camera),
+            ..Cost::default()
+        };
+        Ok(Some(Self {
+            picture,
+            visible,
+            cost,
+        }))
+    }
+
+    /// The picture of a number.
+    pub(super) fn picture(
+        &mut self,
+        gpu: &Gpu,
+        colored: &PictureColors,
+        number: usize,
+    ) -> anyhow::Result<(Image, Cost)> {
+        let clock = Instant::now();
+        let values = colored.visible_values(number, &self.visible)?;
+        let colors = KeyColors {
+            table: &colored.coloring.table,
+            states: &[],
+            values: Some(&values),
+        };
+        self.picture.recolor(gpu, &colors)?;
+        let image = self.picture.image(gpu)?;
+        let mut cost = self.cost.clone();
+        // The first picture took the time to draw it.
+        cost.cpu_ms += clock.elapsed().as_secs_f64() * 1e3;
+        self.cost.cpu_ms = 0.0;
+        Ok((image, cost))
+    }
+
+    pub(super) fn stats(&self) -> FilmStats {
+        FilmStats {
+            visible_keys: self.picture.keys().len(),
+            compartments_read: self.visible.compartments(),
+            weights: self.picture.weights(),
+            bytes: self.picture.bytes(),
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Values of what shows in a static picture, and of nothing else.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use neurotess_render::VisibleKey;
+use neurotess_render::color::CATEGORY_BIT;
+
+use crate::recording::{Recording, RecordingError, Source};
+
+/// Where a recording holds the values of the color keys that show in a picture.
+#[derive(Clone, Debug, Default)]
+pub struct VisibleValues {
+    keys: Vec<VisibleKey>,
+    parts: Vec<VisibleCompartments>,
+}
+
+/// Of a report's population: compartments that show, and which of the keys each is for.
+#[derive(Clone, Debug, Default)]
+struct VisibleCompartments {
+    compartments: Vec<u64>,
+    keys: Vec<usize>,
+}
+
+impl VisibleValues {
+    /// Number of compartments that are read for a time; 0 for spikes, which have none.
+    pub fn compartments(&self) -> usize {
+        self.parts.iter().map(|part| part.compartments.len()).sum()
+    }
+}
+
+impl Recording {
+    /// Finds the values of color keys, as [`Recording::color_keys`] gives them to cells.
+    pub fn visible(&self, keys: &[VisibleKey]) -> VisibleValues {
+        let parts = match &self.source {
+            Source::Spikes(..) => Vec::new(),
+            Source::Report(_, parts) => parts
+                .iter()
+                .map(|part| {
+                    let spans: HashMap<usize, Range<usize>> = part.spans.iter().cloned().collect();
+                    let mut found = VisibleCompartments::default();
+                    for (place, key) in keys.iter().enumerate() {
+                        let span = spans.get(&(key.instance as usize)).cloned();
+                        let own = span.and_then(|span| part.compartments.get(span));
+                        let Some(&compartment) =
+                            own.and_then(|own| own.get(key.color_key as usize))
+                        else {
+                            continue;
+                        };
+                        found.compartments.push(compartment);
+                        found.keys.push(place);
+                    }
+                    found
+                })
+                .collect(),
+        };
+        VisibleValues {
+            keys: keys.to_vec(),
+            parts,
+        }
+    }
+
+    /// Values at a time (ms), one for each key; NaN where there is none. Reads what holds them: the
+    /// time that it takes goes by what shows, not by the neurons of the recording. `decay`: as in
+    /// [`Recording::at`].
+    ///
+    /// # Errors
+    /// The recording has no values at that time, or the file is invalid.
+    pub fn visible_at(
+        &self,
+        time: f64,
+        decay: f64,
+        visible: &VisibleValues,
+    ) -> Result<Vec<f32>, RecordingError> {
+        let mut values = vec![f32::NAN; visible.keys.len()];
+        match &self.source {
+            Source::Report(report, _) => {
+                let mut any = false;
+                for (population, part) in report.populations.iter().zip(&visible.parts) {
+                    let Some(frame) = population.time.frame_at(time) else {
+                        continue;
+                    };
+                    any = true;
+                    let read = population.values(frame, &part.compartments)?;
+                    for (&key, value) in part.keys.iter().zip(read) {
+                        values[key] = value;
+                    }
+                }
+                if !any {
+                    return Err(self.no_values(time));
+                }
+            }
+            Source::Spikes(spikes, firing) => {
+                let mut flashes: HashMap<usize, f32> = HashMap::new();
+                for (population, instances) in spikes.populations.iter().zip(firing) {
+                    for (id, flash) in population.flashes(time, decay) {
+                        let shown = instances.get(&id).into_iter().flatten();
+                        flashes.extend(shown.map(|&instance| (instance, flash)));
+                    }
+                }
+                for (value, key) in values.iter_mut().zip(&visible.keys) {
+                    let instance = key.instance as usize;
+                    if key.color_key & CATEGORY_BIT == 0 && self.has_values[instance] {
+                        *value = flashes.get(&instance).copied().unwrap_or(0.0);
+                    }
+                }
+            }
+        }
+        Ok(values)
+    }
+}
