@@ -242,7 +242,7 @@ fn states_cuts_lights_and_backgrounds_are_as_if_drawn_anew() {
         look: Look {
             clip: Some(Clip {
                 point: DVec3::ZERO,
-                normal: DVec3::new(0.2, 0.1, -1.0).normalize(),
+                normal: DVec3::new(0.2, 0.1, -1.0).normalize_or(DVec3::Z),
             }),
             ..options().look
         },

@@ -53,14 +53,29 @@ fn a_series_runs_through_time_in_one_start() {
         .exits(0);
     let files = ["f_0000.png", "f_0001.png", "f_0002.png"];
     assert_eq!(run.json()["files"], serde_json::json!(files));
-    // Each is the picture of its time alone.
+    let film = &run.json()["film"];
+    let [shown, read] = ["visible_keys", "compartments_read"].map(|key| film[key].as_u64());
+    assert!(read > Some(0) && read <= shown, "{film}");
+    // Each is the picture of its time alone. Not to the bit: a film adds up colors times weights of
+    // 16 bits, a single picture adds up its samples.
     for (file, time) in files.iter().zip([14.0, 14.5, 15.0]) {
         work.run(&format!(
             "render c -o one.png --force {look} {report} --time {time}"
         ))
         .exits(0);
         let [own, alone] = [file, "one.png"].map(|name| Picture::read(&work, name).pixels);
-        assert!(own == alone, "{file}");
+        let apart: Vec<u8> = own
+            .iter()
+            .zip(&alone)
+            .map(|(a, b)| a.abs_diff(*b))
+            .collect();
+        let above = apart.iter().filter(|&&d| d > 1).count();
+        assert!(apart.iter().all(|&d| d <= 3), "{file}");
+        assert!(
+            above * 10_000 <= own.len(),
+            "{file}: {above} of {}",
+            own.len()
+        );
     }
     let [a, b] = [files[0], files[1]].map(|name| Picture::read(&work, name).pixels);
     assert!(a != b);

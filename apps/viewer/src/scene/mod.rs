@@ -3,8 +3,10 @@
 mod colors;
 pub(crate) mod content;
 mod explorer;
+mod film;
 pub(crate) mod headless;
 pub(crate) mod picks;
 pub(crate) mod pictures;
 pub(crate) mod stage;
+mod still_scene;
 mod templates;

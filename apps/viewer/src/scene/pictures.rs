@@ -8,74 +8,19 @@ use std::sync::atomic::Ordering;
 use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
 use neurotess::render::color::ColorTable;
-use neurotess::render::overlay::{Legend, Overlay, OverlayOptions};
 use neurotess::render::{
-    AdaptiveSettings, BoundingSphere, Camera, Gpu, Image, Occlusion, PictureError, PictureOptions,
-    PngWriter, StillRenderer, Viewpoint, Watch,
+    AdaptiveSettings, Gpu, Image, Occlusion, PictureError, PictureOptions, PngWriter, StaticError,
+    StillRenderer, Viewpoint, Watch,
 };
 
 use crate::io::save::existing;
 use crate::io::task::Progress;
-use crate::model::document::Look;
 use crate::model::film::FilmFrame;
-use crate::model::playback::said;
 use crate::model::save::PictureFile;
-use crate::scene::colors::color_scheme;
-use crate::scene::content::{self, SceneContent};
+use crate::scene::content;
+use crate::scene::film::{self, Film};
 
-/// All that pictures are drawn from, for another thread.
-pub(crate) struct StillScene {
-    pub(crate) gpu: Arc<Gpu>,
-    /// Whether a window draws with the same device.
-    pub(crate) shared: bool,
-    pub(crate) content: SceneContent,
-    pub(crate) look: Look,
-    pub(crate) states: Vec<u32>,
-    pub(crate) spheres: Arc<Vec<BoundingSphere>>,
-}
-
-impl StillScene {
-    /// Color table and legend of a picture, at its time of the recording if there is one.
-    fn colors(&self, time: Option<f64>) -> Result<(ColorTable, Legend), String> {
-        let (table, legend) = (&self.content.table, &self.content.legend);
-        let (Some((recording, all)), Some(time)) = (&self.content.recording, time) else {
-            return Ok((table.clone(), legend.clone()));
-        };
-        let time = recording.time.nearest(time);
-        let instances = &self.content.instances;
-        let shows = |place: usize| instances.get(place).is_none_or(|s| !s.hidden);
-        let frame = recording.at(time, self.look.decay, &shows);
-        let frame = frame.map_err(|e| e.to_string())?;
-        let range = color_scheme(&self.look).range.unwrap_or(*all);
-        let table = ColorTable {
-            scale: table.scale.clone(),
-            categories: table.categories.clone(),
-            values: frame.values(range),
-        };
-        Ok((table, legend.clone().noted(&said(&recording.time, time))))
-    }
-
-    /// Legend and scale bar, in the same corners for all pictures.
-    fn overlay(&self, film_frames: &[FilmFrame], options: &PictureFile) -> Result<Overlay, String> {
-        let cameras: Vec<Camera> = film_frames
-            .iter()
-            .map(|film_frame| film_frame.view.camera())
-            .collect();
-        let (_, legend) =
-            self.colors(film_frames.first().and_then(|film_frame| film_frame.time))?;
-        let overlay = OverlayOptions {
-            legend: self.look.legend.then_some(legend),
-            scale_bar: self.look.scale_bar.then_some(0.0),
-            background: (!options.transparent).then_some(self.look.background),
-        };
-        Ok(Overlay::new(
-            &overlay,
-            options.size,
-            &cameras,
-            &self.spheres,
-        ))
-    }
-}
+pub(crate) use crate::scene::still_scene::StillScene;
 
 /// Writes pictures: one, or a numbered series.
 pub(crate) fn pictures(
@@ -121,35 +66,50 @@ pub(crate) fn pictures(
         tiles: Arc::clone(&progress.done),
         stopped: Arc::clone(&progress.canceled),
     });
-    let overlay = still_scene.overlay(film_frames, options)?;
+    let overlay = still_scene.overlay(film_frames, options);
+    let mut film = None;
     for (number, (film_frame, file)) in film_frames.iter().zip(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
         if progress.is_canceled() {
             return Err(stopped());
         }
         let camera = film_frame.view.camera();
-        let (table, legend) = still_scene.colors(film_frame.time)?;
+        let legend = still_scene.legend(film_frame.time);
         let overlay = overlay.again(still_scene.look.legend.then_some(&legend), &camera);
         let mut picture = picture;
         picture.look.clip = content::clip(&still_scene.look, &still_scene.spheres);
         let near = camera.near(&still_scene.spheres);
+        let view = Viewpoint { camera, near };
         let broken = |e: std::io::Error| OutputError::broken(file, e).to_string();
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
         let to = BufWriter::new(output.file().try_clone().map_err(broken)?);
         let mut png = PngWriter::new(to, options.size, options.transparent).map_err(broken)?;
-        let drawn = renderer.render(
-            gpu,
-            &mut adaptive,
-            &Viewpoint { camera, near },
-            &table,
-            &picture,
-            |top, mut band: Image| {
-                overlay.lay_on(top, &mut band);
-                png.write(&band)
-            },
-        );
+        let mut lay = |top: u32, mut band: Image| {
+            overlay.lay_on(top, &mut band);
+            png.write(&band)
+        };
+        let table = match &film {
+            Some(_) => ColorTable::default(),
+            None => still_scene.table(film_frame.time)?,
+        };
+        let mut drawn = Ok(());
+        if number == 0 && film::is_static(still_scene, film_frames, options) {
+            match renderer.render_static(gpu, &mut adaptive, &view, &table, &picture) {
+                Ok(picture) => film = Some(Film::new(still_scene, picture)),
+                Err(StaticError::Wireframe | StaticError::Source) => {}
+                Err(StaticError::Stopped) => drawn = Err(PictureError::Stopped),
+                Err(StaticError::Device(e)) => drawn = Err(PictureError::Device(e)),
+            }
+        }
+        if let Some(film) = &film {
+            let image = film.picture(gpu, still_scene, film_frame.time)?;
+            drawn = lay(0, image).map_err(PictureError::Sink);
+        } else if drawn.is_ok() {
+            let whole = renderer.render(gpu, &mut adaptive, &view, &table, &picture, lay);
+            drawn = whole.map(|_| ());
+        }
         match drawn {
-            Ok(_) => {}
+            Ok(()) => {}
             Err(PictureError::Stopped) => {
                 // Dropping the device waits for its current tile: done on another thread.
                 std::thread::spawn(move || drop((renderer, adaptive, own)));

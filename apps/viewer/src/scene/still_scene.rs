@@ -1,0 +1,78 @@
+//! The scene as pictures in files show it: its colors, legend and scale bar.
+
+use std::sync::Arc;
+
+use neurotess::render::color::ColorTable;
+use neurotess::render::overlay::{Legend, Overlay, OverlayOptions};
+use neurotess::render::{BoundingSphere, Camera, Gpu};
+
+use crate::model::document::Look;
+use crate::model::film::FilmFrame;
+use crate::model::playback::said;
+use crate::model::save::PictureFile;
+use crate::scene::colors::color_scheme;
+use crate::scene::content::SceneContent;
+
+/// All that pictures are drawn from, for another thread.
+pub(crate) struct StillScene {
+    pub(crate) gpu: Arc<Gpu>,
+    /// Whether a window draws with the same device.
+    pub(crate) shared: bool,
+    pub(crate) content: SceneContent,
+    pub(crate) look: Look,
+    pub(crate) states: Vec<u32>,
+    pub(crate) spheres: Arc<Vec<BoundingSphere>>,
+}
+
+impl StillScene {
+    /// Color table of a picture, at its time of the recording if there is one.
+    pub(super) fn table(&self, time: Option<f64>) -> Result<ColorTable, String> {
+        let table = &self.content.table;
+        let (Some((recording, _)), Some(time)) = (&self.content.recording, time) else {
+            return Ok(table.clone());
+        };
+        let instances = &self.content.instances;
+        let shows = |place: usize| instances.get(place).is_none_or(|s| !s.hidden);
+        let frame = recording.at(recording.time.nearest(time), self.look.decay, &shows);
+        let frame = frame.map_err(|e| e.to_string())?;
+        Ok(ColorTable {
+            scale: table.scale.clone(),
+            categories: table.categories.clone(),
+            values: frame.values(self.range()),
+        })
+    }
+
+    /// Legend of a picture, with the time of the recording if there is one.
+    pub(super) fn legend(&self, time: Option<f64>) -> Legend {
+        let legend = self.content.legend.clone();
+        match (&self.content.recording, time) {
+            (Some((recording, _)), Some(time)) => {
+                let time = recording.time.nearest(time);
+                legend.noted(&said(&recording.time, time))
+            }
+            _ => legend,
+        }
+    }
+
+    /// Ends of the scale of the recording.
+    pub(super) fn range(&self) -> [f32; 2] {
+        let all = self.content.recording.as_ref().map(|(_, all)| *all);
+        let chosen = color_scheme(&self.look).range;
+        chosen.or(all).unwrap_or([0.0, 1.0])
+    }
+
+    /// Legend and scale bar, in the same corners for all pictures.
+    pub(super) fn overlay(&self, film_frames: &[FilmFrame], options: &PictureFile) -> Overlay {
+        let cameras: Vec<Camera> = film_frames
+            .iter()
+            .map(|film_frame| film_frame.view.camera())
+            .collect();
+        let legend = self.legend(film_frames.first().and_then(|film_frame| film_frame.time));
+        let overlay = OverlayOptions {
+            legend: self.look.legend.then_some(legend),
+            scale_bar: self.look.scale_bar.then_some(0.0),
+            background: (!options.transparent).then_some(self.look.background),
+        };
+        Overlay::new(&overlay, options.size, &cameras, &self.spheres)
+    }
+}
