@@ -1,0 +1,4 @@
+//! For programs that hold cells in memory, like the Python package: what the commands do, with their options
+//! and checks, without files and messages.
+
+pub use crate::commands::mesh::{CellMesh, MeshRecipe, MeshReport};
