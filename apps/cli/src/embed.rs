@@ -2,3 +2,5 @@
 //! and checks, without files and messages.
 
 pub use crate::commands::mesh::{CellMesh, MeshRecipe, MeshReport};
+#[cfg(feature = "render")]
+pub use crate::commands::render::{DrawError, Drawing, DrawingInput, Picked};

@@ -206,7 +206,7 @@ impl Surface {
             "m" => Unit::Meter,
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "unit={other:?} is not 'um' or 'm'"
+                    "unit='{other}' is not 'um' or 'm'"
                 )));
             }
         };

@@ -112,7 +112,7 @@ pub(super) fn draw(
     Ok(stats)
 }
 
-fn picture_options(args: &RenderArgs) -> PictureOptions {
+pub(super) fn picture_options(args: &RenderArgs) -> PictureOptions {
     PictureOptions {
         size: args.size.0,
         samples: args.samples,
