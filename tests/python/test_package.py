@@ -82,7 +82,7 @@ def test_examples_run(example: Path, tmp_path: Path, can_draw: bool) -> None:
 def test_types_hold() -> None:
     pytest.importorskip("mypy")
     settings = str(ROOT / "bindings/python/pyproject.toml")
-    checked = python("-m", "mypy", "--config-file", settings, "--strict", str(PACKAGE))
+    checked = python("-m", "mypy", "--config-file", settings, str(PACKAGE))
     assert checked.returncode == 0, checked.stdout
     files = [str(example) for example in EXAMPLES]
     checked = python("-m", "mypy", "--config-file", settings, "--strict", *files)

@@ -20,7 +20,11 @@ pub(crate) fn read(py: Python<'_>, error: &ReadError) -> PyErr {
 /// A file that the system does not give.
 pub(crate) fn read_io(py: Python<'_>, file: &str, error: &std::io::Error) -> PyErr {
     let message = format!("cannot be read ({error}): check the path and its permissions");
-    made(py, "read_error", (file, None::<u64>, message, error.raw_os_error()))
+    made(
+        py,
+        "read_error",
+        (file, None::<u64>, message, error.raw_os_error()),
+    )
 }
 
 /// A file of another kind that cannot be read; `place` is the file, perhaps with a line.

@@ -153,7 +153,12 @@ impl Drawing {
     fn close(&self, py: Python<'_>) {
         // A picture that is being drawn is waited for.
         py.detach(|| {
-            drop(self.shared.lock().unwrap_or_else(PoisonError::into_inner).take());
+            drop(
+                self.shared
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .take(),
+            );
         });
     }
 }

@@ -33,8 +33,5 @@ pub(crate) fn first_paragraph(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let text = text.strip_prefix("error: ").unwrap_or(&text);
     let paragraph = text.split("\n\n").next().unwrap_or_default();
-    paragraph
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
+    paragraph.split_whitespace().collect::<Vec<_>>().join(" ")
 }

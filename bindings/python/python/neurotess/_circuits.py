@@ -292,6 +292,11 @@ class Report:
         self._told: dict[str, Any] | None = None
 
     @property
+    def path(self) -> str:
+        """The file."""
+        return self._path
+
+    @property
     def populations(self) -> list[str]:
         """Names of the populations in the file."""
         return self._report.populations

@@ -6,6 +6,20 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "__version__",
+    "CAN_RENDER",
+    "Cell",
+    "Recipe",
+    "Surface",
+    "Circuit",
+    "Mesher",
+    "Report",
+    "Drawing",
+    "png",
+    "main",
+]
+
 __version__: str
 CAN_RENDER: bool
 
@@ -41,7 +55,7 @@ class Cell:
     @property
     def warnings(self) -> list[tuple[str, str, int | None, int]]: ...
     def __len__(self) -> int: ...
-    def __eq__(self, other: object) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
     @property
     def points(self) -> NDArray[np.float64]: ...
     @property

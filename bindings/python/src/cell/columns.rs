@@ -35,4 +35,3 @@ pub(super) fn parents(cell: &Morphology) -> Vec<i64> {
     }
     parents
 }
-

@@ -120,7 +120,12 @@ impl Cell {
     ) -> PyResult<Self> {
         let columns = table::Columns {
             integers: [ids.as_slice()?, types.as_slice()?, parents.as_slice()?],
-            numbers: [x.as_slice()?, y.as_slice()?, z.as_slice()?, radii.as_slice()?],
+            numbers: [
+                x.as_slice()?,
+                y.as_slice()?,
+                z.as_slice()?,
+                radii.as_slice()?,
+            ],
         };
         let read = py.detach(|| columns.read(&name, &ReadOptions { strict }));
         Self::of_result(py, read)
@@ -212,7 +217,10 @@ impl Cell {
         let orders: Vec<i64> = wide(shape::branch_orders(cell));
         sections.set_item("order", arrays::column(py, orders)?)?;
         sections.set_item("length", arrays::column(py, shape::section_lengths(cell))?)?;
-        sections.set_item("path_length", arrays::column(py, shape::path_lengths(cell))?)?;
+        sections.set_item(
+            "path_length",
+            arrays::column(py, shape::path_lengths(cell))?,
+        )?;
         Ok(sections)
     }
 

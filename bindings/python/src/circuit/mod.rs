@@ -71,7 +71,9 @@ impl Circuit {
     #[getter]
     fn reports(&self) -> Vec<(String, PathBuf)> {
         let reports = self.circuit.reports.iter();
-        reports.map(|(name, path)| (name.clone(), path.clone())).collect()
+        reports
+            .map(|(name, path)| (name.clone(), path.clone()))
+            .collect()
     }
 
     /// Name, populations of sources and targets, and count of each population of edges.
@@ -111,7 +113,11 @@ impl Circuit {
     /// The columns of a population: numbers as arrays, text as names and the place of each node's in them.
     fn columns<'py>(&self, py: Python<'py>, population: usize) -> PyResult<Bound<'py, PyDict>> {
         let missing = || PyIndexError::new_err("no such population");
-        let p = self.circuit.populations.get(population).ok_or_else(missing)?;
+        let p = self
+            .circuit
+            .populations
+            .get(population)
+            .ok_or_else(missing)?;
         let columns = PyDict::new(py);
         columns.set_item("node_id", arrays::column(py, p.ids.clone())?)?;
         let places: Vec<[f64; 3]> = p.positions.iter().map(|p| p.to_array()).collect();
@@ -237,8 +243,7 @@ impl Mesher {
         {
             // Its errors have their own exception.
             let file = &self.circuit.templates[template.index()];
-            py.detach(|| file.read())
-                .map_err(|e| errors::read(py, e))?;
+            py.detach(|| file.read()).map_err(|e| errors::read(py, e))?;
         }
         let (circuit, meshes) = (Arc::clone(&self.circuit), Arc::clone(&self.meshes));
         let recipe = self.recipe.clone();

@@ -11,9 +11,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::unreadable;
+use crate::arrays;
 use crate::errors::bug;
 use crate::work::released;
-use crate::arrays;
 
 /// A file of values over time, or of spikes.
 #[pyclass(frozen, module = "neurotess._neurotess")]

@@ -102,6 +102,7 @@ impl Surface for Slices<'_> {
         let of = |length: usize| length.min(block * BLOCK)..length.min((block + 1) * BLOCK);
         let triangles = &self.triangles[of(self.triangles.len())];
         out.triangles.extend_from_slice(triangles);
-        out.quads.extend_from_slice(&self.quads[of(self.quads.len())]);
+        out.quads
+            .extend_from_slice(&self.quads[of(self.quads.len())]);
     }
 }

@@ -6,15 +6,22 @@ use neurotess::mesh::{Quality, Surface};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
+use super::args::MeshArgs;
 use super::cell::{soma_volume, something_left, warnings};
 use super::options::MeshOptions;
 use super::smoothing::SmoothingReport;
 use super::surface::{CellSurface, CrossingsReport, SeparationReport};
 use super::verdict;
 use super::warning::CellWarning;
-use crate::cli::{Cli, Command};
 use crate::io::inputs::Inputs;
 use crate::report::Failure;
+
+/// The options alone, without the program around them.
+#[derive(Debug, Parser)]
+struct Options {
+    #[command(flatten)]
+    args: MeshArgs,
+}
 
 /// How a cell is meshed: the options of `neurotess mesh`, checked.
 #[derive(Clone, Debug)]
@@ -51,12 +58,9 @@ impl MeshRecipe {
     /// What is wrong with an option, in the words of the command line.
     pub fn new(options: impl IntoIterator<Item = String>) -> Result<Self, String> {
         // The format is one that holds quads; of files nothing else is used.
-        let command = ["neurotess", "mesh", "-", "--out=-", "--format=ply"].map(str::to_owned);
-        let cli = Cli::try_parse_from(command.into_iter().chain(options));
-        let cli = cli.map_err(|e| crate::report::first_paragraph(&e))?;
-        let Some(Command::Mesh(args)) = cli.command else {
-            return Err("these are no options of neurotess mesh".into());
-        };
+        let command = ["mesh", "-", "--out=-", "--format=ply"].map(str::to_owned);
+        let args = Options::try_parse_from(command.into_iter().chain(options));
+        let Options { args } = args.map_err(|e| crate::report::first_paragraph(&e))?;
         let options = MeshOptions::new(&args, &Inputs::default(), false);
         let options = options.map_err(|e| format!("{e:#}"))?;
         Ok(Self { options })

@@ -84,8 +84,8 @@ pub(super) fn meshed(
     morphology: Morphology,
     options: &GenerateOptions,
 ) -> Result<MeshedCell, Failure> {
-    let generated = generate::generate(&morphology, options)
-        .map_err(|e| Failure(format!("{file}: {e}")))?;
+    let generated =
+        generate::generate(&morphology, options).map_err(|e| Failure(format!("{file}: {e}")))?;
     let mended = generated.warnings.iter();
     Ok(MeshedCell {
         file,

@@ -20,9 +20,17 @@ use super::job::RenderJob;
 use super::scene::RenderScene;
 use super::vertex_source::{self, PictureSource};
 use super::{bounds, cameras, checks, coloring, draw, scene};
-use crate::cli::{Cli, Command};
 use crate::options::size::Size;
 use crate::report::{Common, Entry, Failed, Reporter, Usage};
+
+/// The options alone, without the program around them.
+#[derive(Debug, Parser)]
+struct Options {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    args: RenderArgs,
+}
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +91,8 @@ impl Drawing {
         input: DrawingInput<'_>,
         options: impl IntoIterator<Item = String>,
     ) -> Result<(Self, Vec<String>), DrawError> {
-        let (args, common) = parsed(input, options)?;
+        let Options { args, common } = parsed(input, options)?;
+        let args = Box::new(args);
         let reporter = Reporter::recording(common);
         let made = Self::made(gpu, input, args, &reporter);
         let mut told = reporter.take_recorded();
@@ -240,7 +249,13 @@ impl Drawing {
     }
 
     /// The nearest neurite or soma at a pixel, or within `reach` pixels of it, as it was traced.
-    pub fn pick(&self, camera: &Camera, size: [u32; 2], at: [f64; 2], reach: f64) -> Option<Picked> {
+    pub fn pick(
+        &self,
+        camera: &Camera,
+        size: [u32; 2],
+        at: [f64; 2],
+        reach: f64,
+    ) -> Option<Picked> {
         let cursor = DVec2::from(at);
         let slope = camera.pixel_slope(f64::from(size[1]));
         // Depth, and whether the cursor is on a ball between two traced ones.
@@ -329,22 +344,16 @@ impl Drawing {
 fn parsed(
     input: DrawingInput<'_>,
     options: impl IntoIterator<Item = String>,
-) -> Result<(Box<RenderArgs>, Common), DrawError> {
+) -> Result<Options, DrawError> {
     let path = match input {
         DrawingInput::Cells(_) => Path::new("-"),
         DrawingInput::Circuit(path) => path,
     };
-    let mut command = vec!["neurotess".into(), "render".into()];
+    let mut command = vec!["render".into()];
     command.extend(options.into_iter().map(std::ffi::OsString::from));
     command.extend(["--out=-".into(), "--".into(), path.into()]);
-    let cli = Cli::try_parse_from(command)
-        .map_err(|e| DrawError::Option(crate::report::first_paragraph(&e)))?;
-    match cli.command {
-        Some(Command::Render(args)) => Ok((args, cli.common)),
-        _ => Err(DrawError::Option(
-            "these are no options of neurotess render".into(),
-        )),
-    }
+    let options = Options::try_parse_from(command);
+    options.map_err(|e| DrawError::Option(crate::report::first_paragraph(&e)))
 }
 
 /// The scene of cells that are in memory, each in its own coordinates.
