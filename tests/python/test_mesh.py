@@ -143,9 +143,7 @@ def test_every_format_is_written_and_read_back(mesh: nt.Mesh, tmp_path: Path) ->
         report = nt.check(path, merge=extension == "stl")
         assert report["closed"], extension
         assert len(again.faces) == len(mesh.faces)
-        assert nt.check(again, merge=extension == "stl")["volume"] == pytest.approx(
-            mesh.volume, rel=1e-4
-        )
+        assert nt.check(again, merge=extension == "stl")["volume"] == pytest.approx(mesh.volume, rel=1e-4)
     mesh.save(tmp_path / "meters.ply", unit="m")
     assert nt.read_mesh(tmp_path / "meters.ply").volume == pytest.approx(mesh.volume * 1e-18, rel=1e-3)
     with pytest.raises(ValueError, match="unit='mm'"):

@@ -158,7 +158,7 @@ def test_tables_that_are_none_are_told(cell: nt.Morphology) -> None:
         nt.Morphology.from_table({**columns, "id": [1, 2.5, 3, 4, 5, 6, 7]})
     with pytest.raises(ValueError, match="different lengths"):
         nt.Morphology.from_table({**columns, "x": [1.0]})
-    with pytest.raises(nt.ReadError, match="cycle|ancestor|parent"):
+    with pytest.raises(nt.ReadError, match=r"cycle|ancestor|parent"):
         nt.Morphology.from_table({**columns, "parent": [2, 1, 2, 1, 4, 5, 5]})
 
 

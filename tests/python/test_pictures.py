@@ -36,10 +36,14 @@ def test_pictures_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) 
         ({}, []),
         ({"color_by": "radius", "scale_bar": True}, ["--color-by", "radius", "--scale-bar"]),
         ({"transparent": True, "view": "iso"}, ["--transparent", "--view", "iso"]),
-        ({"wireframe": True, "level": 2, "background": "#203040"},
-         ["--wireframe", "--level", "2", "--background", "203040"]),
-        ({"eye": (0, 20, 200), "target": (0, 20, 0), "light": (-1, 1, 1), "ao": 0},
-         ["--eye", "0,20,200", "--target", "0,20,0", "--light=-1,1,1", "--ao", "0"]),
+        (
+            {"wireframe": True, "level": 2, "background": "#203040"},
+            ["--wireframe", "--level", "2", "--background", "203040"],
+        ),
+        (
+            {"eye": (0, 20, 200), "target": (0, 20, 0), "light": (-1, 1, 1), "ao": 0},
+            ["--eye", "0,20,200", "--target", "0,20,0", "--light=-1,1,1", "--ao", "0"],
+        ),
         ({"lod": "exploration", "budget": 500}, ["--lod", "exploration", "--budget", "500"]),
     ]:
         ours = nt.render(read, size=(200, 150), samples=4, **options)
@@ -55,6 +59,18 @@ def test_several_cells_are_drawn_together(cell: nt.Morphology, samples: Path) ->
     assert (np.asarray(both) != np.asarray(nt.render(cell, color_by="neuron", **SMALL))).any()
     with pytest.raises(ValueError, match="no cell"):
         nt.render([], **SMALL)
+
+
+def test_films_go_around_and_through_time(cell: nt.Morphology, circuit_folder: Path) -> None:
+    turn = [np.asarray(picture) for picture in nt.film(cell, turntable=True, frames=3, **SMALL)]
+    assert len(turn) == 3 and (turn[0] != turn[1]).any()
+    circuit = nt.Circuit(circuit_folder)
+    name = next(n for n, path in circuit.reports.items() if not nt.Report(path).is_of_spikes)
+    times = circuit.report(name).times
+    options = {"report": name, "nodes": [0], "legend": False, **SMALL}
+    assert len(list(nt.film(circuit, time=(times[0], times[4], times[1] - times[0]), **options))) == 4
+    with pytest.raises(ValueError, match="turntable=True, or time"):
+        nt.film(cell)
 
 
 def test_notebooks_and_files_get_png(cell: nt.Morphology, tmp_path: Path) -> None:

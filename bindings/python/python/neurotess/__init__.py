@@ -15,7 +15,7 @@ leaves the interpreter to other threads, and Ctrl-C ends the wait for it.
 | read a tracing, or make one | `read`, `synth`, `Morphology.from_table`, `Morphology.from_navis`, … |
 | mesh it | `mesh`, `mesh_many`, `Mesh` |
 | judge a mesh | `Mesh.check`, `check`, `read_mesh` |
-| draw it | `render`, `Image`, `View` |
+| draw it | `render`, `film`, `Image`, `View` |
 | use a circuit and its recordings | `Circuit`, `Report` |
 | plot numbers of it | `neurotess.plot` |
 | mesh on a cluster | `neurotess.dask` |
@@ -37,13 +37,15 @@ from ._errors import (
 from ._morphology import Morphology, Neurite, Notice, Section, Soma, read, synth
 from ._meshes import Mesh, MeshResult, check, mesh, mesh_many, read_mesh
 from ._circuits import Circuit, Report
-from ._pictures import Image, render
+from ._pictures import Image, film, render
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from . import dask, plot
-    from ._view import View
+    from . import dask as dask
+    from . import plot as plot
+    from ._view import View as View
 
+# Without what needs other packages: `from neurotess import *` works everywhere.
 __all__ = [
     "Circuit",
     "Image",
@@ -61,13 +63,11 @@ __all__ = [
     "Report",
     "Section",
     "Soma",
-    "View",
     "__version__",
     "check",
-    "dask",
+    "film",
     "mesh",
     "mesh_many",
-    "plot",
     "read",
     "read_mesh",
     "render",
@@ -87,7 +87,7 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return [*__all__, "View", "dask", "plot"]
 
 
 def quiet_adapters() -> None:

@@ -74,9 +74,7 @@ class Circuit:
         if "nodes" not in self._tables:
             pandas = needed("pandas", "circuit")
             tables = [self._nodes_of(i, pandas) for i in range(len(self.populations))]
-            self._tables["nodes"] = (
-                pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame()
-            )
+            self._tables["nodes"] = pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame()
         return self._tables["nodes"].copy(deep=False)
 
     def _nodes_of(self, population: int, pandas: Any) -> pd.DataFrame:
@@ -140,7 +138,7 @@ class Circuit:
             low, high = region
             box = ([float(n) for n in low], [float(n) for n in high])
         found = self._circuit.select(ids, node_set, population, box, sample, sample_seed)
-        return list(zip(found[0].tolist(), found[1].tolist()))
+        return list(zip(found[0].tolist(), found[1].tolist(), strict=True))
 
     def _row(self, node: int, population: str | None) -> tuple[int, int]:
         rows = self._rows([node], None, population, None, None, 1)
@@ -254,9 +252,7 @@ class NodeMesh:
 
     __slots__ = ("error", "mesh", "node_id", "population")
 
-    def __init__(
-        self, population: str, node_id: int, mesh: Mesh | None, error: Exception | None
-    ) -> None:
+    def __init__(self, population: str, node_id: int, mesh: Mesh | None, error: Exception | None) -> None:
         self.population = population
         self.node_id = node_id
         self.mesh = mesh

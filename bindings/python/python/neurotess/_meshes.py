@@ -80,9 +80,7 @@ class Mesh:
                 raise ValueError(f"{what} have shape {array.shape} instead of (n, 3)")
         if faces.size and (faces.dtype.kind not in "iu" or faces.min() < 0 or faces.max() >= 2**32):
             raise ValueError("faces are not indices of vertices")
-        surface = _neurotess.Surface.from_arrays(
-            vertices, np.ascontiguousarray(faces, dtype=np.uint32)
-        )
+        surface = _neurotess.Surface.from_arrays(vertices, np.ascontiguousarray(faces, dtype=np.uint32))
         return cls(surface, name=name)
 
     # Arrays
@@ -206,9 +204,7 @@ class Mesh:
     def to_navis(self) -> Any:
         """A `navis.MeshNeuron`, in µm."""
         navis = needed("navis")
-        return navis.MeshNeuron(
-            (self.vertices, self.triangles()), units="1 micrometer", name=self.name
-        )
+        return navis.MeshNeuron((self.vertices, self.triangles()), units="1 micrometer", name=self.name)
 
     def _attributes(self) -> dict[str, NDArray[Any]]:
         return {
@@ -324,12 +320,9 @@ def _mesh(recipe: _neurotess.Recipe, cell: Morphology, threads: int | None) -> M
     return _of(surface, report, cell.warnings, cell.name)
 
 
-def _of(
-    surface: _neurotess.Surface, report: dict[str, Any], read: list[Notice], name: str
-) -> Mesh:
+def _of(surface: _neurotess.Surface, report: dict[str, Any], read: list[Notice], name: str) -> Mesh:
     mended = [
-        Notice(w["code"], w["message"], w["count"], w["line"], w["sample"])
-        for w in report.pop("warnings")
+        Notice(w["code"], w["message"], w["count"], w["line"], w["sample"]) for w in report.pop("warnings")
     ]
     return Mesh(surface, report, (*read, *mended), name)
 
@@ -399,9 +392,7 @@ def _cores() -> int:
         return os.cpu_count() or 1
 
 
-def _results(
-    cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int
-) -> Iterator[MeshResult]:
+def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -> Iterator[MeshResult]:
     from concurrent.futures import ThreadPoolExecutor
 
     def one(cell: Source) -> MeshResult:

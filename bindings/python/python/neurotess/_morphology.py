@@ -35,9 +35,7 @@ class Notice:
 
     __slots__ = ("code", "count", "line", "message", "sample")
 
-    def __init__(
-        self, code: str, message: str, count: int, line: int | None, sample: int | None
-    ) -> None:
+    def __init__(self, code: str, message: str, count: int, line: int | None, sample: int | None) -> None:
         self.code = code
         self.message = message
         self.count = count
@@ -300,7 +298,7 @@ class Morphology:
         numbers = self._section_columns()["neurite"].tolist()
         starts = [i for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1]]
         ends = [*starts[1:], len(numbers)]
-        return [Neurite(self, k, *ends_of) for k, ends_of in enumerate(zip(starts, ends))]
+        return [Neurite(self, k, *ends_of) for k, ends_of in enumerate(zip(starts, ends, strict=True))]
 
     @property
     def soma(self) -> Soma | None:
@@ -364,7 +362,7 @@ class Morphology:
         columns = self._cell.table()
         names = ["id", "type", "x", "y", "z", "radius", "parent"]
         formats = ["i8", "i8", "f8", "f8", "f8", "f8", "i8"]
-        table = np.zeros(len(columns["id"]), dtype=list(zip(names, formats)))
+        table = np.zeros(len(columns["id"]), dtype=list(zip(names, formats, strict=True)))
         for name in ("id", "type", "radius", "parent"):
             table[name] = columns[name]
         for axis, name in enumerate("xyz"):

@@ -12,8 +12,8 @@ from ._morphology import Morphology, read
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-    from typing import Any, Literal, overload
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from typing import Any, Literal
 
     import numpy as np
     from numpy.typing import NDArray
@@ -159,10 +159,8 @@ def render(
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
-    if report is not None and isinstance(what, Circuit):
-        report = what.reports.get(os.fspath(report), os.fspath(report))
     options: dict[str, Any] = {
-        "size": _options.joined(size, "x"),
+        "size": size,
         "color_by": color_by,
         "color_by_attribute": color_by_attribute,
         "report": report,
@@ -171,7 +169,7 @@ def render(
         "palette": palette,
         "colormap": colormap,
         "trim_colormap": trim_colormap,
-        "no_legend": not legend,
+        "legend": legend,
         "scale_bar": scale_bar,
         "background": background,
         "transparent": transparent,
@@ -194,14 +192,51 @@ def render(
         "nodes": nodes,
         "node_set": node_set,
         "population": population,
-        "region": None if region is None else [*region[0], *region[1]],
+        "region": region,
         "sample": sample,
         "sample_seed": sample_seed,
+        "adapter": adapter,
     }
-    drawing = _drawing(what, options, adapter)
+    return next(_pictures(what, options))
+
+
+def film(
+    what: Drawable | Iterable[Morphology | str | os.PathLike[str]],
+    *,
+    turntable: bool = False,
+    time: tuple[float, float, float] | tuple[float, float] | None = None,
+    frames: int | None = None,
+    **options: Any,
+) -> Iterator[Image]:
+    """Draws a series of pictures, one after the other: once around with `turntable` (36 pictures, or `frames`), or
+    through a report with `time` (from, to, and the step, in ms, or `frames`). The options are those of `render`.
+
+    >>> import neurotess as nt
+    >>> for number, picture in enumerate(nt.film(cell, turntable=True)): # doctest: +SKIP
+    ...     picture.save(f"turn_{number:03}.png")
+    """
+    series = {"turntable": turntable, "time": _options.joined(time, ":"), "frames": frames}
+    if not turntable and time is None:
+        raise ValueError("a film needs turntable=True, or time=(from, to, step)")
+    return _pictures(what, {**options, **series})
+
+
+def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
+    """All pictures that the options ask for."""
+    options = dict(options)
+    report, region = options.get("report"), options.get("region")
+    if report is not None and isinstance(what, Circuit):
+        options["report"] = what.reports.get(os.fspath(report), os.fspath(report))
+    if region is not None:
+        options["region"] = [*region[0], *region[1]]
+    options["size"] = _options.joined(options.get("size"), "x")
+    options["no_legend"] = not options.pop("legend", True)
+    drawing = _drawing(what, options, options.pop("adapter", None))
+    for message in drawing.messages:
+        warnings.warn(NeurotessWarning(message), stacklevel=3)
+    transparent = bool(options.get("transparent"))
     try:
-        for message in drawing.messages:
-            warnings.warn(NeurotessWarning(message), stacklevel=2)
-        return Image(drawing.draw(0), transparent=transparent)
+        for number in range(drawing.pictures):
+            yield Image(drawing.draw(number), transparent=transparent)
     finally:
         drawing.close()

@@ -90,7 +90,5 @@ def _integers(values: NDArray[Any], name: str) -> NDArray[np.int64]:
     # Parents of roots are missing values in some tables.
     wrong = np.flatnonzero((whole != numbers) & ~(np.isnan(numbers) & (name == "parent")))
     if len(wrong):
-        raise ValueError(
-            f"column {name!r} is not of whole numbers: row {wrong[0]} has {numbers[wrong[0]]}"
-        )
+        raise ValueError(f"column {name!r} is not of whole numbers: row {wrong[0]} has {numbers[wrong[0]]}")
     return np.ascontiguousarray(whole)

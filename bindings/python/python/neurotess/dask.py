@@ -73,7 +73,7 @@ def mesh(
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"several files would become {twice}: mesh them into different folders")
-    tasks = [(file, folder, name, arguments) for file, name in zip(files, names)]
+    tasks = [(file, folder, name, arguments) for file, name in zip(files, names, strict=True)]
     if client is None:
         return [make(task) for task in tasks]
     futures = client.map(make, tasks, pure=False, retries=2)
