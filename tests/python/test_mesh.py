@@ -100,6 +100,25 @@ def test_unknown_options_are_type_errors(cell: nt.Morphology) -> None:
         nt.mesh(cell, levle=3)  # type: ignore[call-arg]
 
 
+def test_no_option_of_the_command_is_missing() -> None:
+    import inspect
+    import re
+
+    files = {"out", "force", "format", "unit", "table", "shard", "resume", "log", "strict", "help"}
+    common = {"json", "quiet", "verbose", "no_progress", "color"}
+    circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
+    for command, function, other in [
+        ("mesh", nt.mesh, files | circuit),
+        ("render", nt.render, {"out", "force", "help", "stats", "strict", "turntable", "frames", "threads"}),
+    ]:
+        words = [sys.executable, "-m", "neurotess", command, "--help"]
+        text = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+        flags = {flag.replace("-", "_") for flag in re.findall(r"^ +(?:-\w, )?--([a-z-]+)", text, re.MULTILINE)}
+        ours = set(inspect.signature(function).parameters)
+        flags = {"legend" if flag == "no_legend" else flag for flag in flags}
+        assert flags - other - common == ours - {"cell", "what"} - other, command
+
+
 def test_what_cannot_be_meshed_is_a_mesh_error(cell: nt.Morphology) -> None:
     with pytest.raises(nt.MeshError, match="nothing is left"):
         nt.mesh(cell, types=["custom_9"], soma="none")

@@ -321,8 +321,8 @@ impl Drawing {
         nearest.map(|(_, picked)| self.named(picked))
     }
 
-    fn named(&self, picked: Picked) -> Picked {
-        let (name, node) = match &self.instances {
+    fn named(&self, mut picked: Picked) -> Picked {
+        (picked.name, picked.node) = match &self.instances {
             Some(circuit) => (
                 circuit.names().swap_remove(picked.cell),
                 Some(circuit.instances[picked.cell].id),
@@ -332,11 +332,7 @@ impl Drawing {
                 (self.cells[cell].file.clone(), None)
             }
         };
-        Picked {
-            name,
-            node,
-            ..picked
-        }
+        picked
     }
 }
 
