@@ -113,7 +113,9 @@ def test_no_option_of_the_command_is_missing() -> None:
     ]:
         words = [sys.executable, "-m", "neurotess", command, "--help"]
         text = subprocess.run(words, check=True, capture_output=True, text=True).stdout
-        flags = {flag.replace("-", "_") for flag in re.findall(r"^ +(?:-\w, )?--([a-z-]+)", text, re.MULTILINE)}
+        flags = {
+            flag.replace("-", "_") for flag in re.findall(r"^ +(?:-\w, )?--([a-z-]+)", text, re.MULTILINE)
+        }
         ours = set(inspect.signature(function).parameters)
         flags = {"legend" if flag == "no_legend" else flag for flag in flags}
         assert flags - other - common == ours - {"cell", "what"} - other, command

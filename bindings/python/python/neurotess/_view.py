@@ -22,6 +22,8 @@ from jupyter_rfb import RemoteFrameBuffer  # noqa: E402
 
 #: Seconds without an event after which the full picture is drawn.
 REST = 0.25
+#: Samples of a pixel while something moves: with one, thin neurites are dashed.
+MOVING = 4
 #: A click within so many pixels of a neurite picks it.
 REACH = 3.0
 #: A press and a release that are nearer than this (pixels) are a click.
@@ -32,7 +34,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
     """Cells or a circuit in a notebook, drawn where the kernel runs.
 
     Drag to turn, drag with Shift or the right button to move, use the wheel to come nearer. While something moves,
-    it is drawn within a budget of triangles; at rest the full picture follows. A double click shows all again.
+    it is drawn within a `budget` of triangles; at rest the full picture follows, with `samples` a pixel. A double click
+    shows all again.
 
     `what` and the options are those of `render`, without those of the camera. With a `report`, `time` can be set.
     `on_pick` is called with a dictionary when a neurite or a soma is clicked: ``name``, ``node_id``, ``section``,
@@ -49,7 +52,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         *,
         size: tuple[int, int] = (800, 600),
         budget: int | None = None,
-        samples: int = 4,
+        samples: int = 16,
         color_by: str | None = None,
         report: str | None = None,
         time: float | None = None,
@@ -197,7 +200,9 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         if self._drawings is None:
             return None
         quick, full = self._drawings
-        return self._pixels(quick, 1) if self._moving else self._pixels(full, self._samples)
+        if self._moving:
+            return self._pixels(quick, min(self._samples, MOVING))
+        return self._pixels(full, self._samples)
 
     def _draw(self) -> None:
         if self._drawings is not None:
