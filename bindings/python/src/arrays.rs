@@ -7,6 +7,9 @@ use pyo3::types::PyDict;
 
 use crate::errors::bug;
 
+/// Two arrays with a value each for the same things.
+pub(crate) type Pair<A, B> = (Py<PyArray1<A>>, Py<PyArray1<B>>);
+
 /// A read-only array of one dimension.
 pub(crate) fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> PyResult<Py<PyArray1<T>>> {
     let array = PyArray1::from_vec(py, values);

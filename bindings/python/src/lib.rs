@@ -8,6 +8,10 @@
 //! Heavy work runs without the interpreter's lock. Arrays own their memory, which was moved into them, and
 //! are read-only: nothing that an array shows can end before it.
 #![forbid(unsafe_code)]
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "PyO3 hands over values of its own"
+)]
 
 mod arrays;
 mod cell;

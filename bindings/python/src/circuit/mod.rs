@@ -11,15 +11,15 @@ use neurotess::circuit::{self as circuits, Attribute, CircuitError, NodeRef, Sel
 use neurotess::circuit::{Instance, soma_center};
 use neurotess::mesh::Placed;
 use neurotess_cli::embed::{CellMesh, MeshRecipe};
-use numpy::PyArray1;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::{self, Pair};
 use crate::cell::Cell;
+use crate::errors;
 use crate::surface::{Columns, Recipe, Surface, of_made};
 use crate::work::released;
-use crate::{arrays, errors};
 pub(crate) use recordings::Report;
 
 /// Coarse meshes that are kept, for nodes that share a morphology.
@@ -96,7 +96,7 @@ impl Circuit {
         let columns = PyDict::new(py);
         columns.set_item("source", arrays::column(py, synapses.sources)?)?;
         columns.set_item("target", arrays::column(py, synapses.targets)?)?;
-        let positions = synapses.positions.iter().map(|p| p.to_array()).collect();
+        let positions = synapses.positions.iter().map(DVec3::to_array).collect();
         columns.set_item("position", arrays::rows(py, positions)?)?;
         Ok(columns)
     }
@@ -120,7 +120,7 @@ impl Circuit {
             .ok_or_else(missing)?;
         let columns = PyDict::new(py);
         columns.set_item("node_id", arrays::column(py, p.ids.clone())?)?;
-        let places: Vec<[f64; 3]> = p.positions.iter().map(|p| p.to_array()).collect();
+        let places: Vec<[f64; 3]> = p.positions.iter().map(DVec3::to_array).collect();
         columns.set_item("position", arrays::rows(py, places)?)?;
         let turns: Vec<[f64; 4]> = p.rotations.iter().map(|q| [q.w, q.x, q.y, q.z]).collect();
         columns.set_item("rotation", arrays::rows(py, turns)?)?;
@@ -163,7 +163,7 @@ impl Circuit {
         region: Option<([f64; 3], [f64; 3])>,
         sample: Option<usize>,
         sample_seed: u64,
-    ) -> PyResult<(Py<PyArray1<u32>>, Py<PyArray1<u32>>)> {
+    ) -> PyResult<Pair<u32, u32>> {
         let selection = Selection {
             population,
             ids: ids.map(|ids| ids.into_iter().map(|id| (id, id)).collect()),

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use neurotess::circuit::{RecordingFile, ReportPopulation};
+use numpy::PyArray2;
 use numpy::ndarray::Array2;
-use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::unreadable;
-use crate::arrays;
+use crate::arrays::{self, Pair};
 use crate::errors::bug;
 use crate::work::released;
 
@@ -51,11 +51,7 @@ impl Report {
     }
 
     /// Times (ms) and ids of the nodes that fire.
-    fn spikes(
-        &self,
-        py: Python<'_>,
-        population: usize,
-    ) -> PyResult<(Py<PyArray1<f64>>, Py<PyArray1<u64>>)> {
+    fn spikes(&self, py: Python<'_>, population: usize) -> PyResult<Pair<f64, u64>> {
         let RecordingFile::Spikes(spikes) = &*self.file else {
             return Err(PyValueError::new_err("this is no file of spikes"));
         };
@@ -88,7 +84,7 @@ impl Report {
         py: Python<'_>,
         population: usize,
         index: usize,
-    ) -> PyResult<(Py<PyArray1<u64>>, Py<PyArray1<f32>>)> {
+    ) -> PyResult<Pair<u64, f32>> {
         let p = self.population(population)?;
         if index >= p.nodes.len() {
             return Err(PyIndexError::new_err("no such node"));
