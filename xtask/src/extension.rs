@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 
 use crate::counts::Counts;
 use crate::python::{self, TESTS};
@@ -13,6 +13,19 @@ use crate::steps::{cargo, root, run, run_listening, target_folder};
 
 /// The package's sources, into which the module is put, as `maturin develop` does.
 const PACKAGE: &str = "bindings/python/python";
+
+/// Sets up the environment and runs the package's tests alone.
+pub(crate) fn run_alone() -> anyhow::Result<()> {
+    println!("   {}", python::set_up(&TESTS)?);
+    let mut counts = Counts::default();
+    test(&mut counts)?;
+    print!("\n{}", counts.skipped_tests());
+    println!("{counts}");
+    match counts.failures() {
+        [] => Ok(()),
+        failures => bail!("{} failed", failures.len()),
+    }
+}
 
 /// Builds the module and runs all tests of the package.
 pub(crate) fn test(counts: &mut Counts) -> anyhow::Result<String> {

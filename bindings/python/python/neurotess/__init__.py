@@ -99,6 +99,7 @@ def quiet_adapters() -> None:
 
 for _name in __all__:
     _thing = globals().get(_name)
-    if getattr(_thing, "__module__", "").startswith(__name__ + "._"):
+    # Tracebacks call exceptions what users call them. Of others the sources would no longer be found.
+    if isinstance(_thing, type) and issubclass(_thing, Exception):
         _thing.__module__ = __name__
 del _name, _thing

@@ -140,7 +140,8 @@ class Mesh:
     def closed(self) -> bool:
         """Whether every edge has exactly two faces."""
         if "closed" not in self.report:
-            self.report.update({key: self.check()[key] for key in ("closed", "euler", "components")})
+            names = ("closed", "euler", "components")
+            self.report.update(zip(names, self._surface.topology(), strict=True))
         return bool(self.report["closed"])
 
     @property

@@ -376,7 +376,7 @@ class Morphology:
         `table` is a data frame, a dictionary of columns, a structured array, or an array of seven columns in
         the order of SWC. Columns may have the names of `to_table` or those of navis (``node_id``, ``label``,
         ``parent_id``), of CATMAID (``treenode_id``) and of SWC files (``n``, ``t``, ``r``, ``p``). Rows may be
-        in any order. Lengths are µm.
+        in any order. Lengths are µm. Lines of errors and warnings are rows, from 1 on.
         """
         from ._tables import columns_of
 

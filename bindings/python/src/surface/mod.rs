@@ -182,6 +182,13 @@ impl Surface {
         json::serialized(py, &report)
     }
 
+    /// Whether it is closed, its Euler characteristic and the number of its parts.
+    fn topology(&self, py: Python<'_>) -> PyResult<(bool, i64, usize)> {
+        let surface = self.with(py, |slices| SurfaceMesh::collect(slices))?;
+        let topology = released(py, None, move || surface.topology())?;
+        Ok((topology.closed, topology.euler, topology.components))
+    }
+
     /// Volume (µm³) and area (µm²).
     fn measure(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
         let measure = self.with(py, |slices| measure_surface(slices))?;
