@@ -63,7 +63,10 @@ def to_morphio(cell: Morphology) -> Any:
     # SWC has no outlines.
     contour = any(soma.kind == "contour" for soma in cell.somata)
     format = "asc" if contour else "swc"
-    return morphio.Morphology(cell._cell.to_bytes(format).decode(), extension=format)
+    # Neurites may change their type without a fork, as in many files.
+    option = morphio.Option.allow_unifurcated_section_change
+    text = cell._cell.to_bytes(format).decode()
+    return morphio.Morphology(text, extension=format, options=option)
 
 
 def from_morphio(morphology: Any, strict: bool) -> Morphology:

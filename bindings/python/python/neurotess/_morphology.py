@@ -399,7 +399,7 @@ class Morphology:
         return from_navis(neuron, strict)
 
     def to_morphio(self) -> Any:
-        """A `morphio.Morphology`."""
+        """A `morphio.Morphology`. MorphIO leaves out sections of a single point, and takes one soma only."""
         from ._exchange import to_morphio
 
         return to_morphio(self)
