@@ -117,6 +117,9 @@ def test_circuits_and_their_voltages_are_drawn(circuit_folder: Path) -> None:
         for t in (times[0], times[len(times) // 2])
     )
     assert early.size == late.size
+    late = np.asarray(circuit.render(time=float(times[-1]), range=(-80, 30), legend=False, **SMALL))
+    named = circuit.render(report=names[0], time=float(times[-1]), range=(-80, 30), legend=False, **SMALL)
+    assert (late == np.asarray(named)).all()
     with pytest.raises(ValueError, match="alone"):
         nt.render([circuit, nt.synth("granule", points=50)], **SMALL)  # type: ignore[list-item]
 
@@ -151,6 +154,11 @@ def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
 
     view.color_by = "radius"
     assert (np.asarray(view.image()) != whole).any()
+    with pytest.raises(ValueError, match="color_by"):
+        view.color_by = "mood"
+    assert view.color_by == "radius" and view.image().size == (120, 90)
+    with pytest.raises(ValueError, match="report"):
+        view.time = 3.0
     view.handle_event({"type": "resize", "width": 60, "height": 40, "ratio": 2.0})
     assert view.get_frame().shape == (80, 120, 4)
     view.close()
@@ -171,4 +179,11 @@ def test_views_show_times(circuit_folder: Path) -> None:
         view.time = float(time)
         frames.add(np.asarray(view.image()).tobytes())
     assert len(frames) > 1
+    view.time = 1e9
+    assert view.time == times[-1]
+    widgets = pytest.importorskip("ipywidgets")
+    slider = widgets.FloatSlider(min=times[0], max=times[-1])
+    widgets.link((slider, "value"), (view, "time"))
+    slider.value = times[3]
+    assert view.time == times[3]
     view.close()

@@ -226,9 +226,15 @@ class Circuit:
         return Report(self.reports.get(os.fspath(name), os.fspath(name)))
 
     def render(self, **options: Any) -> Image:
-        """A picture of the circuit: `neurotess.render` with this circuit."""
+        """A picture of the circuit: `neurotess.render` with this circuit.
+
+        A `time` without a `report` is of the first report with values.
+        """
         from ._pictures import render
 
+        if options.get("time") is not None and options.get("report") is None:
+            files = self.reports.values()
+            options["report"] = next((file for file in files if not Report(file).is_of_spikes), None)
         return render(self, **options)
 
     def __reduce__(self) -> tuple[type[Circuit], tuple[str]]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 needed("jupyter_rfb", "notebook")
 from jupyter_rfb import RemoteFrameBuffer  # noqa: E402
+from traitlets import Float, Unicode, observe, validate  # noqa: E402
 
 #: Seconds without an event after which the full picture is drawn.
 REST = 0.25
@@ -44,7 +45,14 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
     >>> view = nt.View(cell)                                         # doctest: +SKIP
     >>> view.on_pick = print                                         # doctest: +SKIP
     >>> view.color_by = "radius"                                     # doctest: +SKIP
+
+    `color_by` and `time` are traits: ``ipywidgets.link((slider, "value"), (view, "time"))`` links them.
     """
+
+    color_by = Unicode(None, allow_none=True)
+    """What colors tell, as in `render`. Setting it makes the scene anew."""
+    time = Float(None, allow_none=True)
+    """Time (ms) of the report that is shown; set to any time, it is that of the frame which shows then."""
 
     def __init__(
         self,
@@ -70,7 +78,6 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._adapter = adapter
         self._budget = budget
         self._options = dict(options)
-        self._color_by = color_by
         self._size = size
         self._ratio = 1.0
         self._moving = False
@@ -80,37 +87,38 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._drawings: tuple[_neurotess.Drawing, _neurotess.Drawing] | None = None
         self._times: list[float] = []
         self._picture = 0
+        self._shown_colors: str | None = None
         if report is not None:
             self._set_report(report)
-        self._make()
-        if time is not None:
-            self.time = time
+        self._make(color_by)
+        self.color_by = color_by
+        if self._times:
+            self.time = self._times[0] if time is None else time
+        elif time is not None:
+            raise ValueError("there is no report, so there are no times")
 
     # What is shown
 
-    @property
-    def color_by(self) -> str | None:
-        """What colors tell, as in `render`. Setting it makes the scene anew."""
-        return self._color_by
+    @validate("color_by")
+    def _check_color_by(self, proposal: Any) -> str | None:
+        what: str | None = proposal["value"]
+        if what != self._shown_colors:
+            # Wrong ones raise here, and the old ones stay.
+            self._make(what)
+        return what
 
-    @color_by.setter
-    def color_by(self, what: str | None) -> None:
-        self._color_by = what
-        self._make()
-        self._draw()
-
-    @property
-    def time(self) -> float | None:
-        """Time (ms) of the report that is shown; setting it shows the frame of that time."""
-        return self._times[self._picture] if self._times else None
-
-    @time.setter
-    def time(self, time: float) -> None:
-        if not self._times:
-            raise ValueError("there is no report, so there are no times")
+    @validate("time")
+    def _check_time(self, proposal: Any) -> float:
+        if not self._times or proposal["value"] is None:
+            raise ValueError("a time is set where there is a report")
         step = self._times[1] - self._times[0] if len(self._times) > 1 else 1.0
-        frame = int((float(time) - self._times[0]) / step + 1e-6)
-        self._picture = min(max(frame, 0), len(self._times) - 1)
+        frame = int((proposal["value"] - self._times[0]) / step + 1e-6)
+        return self._times[min(max(frame, 0), len(self._times) - 1)]
+
+    @observe("time", "color_by")
+    def _changed(self, _change: Any) -> None:
+        if self._times and self.time is not None:
+            self._picture = self._times.index(self.time)
         self._draw()
 
     @property
@@ -154,10 +162,10 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
             self._options["time"] = f"{times[0]!r}:{end!r}:{times[1] - times[0]!r}"
         self._times = times
 
-    def _make(self) -> None:
+    def _make(self, color_by: str | None) -> None:
         options = {
             "size": "{}x{}".format(*self._pixel_size()),
-            "color_by": self._color_by,
+            "color_by": color_by,
             **self._options,
         }
         if options.pop("legend", False) is False:
@@ -170,6 +178,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         first = self._drawings is None
         self._drop()
         self._drawings = made
+        self._shown_colors = color_by
         if first:
             self._home = full.camera(0)
             self._camera = self._home
