@@ -297,7 +297,7 @@ class Morphology:
         """All neurites, in the order of the file."""
         numbers = self._section_columns()["neurite"].tolist()
         starts = [i for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1]]
-        ends = [*starts[1:], len(numbers)]
+        ends = [*starts, len(numbers)][1:]
         return [Neurite(self, k, *ends_of) for k, ends_of in enumerate(zip(starts, ends, strict=True))]
 
     @property
