@@ -63,6 +63,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("neurotess-viewer", &["neurotess"]),
     ("neurotess-cli", &["neurotess", "neurotess-viewer"]),
+    ("neurotess-python", &["neurotess", "neurotess-cli"]),
     ("xtask", &["neurotess"]),
     // Tests of all crates may use it.
     ("neurotess-testing", &["neurotess-testing-macros"]),
@@ -100,7 +101,7 @@ fn check_crates(packages: &[Package]) -> anyhow::Result<String> {
 
 fn check_files() -> anyhow::Result<String> {
     let (mut count, mut faults) = (0, Vec::new());
-    for group in ["crates", "apps", "."] {
+    for group in ["crates", "apps", "bindings", "."] {
         for entry in fs::read_dir(root().join(group))? {
             let src = entry?.path().join("src");
             if !src.is_dir() {

@@ -11,6 +11,7 @@ mod architecture;
 mod bench;
 mod counts;
 mod demo;
+mod extension;
 mod harness;
 mod licenses;
 mod metadata;
@@ -22,6 +23,7 @@ mod setup;
 mod soak;
 mod steps;
 mod tests;
+mod wheel;
 
 use std::process::ExitCode;
 
@@ -32,6 +34,8 @@ const USAGE: &str = "cargo xtask COMMAND
             each feature alone, packages
   features  check each feature of the library and the command line alone
   package   pack every crate as for a registry
+  python    the Python package's tests alone
+  wheel     the Python package as a wheel in out/wheel, and a trial of it in a fresh environment
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
@@ -48,6 +52,8 @@ fn main() -> ExitCode {
         Some("test") => tests::run(),
         Some("features") => packages::features().map(|said| println!("{said}")),
         Some("package") => packages::package().map(|said| println!("{said}")),
+        Some("python") => extension::run_alone(),
+        Some("wheel") => wheel::run_all(),
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
         Some("architecture") => architecture(),

@@ -16,6 +16,8 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess", "render,circuit"),
     ("neurotess-cli", ""),
     ("neurotess-cli", "render"),
+    ("neurotess-python", ""),
+    ("neurotess-python", "render"),
 ];
 
 /// Dependencies are checked, not run: optimizing what is built for them (macros) would take longest.
@@ -38,7 +40,7 @@ pub(crate) fn features() -> anyhow::Result<String> {
 /// Packs every crate that is for others. What a package would build is not built again.
 pub(crate) fn package() -> anyhow::Result<String> {
     let pack = "package --workspace --exclude xtask --exclude neurotess-testing \
-                --exclude neurotess-testing-macros --no-verify --allow-dirty --locked \
+                --exclude neurotess-testing-macros --exclude neurotess-python --no-verify --allow-dirty --locked \
                 --target-dir target/features";
     run(&mut cargo(pack)).map(|()| "every crate packs".into())
 }

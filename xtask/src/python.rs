@@ -1,5 +1,5 @@
-//! Python environments: `.venv`, in which other people's readers check our files, and `.venv-bench`,
-//! in which other people's tools are timed beside ours.
+//! Python environments: `.venv`, in which other people's readers check our files and our package is tested,
+//! `.venv-bench`, in which other people's tools are timed beside ours, and `.venv-wheel`, which makes wheels.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,6 +25,12 @@ pub(crate) const TESTS: Environment = Environment {
 pub(crate) const BENCHMARKS: Environment = Environment {
     folder: ".venv-bench",
     packages: "benchmarks/requirements.txt",
+};
+
+/// Where wheels are made.
+pub(crate) const WHEEL: Environment = Environment {
+    folder: ".venv-wheel",
+    packages: "bindings/python/requirements-wheel.txt",
 };
 
 /// Makes an environment with its packages, unless it is there; says how it is.

@@ -4,7 +4,7 @@ use anyhow::bail;
 
 use crate::counts::Counts;
 use crate::steps::{self, Steps, cargo, run_listening};
-use crate::{architecture, harness, licenses, metadata, packages, setup};
+use crate::{architecture, extension, harness, licenses, metadata, packages, setup};
 
 /// Runs the command. The last lines tell how many tests there were, which were skipped and why, and which
 /// failed.
@@ -57,5 +57,6 @@ fn all(steps: &mut Steps) -> anyhow::Result<Counts> {
             ended => ended.map(|()| counts.to_string()),
         }
     })?;
+    steps.step("python", || extension::test(&mut counts))?;
     Ok(counts)
 }

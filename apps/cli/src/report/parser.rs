@@ -1,5 +1,6 @@
 //! Help and errors of the command line's parser.
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 
 use serde_json::json;
@@ -7,11 +8,12 @@ use serde_json::json;
 use super::reporter::{unwritable, write_line};
 
 /// Prints what the command line's parser returns instead of a command: help or an error. Returns
-/// the exit code. With --json, an error is also a document.
-pub(crate) fn report_parser_error(error: &clap::Error) -> u8 {
+/// the exit code. With --json among the arguments, an error is also a document.
+pub(crate) fn report_parser_error(error: &clap::Error, arguments: &[OsString]) -> u8 {
     let printed = error.print();
-    let json = std::env::args_os()
-        .take_while(|argument| argument != "--")
+    let json = arguments
+        .iter()
+        .take_while(|argument| *argument != "--")
         .any(|argument| argument == "--json");
     let document = match error.use_stderr() && json {
         true => write_line(&format!("{:#}", json!({ "errors": [error.to_string()] }))),
@@ -24,4 +26,12 @@ pub(crate) fn report_parser_error(error: &clap::Error) -> u8 {
         }
         _ => u8::try_from(error.exit_code()).unwrap_or(2),
     }
+}
+
+/// What the parser has against an option, on one line.
+pub(crate) fn first_paragraph(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    let paragraph = text.split("\n\n").next().unwrap_or_default();
+    paragraph.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -31,6 +31,8 @@ pub(crate) struct Reporter {
     occupied: AtomicBool,
     /// Whether writing to standard output failed.
     broken: AtomicBool,
+    /// What is told, where it is not printed.
+    recorded: Option<Mutex<Vec<String>>>,
 }
 
 impl Reporter {
@@ -49,6 +51,7 @@ impl Reporter {
             documented: Arc::default(),
             occupied: AtomicBool::new(false),
             broken: AtomicBool::new(false),
+            recorded: None,
         };
         if let Some(threads) = common.threads.filter(|&n| n > most_threads()) {
             let most = most_threads();
@@ -57,6 +60,28 @@ impl Reporter {
             ));
         }
         reporter
+    }
+
+    /// A reporter that prints nothing: warnings and errors are kept.
+    #[cfg(feature = "render")]
+    pub(crate) fn recording(common: Common) -> Self {
+        let quiet = Self::new(Common {
+            quiet: true,
+            ..common
+        });
+        Self {
+            recorded: Some(Mutex::default()),
+            ..quiet
+        }
+    }
+
+    /// The warnings and errors that were kept.
+    #[cfg(feature = "render")]
+    pub(crate) fn take_recorded(&self) -> Vec<String> {
+        let recorded = self.recorded.as_ref();
+        recorded.map_or_else(Vec::new, |kept| {
+            std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner))
+        })
     }
 
     /// Reserves standard output for a file.
@@ -141,7 +166,7 @@ impl Reporter {
 
     /// Prints a warning.
     pub(crate) fn warning(&self, message: &str) {
-        if !self.common.quiet {
+        if !self.common.quiet || self.recorded.is_some() {
             self.say("warning", "33", message);
         }
     }
@@ -201,6 +226,13 @@ impl Reporter {
     fn say(&self, word: &str, color: &str, message: &str) {
         // One failure is one line, whatever characters a file's name or content has.
         let line = plain(message).replace(['\n', '\t'], " ");
+        if let Some(recorded) = &self.recorded {
+            recorded
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .push(line);
+            return;
+        }
         let word = if self.color {
             format!("\x1b[1;{color}m{word}:\x1b[0m")
         } else {

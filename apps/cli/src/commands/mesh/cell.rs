@@ -171,11 +171,7 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     .map_err(|e| Failure(format!("{file}: {e}")))?;
     seconds.soma = generated.soma_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
-    if generated.mesh.patches.is_empty() {
-        return Err(Failure(format!(
-            "{file}: nothing is left to mesh: check --types and --soma"
-        )));
-    }
+    something_left(&generated).map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
     Ok(Prepared {
         file,
         generated,
@@ -184,6 +180,16 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
         read: read.warnings,
         seconds,
     })
+}
+
+/// An error if no surface is left of a cell.
+pub(super) fn something_left(generated: &Generated) -> Result<(), Failure> {
+    match generated.mesh.patches.is_empty() {
+        true => Err(Failure(
+            "nothing is left to mesh: check --types and --soma".into(),
+        )),
+        false => Ok(()),
+    }
 }
 
 /// Writes a cell's surface, perhaps at a placement.
@@ -230,8 +236,7 @@ pub(super) fn finish(
         components: topology.components,
         volume: measured.map(|(volume, _)| volume),
         area: measured.map(|(_, area)| area),
-        // Adding 0 turns −0, the sum of no somata, into 0.
-        soma_volume: growth * generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0,
+        soma_volume: growth * soma_volume(generated),
         smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
         crossings: cell_surface.merging.as_ref().map(CrossingsReport::new),
         separation: generated.separation.as_ref().map(SeparationReport::from),
@@ -240,6 +245,12 @@ pub(super) fn finish(
         warnings: warnings(&prepared.read, generated, cell_surface),
     };
     Ok((cell, output))
+}
+
+/// Volume (µm³) of all somata.
+pub(super) fn soma_volume(generated: &Generated) -> f64 {
+    // Adding 0 turns −0, the sum of no somata, into 0.
+    generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0
 }
 
 /// What was written into a file.
@@ -288,7 +299,8 @@ fn broken(out: &Path, error: WriteError) -> OutputError {
     }
 }
 
-fn warnings(
+/// All warnings of a cell: of its file, of its mesh and of its surface.
+pub(super) fn warnings(
     read: &[formats::Warning],
     generated: &Generated,
     surface: &CellSurface<'_>,

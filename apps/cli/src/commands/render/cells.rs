@@ -33,13 +33,7 @@ pub(crate) fn read(
     args: &RenderArgs,
     reporter: &Reporter,
 ) -> anyhow::Result<Vec<Entry<MeshedCell>>> {
-    let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
-    let options = GenerateOptions {
-        soma: args.soma.method(),
-        rings: args.rings.positions(),
-        kinds: (!args.types.is_empty()).then(|| kinds.collect()),
-        ..GenerateOptions::default()
-    };
+    let options = options(args);
     let read = ReadOptions {
         strict: args.strict,
     };
@@ -56,6 +50,17 @@ pub(crate) fn read(
     Ok(entries)
 }
 
+/// How cells are meshed.
+pub(super) fn options(args: &RenderArgs) -> GenerateOptions {
+    let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
+    GenerateOptions {
+        soma: args.soma.method(),
+        rings: args.rings.positions(),
+        kinds: (!args.types.is_empty()).then(|| kinds.collect()),
+        ..GenerateOptions::default()
+    }
+}
+
 fn cell(
     input: &Input,
     cut: &[Compartment],
@@ -67,15 +72,27 @@ fn cell(
         read.morphology = with_middles(&read.morphology, cut);
     }
     let file = input.path.display().to_string();
-    let generated = generate::generate(&read.morphology, options)
-        .map_err(|e| Failure(format!("{file}: {e}")))?;
+    Ok(MeshedCell {
+        warnings: read.warnings,
+        ..meshed(file, read.morphology, options)?
+    })
+}
+
+/// Meshes a cell that is in memory.
+pub(super) fn meshed(
+    file: String,
+    morphology: Morphology,
+    options: &GenerateOptions,
+) -> Result<MeshedCell, Failure> {
+    let generated =
+        generate::generate(&morphology, options).map_err(|e| Failure(format!("{file}: {e}")))?;
     let mended = generated.warnings.iter();
     Ok(MeshedCell {
         file,
         mended: mended.map(|w| format!("{w} ({})", w.code)).collect(),
-        morphology: read.morphology,
+        morphology,
         mesh: generated.mesh,
-        warnings: read.warnings,
+        warnings: Vec::new(),
     })
 }
 

@@ -77,7 +77,13 @@ pub(super) fn draw(
     let mut source = PictureSource::new(gpu, &options, job)?;
     let mut renderer = StillRenderer::new();
     stages.end(Stage::Upload);
-    let mut film = Film::new(gpu, job, &options, &mut source, &mut renderer)?;
+    let mut film = Film::new(
+        gpu,
+        colored,
+        (cameras, spheres),
+        &options,
+        (&mut source, &mut renderer),
+    )?;
     let mut stats = Stats::new(gpu, placements.len());
     let mut counted = SourceStats::default();
     let progress = Progress::new(reporter, files.len(), "pictures");
@@ -126,7 +132,7 @@ pub(super) fn draw(
     Ok(stats)
 }
 
-fn picture_options(args: &RenderArgs) -> PictureOptions {
+pub(super) fn picture_options(args: &RenderArgs) -> PictureOptions {
     PictureOptions {
         size: args.size.0,
         samples: args.samples,

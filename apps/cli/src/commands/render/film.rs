@@ -4,12 +4,11 @@ use std::time::Instant;
 
 use neurotess::coloring::VisibleValues;
 use neurotess::render::{
-    Cost, Gpu, Image, KeyColors, PictureOptions, StaticError, StaticPicture, StillRenderer,
-    Viewpoint,
+    BoundingSphere, Camera, Cost, Gpu, Image, KeyColors, PictureOptions, StaticError,
+    StaticPicture, StillRenderer, Viewpoint,
 };
 
 use super::coloring::PictureColors;
-use super::job::RenderJob;
 use super::vertex_source::PictureSource;
 
 /// Most pixels of a picture that is held as a whole, with its weights: larger ones are drawn anew.
@@ -32,35 +31,36 @@ pub(super) struct FilmStats {
 }
 
 impl Film {
-    /// Draws the picture; none if the pictures of the job must be drawn one by one.
+    /// Draws the picture; none if the pictures must be drawn one by one. `cameras`: of all pictures.
     pub(super) fn new(
         gpu: &Gpu,
-        job: &RenderJob<'_>,
+        colored: &PictureColors,
+        cameras: (&[Camera], &[BoundingSphere]),
         options: &PictureOptions,
-        source: &mut PictureSource,
-        renderer: &mut StillRenderer,
+        (source, renderer): (&mut PictureSource, &mut StillRenderer),
     ) -> anyhow::Result<Option<Self>> {
+        let (cameras, spheres) = cameras;
         let [width, height] = options.size.map(u64::from);
-        let fixed = job.cameras.windows(2).all(|pair| pair[0] == pair[1]);
-        let Some(camera) = job.cameras.first().filter(|_| fixed) else {
+        let fixed = cameras.windows(2).all(|pair| pair[0] == pair[1]);
+        let Some(camera) = cameras.first().filter(|_| fixed) else {
             return Ok(None);
         };
-        if job.files.len() < 2 || !job.colored.is_series() || width * height > MOST_PIXELS {
+        if cameras.len() < 2 || !colored.is_series() || width * height > MOST_PIXELS {
             return Ok(None);
         }
         let clock = Instant::now();
         let view = Viewpoint {
             camera: *camera,
-            near: camera.near(job.spheres),
+            near: camera.near(spheres),
         };
-        let (table, _) = job.colored.picture(0)?;
+        let (table, _) = colored.picture(0)?;
         let made = renderer.render_static(gpu, source.as_vertex_source(), &view, &table, options);
         let picture = match made {
             Ok(picture) => picture,
             Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),
             Err(e) => anyhow::bail!("{e}"),
         };
-        let visible = job.colored.visible(picture.keys());
+        let visible = colored.visible(picture.keys());
         let cost = Cost {
             cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
             tiles: options.tiles(gpu, camera),

@@ -32,16 +32,8 @@ pub(crate) fn read(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Ren
     let (circuits, others) = partition(&args.inputs);
     match &circuits[..] {
         [path] if others.is_empty() => of_circuit(path, args, reporter),
-        [] if args.cells.any() => {
-            usage("no input is a circuit: leave out what chooses cells of one")
-        }
-        [] if args.color_by_attribute.is_some() => {
-            usage("--color-by-attribute needs a circuit, whose cells have attributes")
-        }
-        [] if args.report.is_some() => {
-            usage("--report needs a circuit, whose cells have its values")
-        }
         [] => {
+            check_of_cells(args)?;
             let inputs = Inputs::find(&args.inputs, &crate::io::morphologies::MORPHOLOGIES);
             let entries = cells::read(&inputs, &HashMap::new(), args, reporter)?;
             let done = entries.iter().filter(|e| matches!(e, Entry::Done(_)));
@@ -54,6 +46,23 @@ pub(crate) fn read(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Ren
         }
         _ => usage("a circuit is drawn alone: leave out the other inputs"),
     }
+}
+
+/// Checks the options of cells that are not those of a circuit.
+///
+/// # Errors
+/// Wrong usage: what only circuits have.
+pub(crate) fn check_of_cells(args: &RenderArgs) -> anyhow::Result<()> {
+    if args.cells.any() {
+        return usage("no input is a circuit: leave out what chooses cells of one");
+    }
+    if args.color_by_attribute.is_some() {
+        return usage("--color-by-attribute needs a circuit, whose cells have attributes");
+    }
+    if args.report.is_some() {
+        return usage("--report needs a circuit, whose cells have its values");
+    }
+    Ok(())
 }
 
 fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<RenderScene> {

@@ -1,0 +1,54 @@
+//! The `neurotess` command as a library: the program is [`main`], and [`embed`] is what a program with cells
+//! in memory, like the Python package, shares with it: the options, what they mean, and their checks.
+#![forbid(unsafe_code)]
+
+mod cli;
+mod commands;
+pub mod embed;
+#[cfg(feature = "render")]
+mod headless;
+mod interrupt;
+mod io;
+mod options;
+mod report;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use cli::Cli;
+use report::{Reporter, Usage};
+
+/// Runs the command with these arguments, of which the first is the program's name, and returns the exit
+/// code. It may end the process when it is interrupted, and runs once in a process.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
+        Ok(cli) => cli,
+        Err(e) => return report::report_parser_error(&e, &arguments),
+    };
+    let reporter = Reporter::new(cli.common);
+    let mut code = 1;
+    if let Err(e) = run(&cli, &reporter) {
+        if e.is::<Usage>() {
+            code = 2;
+        }
+        reporter.error(&format!("{e:#}"));
+    }
+    if let Err(e) = reporter.close() {
+        reporter.error(&format!("{e:#}"));
+    }
+    match reporter.failures() {
+        0 => 0,
+        _ => code,
+    }
+}
+
+fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
+    #[cfg(feature = "render")]
+    if cli.draws() {
+        headless::stay_away_from_windows();
+    }
+    interrupt::watch(reporter.on_interrupt())?;
+    cli.run(reporter)
+}

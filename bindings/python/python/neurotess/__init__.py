@@ -1,0 +1,105 @@
+"""neurotess: from tracings of neurons to closed surface meshes and pictures.
+
+    import neurotess as nt
+
+    cell = nt.read("cell.swc")
+    mesh = nt.mesh(cell, level=4)
+    mesh.save("cell.glb")
+    nt.render(cell).save("cell.png")
+
+Lengths are micrometers (µm), times milliseconds. Arrays are NumPy's, read-only, and shared, not copied. Heavy work
+leaves the interpreter to other threads, and Ctrl-C ends the wait for it.
+
+| to | use |
+| --- | --- |
+| read a tracing, or make one | `read`, `synth`, `Morphology.from_table`, `Morphology.from_navis`, … |
+| mesh it | `mesh`, `mesh_many`, `Mesh` |
+| judge a mesh | `Mesh.check`, `check`, `read_mesh` |
+| draw it | `render`, `film`, `Image`, `View` |
+| use a circuit and its recordings | `Circuit`, `Report` |
+| plot numbers of it | `neurotess.plot` |
+| mesh on a cluster | `neurotess.dask` |
+"""
+
+from __future__ import annotations
+
+import os
+
+from ._neurotess import __version__
+from ._errors import (
+    MeshError,
+    NeurotessError,
+    NeurotessWarning,
+    ReadError,
+    ReadWarning,
+    RenderError,
+)
+from ._morphology import Morphology, Neurite, Notice, Section, Soma, read, synth
+from ._meshes import Mesh, MeshResult, check, mesh, mesh_many, read_mesh
+from ._circuits import Circuit, Report
+from ._pictures import Image, film, render
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from . import dask as dask
+    from . import plot as plot
+    from ._view import View as View
+
+# Without what needs other packages: `from neurotess import *` works everywhere.
+__all__ = [
+    "Circuit",
+    "Image",
+    "Mesh",
+    "MeshError",
+    "MeshResult",
+    "Morphology",
+    "Neurite",
+    "NeurotessError",
+    "NeurotessWarning",
+    "Notice",
+    "ReadError",
+    "ReadWarning",
+    "RenderError",
+    "Report",
+    "Section",
+    "Soma",
+    "__version__",
+    "check",
+    "film",
+    "mesh",
+    "mesh_many",
+    "read",
+    "read_mesh",
+    "render",
+    "synth",
+]
+
+
+def __getattr__(name: str) -> object:
+    # What needs other packages is imported when it is asked for.
+    import importlib
+
+    if name in ("dask", "plot"):
+        return importlib.import_module(f".{name}", __name__)
+    if name == "View":
+        return importlib.import_module("._view", __name__).View
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "View", "dask", "plot"]
+
+
+def quiet_adapters() -> None:
+    """Keeps Mesa's layer that selects devices from asking for a display, where the user does not need it."""
+    chosen = ("NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT", "DRI_PRIME")
+    if not any(name in os.environ for name in chosen):
+        os.environ["NODEVICE_SELECT"] = "1"
+
+
+for _name in __all__:
+    _thing = globals().get(_name)
+    # Tracebacks call exceptions what users call them. Of others the sources would no longer be found.
+    if isinstance(_thing, type) and issubclass(_thing, Exception):
+        _thing.__module__ = __name__
+del _name, _thing

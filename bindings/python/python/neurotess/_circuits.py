@@ -1,0 +1,403 @@
+"""Circuits and recordings."""
+
+from __future__ import annotations
+
+import os
+import warnings
+
+from . import _neurotess, _options
+from ._errors import ReadWarning
+from ._exchange import needed
+from ._meshes import Mesh, _of
+from ._morphology import Morphology, Notice, _with_warnings
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from typing import Any
+
+    import numpy as np
+    import pandas as pd
+    from numpy.typing import NDArray
+    from typing_extensions import Unpack
+
+    from ._meshes import MeshOptions
+    from ._pictures import Image
+
+
+class Circuit:
+    """A circuit: SONATA, a scene of nsol or one of your own.
+
+    `path` is a configuration, or the folder of one. Parts that are missing are warned of.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._circuit = _neurotess.Circuit(path)
+        self._path = os.fspath(path)
+        self._tables: dict[str, pd.DataFrame] = {}
+        for message in self._circuit.warnings:
+            warnings.warn(ReadWarning(message), stacklevel=2)
+
+    @property
+    def file(self) -> str:
+        """The configuration that was read."""
+        return self._circuit.file
+
+    @property
+    def populations(self) -> list[str]:
+        """Names of the populations of nodes."""
+        return [name for name, _, _ in self._circuit.populations]
+
+    @property
+    def node_sets(self) -> list[str]:
+        """Names of the node sets."""
+        return self._circuit.node_sets
+
+    @property
+    def reports(self) -> dict[str, str]:
+        """The files of reports and spikes that the configuration names, by their names."""
+        return {name: os.fspath(path) for name, path in self._circuit.reports}
+
+    def __len__(self) -> int:
+        return sum(count for _, _, count in self._circuit.populations)
+
+    # Tables
+
+    @property
+    def nodes(self) -> pd.DataFrame:
+        """A table with a row for each node of all populations; needs pandas.
+
+        Columns: ``population``, ``node_id``, ``x``, ``y``, ``z`` (µm), ``rotation_w``, ``rotation_x``,
+        ``rotation_y``, ``rotation_z`` (a quaternion), ``morphology`` (a path, or missing), then the attributes of
+        the file, text as categories.
+        """
+        if "nodes" not in self._tables:
+            pandas = needed("pandas", "circuit")
+            tables = [self._nodes_of(i, pandas) for i in range(len(self.populations))]
+            self._tables["nodes"] = pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame()
+        return self._tables["nodes"].copy(deep=False)
+
+    def _nodes_of(self, population: int, pandas: Any) -> pd.DataFrame:
+        columns = self._circuit.columns(population)
+        name = self.populations[population]
+        count = len(columns["node_id"])
+        told: dict[str, Any] = {"population": pandas.Categorical([name] * count)}
+        told["node_id"] = columns["node_id"].astype("int64")
+        for axis, place in enumerate("xyz"):
+            told[place] = columns["position"][:, axis]
+        for axis, part in enumerate("wxyz"):
+            told[f"rotation_{part}"] = columns["rotation"][:, axis]
+        paths = [os.fspath(path) for path in self._circuit.templates]
+        told["morphology"] = [paths[t] if t >= 0 else None for t in columns["template"]]
+        for attribute, values in columns["attributes"].items():
+            key = attribute if attribute not in told else f"{attribute}_attribute"
+            if isinstance(values, tuple):
+                library, codes = values
+                unique = list(dict.fromkeys(library))
+                if len(unique) == len(library):
+                    told[key] = pandas.Categorical.from_codes(codes, unique)
+                else:
+                    told[key] = [library[code] if code >= 0 else None for code in codes]
+            else:
+                told[key] = values
+        return pandas.DataFrame(told)
+
+    def select(
+        self,
+        nodes: Iterable[int] | None = None,
+        *,
+        node_set: str | None = None,
+        population: str | None = None,
+        region: tuple[Iterable[float], Iterable[float]] | None = None,
+        sample: int | None = None,
+        sample_seed: int = 1,
+    ) -> pd.DataFrame:
+        """Rows of `nodes` that are selected; the options narrow each other down.
+
+        `nodes` are ids, `region` two corners (µm) of a box that has the somata, and `sample` a number of cells at
+        random, the same for the same seed.
+        """
+        rows = self._rows(nodes, node_set, population, region, sample, sample_seed)
+        starts = [0]
+        for _, _, count in self._circuit.populations:
+            starts.append(starts[-1] + count)
+        return self.nodes.iloc[[starts[p] + row for p, row in rows]]
+
+    def _rows(
+        self,
+        nodes: Iterable[int] | None,
+        node_set: str | None,
+        population: str | None,
+        region: tuple[Iterable[float], Iterable[float]] | None,
+        sample: int | None,
+        sample_seed: int,
+    ) -> list[tuple[int, int]]:
+        ids = None if nodes is None else [int(_options.word(node)) for node in nodes]
+        box = None
+        if region is not None:
+            low, high = region
+            box = ([float(n) for n in low], [float(n) for n in high])
+        found = self._circuit.select(ids, node_set, population, box, sample, sample_seed)
+        return list(zip(found[0].tolist(), found[1].tolist(), strict=True))
+
+    def _row(self, node: int, population: str | None) -> tuple[int, int]:
+        rows = self._rows([node], None, population, None, None, 1)
+        if not rows:
+            raise KeyError(f"no node {node}" + (f" in {population!r}" if population else ""))
+        if len(rows) > 1 and population is None and len({p for p, _ in rows}) > 1:
+            raise ValueError(f"several populations have a node {node}: say which population")
+        return rows[0]
+
+    @property
+    def edges(self) -> pd.DataFrame:
+        """A table of the populations of edges: ``name``, ``source``, ``target``, ``count``; needs pandas."""
+        pandas = needed("pandas", "circuit")
+        names = ["name", "source", "target", "count"]
+        return pandas.DataFrame(self._circuit.edges, columns=names)
+
+    def synapses(self, edges: str) -> pd.DataFrame:
+        """A table of a population of edges: ``source``, ``target`` (node ids), and ``x``, ``y``, ``z`` (µm) if
+        the file has places; needs pandas."""
+        pandas = needed("pandas", "circuit")
+        columns = self._circuit.synapses(edges)
+        told = {name: columns[name].astype("int64") for name in ("source", "target")}
+        if len(columns["position"]) == len(told["source"]):
+            told |= {axis: columns["position"][:, i] for i, axis in enumerate("xyz")}
+        return pandas.DataFrame(told)
+
+    # Cells
+
+    def morphology(self, node: int, *, population: str | None = None) -> Morphology:
+        """The morphology of a node, in its own coordinates."""
+        p, row = self._row(node, population)
+        template = int(self._circuit.columns(p)["template"][row])
+        if template < 0:
+            raise ValueError(f"node {node} has no morphology that exists")
+        return _with_warnings(self._circuit.morphology(template))
+
+    def placement(self, node: int, *, population: str | None = None) -> NDArray[np.float64]:
+        """The matrix (4, 4) from the coordinates of a node's morphology to those of the circuit (µm)."""
+        import numpy as np
+
+        p, row = self._row(node, population)
+        return np.array([*self._circuit.placement(p, row), [0.0, 0.0, 0.0, 1.0]])
+
+    def mesh(
+        self,
+        nodes: Iterable[int] | None = None,
+        *,
+        node_set: str | None = None,
+        population: str | None = None,
+        region: tuple[Iterable[float], Iterable[float]] | None = None,
+        sample: int | None = None,
+        sample_seed: int = 1,
+        threads: int | None = None,
+        **options: Unpack[MeshOptions],
+    ) -> Iterator[NodeMesh]:
+        """Meshes cells in the coordinates of the circuit, with the options of `neurotess.mesh`.
+
+        What selects cells is that of `select`. An error is a value, as in `mesh_many`. Nodes that share a
+        morphology share its coarse mesh.
+        """
+        recipe = _neurotess.Recipe(_options.arguments(options))
+        rows = self._rows(nodes, node_set, population, region, sample, sample_seed)
+        return self._meshes(rows, recipe, threads)
+
+    def _meshes(
+        self, rows: list[tuple[int, int]], recipe: _neurotess.Recipe, threads: int | None
+    ) -> Iterator[NodeMesh]:
+        mesher = self._circuit.mesher(recipe)
+        names = self.populations
+        ids = [self._circuit.columns(i)["node_id"] for i in range(len(names))]
+        for p, row in rows:
+            node = int(ids[p][row])
+            try:
+                surface, report = mesher.mesh(p, row, threads)
+                read: list[Notice] = []
+                mesh = _of(surface, report, read, f"{names[p]}_{node}")
+                yield NodeMesh(names[p], node, mesh, None)
+            except Exception as error:
+                yield NodeMesh(names[p], node, None, error)
+
+    # Recordings
+
+    def report(self, name: str | os.PathLike[str]) -> Report:
+        """A report or a file of spikes: one that the configuration names, or a file."""
+        return Report(self.reports.get(os.fspath(name), os.fspath(name)))
+
+    def render(self, **options: Any) -> Image:
+        """A picture of the circuit: `neurotess.render` with this circuit.
+
+        A `time` without a `report` is of the first report with values.
+        """
+        from ._pictures import render
+
+        if options.get("time") is not None and options.get("report") is None:
+            files = self.reports.values()
+            options["report"] = next((file for file in files if not Report(file).is_of_spikes), None)
+        return render(self, **options)
+
+    def __reduce__(self) -> tuple[type[Circuit], tuple[str]]:
+        return type(self), (self._path,)
+
+    def __repr__(self) -> str:
+        return f"<Circuit {self.file!r}: {len(self)} nodes>"
+
+
+class NodeMesh:
+    """A cell of `Circuit.mesh`: a mesh, or the error that it met."""
+
+    population: str
+    """The population of the node."""
+    node_id: int
+    """Its id."""
+    mesh: Mesh | None
+    """The mesh in the coordinates of the circuit; none if there is an error."""
+    error: Exception | None
+    """Why there is none."""
+
+    __slots__ = ("error", "mesh", "node_id", "population")
+
+    def __init__(self, population: str, node_id: int, mesh: Mesh | None, error: Exception | None) -> None:
+        self.population = population
+        self.node_id = node_id
+        self.mesh = mesh
+        self.error = error
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is a mesh."""
+        return self.error is None
+
+    def __repr__(self) -> str:
+        what = self.mesh if self.ok else self.error
+        return f"<NodeMesh {self.node_id} of {self.population!r}: {what!r}>"
+
+
+class Report:
+    """A recording: values of compartments over time, or spikes. Times are ms.
+
+    Values are read from the file when they are asked for.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], population: str | None = None) -> None:
+        self._report = _neurotess.Report(path)
+        self._path = os.fspath(path)
+        names = self._report.populations
+        if population is None:
+            population = names[0] if names else ""
+        if population not in names:
+            raise ValueError(f"{self._path} has no population {population!r}: it has {names}")
+        self.population: str = population
+        """The population that this is of; `Report(path, population)` is that of another."""
+        self._index = names.index(population)
+        self._told: dict[str, Any] | None = None
+
+    @property
+    def path(self) -> str:
+        """The file."""
+        return self._path
+
+    @property
+    def populations(self) -> list[str]:
+        """Names of the populations in the file."""
+        return self._report.populations
+
+    @property
+    def is_of_spikes(self) -> bool:
+        """Whether it has spikes instead of values."""
+        return self._report.is_of_spikes
+
+    @property
+    def _layout(self) -> dict[str, Any]:
+        if self._told is None:
+            self._told = self._report.layout(self._index)
+        return self._told
+
+    @property
+    def units(self) -> str:
+        """Unit of the values, such as ``"mV"``."""
+        return str(self._layout["units"])
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times (ms) of the frames, (frames,)."""
+        import numpy as np
+
+        told = self._layout
+        return np.asarray(told["start"] + told["step"] * np.arange(told["frames"]))
+
+    @property
+    def node_ids(self) -> NDArray[np.uint64]:
+        """Ids of the nodes that have values."""
+        ids: NDArray[np.uint64] = self._layout["node_ids"]
+        return ids
+
+    @property
+    def offsets(self) -> NDArray[np.uint64]:
+        """Compartments of node k are those from ``offsets[k]`` on, before ``offsets[k + 1]``."""
+        offsets: NDArray[np.uint64] = self._layout["offsets"]
+        return offsets
+
+    def _columns(self, node: int | None) -> list[int] | None:
+        if node is None:
+            return None
+        import numpy as np
+
+        found = np.flatnonzero(self.node_ids == node)
+        if not len(found):
+            raise KeyError(f"no values of node {node}")
+        first, end = self.offsets[found[0] : found[0] + 2].tolist()
+        return list(range(first, end))
+
+    def compartments(self, node: int) -> pd.DataFrame:
+        """A table of a node's compartments: ``section`` (0 is the soma), ``along`` (0 to 1); needs pandas."""
+        import numpy as np
+
+        self._columns(node)
+        index = int(np.flatnonzero(self.node_ids == node)[0])
+        sections, along = self._report.compartments(self._index, index)
+        pandas = needed("pandas", "circuit")
+        return pandas.DataFrame({"section": sections.astype("int64"), "along": along})
+
+    def values(
+        self,
+        node: int | None = None,
+        *,
+        start: float | None = None,
+        stop: float | None = None,
+    ) -> NDArray[np.float32]:
+        """Values (frames, compartments) of a node, or of all, from `start` on and before `stop` (ms)."""
+        import numpy as np
+
+        first, end = 0, len(self.times)
+        if start is not None:
+            first = int(np.searchsorted(self.times, start - 1e-9))
+        if stop is not None:
+            end = max(first, int(np.searchsorted(self.times, stop - 1e-9)))
+        return self._report.values(self._index, (first, end), self._columns(node))
+
+    def at(self, time: float, node: int | None = None) -> NDArray[np.float32]:
+        """Values (compartments,) of the frame that shows at a time (ms)."""
+        told = self._layout
+        frame = int((time - told["start"]) / told["step"] + 1e-6)
+        if not 0 <= frame < told["frames"] or time < told["start"]:
+            raise ValueError(f"no frame shows at {time} ms")
+        return self._report.values(self._index, (frame, frame + 1), self._columns(node))[0]
+
+    @property
+    def spikes(self) -> pd.DataFrame:
+        """A table of spikes: ``time`` (ms), ``node_id``; needs pandas."""
+        pandas = needed("pandas", "circuit")
+        times, nodes = self._report.spikes(self._index)
+        return pandas.DataFrame({"time": times, "node_id": nodes.astype("int64")})
+
+    def __reduce__(self) -> tuple[type[Report], tuple[str, str]]:
+        return type(self), (self._path, self.population)
+
+    def __repr__(self) -> str:
+        if self.is_of_spikes:
+            return f"<Report {self._path!r}: spikes of {self.population!r}>"
+        told = self._layout
+        nodes, frames = len(told["node_ids"]), told["frames"]
+        return f"<Report {self._path!r}: {frames} frames of {nodes} nodes of {self.population!r}>"

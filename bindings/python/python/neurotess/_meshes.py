@@ -1,0 +1,417 @@
+"""Meshes of cells."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+
+from . import _neurotess, _options
+from ._exchange import needed
+from ._morphology import Morphology, Notice, _read, read
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from typing import Any, Literal, TypedDict
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    Source = Morphology | str | os.PathLike[str]
+
+    class MeshOptions(TypedDict, total=False):
+        """The options of `mesh`."""
+
+        level: int | None
+        max_error: float | None
+        level_along: int | None
+        isotropic: bool | float
+        max_edge: float | None
+        min_edge: float | None
+        max_aspect: float | None
+        path: Literal["hermite", "linear"] | None
+        caps: Literal["round", "flat"] | None
+        crossings: Literal["keep", "merge", "separate"] | None
+        simulation: bool
+        soma: Literal["fem", "sphere", "profile", "none"] | None
+        poisson: float | None
+        soma_scale: float | None
+        soma_sphere: Literal["cube", "octahedron"] | None
+        soma_level: int | None
+        ring: Mapping[int, float] | None
+        smooth: float | Literal["auto"] | None
+        types: Sequence[str | int] | str | None
+        quads: bool
+
+
+class Mesh:
+    """A surface of triangles (and quads, if they were asked for) with attributes. Lengths are µm.
+
+    Made by `mesh`, `mesh_many`, `Circuit.mesh`, `read_mesh` and `Mesh.from_arrays`. Its arrays are read-only
+    and own their memory, so they may outlive it.
+    """
+
+    def __init__(
+        self,
+        surface: _neurotess.Surface,
+        report: dict[str, Any] | None = None,
+        notices: tuple[Notice, ...] = (),
+        name: str = "mesh",
+    ) -> None:
+        self._surface = surface
+        self.name: str = name
+        """Name for people: that of the cell or the file."""
+        self.report: dict[str, Any] = report or {}
+        """What is known of its making, under the names of ``neurotess mesh --json``: ``closed``, ``euler``,
+        ``components``, ``soma_volume``, ``crossings``, ``separation``, ``smoothing``, ``quality``."""
+        self.warnings: list[Notice] = list(notices)
+        """What was odd in the file, and what was mended of the tracing."""
+
+    @classmethod
+    def from_arrays(cls, vertices: ArrayLike, faces: ArrayLike, *, name: str = "mesh") -> Mesh:
+        """A mesh of vertices (n, 3) in µm and triangles (m, 3), without attributes, to check or save it."""
+        import numpy as np
+
+        vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+        faces = np.asarray(faces)
+        for array, what in ((vertices, "vertices"), (faces, "faces")):
+            if array.ndim != 2 or array.shape[1] != 3:
+                raise ValueError(f"{what} have shape {array.shape} instead of (n, 3)")
+        if faces.size and (faces.dtype.kind not in "iu" or faces.min() < 0 or faces.max() >= 2**32):
+            raise ValueError("faces are not indices of vertices")
+        surface = _neurotess.Surface.from_arrays(vertices, np.ascontiguousarray(faces, dtype=np.uint32))
+        return cls(surface, name=name)
+
+    # Arrays
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Positions (µm), (v, 3), in the coordinates of the tracing or the circuit."""
+        return self._surface.vertices
+
+    @property
+    def faces(self) -> NDArray[np.uint32]:
+        """Triangles, (f, 3): counter-clockwise seen from outside."""
+        return self._surface.faces
+
+    @property
+    def quads(self) -> NDArray[np.uint32]:
+        """Quads, (q, 4); there are some with ``quads=True`` and with ``level=0``."""
+        return self._surface.quads
+
+    @property
+    def normals(self) -> NDArray[np.float32]:
+        """Unit normals of the vertices, (v, 3)."""
+        return self._surface.normals
+
+    @property
+    def type(self) -> NDArray[np.int32]:
+        """SWC type of each vertex: 1 soma, 2 axon, 3 basal dendrite, 4 apical dendrite, …"""
+        return self._surface.types
+
+    @property
+    def point(self) -> NDArray[np.int32]:
+        """The file's own number of the nearest sample, for each vertex."""
+        return self._surface.points
+
+    @property
+    def section(self) -> NDArray[np.int32]:
+        """Section of each vertex, counted from 1; 0 is the soma. ``cell.sections[i]`` has number i + 1."""
+        return self._surface.sections
+
+    @property
+    def radius(self) -> NDArray[np.float32]:
+        """Radius (µm) of the tracing at each vertex."""
+        return self._surface.radii
+
+    def triangles(self) -> NDArray[np.uint32]:
+        """All faces as triangles, (f, 3): quads are halved. Without quads it is `faces` itself."""
+        import numpy as np
+
+        if not len(self.quads):
+            return self.faces
+        halves = self.quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+        return np.concatenate([self.faces, halves])
+
+    # What it is
+
+    @property
+    def closed(self) -> bool:
+        """Whether every edge has exactly two faces."""
+        if "closed" not in self.report:
+            names = ("closed", "euler", "components")
+            self.report.update(zip(names, self._surface.topology(), strict=True))
+        return bool(self.report["closed"])
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume (µm³)."""
+        return self._surface.measure()[0]
+
+    @property
+    def area(self) -> float:
+        """Area (µm²)."""
+        return self._surface.measure()[1]
+
+    def check(self, *, merge: bool = False) -> dict[str, Any]:
+        """Judges the mesh as ``neurotess check --json`` does.
+
+        The keys are ``closed``, ``edge_manifold``, ``vertex_manifold``, ``oriented``, ``components``, ``euler``,
+        ``genus``, ``volume``, ``area``, ``self_intersections``, ``quality`` and others. `merge` joins vertices of
+        the same position first, as STL files need it.
+        """
+        return self._surface.check(merge)
+
+    # Elsewhere
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        format: str | None = None,
+        unit: Literal["um", "m"] = "um",
+        overwrite: bool = True,
+    ) -> None:
+        """Writes a file, whole or not at all: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH.
+
+        The extension tells the format if `format` does not. With ``unit="m"`` coordinates and radii are in
+        meters.
+        """
+        self._surface.write(path, format, unit, overwrite)
+
+    def to_trimesh(self) -> Any:
+        """A `trimesh.Trimesh` with `type`, `point`, `section` and `radius` as vertex attributes."""
+        trimesh = needed("trimesh")
+        return trimesh.Trimesh(
+            self.vertices,
+            self.triangles(),
+            vertex_normals=self.normals,
+            vertex_attributes=self._attributes(),
+            process=False,
+            metadata={"name": self.name, "units": "micrometers"},
+        )
+
+    def to_pyvista(self) -> Any:
+        """A `pyvista.PolyData` with normals and attributes as point data."""
+        pyvista = needed("pyvista")
+        mesh = pyvista.PolyData.from_regular_faces(self.vertices, self.triangles())
+        for name, values in self._attributes().items():
+            mesh.point_data[name] = values
+        mesh.point_data["Normals"] = self.normals
+        mesh.point_data.active_normals_name = "Normals"
+        return mesh
+
+    def to_navis(self) -> Any:
+        """A `navis.MeshNeuron`, in µm."""
+        navis = needed("navis")
+        return navis.MeshNeuron((self.vertices, self.triangles()), units="1 micrometer", name=self.name)
+
+    def _attributes(self) -> dict[str, NDArray[Any]]:
+        return {
+            "type": self.type,
+            "point": self.point,
+            "section": self.section,
+            "radius": self.radius,
+        }
+
+    # Python
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._surface, self.report, tuple(self.warnings), self.name)
+
+    def __repr__(self) -> str:
+        count = len(self.faces) + len(self.quads)
+        closed = {True: ", closed", False: ", not closed", None: ""}[self.report.get("closed")]
+        return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {count} faces{closed}>"
+
+
+def mesh(
+    cell: Source,
+    *,
+    level: int | None = None,
+    max_error: float | None = None,
+    level_along: int | None = None,
+    isotropic: bool | float = False,
+    max_edge: float | None = None,
+    min_edge: float | None = None,
+    max_aspect: float | None = None,
+    path: Literal["hermite", "linear"] | None = None,
+    caps: Literal["round", "flat"] | None = None,
+    crossings: Literal["keep", "merge", "separate"] | None = None,
+    simulation: bool = False,
+    soma: Literal["fem", "sphere", "profile", "none"] | None = None,
+    poisson: float | None = None,
+    soma_scale: float | None = None,
+    soma_sphere: Literal["cube", "octahedron"] | None = None,
+    soma_level: int | None = None,
+    ring: Mapping[int, float] | None = None,
+    smooth: float | Literal["auto"] | None = None,
+    types: Sequence[str | int] | str | None = None,
+    quads: bool = False,
+    threads: int | None = None,
+) -> Mesh:
+    """Makes the closed surface of a cell: of a `Morphology`, or of a file.
+
+    The options are those of ``neurotess mesh``.
+
+    Refinement:
+
+    - `level`: subdivisions of each coarse edge, 1 to 64 (4 if nothing is said); 0 gives the coarse quads
+    - `max_error`: instead, as fine as keeps the surface within so many µm of that of level 64
+    - `level_along`: subdivisions along neurites; `level` is then for the edges around them
+    - `isotropic`: instead, edges about as long as the local radius, or a factor of it; with `max_edge`,
+      `min_edge` (µm) and `max_aspect`
+    - `path`: ``"hermite"`` (smooth) or ``"linear"`` between traced points; `caps`: ``"round"`` or ``"flat"``
+    - `quads`: quads where possible, instead of triangles
+
+    Crossings:
+
+    - `crossings`: what becomes of places where the surface crosses itself: ``"keep"``, ``"merge"`` (the exact
+      union) or ``"separate"`` (branches traced through one another are moved apart, the rest is merged)
+    - `simulation`: a mesh that solvers take, or a `MeshError` that says where it fails
+
+    Soma and tracing:
+
+    - `soma`: ``"fem"``, ``"sphere"``, ``"profile"`` or ``"none"``; `poisson` (0.3), `soma_scale` (1),
+      `soma_sphere`, `soma_level`
+    - `ring`: where neurites leave the soma, as in ``{1: 0.5}``: neurites count from 1, positions are 0 to 2
+    - `smooth`: smooths the noise of the tracing away by this length (µm), or ``"auto"``
+    - `types`: keeps only these, as in ``["axon", 3, "custom_9"]``
+
+    `threads` to use; all cores if it is left out. The result is the same for any number of them.
+
+    Raises ``ValueError`` for options, `MeshError` for cells that cannot be meshed, `ReadError` for files.
+
+    >>> import neurotess as nt
+    >>> mesh = nt.mesh(nt.synth("granule", points=100), level=2)
+    >>> mesh.closed, mesh.vertices.dtype, mesh.faces.shape[1]
+    (True, dtype('float64'), 3)
+    """
+    options: dict[str, Any] = {
+        "level": level,
+        "max_error": max_error,
+        "level_along": level_along,
+        "isotropic": isotropic,
+        "max_edge": max_edge,
+        "min_edge": min_edge,
+        "max_aspect": max_aspect,
+        "path": path,
+        "caps": caps,
+        "crossings": crossings,
+        "simulation": simulation,
+        "soma": soma,
+        "poisson": poisson,
+        "soma_scale": soma_scale,
+        "soma_sphere": soma_sphere,
+        "soma_level": soma_level,
+        "ring": ring,
+        "smooth": smooth,
+        "types": types,
+        "quads": quads,
+    }
+    recipe = _neurotess.Recipe(_options.arguments(options))
+    if not isinstance(cell, Morphology):
+        cell = read(cell)
+    return _mesh(recipe, cell, threads)
+
+
+def _mesh(recipe: _neurotess.Recipe, cell: Morphology, threads: int | None) -> Mesh:
+    surface, report = recipe.mesh(cell._cell, threads)
+    return _of(surface, report, cell.warnings, cell.name)
+
+
+def _of(surface: _neurotess.Surface, report: dict[str, Any], read: list[Notice], name: str) -> Mesh:
+    mended = [
+        Notice(w["code"], w["message"], w["count"], w["line"], w["sample"]) for w in report.pop("warnings")
+    ]
+    return Mesh(surface, report, (*read, *mended), name)
+
+
+def read_mesh(path: str | os.PathLike[str], *, format: str | None = None) -> Mesh:
+    """Reads a mesh file: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH."""
+    return Mesh(_neurotess.Surface.read(path, format), name=os.path.basename(os.fspath(path)))
+
+
+def check(mesh: Mesh | str | os.PathLike[str], *, merge: bool = False) -> dict[str, Any]:
+    """Judges a mesh or a mesh file: `Mesh.check`."""
+    if not isinstance(mesh, Mesh):
+        mesh = read_mesh(mesh)
+    return mesh.check(merge=merge)
+
+
+class MeshResult:
+    """What became of a cell in `mesh_many`: a mesh, or the error that it met."""
+
+    input: Source
+    """What was to be meshed."""
+    mesh: Mesh | None
+    """The mesh; none if there is an error."""
+    error: Exception | None
+    """Why there is none."""
+
+    __slots__ = ("error", "input", "mesh")
+
+    def __init__(self, input: Source, mesh: Mesh | None, error: Exception | None) -> None:
+        self.input = input
+        self.mesh = mesh
+        self.error = error
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is a mesh."""
+        return self.error is None
+
+    def __repr__(self) -> str:
+        return f"<MeshResult {self.input!r}: {self.mesh if self.ok else self.error!r}>"
+
+
+def mesh_many(
+    cells: Iterable[Source], *, threads: int | None = None, **options: Unpack[MeshOptions]
+) -> Iterator[MeshResult]:
+    """Meshes many cells or files on `threads` threads (all cores), with the options of `mesh`.
+
+    Gives a `MeshResult` for each cell, in their order. An error is a value: one bad file never ends the batch.
+    Not more than two cells a thread are in memory, beside the one that you hold. Wrong options raise
+    ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only.
+
+    >>> import neurotess as nt
+    >>> cells = [nt.synth("granule", seed=seed, points=100) for seed in range(3)]
+    >>> [result.ok for result in nt.mesh_many(cells, threads=2, level=1)]
+    [True, True, True]
+    """
+    recipe = _neurotess.Recipe(_options.arguments(options))
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads={threads} is not 1 or more")
+    return _results(cells, recipe, threads or _cores())
+
+
+def _cores() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1
+
+
+def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -> Iterator[MeshResult]:
+    from concurrent.futures import ThreadPoolExecutor
+
+    def one(cell: Source) -> MeshResult:
+        try:
+            read = cell if isinstance(cell, Morphology) else Morphology(_read(cell, None, None, False))
+            # A cell has one thread: all are busy with others.
+            return MeshResult(cell, _mesh(recipe, read, 1), None)
+        except Exception as error:
+            return MeshResult(cell, None, error)
+
+    pool = ThreadPoolExecutor(threads, thread_name_prefix="neurotess")
+    waiting: deque[Any] = deque()
+    try:
+        for cell in cells:
+            waiting.append(pool.submit(one, cell))
+            if len(waiting) >= 2 * threads:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)

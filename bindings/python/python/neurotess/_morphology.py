@@ -1,0 +1,501 @@
+"""Traced cells."""
+
+from __future__ import annotations
+
+import os
+import warnings
+
+from . import _neurotess
+from ._errors import ReadWarning
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import IO, Any
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ._meshes import Mesh
+
+
+class Notice:
+    """A warning as data."""
+
+    code: str
+    """Name for programs, like ``radius_mended``."""
+    message: str
+    """What is odd, or was mended."""
+    count: int
+    """How often."""
+    line: int | None
+    """The first line of the file, from 1 on, where it is about the file."""
+    sample: int | None
+    """Number of the first sample, where it is about the mesh."""
+
+    __slots__ = ("code", "count", "line", "message", "sample")
+
+    def __init__(self, code: str, message: str, count: int, line: int | None, sample: int | None) -> None:
+        self.code = code
+        self.message = message
+        self.count = count
+        self.line = line
+        self.sample = sample
+
+    def _values(self) -> tuple[object, ...]:
+        return self.code, self.message, self.count, self.line, self.sample
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Notice) and self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def __repr__(self) -> str:
+        place = "" if self.line is None else f"line {self.line}: "
+        return f"<Notice {self.code}: {place}{self.message}>"
+
+
+class Soma:
+    """A soma as it was traced, and the sphere that stands for it."""
+
+    kind: str
+    """``"point"``, ``"three_point"``, ``"contour"`` or ``"cylinders"``."""
+    center: NDArray[np.float64]
+    """Center (µm)."""
+    radius: float
+    """Radius (µm) of the sphere that stands for it."""
+    area: float
+    """Area (µm²)."""
+    volume: float
+    """Volume (µm³)."""
+    points: NDArray[np.float64]
+    """Positions (µm) of the traced samples, (n, 3)."""
+    radii: NDArray[np.float64]
+    """Radii (µm) of the traced samples."""
+
+    def __init__(self, told: Mapping[str, Any]) -> None:
+        import numpy as np
+
+        self.kind = told["kind"]
+        self.center = np.array(told["center"])
+        self.radius = told["radius"]
+        self.area = told["area"]
+        self.volume = told["volume"]
+        self.points = told["points"]
+        self.radii = told["radii"]
+
+    def __repr__(self) -> str:
+        return f"<Soma: {self.kind}, radius {self.radius:.3g} µm>"
+
+
+class Section:
+    """An unbranched part of a neurite, of one type."""
+
+    id: int
+    """Its number, from 0 on, in depth-first order. Meshes count from 1, and 0 is the soma."""
+
+    def __init__(self, cell: Morphology, id: int) -> None:
+        self._cell = cell
+        self._columns = cell._section_columns()
+        self.id = id
+
+    def _of(self, column: str) -> Any:
+        return self._columns[column][self.id].item()
+
+    @property
+    def indices(self) -> slice:
+        """Its points among those of the cell: ``cell.points[section.indices]``."""
+        return slice(self._of("first"), self._of("end"))
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Positions (µm), (n, 3), without the point that it branches from. A view."""
+        return self._cell.points[self.indices]
+
+    @property
+    def radii(self) -> NDArray[np.float64]:
+        """Radii (µm). A view."""
+        return self._cell.radii[self.indices]
+
+    @property
+    def type(self) -> int:
+        """SWC type: 2 axon, 3 basal dendrite, 4 apical dendrite, others as in the file."""
+        return int(self._of("type"))
+
+    @property
+    def parent(self) -> Section | None:
+        """The section that it branches from; none where a neurite begins."""
+        parent = int(self._of("parent"))
+        return None if parent < 0 else Section(self._cell, parent)
+
+    @property
+    def children(self) -> list[Section]:
+        """The sections that branch from its end."""
+        return [Section(self._cell, i) for i in self._cell._children()[self.id]]
+
+    @property
+    def neurite(self) -> int:
+        """Number of its neurite, from 0 on."""
+        return int(self._of("neurite"))
+
+    @property
+    def order(self) -> int:
+        """Number of forks between the neurite's start and the section."""
+        return int(self._of("order"))
+
+    @property
+    def length(self) -> float:
+        """Length (µm), from the point that it branches from on."""
+        return float(self._of("length"))
+
+    @property
+    def path_length(self) -> float:
+        """Length (µm) of the way from the neurite's first point to the section's end."""
+        return float(self._of("path_length"))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Section) and (self._cell, self.id) == (other._cell, other.id)
+
+    def __hash__(self) -> int:
+        return hash((id(self._cell), self.id))
+
+    def __repr__(self) -> str:
+        count = self.indices.stop - self.indices.start
+        return f"<Section {self.id}: type {self.type}, {count} points, {self.length:.4g} µm>"
+
+
+class Neurite:
+    """A tree that begins on the soma, or on nothing."""
+
+    id: int
+    """Its number, from 0 on, in the order of the file."""
+    sections: list[Section]
+    """Its sections in depth-first order; the first one is its root."""
+
+    def __init__(self, cell: Morphology, id: int, first: int, end: int) -> None:
+        self._cell = cell
+        self.id = id
+        self.sections = [Section(cell, i) for i in range(first, end)]
+
+    @property
+    def root(self) -> Section:
+        """The section that it begins with."""
+        return self.sections[0]
+
+    @property
+    def type(self) -> int:
+        """SWC type of its first section."""
+        return self.root.type
+
+    @property
+    def indices(self) -> slice:
+        """Its points among those of the cell."""
+        return slice(self.root.indices.start, self.sections[-1].indices.stop)
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Positions (µm), (n, 3). A view."""
+        return self._cell.points[self.indices]
+
+    @property
+    def radii(self) -> NDArray[np.float64]:
+        """Radii (µm). A view."""
+        return self._cell.radii[self.indices]
+
+    @property
+    def length(self) -> float:
+        """Length (µm)."""
+        return float(sum(section.length for section in self.sections))
+
+    def __repr__(self) -> str:
+        return f"<Neurite {self.id}: type {self.type}, {len(self.sections)} sections>"
+
+
+class Morphology:
+    """A traced cell: points with radii in sections, and somata. Lengths are µm.
+
+    Made by `read`, `synth`, `from_table` and the other `from_` methods. It never changes, and neither do its
+    arrays, which are made once and shared; ``cell.points.copy()`` is yours.
+
+    >>> import neurotess as nt
+    >>> cell = nt.synth("granule", seed=1, points=200)
+    >>> cell.points.shape, cell.types.min() >= 2
+    ((200, 3), np.True_)
+    """
+
+    def __init__(self, cell: _neurotess.Cell) -> None:
+        if not isinstance(cell, _neurotess.Cell):
+            raise TypeError("use neurotess.read, neurotess.synth or Morphology.from_table")
+        self._cell = cell
+        self._columns: dict[str, NDArray[Any]] | None = None
+        self._child_ids: list[list[int]] | None = None
+
+    # What it is
+
+    @property
+    def name(self) -> str:
+        """Name for people: that of the file, without its extension."""
+        return self._cell.name
+
+    @property
+    def header(self) -> list[str]:
+        """Comments at the head of the file."""
+        return self._cell.header
+
+    @property
+    def format(self) -> str:
+        """``"swc"``, ``"asc"``, ``"h5"``, ``"neuroml"`` or ``"synth"``."""
+        return self._cell.format
+
+    @property
+    def warnings(self) -> list[Notice]:
+        """What was odd in the file."""
+        told = self._cell.warnings
+        return [Notice(code, text, count, line, None) for code, text, line, count in told]
+
+    # Points
+
+    def __len__(self) -> int:
+        return len(self._cell)
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Positions (µm) of the points of all neurites, (n, 3), depth-first. Those of somata are theirs."""
+        return self._cell.points
+
+    @property
+    def radii(self) -> NDArray[np.float64]:
+        """Radii (µm) of the points, (n,)."""
+        return self._cell.radii
+
+    @property
+    def types(self) -> NDArray[np.int32]:
+        """SWC types of the points, (n,): 2 axon, 3 basal dendrite, 4 apical dendrite, others as in the file."""
+        return self._cell.types
+
+    @property
+    def parents(self) -> NDArray[np.int64]:
+        """The index of the point that each point hangs on, (n,); −1 where a neurite begins."""
+        return self._cell.parents
+
+    @property
+    def samples(self) -> NDArray[np.int64]:
+        """The file's own number of each point, (n,), as `Mesh.point` has it."""
+        return self._cell.samples
+
+    # Parts
+
+    @property
+    def sections(self) -> list[Section]:
+        """All sections, depth-first: parents come before their children."""
+        count = len(self._section_columns()["first"])
+        return [Section(self, i) for i in range(count)]
+
+    @property
+    def neurites(self) -> list[Neurite]:
+        """All neurites, in the order of the file."""
+        numbers = self._section_columns()["neurite"].tolist()
+        starts = [i for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1]]
+        ends = [*starts, len(numbers)][1:]
+        return [Neurite(self, k, *ends_of) for k, ends_of in enumerate(zip(starts, ends, strict=True))]
+
+    @property
+    def soma(self) -> Soma | None:
+        """The main soma, if there is one."""
+        somata = self.somata
+        return somata[0] if somata else None
+
+    @property
+    def somata(self) -> list[Soma]:
+        """All somata, the main one first."""
+        return [Soma(told) for told in self._cell.somata()]
+
+    def _section_columns(self) -> dict[str, NDArray[Any]]:
+        if self._columns is None:
+            self._columns = self._cell.sections()
+        return self._columns
+
+    def _children(self) -> list[list[int]]:
+        if self._child_ids is None:
+            parents = self._section_columns()["parent"].tolist()
+            children: list[list[int]] = [[] for _ in parents]
+            for child, parent in enumerate(parents):
+                if parent >= 0:
+                    children[parent].append(child)
+            self._child_ids = children
+        return self._child_ids
+
+    def measures(self) -> dict[str, Any]:
+        """Counts, lengths, areas and volumes, under the names of ``neurotess info --json``.
+
+        >>> import neurotess as nt
+        >>> nt.synth("granule", seed=1, points=200).measures()["n_points"]
+        200
+        """
+        return self._cell.measures()
+
+    def mesh(self, **options: Any) -> Mesh:
+        """The surface of the cell: `neurotess.mesh` with this cell."""
+        from ._meshes import mesh
+
+        return mesh(self, **options)
+
+    # Files and tables
+
+    def save(
+        self, path: str | os.PathLike[str], *, format: str | None = None, overwrite: bool = True
+    ) -> list[str]:
+        """Writes an SWC, ASC or H5 file, whole or not at all.
+
+        Returns what the format cannot hold, such as the header of the file.
+        """
+        return self._cell.write(path, format, overwrite)
+
+    def to_table(self) -> NDArray[np.void]:
+        """A table as SWC has it, with somata: ``id``, ``type``, ``x``, ``y``, ``z``, ``radius``, ``parent``.
+
+        It is a structured array; ``pandas.DataFrame(cell.to_table())`` is a data frame of it.
+        """
+        import numpy as np
+
+        columns = self._cell.table()
+        names = ["id", "type", "x", "y", "z", "radius", "parent"]
+        formats = ["i8", "i8", "f8", "f8", "f8", "f8", "i8"]
+        table = np.zeros(len(columns["id"]), dtype=list(zip(names, formats, strict=True)))
+        for name in ("id", "type", "radius", "parent"):
+            table[name] = columns[name]
+        for axis, name in enumerate("xyz"):
+            table[name] = columns["position"][:, axis]
+        return table
+
+    @classmethod
+    def from_table(cls, table: Any, *, name: str = "table", strict: bool = False) -> Morphology:
+        """A cell of a table as SWC has it: a row for each sample, by the same rules as a file.
+
+        `table` is a data frame, a dictionary of columns, a structured array, or an array of seven columns in
+        the order of SWC. Columns may have the names of `to_table` or those of navis (``node_id``, ``label``,
+        ``parent_id``), of CATMAID (``treenode_id``) and of SWC files (``n``, ``t``, ``r``, ``p``). Rows may be
+        in any order. Lengths are µm. Lines of errors and warnings are rows, from 1 on.
+        """
+        from ._tables import columns_of
+
+        cell = _neurotess.Cell.from_columns(*columns_of(table), name, strict)
+        return _with_warnings(cell)
+
+    # Other packages
+
+    def to_navis(self) -> Any:
+        """A `navis.TreeNeuron`, in µm."""
+        from ._exchange import to_navis
+
+        return to_navis(self)
+
+    @classmethod
+    def from_navis(cls, neuron: Any, *, strict: bool = False) -> Morphology:
+        """A cell of a `navis.TreeNeuron`, whose units are taken into account; without units it is in µm."""
+        from ._exchange import from_navis
+
+        return from_navis(neuron, strict)
+
+    def to_morphio(self) -> Any:
+        """A `morphio.Morphology`. MorphIO leaves out sections of a single point, and takes one soma only."""
+        from ._exchange import to_morphio
+
+        return to_morphio(self)
+
+    @classmethod
+    def from_morphio(cls, morphology: Any, *, strict: bool = False) -> Morphology:
+        """A cell of a `morphio.Morphology`."""
+        from ._exchange import from_morphio
+
+        return from_morphio(morphology, strict)
+
+    def to_neurom(self) -> Any:
+        """A `neurom.core.Morphology`."""
+        from ._exchange import to_neurom
+
+        return to_neurom(self)
+
+    @classmethod
+    def from_neurom(cls, morphology: Any, *, strict: bool = False) -> Morphology:
+        """A cell of a `neurom.core.Morphology`."""
+        from ._exchange import from_neurom
+
+        return from_neurom(morphology, strict)
+
+    # Python
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Morphology) and self._cell == other._cell
+
+    def __hash__(self) -> int:
+        return hash((self.name, len(self)))
+
+    def __reduce__(self) -> tuple[type[Morphology], tuple[_neurotess.Cell]]:
+        return type(self), (self._cell,)
+
+    def __repr__(self) -> str:
+        neurites = len(self.neurites)
+        return f"<Morphology {self.name!r}: {len(self)} points, {neurites} neurites>"
+
+
+def read(
+    source: str | os.PathLike[str] | bytes | IO[bytes] | IO[str],
+    *,
+    format: str | None = None,
+    name: str | None = None,
+    strict: bool = False,
+) -> Morphology:
+    """Reads a morphology: SWC, Neurolucida ASC, Blue Brain's H5, or NeuroML.
+
+    `source` is a path, the bytes of a file, or an open file. ``merged.h5#cells/a`` is one morphology of an H5
+    file that holds many. `format` (``"swc"``, ``"asc"``, ``"h5"``, ``"nml"``) is for bytes and open files
+    whose content does not tell it, and `name` is what errors call them.
+
+    What is odd in the file is warned of (`ReadWarning`), and stays in `Morphology.warnings`. With `strict` it
+    is an error.
+
+    Raises `ReadError`, with file, line and message; it is a ``FileNotFoundError`` too where there is no file.
+
+    >>> import neurotess as nt
+    >>> cell = nt.read(b"1 1 0 0 0 5 -1\\n2 3 0 9 0 1 1\\n3 3 0 30 0 1 2\\n")
+    >>> cell.soma
+    <Soma: point, radius 5 µm>
+    """
+    return _with_warnings(_read(source, format, name, strict))
+
+
+def _read(source: Any, format: str | None, name: str | None, strict: bool) -> _neurotess.Cell:
+    if isinstance(source, (str, os.PathLike)):
+        if format is None:
+            return _neurotess.Cell.read(source, strict)
+        with open(source, "rb") as file:
+            return _read(file, format, name or os.fspath(source), strict)
+    if hasattr(source, "read"):
+        name = name or getattr(source, "name", None)
+        source = source.read()
+    if isinstance(source, str):
+        source = source.encode()
+    if not isinstance(source, (bytes, bytearray, memoryview)):
+        raise TypeError(
+            f"a morphology is read from a path, bytes or an open file, not from {type(source).__name__}"
+        )
+    return _neurotess.Cell.read_bytes(bytes(source), str(name or "<bytes>"), format, strict)
+
+
+def _with_warnings(cell: _neurotess.Cell, depth: int = 3) -> Morphology:
+    """The cell; its warnings are given at the caller's caller."""
+    for code, message, line, _ in cell.warnings:
+        place = cell.name if line is None else f"{cell.name}:{line}"
+        warnings.warn(ReadWarning(f"{place}: {message} ({code})"), stacklevel=depth)
+    return Morphology(cell)
+
+
+def synth(kind: str, *, seed: int = 1, points: int | None = None) -> Morphology:
+    """Grows a synthetic cell, the same for the same seed on every machine.
+
+    `kind` is ``"pyramidal"``, ``"purkinje"``, ``"granule"``, ``"basket"``, ``"motor"`` or ``"star"``.
+    `points` outside the soma, 50 to 500,000, are usual for the kind if they are left out.
+    """
+    return Morphology(_neurotess.Cell.grow(kind, seed, points))

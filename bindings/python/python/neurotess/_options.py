@@ -1,0 +1,48 @@
+"""Options of functions as those of the command line, which checks them."""
+
+from __future__ import annotations
+
+import operator
+import os
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Any
+
+
+def arguments(options: Mapping[str, Any]) -> list[str]:
+    """Options as arguments: ``max_error=0.1`` is ``--max-error=0.1``; None and False are left out."""
+    words: list[str] = []
+    for name, value in options.items():
+        flag = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(flag)
+        elif name == "ring":
+            words += [f"{flag}={word(neurite)}={word(at)}" for neurite, at in value.items()]
+        elif isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__"):
+            words.append(f"{flag}={word(value)}")
+        else:
+            words.append(f"{flag}={','.join(map(word, value))}")
+    return words
+
+
+def joined(values: Iterable[Any] | float | None, by: str) -> str | float | None:
+    """Several values as one, as in ``1280x960``; one stays what it is."""
+    if values is None or isinstance(values, str) or not hasattr(values, "__iter__"):
+        return values
+    return by.join(map(word, values))
+
+
+def word(value: Any) -> str:
+    """A value as text. Numbers of NumPy are numbers, too."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, os.PathLike):
+        return str(os.fspath(value))
+    try:
+        return str(operator.index(value))
+    except TypeError:
+        return repr(float(value))

@@ -1,0 +1,242 @@
+"""Pictures."""
+
+from __future__ import annotations
+
+import os
+import warnings
+
+from . import _neurotess, _options
+from ._circuits import Circuit
+from ._errors import NeurotessWarning, RenderError
+from ._morphology import Morphology, read
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from typing import Any, Literal
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Drawable = Morphology | Circuit | str | os.PathLike[str]
+    ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
+    Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
+
+
+class Image:
+    """A picture: ``np.asarray(picture)`` are its pixels, (height, width, 4) bytes of red, green, blue, alpha.
+
+    It shows itself in a notebook.
+    """
+
+    def __init__(self, pixels: NDArray[np.uint8], *, transparent: bool = False) -> None:
+        self._pixels = pixels
+        self._transparent = transparent
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height (pixels)."""
+        height, width, _ = self._pixels.shape
+        return width, height
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        import numpy as np
+
+        if copy:
+            return np.array(self._pixels, dtype=dtype)
+        return np.asarray(self._pixels, dtype=dtype)
+
+    def to_png(self) -> bytes:
+        """The bytes of a PNG file."""
+        return _neurotess.png(self._pixels, self._transparent)
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = True) -> None:
+        """Writes a PNG file; other formats need Pillow."""
+        extension = os.path.splitext(os.fspath(path))[1].lower()
+        if not overwrite and os.path.exists(path):
+            raise FileExistsError(f"{os.fspath(path)} exists")
+        if extension in ("", ".png"):
+            with open(path, "wb") as file:
+                file.write(self.to_png())
+        else:
+            self.to_pillow().save(path)
+
+    def to_pillow(self) -> Any:
+        """A `PIL.Image.Image`."""
+        from ._exchange import needed
+
+        image = needed("PIL.Image").fromarray(self._pixels)
+        return image if self._transparent else image.convert("RGB")
+
+    def _repr_png_(self) -> bytes:
+        return self.to_png()
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<Image: {width} × {height}>"
+
+
+def _sources(what: Any) -> tuple[list[_neurotess.Cell], str | None]:
+    """Cells, or the path of a circuit."""
+    if isinstance(what, Circuit):
+        return [], what._path
+    many = [what] if isinstance(what, (Morphology, str, os.PathLike)) else list(what)
+    if any(isinstance(one, Circuit) for one in many):
+        raise ValueError("a circuit is drawn alone")
+    if not many:
+        raise ValueError("there is no cell to draw")
+    cells = [one if isinstance(one, Morphology) else read(one) for one in many]
+    return [cell._cell for cell in cells], None
+
+
+def _drawing(what: Any, options: dict[str, Any], adapter: str | None) -> _neurotess.Drawing:
+    from . import quiet_adapters
+
+    if not _neurotess.CAN_RENDER:
+        raise RenderError("this build draws no pictures: build it with the feature 'render'")
+    quiet_adapters()
+    cells, circuit = _sources(what)
+    return _neurotess.Drawing(cells, circuit, _options.arguments(options), adapter)
+
+
+def render(
+    what: Drawable | Iterable[Morphology | str | os.PathLike[str]],
+    *,
+    size: tuple[int, int] | None = None,
+    color_by: ColorBy | None = None,
+    color_by_attribute: str | None = None,
+    report: str | os.PathLike[str] | None = None,
+    time: float | None = None,
+    range: tuple[float, float] | None = None,
+    palette: str | None = None,
+    colormap: str | None = None,
+    trim_colormap: bool = False,
+    legend: bool = True,
+    scale_bar: bool | float = False,
+    background: str | None = None,
+    transparent: bool = False,
+    samples: int | None = None,
+    view: Side | None = None,
+    eye: Sequence[float] | None = None,
+    target: Sequence[float] | None = None,
+    up: Sequence[float] | None = None,
+    fov: float | None = None,
+    wireframe: bool = False,
+    light: str | Sequence[float] | None = None,
+    ao: float | None = None,
+    lod: Literal["adaptive", "homogeneous", "prerefined", "exploration", "static"] | None = None,
+    level: int | None = None,
+    pixels: float | None = None,
+    budget: int | None = None,
+    soma: Literal["fem", "sphere", "profile", "none"] | None = None,
+    ring: Mapping[int, float] | None = None,
+    types: Sequence[str | int] | str | None = None,
+    nodes: Sequence[int] | str | None = None,
+    node_set: str | None = None,
+    population: str | None = None,
+    region: tuple[Sequence[float], Sequence[float]] | None = None,
+    sample: int | None = None,
+    sample_seed: int | None = None,
+    adapter: str | None = None,
+) -> Image:
+    """Draws cells or a circuit, without a window: a cell, a file, several of them, or a `Circuit`.
+
+    The options are those of ``neurotess render``; a graphics card is not needed, a Vulkan driver is.
+
+    Picture: `size` (1280, 960), `background` (``"white"``, ``"#102030"``) or `transparent`, `samples` (16),
+    `legend`, `scale_bar` (True, or a length in µm).
+
+    Colors: `color_by`; of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
+    `time` (ms); `range`, `palette`, `colormap`, `trim_colormap`.
+
+    Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees).
+
+    Look: `wireframe`, `light` (``"soft"``, ``"flat"`` or a direction), `ao` (radius of ambient occlusion, µm),
+    `lod` with `level`, `pixels` or `budget`.
+
+    Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
+    `sample` and `sample_seed`.
+
+    Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
+    """
+    options: dict[str, Any] = {
+        "size": size,
+        "color_by": color_by,
+        "color_by_attribute": color_by_attribute,
+        "report": report,
+        "time": time,
+        "range": range,
+        "palette": palette,
+        "colormap": colormap,
+        "trim_colormap": trim_colormap,
+        "legend": legend,
+        "scale_bar": scale_bar,
+        "background": background,
+        "transparent": transparent,
+        "samples": samples,
+        "view": view,
+        "eye": eye,
+        "target": target,
+        "up": up,
+        "fov": fov,
+        "wireframe": wireframe,
+        "light": light,
+        "ao": ao,
+        "lod": lod,
+        "level": level,
+        "pixels": pixels,
+        "budget": budget,
+        "soma": soma,
+        "ring": ring,
+        "types": types,
+        "nodes": nodes,
+        "node_set": node_set,
+        "population": population,
+        "region": region,
+        "sample": sample,
+        "sample_seed": sample_seed,
+        "adapter": adapter,
+    }
+    return next(_pictures(what, options))
+
+
+def film(
+    what: Drawable | Iterable[Morphology | str | os.PathLike[str]],
+    *,
+    turntable: bool = False,
+    time: tuple[float, float, float] | tuple[float, float] | None = None,
+    frames: int | None = None,
+    **options: Any,
+) -> Iterator[Image]:
+    """Draws a series of pictures, one after the other: once around with `turntable` (36 pictures, or `frames`), or
+    through a report with `time` (from, to, and the step, in ms, or `frames`). The options are those of `render`.
+
+    >>> import neurotess as nt
+    >>> for number, picture in enumerate(nt.film(cell, turntable=True)): # doctest: +SKIP
+    ...     picture.save(f"turn_{number:03}.png")
+    """
+    series = {"turntable": turntable, "time": _options.joined(time, ":"), "frames": frames}
+    if not turntable and time is None:
+        raise ValueError("a film needs turntable=True, or time=(from, to, step)")
+    return _pictures(what, {**options, **series})
+
+
+def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
+    """All pictures that the options ask for."""
+    options = dict(options)
+    report, region = options.get("report"), options.get("region")
+    if report is not None and isinstance(what, Circuit):
+        options["report"] = what.reports.get(os.fspath(report), os.fspath(report))
+    if region is not None:
+        options["region"] = [*region[0], *region[1]]
+    options["size"] = _options.joined(options.get("size"), "x")
+    options["no_legend"] = not options.pop("legend", True)
+    drawing = _drawing(what, options, options.pop("adapter", None))
+    for message in drawing.messages:
+        warnings.warn(NeurotessWarning(message), stacklevel=3)
+    transparent = bool(options.get("transparent"))
+    try:
+        for number in range(drawing.pictures):
+            yield Image(drawing.draw(number), transparent=transparent)
+    finally:
+        drawing.close()

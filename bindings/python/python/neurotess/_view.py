@@ -1,0 +1,322 @@
+"""The view of cells in a notebook."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+from ._errors import NeurotessWarning
+from ._exchange import needed
+from ._pictures import Image, _drawing
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from typing import Any
+
+    from . import _neurotess
+    from ._pictures import Drawable
+
+needed("jupyter_rfb", "notebook")
+from jupyter_rfb import RemoteFrameBuffer  # noqa: E402
+from traitlets import Float, Unicode, observe, validate  # noqa: E402
+
+#: Seconds without an event after which the full picture is drawn.
+REST = 0.25
+#: Samples of a pixel while something moves: with one, thin neurites are dashed.
+MOVING = 4
+#: A click within so many pixels of a neurite picks it.
+REACH = 3.0
+#: A press and a release that are nearer than this (pixels) are a click.
+CLICK = 4.0
+
+
+class View(RemoteFrameBuffer):  # type: ignore[misc]
+    """Cells or a circuit in a notebook, drawn where the kernel runs.
+
+    Drag to turn, drag with Shift or the right button to move, use the wheel to come nearer. While something moves,
+    it is drawn within a `budget` of triangles; at rest the full picture follows, with `samples` a pixel. A double click
+    shows all again.
+
+    `what` and the options are those of `render`, without those of the camera. With a `report`, `time` can be set.
+    `on_pick` is called with a dictionary when a neurite or a soma is clicked: ``name``, ``node_id``, ``section``,
+    ``sample`` and ``position``; with None beside them.
+
+    >>> view = nt.View(cell)                                         # doctest: +SKIP
+    >>> view.on_pick = print                                         # doctest: +SKIP
+    >>> view.color_by = "radius"                                     # doctest: +SKIP
+
+    `color_by` and `time` are traits: ``ipywidgets.link((slider, "value"), (view, "time"))`` links them.
+    """
+
+    color_by = Unicode(None, allow_none=True)
+    """What colors tell, as in `render`. Setting it makes the scene anew."""
+    time = Float(None, allow_none=True)
+    """Time (ms) of the report that is shown; set to any time, it is that of the frame which shows then."""
+
+    def __init__(
+        self,
+        what: Drawable | Iterable[Any],
+        *,
+        size: tuple[int, int] = (800, 600),
+        budget: int | None = None,
+        samples: int = 16,
+        color_by: str | None = None,
+        report: str | None = None,
+        time: float | None = None,
+        adapter: str | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__()
+        self.css_width, self.css_height = f"{size[0]}px", f"{size[1]}px"
+        self.on_pick: Callable[[dict[str, Any] | None], object] | None = None
+        """What is called when something is clicked."""
+        # An iterator is drawn more than once.
+        drawn: Any = what
+        self._what = list(drawn) if hasattr(drawn, "__next__") else drawn
+        self._samples = samples
+        self._adapter = adapter
+        self._budget = budget
+        self._options = dict(options)
+        self._size = size
+        self._ratio = 1.0
+        self._moving = False
+        self._rest: Any = None
+        self._pressed: tuple[float, float] | None = None
+        self._last: tuple[float, float] | None = None
+        self._drawings: tuple[_neurotess.Drawing, _neurotess.Drawing] | None = None
+        self._times: list[float] = []
+        self._picture = 0
+        self._shown_colors: str | None = None
+        if report is not None:
+            self._set_report(report)
+        self._make(color_by)
+        self.color_by = color_by
+        if self._times:
+            self.time = self._times[0] if time is None else time
+        elif time is not None:
+            raise ValueError("there is no report, so there are no times")
+
+    # What is shown
+
+    @validate("color_by")
+    def _check_color_by(self, proposal: Any) -> str | None:
+        what: str | None = proposal["value"]
+        if what != self._shown_colors:
+            # Wrong ones raise here, and the old ones stay.
+            self._make(what)
+        return what
+
+    @validate("time")
+    def _check_time(self, proposal: Any) -> float:
+        if not self._times or proposal["value"] is None:
+            raise ValueError("a time is set where there is a report")
+        step = self._times[1] - self._times[0] if len(self._times) > 1 else 1.0
+        frame = int((proposal["value"] - self._times[0]) / step + 1e-6)
+        return self._times[min(max(frame, 0), len(self._times) - 1)]
+
+    @observe("time", "color_by")
+    def _changed(self, _change: Any) -> None:
+        if self._times and self.time is not None:
+            self._picture = self._times.index(self.time)
+        self._draw()
+
+    @property
+    def times(self) -> list[float]:
+        """Times (ms) of the report's frames; none without a report."""
+        return list(self._times)
+
+    @property
+    def camera(self) -> tuple[Any, Any, Any, float]:
+        """Eye, target, direction upwards (µm), and the vertical angle of view (radians)."""
+        eye, target, up, fov = self._camera
+        return tuple(eye), tuple(target), tuple(up), fov
+
+    @camera.setter
+    def camera(self, camera: tuple[Any, Any, Any, float]) -> None:
+        eye, target, up, fov = camera
+        self._camera = ([*map(float, eye)], [*map(float, target)], [*map(float, up)], float(fov))
+        self._draw()
+
+    def image(self) -> Image:
+        """The full picture as it is now."""
+        return Image(self._pixels(self._full, self._samples))
+
+    def close(self, *arguments: Any, **named: Any) -> None:
+        """Closes the view and gives back its memory on the graphics device."""
+        self._drop()
+        super().close(*arguments, **named)
+
+    # Making
+
+    def _set_report(self, report: str) -> None:
+        from ._circuits import Circuit, Report
+
+        if not isinstance(self._what, Circuit):
+            raise ValueError("a report needs a circuit, whose cells have its values")
+        path = self._what.reports.get(report, report)
+        times = Report(path).times.tolist()
+        self._options["report"] = path
+        if len(times) > 1:
+            end = times[-1] + 0.5 * (times[1] - times[0])
+            self._options["time"] = f"{times[0]!r}:{end!r}:{times[1] - times[0]!r}"
+        self._times = times
+
+    def _make(self, color_by: str | None) -> None:
+        options = {
+            "size": "{}x{}".format(*self._pixel_size()),
+            "color_by": color_by,
+            **self._options,
+        }
+        if options.pop("legend", False) is False:
+            options["no_legend"] = True
+        quick = {**options, "lod": "exploration", "budget": self._budget}
+        full = _drawing(self._what, {**options, "lod": "static"}, self._adapter)
+        made = (_drawing(self._what, quick, self._adapter), full)
+        for message in full.messages:
+            warnings.warn(NeurotessWarning(message), stacklevel=3)
+        first = self._drawings is None
+        self._drop()
+        self._drawings = made
+        self._shown_colors = color_by
+        if first:
+            self._home = full.camera(0)
+            self._camera = self._home
+
+    def _drop(self) -> None:
+        for drawing in self._drawings or ():
+            drawing.close()
+        self._drawings = None
+
+    @property
+    def _full(self) -> _neurotess.Drawing:
+        if self._drawings is None:
+            raise RuntimeError("the view is closed")
+        return self._drawings[1]
+
+    # Drawing
+
+    def _pixel_size(self) -> list[int]:
+        return [max(16, round(n * self._ratio)) for n in self._size]
+
+    def _pixels(self, drawing: _neurotess.Drawing, samples: int) -> Any:
+        eye, target, up, fov = self._camera
+        view = (list(eye), list(target), list(up), fov)
+        return drawing.draw_from(self._picture, view, self._pixel_size(), samples)
+
+    def get_frame(self) -> Any:
+        """Draws what the browser asks for."""
+        if self._drawings is None:
+            return None
+        quick, full = self._drawings
+        if self._moving:
+            return self._pixels(quick, min(self._samples, MOVING))
+        return self._pixels(full, self._samples)
+
+    def _draw(self) -> None:
+        if self._drawings is not None:
+            self.request_draw()
+
+    def _moved(self) -> None:
+        """Something moves: quick pictures until nothing does."""
+        import asyncio
+
+        self._moving = True
+        if self._rest is not None:
+            self._rest.cancel()
+        try:
+            self._rest = asyncio.get_running_loop().call_later(REST, self._rested)
+        except RuntimeError:
+            # Without a loop nobody would draw the full picture later.
+            self._moving = False
+        self._draw()
+
+    def _rested(self) -> None:
+        self._moving = False
+        self._rest = None
+        self._draw()
+
+    # Events
+
+    def handle_event(self, event: dict[str, Any]) -> None:
+        """Takes an event of the browser."""
+        kind = event.get("type") or event.get("event_type")
+        if kind == "close":
+            self._drop()
+        elif kind == "resize":
+            self._size = (event["width"], event["height"])
+            self._ratio = event.get("ratio") or event.get("pixel_ratio") or 1.0
+        elif kind == "wheel":
+            self._zoom(math.exp(event["dy"] * 0.001))
+        elif kind == "double_click":
+            self.camera = self._home
+        elif kind == "pointer_down":
+            self._pressed = self._last = (event["x"], event["y"])
+        elif kind == "pointer_move" and self._last is not None:
+            at = (event["x"], event["y"])
+            dx, dy = at[0] - self._last[0], at[1] - self._last[1]
+            self._last = at
+            if "Shift" in event.get("modifiers", ()) or 2 in event.get("buttons", ()):
+                self._pan(dx, dy)
+            else:
+                self._turn(dx, dy)
+        elif kind == "pointer_up":
+            pressed, self._pressed, self._last = self._pressed, None, None
+            at = (event["x"], event["y"])
+            if pressed is not None and math.dist(pressed, at) < CLICK:
+                self._click(at)
+
+    def _click(self, at: tuple[float, float]) -> None:
+        if self.on_pick is not None:
+            self.on_pick(self.pick(*at))
+
+    def pick(self, x: float, y: float) -> dict[str, Any] | None:
+        """What is at a point of the view, or within three pixels of it; None if nothing is."""
+        eye, target, up, fov = self._camera
+        view = (list(eye), list(target), list(up), fov)
+        place = [x * self._ratio, y * self._ratio]
+        return self._full.pick(view, self._pixel_size(), place, REACH * self._ratio)
+
+    def _axes(self) -> tuple[Any, Any, Any]:
+        import numpy as np
+
+        eye, target, up, _ = self._camera
+        back = np.subtract(eye, target)
+        back = back / np.linalg.norm(back)
+        right = np.cross(up, back)
+        right = right / np.linalg.norm(right)
+        return right, np.cross(back, right), back
+
+    def _turn(self, dx: float, dy: float) -> None:
+        import numpy as np
+
+        eye, target, _, fov = self._camera
+        right, up, back = self._axes()
+        distance = np.linalg.norm(np.subtract(eye, target))
+        # Half the width is half a turn.
+        a, b = (math.pi * n / max(self._size) for n in (dx, dy))
+        back = math.cos(a) * back - math.sin(a) * right
+        right = np.cross(up, back)
+        back, up = math.cos(b) * back + math.sin(b) * up, math.cos(b) * up - math.sin(b) * back
+        eye = np.asarray(target) + distance * back
+        self._camera = (eye.tolist(), list(target), up.tolist(), fov)
+        self._moved()
+
+    def _pan(self, dx: float, dy: float) -> None:
+        import numpy as np
+
+        eye, target, up, fov = self._camera
+        right, upwards, _ = self._axes()
+        distance = float(np.linalg.norm(np.subtract(eye, target)))
+        pixel = 2 * distance * math.tan(fov / 2) / self._size[1]
+        by = pixel * (dy * upwards - dx * right)
+        self._camera = ((eye + by).tolist(), (target + by).tolist(), list(up), fov)
+        self._moved()
+
+    def _zoom(self, factor: float) -> None:
+        import numpy as np
+
+        eye, target, up, fov = self._camera
+        nearer = np.asarray(target) + factor * np.subtract(eye, target)
+        self._camera = (nearer.tolist(), list(target), list(up), fov)
+        self._moved()

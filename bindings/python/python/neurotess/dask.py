@@ -1,0 +1,128 @@
+"""Meshes on a cluster, with Dask (``pip install 'neurotess[dask]'``).
+
+>>> import neurotess as nt
+>>> from dask.distributed import Client                              # doctest: +SKIP
+>>> done = nt.dask.mesh(paths, "meshes/", Client(), level=4)         # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from collections import namedtuple
+
+from . import __version__, _neurotess, _options
+from ._meshes import _mesh
+from ._morphology import Morphology, _read
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from typing import Any, NamedTuple
+
+    from typing_extensions import Unpack
+
+    from ._meshes import MeshOptions
+
+    class Made(NamedTuple):
+        """What became of a file."""
+
+        input: str
+        """The file that was read."""
+        out: str
+        """The mesh."""
+        error: str | None
+        """Why there is no mesh."""
+        skipped: bool
+        """Whether it was there already, made of the same content with the same options."""
+
+else:
+    Made = namedtuple("Made", "input out error skipped")
+    Made.__doc__ = """What became of a file: the `input`, the mesh `out`, an `error` (a text, or None), and whether it
+    was `skipped`, as it was there already, made of the same content with the same options."""
+
+__all__ = ["Made", "mesh"]
+
+#: Folder within the output that tells what files were made of.
+RECORDS = ".neurotess-dask"
+
+
+def mesh(
+    paths: Iterable[str | os.PathLike[str]],
+    out: str | os.PathLike[str],
+    client: Any = None,
+    *,
+    format: str = "ply",
+    **options: Unpack[MeshOptions],
+) -> list[Made]:
+    """Meshes files into the folder `out`, which all workers must reach, with the options of `neurotess.mesh`.
+
+    `client` is a `dask.distributed.Client`; without one, this process works alone. Each file is a task of its own,
+    and running it twice gives the same file: tasks of a worker that is lost run elsewhere. A mesh that is there
+    already, of the same content and options, is left alone, so a batch that was stopped goes on where it was.
+    """
+    arguments = _options.arguments(options)
+    # Wrong options are told here, not by each worker.
+    _neurotess.Recipe(arguments)
+    folder = os.path.abspath(os.fspath(out))
+    os.makedirs(os.path.join(folder, RECORDS), exist_ok=True)
+    files = [os.path.abspath(os.fspath(path)) for path in paths]
+    names = [os.path.splitext(os.path.basename(file))[0] + "." + format for file in files]
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"several files would become {twice}: mesh them into different folders")
+    tasks = [(file, folder, name, arguments) for file, name in zip(files, names, strict=True)]
+    if client is None:
+        return [make(task) for task in tasks]
+    futures = client.map(make, tasks, pure=False, retries=2)
+    return [Made(*made) for made in client.gather(futures)]
+
+
+def make(task: tuple[str, str, str, list[str]]) -> Made:
+    """Makes one mesh: a task."""
+    file, folder, name, arguments = task
+    path = os.path.join(folder, name)
+    record = os.path.join(folder, RECORDS, name + ".json")
+    try:
+        with open(file, "rb") as stream:
+            content = stream.read()
+        key = _key(content, name, arguments)
+        if os.path.exists(path) and _recorded(record) == key:
+            return Made(file, path, None, True)
+        cell = Morphology(_read(content, _format(file), file, False))
+        made = _mesh(_neurotess.Recipe(arguments), cell, 1)
+        made.save(path)
+        _replace(record, json.dumps({"of": file, "key": key}))
+        return Made(file, path, None, False)
+    except Exception as error:
+        return Made(file, path, f"{type(error).__name__}: {error}", False)
+
+
+def _key(content: bytes, name: str, arguments: list[str]) -> str:
+    hashed = hashlib.sha256(content)
+    hashed.update(json.dumps([__version__, os.path.splitext(name)[1], sorted(arguments)]).encode())
+    return hashed.hexdigest()
+
+
+def _format(file: str) -> str | None:
+    extension = os.path.splitext(file)[1].lower().lstrip(".")
+    return extension if extension in ("swc", "eswc", "asc", "h5", "nml") else None
+
+
+def _recorded(record: str) -> str | None:
+    try:
+        with open(record, encoding="utf-8") as stream:
+            key = json.load(stream).get("key")
+            return key if isinstance(key, str) else None
+    except (OSError, ValueError):
+        return None
+
+
+def _replace(path: str, text: str) -> None:
+    """Writes a file whole or not at all: a worker may be lost at any moment."""
+    number, part = tempfile.mkstemp(dir=os.path.dirname(path))
+    with os.fdopen(number, "w", encoding="utf-8") as stream:
+        stream.write(text)
+    os.replace(part, path)

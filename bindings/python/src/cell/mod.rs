@@ -1,0 +1,359 @@
+//! A traced cell.
+
+mod columns;
+mod state;
+mod table;
+
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
+use neurotess::morphology::{Measures, Morphology, SomaKind, shape, soma_area_volume};
+use neurotess::output::{Existing, Output};
+use neurotess::synth;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::work::released;
+use crate::{arrays, errors, json};
+
+/// A morphology and its arrays, which are made when they are first asked for.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+pub(crate) struct Cell {
+    pub(crate) morphology: Arc<Morphology>,
+    format: String,
+    warnings: Vec<Told>,
+    points: PyOnceLock<Py<PyArray2<f64>>>,
+    radii: PyOnceLock<Py<PyArray1<f64>>>,
+    types: PyOnceLock<Py<PyArray1<i32>>>,
+    parents: PyOnceLock<Py<PyArray1<i64>>>,
+    samples: PyOnceLock<Py<PyArray1<i64>>>,
+}
+
+/// A warning of the reader.
+#[derive(Clone)]
+struct Told {
+    code: String,
+    message: String,
+    line: Option<u64>,
+    count: u64,
+}
+
+impl From<Warning> for Told {
+    fn from(warning: Warning) -> Self {
+        Self {
+            code: warning.code.into(),
+            message: warning.message,
+            line: warning.line,
+            count: warning.count,
+        }
+    }
+}
+
+impl Cell {
+    /// A cell with what its reader said of it.
+    fn new(morphology: Arc<Morphology>, format: &str, warnings: Vec<Told>) -> Self {
+        Self {
+            morphology,
+            format: format.into(),
+            warnings,
+            points: PyOnceLock::new(),
+            radii: PyOnceLock::new(),
+            types: PyOnceLock::new(),
+            parents: PyOnceLock::new(),
+            samples: PyOnceLock::new(),
+        }
+    }
+
+    /// What a reader gave.
+    pub(crate) fn of_read(read: Read) -> Self {
+        let warnings = read.warnings.into_iter().map(Told::from).collect();
+        Self::new(Arc::new(read.morphology), read.format, warnings)
+    }
+
+    /// The result of a reader.
+    fn of_result(py: Python<'_>, read: Result<Read, ReadError>) -> PyResult<Self> {
+        read.map(Self::of_read).map_err(|e| errors::read(py, &e))
+    }
+}
+
+#[pymethods]
+impl Cell {
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, strict: bool) -> PyResult<Self> {
+        // Small files take less time than a thread.
+        let read = py.detach(|| formats::read(path, &ReadOptions { strict }));
+        Self::of_result(py, read)
+    }
+
+    #[staticmethod]
+    fn read_bytes(
+        py: Python<'_>,
+        bytes: Vec<u8>,
+        name: String,
+        format: Option<String>,
+        strict: bool,
+    ) -> PyResult<Self> {
+        let format = format.map(|name| format_named(&name)).transpose()?;
+        let options = ReadOptions { strict };
+        let read = py.detach(|| formats::read_bytes(bytes, &name, format, &options));
+        Self::of_result(py, read)
+    }
+
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "the columns of a table")]
+    fn from_columns(
+        py: Python<'_>,
+        ids: PyReadonlyArray1<'_, i64>,
+        types: PyReadonlyArray1<'_, i64>,
+        x: PyReadonlyArray1<'_, f64>,
+        y: PyReadonlyArray1<'_, f64>,
+        z: PyReadonlyArray1<'_, f64>,
+        radii: PyReadonlyArray1<'_, f64>,
+        parents: PyReadonlyArray1<'_, i64>,
+        name: String,
+        strict: bool,
+    ) -> PyResult<Self> {
+        let columns = table::Columns {
+            integers: [ids.as_slice()?, types.as_slice()?, parents.as_slice()?],
+            numbers: [
+                x.as_slice()?,
+                y.as_slice()?,
+                z.as_slice()?,
+                radii.as_slice()?,
+            ],
+        };
+        let read = py.detach(|| columns.read(&name, &ReadOptions { strict }));
+        Self::of_result(py, read)
+    }
+
+    #[staticmethod]
+    fn grow(py: Python<'_>, kind: &str, seed: u64, points: Option<usize>) -> PyResult<Self> {
+        let kind = kind
+            .parse()
+            .map_err(|e: synth::UnknownKind| PyValueError::new_err(e.to_string()))?;
+        let options = synth::Options { kind, seed, points };
+        let grown = released(py, None, move || synth::grow(&options))?;
+        Ok(Self::new(Arc::new(grown), "synth", Vec::new()))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.morphology.name
+    }
+
+    #[getter]
+    fn header(&self) -> Vec<String> {
+        self.morphology.header.clone()
+    }
+
+    #[getter]
+    fn format(&self) -> &str {
+        &self.format
+    }
+
+    /// Code, message, line and count of each.
+    #[getter]
+    fn warnings(&self) -> Vec<(&str, &str, Option<u64>, u64)> {
+        let warnings = self.warnings.iter();
+        warnings
+            .map(|w| (w.code.as_str(), w.message.as_str(), w.line, w.count))
+            .collect()
+    }
+
+    fn __len__(&self) -> usize {
+        self.morphology.points.len()
+    }
+
+    #[getter]
+    fn points(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        let made = || arrays::rows(py, columns::points(&self.morphology));
+        Ok(self.points.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    #[getter]
+    fn radii(&self, py: Python<'_>) -> PyResult<Py<PyArray1<f64>>> {
+        let made = || arrays::column(py, columns::radii(&self.morphology));
+        Ok(self.radii.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    #[getter]
+    fn types(&self, py: Python<'_>) -> PyResult<Py<PyArray1<i32>>> {
+        let made = || arrays::column(py, columns::types(&self.morphology));
+        Ok(self.types.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    #[getter]
+    fn parents(&self, py: Python<'_>) -> PyResult<Py<PyArray1<i64>>> {
+        let made = || arrays::column(py, columns::parents(&self.morphology));
+        Ok(self.parents.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    #[getter]
+    fn samples(&self, py: Python<'_>) -> PyResult<Py<PyArray1<i64>>> {
+        let made = || arrays::column(py, self.morphology.sample_ids.clone());
+        Ok(self.samples.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    /// Arrays with a value for each section.
+    fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let cell = &*self.morphology;
+        let of = |value: &dyn Fn(&neurotess::morphology::Section) -> i64| {
+            arrays::column(py, cell.sections.iter().map(value).collect())
+        };
+        let parent = |s: &neurotess::morphology::Section| s.parent().map_or(-1, |p| i64::from(p.0));
+        let wide = |values: Vec<u32>| values.into_iter().map(i64::from).collect();
+        let sections = PyDict::new(py);
+        sections.set_item("first", of(&|s| i64::from(s.first))?)?;
+        sections.set_item("end", of(&|s| i64::from(s.end))?)?;
+        sections.set_item("type", of(&|s| i64::from(s.kind.0))?)?;
+        sections.set_item("parent", of(&parent)?)?;
+        let neurites: Vec<i64> = wide(shape::neurites(cell));
+        sections.set_item("neurite", arrays::column(py, neurites)?)?;
+        let orders: Vec<i64> = wide(shape::branch_orders(cell));
+        sections.set_item("order", arrays::column(py, orders)?)?;
+        sections.set_item("length", arrays::column(py, shape::section_lengths(cell))?)?;
+        sections.set_item(
+            "path_length",
+            arrays::column(py, shape::path_lengths(cell))?,
+        )?;
+        Ok(sections)
+    }
+
+    /// A dictionary for each soma.
+    fn somata<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let origin = self.morphology.origin;
+        let one = |soma: &neurotess::morphology::Soma| {
+            let (area, volume) = soma_area_volume(soma);
+            let kind = match soma.kind {
+                SomaKind::Point => "point",
+                SomaKind::ThreePoint => "three_point",
+                SomaKind::Contour => "contour",
+                SomaKind::Cylinders => "cylinders",
+            };
+            let samples = soma.samples.iter();
+            let at = |p: glam::Vec3| (origin + p.as_dvec3()).to_array();
+            let points = samples.clone().map(|s| at(s.position)).collect();
+            let radii = samples.map(|s| f64::from(s.radius)).collect();
+            let told = PyDict::new(py);
+            told.set_item("kind", kind)?;
+            told.set_item("center", at(soma.center))?;
+            told.set_item("radius", f64::from(soma.radius))?;
+            told.set_item("area", area)?;
+            told.set_item("volume", volume)?;
+            told.set_item("points", arrays::rows(py, points)?)?;
+            told.set_item("radii", arrays::column::<f64>(py, radii)?)?;
+            Ok(told)
+        };
+        self.morphology.somata.iter().map(one).collect()
+    }
+
+    fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let measures = py.detach(|| Measures::of(&self.morphology));
+        json::serialized(py, &measures)
+    }
+
+    /// Rows as SWC has them: numbers, types, positions, radii, numbers of the parents.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let table = py.detach(|| table::rows(&self.morphology));
+        let columns = PyDict::new(py);
+        columns.set_item("id", arrays::column(py, table.ids)?)?;
+        columns.set_item("type", arrays::column(py, table.types)?)?;
+        columns.set_item("position", arrays::rows(py, table.positions)?)?;
+        columns.set_item("radius", arrays::column(py, table.radii)?)?;
+        columns.set_item("parent", arrays::column(py, table.parents)?)?;
+        Ok(columns)
+    }
+
+    /// Writes a file, whole or not at all; tells what the format cannot hold.
+    fn write(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        format: Option<String>,
+        overwrite: bool,
+    ) -> PyResult<Vec<String>> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let format = match format {
+            Some(name) => format_named(&name)?,
+            None => format_named(&extension)?,
+        };
+        let existing = existing(overwrite);
+        let lost = py.detach(|| {
+            let mut output = Output::create(&path, existing).map_err(|e| errors::output(&e))?;
+            let lost = formats::write(&self.morphology, format, output.file());
+            let lost = lost.map_err(|e| unwritten(format, e))?;
+            output.finish().map_err(|e| errors::output(&e))?;
+            PyResult::Ok(lost)
+        })?;
+        Ok(lost.iter().map(ToString::to_string).collect())
+    }
+
+    /// The bytes of a file.
+    fn to_bytes<'py>(&self, py: Python<'py>, format: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let format = format_named(format)?;
+        let bytes = py.detach(|| {
+            let mut file = Cursor::new(Vec::new());
+            let written = formats::write(&self.morphology, format, &mut file);
+            written
+                .map(|_lost| file.into_inner())
+                .map_err(|e| unwritten(format, e))
+        })?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.morphology == other.morphology
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let py = slf.py();
+        let cell = slf.get();
+        let state = py.detach(|| state::to_bytes(&cell.morphology, &cell.format, &cell.warnings));
+        let restore = py.get_type::<Self>().getattr("restore")?;
+        Ok((restore, (PyBytes::new(py, &state),)))
+    }
+
+    #[staticmethod]
+    fn restore(state: &[u8]) -> PyResult<Self> {
+        let (morphology, format, warnings) = state::from_bytes(state)
+            .ok_or_else(|| PyValueError::new_err("these bytes are no cell of this version"))?;
+        Ok(Self::new(Arc::new(morphology), &format, warnings))
+    }
+}
+
+/// What becomes of a file that is there.
+pub(crate) fn existing(overwrite: bool) -> Existing {
+    match overwrite {
+        true => Existing::Replace,
+        false => Existing::Refuse("use overwrite=True, or another name"),
+    }
+}
+
+fn unwritten(format: Format, error: std::io::Error) -> PyErr {
+    match error.kind() {
+        std::io::ErrorKind::Unsupported => PyValueError::new_err(format!(
+            "{} is read, not written: use swc, asc or h5",
+            format.name()
+        )),
+        _ => error.into(),
+    }
+}
+
+/// A format by its name or an extension.
+fn format_named(name: &str) -> PyResult<Format> {
+    let plain = name.trim_start_matches('.');
+    let named = Format::ALL.into_iter().find(|f| f.name() == plain);
+    let found = named.or_else(|| Format::of_extension(plain));
+    found.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "'{name}' is no format of morphologies: use 'swc', 'asc', 'h5' or 'nml'"
+        ))
+    })
+}

@@ -1,0 +1,243 @@
+//! Pictures, and drawings that are drawn again and again.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+use neurotess::render::{Camera, Gpu, Image, PngWriter};
+use neurotess_cli::embed::{self, DrawError, DrawingInput};
+use numpy::ndarray::Array3;
+use numpy::{PyArray3, PyReadonlyArray3};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::cell::Cell;
+use crate::errors;
+use crate::errors::bug;
+use crate::work::released;
+
+/// Adds what draws to the module.
+pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<Drawing>()?;
+    module.add_function(wrap_pyfunction!(png, module)?)
+}
+
+/// Devices by the adapter that was asked for. They are kept: opening one takes a tenth of a second.
+static DEVICES: Mutex<Option<HashMap<Option<String>, Arc<Gpu>>>> = Mutex::new(None);
+
+fn device(adapter: Option<String>) -> Result<Arc<Gpu>, DrawError> {
+    let mut devices = DEVICES.lock().unwrap_or_else(PoisonError::into_inner);
+    let devices = devices.get_or_insert_with(HashMap::new);
+    if let Some(gpu) = devices.get(&adapter) {
+        return Ok(Arc::clone(gpu));
+    }
+    let gpu = Gpu::open(adapter.as_deref()).map_err(|e| DrawError::Failed(e.to_string()))?;
+    let gpu = Arc::new(gpu);
+    devices.insert(adapter, Arc::clone(&gpu));
+    Ok(gpu)
+}
+
+/// Cells on the device; nothing when it is closed.
+type Shared = Arc<Mutex<Option<(Arc<Gpu>, embed::Drawing)>>>;
+
+/// Cells on the graphics device.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+pub(crate) struct Drawing {
+    shared: Shared,
+    /// What there was to say.
+    #[pyo3(get)]
+    messages: Vec<String>,
+    /// How many pictures the options ask for.
+    #[pyo3(get)]
+    pictures: usize,
+}
+
+/// Eye, target, direction upwards (µm) and vertical angle of view (radians).
+type View = ([f64; 3], [f64; 3], [f64; 3], f64);
+
+#[pymethods]
+impl Drawing {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        cells: Vec<PyRef<'_, Cell>>,
+        circuit: Option<PathBuf>,
+        options: Vec<String>,
+        adapter: Option<String>,
+    ) -> PyResult<Self> {
+        let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
+        let made = released(py, None, move || {
+            let gpu = device(adapter)?;
+            let named: Vec<_> = cells.iter().map(|c| (c.name.as_str(), &**c)).collect();
+            let input = match &circuit {
+                Some(path) => DrawingInput::Circuit(path),
+                None => DrawingInput::Cells(&named),
+            };
+            let (drawing, messages) = embed::Drawing::new(&gpu, input, options)?;
+            Ok((gpu, drawing, messages))
+        })?;
+        let (gpu, drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
+        Ok(Self {
+            pictures: drawing.pictures(),
+            shared: Arc::new(Mutex::new(Some((gpu, drawing)))),
+            messages,
+        })
+    }
+
+    /// Draws one of the pictures that the options ask for.
+    fn draw(&self, py: Python<'_>, picture: usize) -> PyResult<Py<PyArray3<u8>>> {
+        self.with(py, move |gpu, drawing| drawing.draw(gpu, picture))
+    }
+
+    /// Draws from anywhere, with the colors of one of the pictures.
+    fn draw_from(
+        &self,
+        py: Python<'_>,
+        picture: usize,
+        view: View,
+        size: [u32; 2],
+        samples: u32,
+    ) -> PyResult<Py<PyArray3<u8>>> {
+        let camera = camera(view)?;
+        self.with(py, move |gpu, drawing| {
+            drawing.draw_from(gpu, picture, camera, (size, samples))
+        })
+    }
+
+    /// The camera of a picture.
+    fn camera(&self, picture: usize) -> PyResult<View> {
+        let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let drawing = shared.as_ref().ok_or_else(closed)?;
+        let missing = || PyValueError::new_err("no such picture");
+        let camera = drawing.1.camera(picture).ok_or_else(missing)?;
+        let [_, up, _] = camera.axes();
+        let (eye, target) = (camera.eye().to_array(), camera.target().to_array());
+        Ok((eye, target, up.to_array(), camera.fov()))
+    }
+
+    /// What is at a pixel, or near it; none if nothing is.
+    fn pick<'py>(
+        &self,
+        py: Python<'py>,
+        view: View,
+        size: [u32; 2],
+        at: [f64; 2],
+        reach: f64,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let camera = camera(view)?;
+        let shared = Arc::clone(&self.shared);
+        let picked = released(py, None, move || {
+            let shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            let drawing = shared.as_ref()?;
+            drawing.1.pick(&camera, size, at, reach)
+        })?;
+        let Some(picked) = picked else {
+            return Ok(None);
+        };
+        let told = PyDict::new(py);
+        told.set_item("cell", picked.cell)?;
+        told.set_item("name", picked.name)?;
+        told.set_item("node_id", picked.node)?;
+        told.set_item("section", picked.section.map(|section| section.0))?;
+        told.set_item("sample", picked.sample)?;
+        told.set_item("position", picked.position.to_array())?;
+        Ok(Some(told))
+    }
+
+    /// Gives back the memory on the device. Nothing can be drawn afterwards.
+    fn close(&self, py: Python<'_>) {
+        // A picture that is being drawn is waited for.
+        py.detach(|| {
+            drop(
+                self.shared
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .take(),
+            );
+        });
+    }
+}
+
+impl Drawing {
+    /// Draws without the interpreter's lock; one picture at a time.
+    fn with(
+        &self,
+        py: Python<'_>,
+        draw: impl FnOnce(&Gpu, &mut embed::Drawing) -> Result<Image, DrawError> + Send + 'static,
+    ) -> PyResult<Py<PyArray3<u8>>> {
+        let shared = Arc::clone(&self.shared);
+        let drawn = released(py, None, move || {
+            let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            shared.as_mut().map(|(gpu, drawing)| draw(gpu, drawing))
+        })?;
+        let image = drawn.ok_or_else(closed)?.map_err(|e| undrawn(py, &e))?;
+        let shape = (image.height as usize, image.width as usize, 4);
+        let pixels = Array3::from_shape_vec(shape, image.pixels).map_err(bug)?;
+        Ok(PyArray3::from_owned_array(py, pixels).unbind())
+    }
+}
+
+/// The bytes of a PNG file.
+#[pyfunction]
+fn png<'py>(
+    py: Python<'py>,
+    pixels: PyReadonlyArray3<'py, u8>,
+    transparent: bool,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let view = pixels.as_array();
+    let (height, width, four) = view.dim();
+    if four != 4 {
+        return Err(PyValueError::new_err("pixels are (height, width, 4)"));
+    }
+    let image = Image {
+        width: width as u32,
+        height: height as u32,
+        pixels: pixels.as_slice()?.to_vec(),
+    };
+    let written = py.detach(|| {
+        let bytes = Bytes::default();
+        let size = [image.width, image.height];
+        let mut png = PngWriter::new(bytes.clone(), size, transparent)?;
+        png.write(&image)?;
+        png.finish()?;
+        std::io::Result::Ok(bytes.0.take())
+    });
+    Ok(PyBytes::new(py, &written?))
+}
+
+/// Bytes that a writer, which keeps what it writes to, leaves.
+#[derive(Clone, Default)]
+struct Bytes(Rc<RefCell<Vec<u8>>>);
+
+impl Write for Bytes {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.borrow_mut().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+fn camera((eye, target, up, fov): View) -> PyResult<Camera> {
+    let [eye, target, up] = [eye, target, up].map(DVec3::from);
+    let camera = Camera::new(eye, target, up, fov);
+    camera.map_err(|e| PyValueError::new_err(e.to_string()))
+}
+
+fn closed() -> PyErr {
+    PyRuntimeError::new_err("the view is closed")
+}
+
+fn undrawn(py: Python<'_>, error: &DrawError) -> PyErr {
+    match error {
+        DrawError::Option(message) => errors::option(py, message),
+        DrawError::Failed(message) => errors::render(py, message),
+    }
+}

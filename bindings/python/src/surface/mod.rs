@@ -1,0 +1,298 @@
+//! Surfaces: how cells are meshed, and the arrays of meshes.
+
+mod columns;
+mod slices;
+
+use std::path::PathBuf;
+
+use neurotess::mesh::{self, Format, InUnit, SurfaceMesh, Unit, measure_surface};
+use neurotess::output::Output;
+use neurotess_cli::embed::{MeshRecipe, MeshReport};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::cell::{Cell, existing};
+use crate::work::released;
+use crate::{arrays, errors, json};
+pub(crate) use columns::Columns;
+use slices::Slices;
+
+/// How cells are meshed: options of the command line, checked.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+pub(crate) struct Recipe(pub(crate) MeshRecipe);
+
+#[pymethods]
+impl Recipe {
+    #[new]
+    fn new(py: Python<'_>, options: Vec<String>) -> PyResult<Self> {
+        let recipe = MeshRecipe::new(options);
+        recipe.map(Self).map_err(|e| errors::option(py, &e))
+    }
+
+    /// Meshes a cell: its surface, and what is known of it.
+    fn mesh<'py>(
+        &self,
+        py: Python<'py>,
+        cell: &Cell,
+        threads: Option<usize>,
+    ) -> PyResult<(Surface, Bound<'py, PyAny>)> {
+        let (recipe, morphology) = (self.0.clone(), cell.morphology.clone());
+        let made = released(py, threads, move || {
+            let cell = recipe.generate(&morphology)?;
+            recipe.surface(&cell, |surface| Columns::of(surface))
+        })?;
+        of_made(py, made)
+    }
+}
+
+/// A surface that was made, or why not.
+pub(crate) fn of_made(
+    py: Python<'_>,
+    made: Result<(Columns, MeshReport), String>,
+) -> PyResult<(Surface, Bound<'_, PyAny>)> {
+    let (columns, report) = made.map_err(|e| errors::mesh(py, &e))?;
+    Ok((Surface::new(py, columns)?, json::serialized(py, &report)?))
+}
+
+/// The arrays of a mesh.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+pub(crate) struct Surface {
+    #[pyo3(get)]
+    vertices: Py<PyArray2<f64>>,
+    #[pyo3(get)]
+    normals: Py<PyArray2<f32>>,
+    #[pyo3(get)]
+    types: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    points: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    sections: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    radii: Py<PyArray1<f32>>,
+    #[pyo3(get)]
+    faces: Py<PyArray2<u32>>,
+    #[pyo3(get)]
+    quads: Py<PyArray2<u32>>,
+    #[pyo3(get)]
+    origin: [f64; 3],
+}
+
+impl Surface {
+    /// Moves columns into arrays.
+    pub(crate) fn new(py: Python<'_>, columns: Columns) -> PyResult<Self> {
+        Ok(Self {
+            vertices: arrays::rows(py, columns.vertices)?,
+            normals: arrays::rows(py, columns.normals)?,
+            types: arrays::column(py, columns.types)?,
+            points: arrays::column(py, columns.points)?,
+            sections: arrays::column(py, columns.sections)?,
+            radii: arrays::column(py, columns.radii)?,
+            faces: arrays::rows(py, columns.faces.triangles)?,
+            quads: arrays::rows(py, columns.faces.quads)?,
+            origin: columns.origin.to_array(),
+        })
+    }
+
+    /// Does something with the arrays, without the interpreter's lock.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Slices<'_>) -> T + Send,
+    ) -> PyResult<T> {
+        let vertices = self.vertices.bind(py).readonly();
+        let normals = self.normals.bind(py).readonly();
+        let types = self.types.bind(py).readonly();
+        let points = self.points.bind(py).readonly();
+        let sections = self.sections.bind(py).readonly();
+        let radii = self.radii.bind(py).readonly();
+        let faces = self.faces.bind(py).readonly();
+        let quads = self.quads.bind(py).readonly();
+        let slices = Slices {
+            origin: self.origin.into(),
+            vertices: vertices.as_slice()?.as_chunks().0,
+            normals: normals.as_slice()?.as_chunks().0,
+            types: types.as_slice()?,
+            points: points.as_slice()?,
+            sections: sections.as_slice()?,
+            radii: radii.as_slice()?,
+            triangles: faces.as_slice()?.as_chunks().0,
+            quads: quads.as_slice()?.as_chunks().0,
+        };
+        Ok(py.detach(|| work(&slices)))
+    }
+}
+
+#[pymethods]
+impl Surface {
+    /// A mesh of arrays of one's own.
+    #[staticmethod]
+    fn from_arrays(
+        py: Python<'_>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, u32>,
+    ) -> PyResult<Self> {
+        let vertices = vertices.as_slice()?.as_chunks().0;
+        let faces = faces.as_slice()?.as_chunks().0;
+        let count = vertices.len();
+        let outside = |face: &&[u32; 3]| face.iter().any(|&corner| corner as usize >= count);
+        if let Some(face) = faces.iter().find(outside) {
+            return Err(PyValueError::new_err(format!(
+                "face {face:?} has a corner that is none of the {count} vertices"
+            )));
+        }
+        Self::new(py, Columns::of_arrays(vertices, faces))
+    }
+
+    /// A mesh file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, format: Option<String>) -> PyResult<Self> {
+        let format = format.map(|name| format_named(&name)).transpose()?;
+        let file = path.display().to_string();
+        let read = released(py, None, move || {
+            let read = match format {
+                Some(format) => mesh::read_as(&path, format),
+                None => mesh::read(&path),
+            };
+            read.map(|surface| Columns::of(&surface))
+        })?;
+        match read {
+            Ok(columns) => Self::new(py, columns),
+            Err(mesh::ReadError::Io(e)) => Err(errors::read_io(py, &file, &e)),
+            Err(e) => {
+                let line = match e.place() {
+                    mesh::FilePosition::Line(line) => Some(line as u64),
+                    mesh::FilePosition::Byte(_) | mesh::FilePosition::File => None,
+                };
+                Err(errors::read_of(py, &file, line, &e.to_string()))
+            }
+        }
+    }
+
+    /// The whole judgment.
+    fn check<'py>(&self, py: Python<'py>, merge: bool) -> PyResult<Bound<'py, PyAny>> {
+        let mut surface = self.with(py, |slices| SurfaceMesh::collect(slices))?;
+        let report = released(py, None, move || {
+            if merge {
+                mesh::merge_identical(&mut surface);
+            }
+            mesh::check(&surface)
+        })?;
+        json::serialized(py, &report)
+    }
+
+    /// Whether it is closed, its Euler characteristic and the number of its parts.
+    fn topology(&self, py: Python<'_>) -> PyResult<(bool, i64, usize)> {
+        let surface = self.with(py, |slices| SurfaceMesh::collect(slices))?;
+        let topology = released(py, None, move || surface.topology())?;
+        Ok((topology.closed, topology.euler, topology.components))
+    }
+
+    /// Volume (µm³) and area (µm²).
+    fn measure(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
+        let measure = self.with(py, |slices| measure_surface(slices))?;
+        Ok((measure.volume, measure.area))
+    }
+
+    /// Writes a file, whole or not at all.
+    fn write(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        format: Option<String>,
+        unit: &str,
+        overwrite: bool,
+    ) -> PyResult<()> {
+        let format = match format {
+            Some(name) => format_named(&name)?,
+            None => format_named(&path.extension().unwrap_or_default().to_string_lossy())?,
+        };
+        let unit = match unit {
+            "um" => Unit::Micrometer,
+            "m" => Unit::Meter,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "unit='{other}' is not 'um' or 'm'"
+                )));
+            }
+        };
+        self.with(py, |slices| {
+            let mut output =
+                Output::create(&path, existing(overwrite)).map_err(|e| errors::output(&e))?;
+            let scaled = InUnit::new(slices, unit);
+            let surface: &dyn mesh::Surface = match unit {
+                Unit::Micrometer => slices,
+                Unit::Meter => &scaled,
+            };
+            mesh::write(surface, format, output.file()).map_err(unwritten)?;
+            output.finish().map_err(|e| errors::output(&e))
+        })?
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let py = slf.py();
+        let restore = py.get_type::<Self>().getattr("restore")?;
+        let s = slf.get();
+        let state = (
+            &s.vertices,
+            &s.normals,
+            &s.types,
+            &s.points,
+            &s.sections,
+            &s.radii,
+            &s.faces,
+            &s.quads,
+            s.origin,
+        );
+        Ok((restore, state.into_pyobject(py)?))
+    }
+
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "the arrays of a mesh")]
+    fn restore(
+        py: Python<'_>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        normals: PyReadonlyArray2<'_, f32>,
+        types: PyReadonlyArray1<'_, i32>,
+        points: PyReadonlyArray1<'_, i32>,
+        sections: PyReadonlyArray1<'_, i32>,
+        radii: PyReadonlyArray1<'_, f32>,
+        faces: PyReadonlyArray2<'_, u32>,
+        quads: PyReadonlyArray2<'_, u32>,
+        origin: [f64; 3],
+    ) -> PyResult<Self> {
+        let slices = Slices {
+            origin: origin.into(),
+            vertices: vertices.as_slice()?.as_chunks().0,
+            normals: normals.as_slice()?.as_chunks().0,
+            types: types.as_slice()?,
+            points: points.as_slice()?,
+            sections: sections.as_slice()?,
+            radii: radii.as_slice()?,
+            triangles: faces.as_slice()?.as_chunks().0,
+            quads: quads.as_slice()?.as_chunks().0,
+        };
+        if !slices.agree() {
+            return Err(PyValueError::new_err("these arrays are no mesh"));
+        }
+        Self::new(py, slices.to_columns())
+    }
+}
+
+fn unwritten(error: mesh::WriteError) -> PyErr {
+    match error {
+        mesh::WriteError::Io(e) => e.into(),
+        other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+/// A format by its name or an extension.
+fn format_named(name: &str) -> PyResult<Format> {
+    let plain = name.trim_start_matches('.');
+    plain
+        .parse()
+        .map_err(|e: mesh::UnknownFormat| PyValueError::new_err(e.to_string()))
+}

@@ -1,0 +1,67 @@
+//! Work without the interpreter's lock, which Ctrl-C does not have to wait for.
+
+use std::any::Any;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::Mutex;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+use pyo3::prelude::*;
+
+use crate::errors::bug;
+
+/// Time between two looks at whether Ctrl-C was pressed.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Stack (bytes) of threads: large, for debug builds.
+const STACK: usize = 8 << 20;
+
+/// Does some work on another thread, or on as many threads as given, without the interpreter's lock.
+///
+/// # Errors
+/// `KeyboardInterrupt` where Ctrl-C was pressed: the work is left to itself then, and what it gives is
+/// dropped. `RuntimeError` if it panics.
+pub(crate) fn released<T: Send + 'static>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, receiver) = mpsc::sync_channel(1);
+    let guarded = move || {
+        let done = panic::catch_unwind(AssertUnwindSafe(work));
+        // Nobody listens any more if there was an interrupt.
+        drop(sender.send(done));
+    };
+    match threads {
+        // Threads of its own, so that many cells at a time do not wait for one another.
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.max(1))
+            .stack_size(STACK)
+            .build()
+            .map_err(bug)?
+            .spawn(guarded),
+        None => {
+            let thread = std::thread::Builder::new().stack_size(STACK);
+            thread.spawn(guarded).map_err(bug)?;
+        }
+    }
+    let receiver = Mutex::new(receiver);
+    loop {
+        let waited = py.detach(|| match receiver.lock() {
+            Ok(receiver) => receiver.recv_timeout(LOOK),
+            Err(_) => Err(RecvTimeoutError::Disconnected),
+        });
+        match waited {
+            Ok(done) => return done.map_err(|payload| bug(text(&*payload))),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => return Err(bug("a thread is gone")),
+        }
+    }
+}
+
+/// What a panic says.
+fn text(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().cloned();
+    let text = text.or_else(|| payload.downcast_ref::<&str>().map(|&text| text.to_owned()));
+    text.unwrap_or_else(|| "a panic".to_owned())
+}

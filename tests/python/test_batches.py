@@ -1,0 +1,134 @@
+"""Many cells, threads, interrupts."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import neurotess as nt
+import pytest
+
+
+def test_one_bad_file_does_not_end_the_batch(samples: Path, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.swc"
+    bad.write_text("1 1 0 0 zero 5 -1\n")
+    paths = [samples / "granule.swc", bad, tmp_path / "missing.swc", samples / "star.swc"]
+    results = list(nt.mesh_many(paths, threads=2, level=1))
+    assert [result.input for result in results] == paths
+    assert [result.ok for result in results] == [True, False, False, True]
+    assert isinstance(results[1].error, nt.ReadError) and results[1].error.line == 1
+    assert isinstance(results[2].error, FileNotFoundError)
+    assert results[3].mesh is not None and results[3].mesh.closed
+
+
+def test_any_number_of_threads_gives_the_same() -> None:
+    cells = [nt.synth("granule", seed=seed, points=80) for seed in range(6)]
+    one = [result.mesh for result in nt.mesh_many(cells, threads=1, level=2)]
+    three = [result.mesh for result in nt.mesh_many(iter(cells), threads=3, level=2)]
+    alone = [nt.mesh(cell, level=2, threads=2) for cell in cells]
+    for a, b, c in zip(one, three, alone, strict=True):
+        assert a is not None and b is not None
+        assert (a.vertices == b.vertices).all() and (a.faces == b.faces).all()
+        assert (a.vertices == c.vertices).all() and (a.faces == c.faces).all()
+
+
+def test_inputs_are_taken_as_they_are_needed() -> None:
+    taken = 0
+
+    def cells() -> Iterator[nt.Morphology]:
+        nonlocal taken
+        while True:
+            taken += 1
+            yield nt.synth("granule", seed=taken, points=50)
+
+    results = nt.mesh_many(cells(), threads=2, level=1)
+    for _ in range(3):
+        next(results)
+    assert taken <= 3 + 2 * 2
+    results.close()  # type: ignore[attr-defined]
+
+
+def test_wrong_options_are_told_at_once() -> None:
+    with pytest.raises(ValueError, match="level"):
+        nt.mesh_many([], level=100)
+    with pytest.raises(ValueError, match="threads"):
+        nt.mesh_many([], threads=0)
+
+
+def test_other_threads_run_meanwhile() -> None:
+    """The interpreter is free while a cell is meshed: a thread that counts is not stopped."""
+    cell = nt.synth("purkinje", points=3000)
+    done, counted = threading.Event(), []
+
+    def count() -> None:
+        number = 0
+        while not done.is_set():
+            number += 1
+            time.sleep(0.001)
+        counted.append(number)
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    start = time.perf_counter()
+    nt.mesh(cell, level=8)
+    took = time.perf_counter() - start
+    done.set()
+    counter.join()
+    # A sleep is a millisecond and more; a lock held all the time would leave a count of about 1.
+    assert counted[0] > 3 or took < 0.02
+
+
+def test_one_cell_is_shared_by_threads() -> None:
+    cell = nt.synth("star", points=300)
+    found: list[object] = []
+    work = [
+        lambda: found.append(nt.mesh(cell, level=1).vertices.sum()),
+        lambda: found.append(cell.points.sum() and None),
+    ]
+    threads = [threading.Thread(target=work[i % 2]) for i in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len({value for value in found if value is not None}) == 1 and len(found) == 8
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
+def test_interrupts_do_not_wait_for_the_work() -> None:
+    code = """
+        import signal, neurotess as nt
+        # Where the tests run in the background, it is ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        cell = nt.synth("purkinje", points=100_000)
+        try:
+            print("begin", flush=True)
+            nt.mesh(cell, level=2)
+        except KeyboardInterrupt:
+            import os
+            print("interrupted", flush=True)
+            os._exit(0)
+        print("done", flush=True)
+    """
+    command = [sys.executable, "-c", textwrap.dedent(code)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "begin\n"
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "interrupted\n"
+
+
+def test_processes_share_cells() -> None:
+    import multiprocessing
+
+    cell = nt.synth("granule", points=60)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        mesh = pool.apply(nt.mesh, (cell,), {"level": 1})
+    assert (mesh.vertices == nt.mesh(cell, level=1).vertices).all()

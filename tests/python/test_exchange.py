@@ -1,0 +1,100 @@
+"""Cells of other packages, there and back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import neurotess as nt
+import numpy as np
+import pytest
+
+KINDS = ["granule", "pyramidal", "star"]
+
+
+@pytest.fixture(params=KINDS)
+def cell(request: pytest.FixtureRequest, samples: Path) -> nt.Morphology:
+    return nt.read(samples / f"{request.param}.swc")
+
+
+def same(a: nt.Morphology, b: nt.Morphology) -> None:
+    assert np.allclose(a.points, b.points, atol=1e-4) and np.allclose(a.radii, b.radii, atol=1e-4)
+    assert (a.types == b.types).all() and (a.parents == b.parents).all()
+    assert a.soma is not None and b.soma is not None
+    assert np.allclose(a.soma.center, b.soma.center, atol=1e-4)
+    assert a.soma.radius == pytest.approx(b.soma.radius, abs=1e-4)
+    assert nt.mesh(a, level=1).volume == pytest.approx(nt.mesh(b, level=1).volume, rel=1e-4)
+
+
+def test_navis(cell: nt.Morphology) -> None:
+    pytest.importorskip("navis")
+    neuron = cell.to_navis()
+    assert neuron.n_nodes == len(cell.to_table()) and str(neuron.units) == "1 micrometer"
+    # The way from the soma to the neurites is in navis' length.
+    assert neuron.cable_length >= cell.measures()["length"]
+    same(nt.Morphology.from_navis(neuron), cell)
+
+
+def test_units_of_navis_are_taken_into_account(cell: nt.Morphology) -> None:
+    navis = pytest.importorskip("navis")
+    neuron = cell.to_navis()
+    table = neuron.nodes.copy()
+    for column in ("x", "y", "z", "radius"):
+        table[column] *= 1000 / 8
+    in_voxels = navis.TreeNeuron(table, units="8 nm", name="voxels")
+    same(nt.Morphology.from_navis(in_voxels), cell)
+    without = navis.TreeNeuron(neuron.nodes.copy(), name="without")
+    with pytest.warns(nt.NeurotessWarning, match="no units"):
+        same(nt.Morphology.from_navis(without), cell)
+
+
+def test_morphio(cell: nt.Morphology) -> None:
+    morphio = pytest.importorskip("morphio")
+    theirs = cell.to_morphio()
+    assert len(theirs.sections) == len(cell.sections)
+    same(nt.Morphology.from_morphio(theirs), cell)
+    same(nt.Morphology.from_morphio(morphio.mut.Morphology(theirs)), cell)
+
+
+def test_neurom(cell: nt.Morphology) -> None:
+    neurom = pytest.importorskip("neurom")
+    theirs = cell.to_neurom()
+    assert theirs.name == cell.name
+    length = neurom.get("total_length", theirs)
+    assert length == pytest.approx(cell.measures()["length"], rel=1e-4)
+    sections = [section.length for section in cell.sections]
+    assert np.allclose(sorted(neurom.get("section_lengths", theirs)), sorted(sections), rtol=1e-3)
+    same(nt.Morphology.from_neurom(theirs), cell)
+
+
+def test_morphio_reads_the_same_file_alike(samples: Path) -> None:
+    morphio = pytest.importorskip("morphio")
+    path = samples / "granule.swc"
+    ours, theirs = nt.read(path), morphio.Morphology(str(path))
+    made = nt.Morphology.from_morphio(theirs)
+    assert np.allclose(made.points, ours.points, atol=1e-4)
+
+
+def test_outlines_stay_outlines() -> None:
+    pytest.importorskip("morphio")
+    ring = [(np.cos(a) * 5, np.sin(a) * 5) for a in np.linspace(0, 2 * np.pi, 12, endpoint=False)]
+    rows = [f"{i + 1} 1 {x} {y} 0 0 {i if i else -1}" for i, (x, y) in enumerate(ring)]
+    rows += ["20 3 0 9 0 1 4", "21 3 0 20 0 1 20"]
+    cell = nt.read("\n".join(rows).encode(), name="ring.swc")
+    assert cell.soma is not None and cell.soma.kind == "contour"
+    again = nt.Morphology.from_morphio(cell.to_morphio())
+    assert again.soma is not None and again.soma.kind == "contour"
+    assert again.soma.radius == pytest.approx(cell.soma.radius, rel=1e-4)
+
+
+def test_meshes_go_to_navis() -> None:
+    pytest.importorskip("navis")
+    mesh = nt.mesh(nt.synth("granule", points=60), level=1)
+    theirs = mesh.to_navis()
+    assert theirs.n_vertices == len(mesh.vertices)
+
+
+def test_packages_that_are_missing_are_named() -> None:
+    from neurotess._exchange import needed
+
+    with pytest.raises(ImportError, match="pip install 'neurotess\\[view\\]'"):
+        needed("no_such_package", "view")

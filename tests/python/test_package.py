@@ -1,0 +1,95 @@
+"""The package as a whole: import, command, documentation, types."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import neurotess as nt
+import pytest
+
+PACKAGE = Path(nt.__file__).parent
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((ROOT / "bindings/python/examples").glob("*.py"))
+
+
+def python(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
+
+
+def test_import_is_light() -> None:
+    code = "import sys, neurotess; print(*sorted({'numpy', 're', 'asyncio'} & set(sys.modules)))"
+    before = python("-S", "-c", "import sys; print(*sorted({'re', 'asyncio'} & set(sys.modules)))")
+    assert before.stdout.split() == []
+    path = f"import sys; sys.path.insert(0, {str(PACKAGE.parent)!r}); {code}"
+    assert python("-S", "-c", path).stdout.split() == []
+
+
+def test_the_command_is_there(samples: Path, tmp_path: Path) -> None:
+    assert python("-m", "neurotess", "--version").stdout.strip() == f"neurotess {nt.__version__}"
+    wrong = python("-m", "neurotess", "mesh")
+    assert wrong.returncode == 2 and "required" in wrong.stderr
+    out = tmp_path / "cell.ply"
+    made = python("-m", "neurotess", "mesh", str(samples / "granule.swc"), "-o", str(out), "--level", "1")
+    assert made.returncode == 0 and nt.check(out)["closed"]
+    failed = python("-m", "neurotess", "info", str(tmp_path / "missing.swc"))
+    assert failed.returncode == 1 and "missing.swc" in failed.stderr
+
+
+@pytest.mark.parametrize("name", nt.__all__)
+def test_everything_is_documented(name: str) -> None:
+    thing = getattr(nt, name)
+    if name == "__version__":
+        return
+    assert inspect.getdoc(thing), name
+    if inspect.isclass(thing):
+        members = vars(thing).items()
+        bare = [
+            key
+            for key, value in members
+            if not key.startswith("_")
+            and (inspect.isfunction(value) or isinstance(value, (property, classmethod)))
+            and not inspect.getdoc(value)
+        ]
+        assert bare == []
+
+
+@pytest.mark.parametrize("module", ["_morphology", "_meshes", "_circuits", "_pictures", "plot", "dask"])
+def test_examples_of_the_documentation_hold(module: str) -> None:
+    failed, _ = doctest.testmod(importlib.import_module(f"neurotess.{module}"))
+    assert failed == 0
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_run(example: Path, tmp_path: Path, can_draw: bool) -> None:
+    for package in ("matplotlib", "pandas"):
+        pytest.importorskip(package)
+    command = [sys.executable, str(example), str(tmp_path)]
+    environment = {"MPLBACKEND": "agg"}
+    import os
+
+    ran = subprocess.run(
+        command, capture_output=True, text=True, check=False, env={**os.environ, **environment}
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert any(tmp_path.iterdir())
+
+
+def test_types_hold() -> None:
+    pytest.importorskip("mypy")
+    settings = str(ROOT / "bindings/python/pyproject.toml")
+    checked = python("-m", "mypy", "--config-file", settings, str(PACKAGE))
+    assert checked.returncode == 0, checked.stdout
+    files = [str(example) for example in EXAMPLES]
+    checked = python("-m", "mypy", "--config-file", settings, "--strict", *files)
+    assert checked.returncode == 0, checked.stdout
+
+
+def test_the_stub_is_that_of_the_module() -> None:
+    pytest.importorskip("mypy")
+    checked = python("-m", "mypy.stubtest", "neurotess._neurotess", "--concise")
+    assert checked.returncode == 0, checked.stdout + checked.stderr

@@ -1,0 +1,189 @@
+"""Pictures; they need an adapter."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import neurotess as nt
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.usefixtures("can_draw")
+
+SMALL = {"size": (96, 64), "samples": 4}
+
+
+@pytest.fixture(scope="module")
+def cell() -> nt.Morphology:
+    return nt.synth("granule", seed=2, points=100)
+
+
+def test_a_picture_is_an_array(cell: nt.Morphology) -> None:
+    picture = nt.render(cell, legend=False, **SMALL)
+    pixels = np.asarray(picture)
+    assert pixels.shape == (64, 96, 4) and pixels.dtype == np.uint8 and picture.size == (96, 64)
+    assert pixels[0, 0].tolist() == [255, 255, 255, 255]
+    assert (pixels[..., :3] < 128).any()
+    assert np.asarray(picture, dtype=float).max() == 255.0
+
+
+def test_pictures_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) -> None:
+    cell.save(tmp_path / "cell.swc")
+    read = nt.read(tmp_path / "cell.swc")
+    for options, words in [
+        ({}, []),
+        ({"color_by": "radius", "scale_bar": True}, ["--color-by", "radius", "--scale-bar"]),
+        ({"transparent": True, "view": "iso"}, ["--transparent", "--view", "iso"]),
+        (
+            {"wireframe": True, "level": 2, "background": "#203040"},
+            ["--wireframe", "--level", "2", "--background", "203040"],
+        ),
+        (
+            {"eye": (0, 20, 200), "target": (0, 20, 0), "light": (-1, 1, 1), "ao": 0},
+            ["--eye", "0,20,200", "--target", "0,20,0", "--light=-1,1,1", "--ao", "0"],
+        ),
+        ({"lod": "exploration", "budget": 500}, ["--lod", "exploration", "--budget", "500"]),
+    ]:
+        ours = nt.render(read, size=(200, 150), samples=4, **options)
+        out = tmp_path / "theirs.png"
+        command = [sys.executable, "-m", "neurotess", "render", str(tmp_path / "cell.swc"), "-q"]
+        command += ["-o", str(out), "--size", "200x150", "--samples", "4", "--force", *words]
+        subprocess.run(command, check=True)
+        assert ours.to_png() == out.read_bytes(), options
+
+
+def test_several_cells_are_drawn_together(cell: nt.Morphology, samples: Path) -> None:
+    both = nt.render([cell, samples / "star.swc"], color_by="neuron", **SMALL)
+    assert (np.asarray(both) != np.asarray(nt.render(cell, color_by="neuron", **SMALL))).any()
+    with pytest.raises(ValueError, match="no cell"):
+        nt.render([], **SMALL)
+
+
+def test_films_go_around_and_through_time(cell: nt.Morphology, circuit_folder: Path) -> None:
+    turn = [np.asarray(picture) for picture in nt.film(cell, turntable=True, frames=3, **SMALL)]
+    assert len(turn) == 3 and (turn[0] != turn[1]).any()
+    circuit = nt.Circuit(circuit_folder)
+    name = next(n for n, path in circuit.reports.items() if not nt.Report(path).is_of_spikes)
+    times = circuit.report(name).times
+    options = {"report": name, "nodes": [0], "legend": False, **SMALL}
+    assert len(list(nt.film(circuit, time=(times[0], times[4], times[1] - times[0]), **options))) == 4
+    with pytest.raises(ValueError, match="turntable=True, or time"):
+        nt.film(cell)
+
+
+def test_notebooks_and_files_get_png(cell: nt.Morphology, tmp_path: Path) -> None:
+    picture = nt.render(cell, transparent=True, **SMALL)
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    picture.save(tmp_path / "cell.png")
+    assert (tmp_path / "cell.png").read_bytes() == picture.to_png()
+    with pytest.raises(FileExistsError):
+        picture.save(tmp_path / "cell.png", overwrite=False)
+    pillow = pytest.importorskip("PIL.Image")
+    with pillow.open(tmp_path / "cell.png") as read:
+        assert (np.asarray(read) == np.asarray(picture)).all()
+    picture.save(tmp_path / "cell.webp")
+    assert (tmp_path / "cell.webp").stat().st_size > 0
+
+
+def test_wrong_options_are_value_errors(cell: nt.Morphology) -> None:
+    for options, message in [
+        ({"color_by": "mood"}, "'color_by'"),
+        ({"size": (0, 10)}, "'size'"),
+        ({"eye": (0, 0, 0)}, "target"),
+        ({"eye": (0, 0, 0), "target": (0, 0, 0)}, "eye"),
+        ({"color_by_attribute": "layer"}, "needs a circuit"),
+        ({"report": "x.h5"}, "needs a circuit"),
+        ({"range": (3, 1), "color_by": "radius"}, "'range'"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            nt.render(cell, **options)  # type: ignore[arg-type]
+
+
+def test_adapters_that_are_not_there_are_render_errors(cell: nt.Morphology) -> None:
+    with pytest.raises(nt.RenderError):
+        nt.render(cell, adapter="no such adapter", **SMALL)
+
+
+def test_circuits_and_their_voltages_are_drawn(circuit_folder: Path) -> None:
+    circuit = nt.Circuit(circuit_folder)
+    plain = nt.render(circuit, nodes=[0, 1, 2], **SMALL)
+    assert plain.size == (96, 64)
+    names = [name for name, path in circuit.reports.items() if not nt.Report(path).is_of_spikes]
+    times = circuit.report(names[0]).times
+    early, late = (
+        circuit.render(report=names[0], time=float(t), range=(-80, 30), legend=False, **SMALL)
+        for t in (times[0], times[len(times) // 2])
+    )
+    assert early.size == late.size
+    late = np.asarray(circuit.render(time=float(times[-1]), range=(-80, 30), legend=False, **SMALL))
+    named = circuit.render(report=names[0], time=float(times[-1]), range=(-80, 30), legend=False, **SMALL)
+    assert (late == np.asarray(named)).all()
+    with pytest.raises(ValueError, match="alone"):
+        nt.render([circuit, nt.synth("granule", points=50)], **SMALL)  # type: ignore[list-item]
+
+
+def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
+    pytest.importorskip("jupyter_rfb")
+    view = nt.View([cell], size=(120, 90), samples=1)
+    whole = np.asarray(view.image())
+    assert whole.shape == (90, 120, 4) and (view.get_frame() == whole).all()
+
+    picked: list[object] = []
+    view.on_pick = picked.append
+    dark = np.argwhere(whole[..., :3].sum(axis=2) < 300)
+    y, x = dark[len(dark) // 2].tolist()
+    view.handle_event({"type": "pointer_down", "x": x, "y": y, "buttons": (1,)})
+    view.handle_event({"type": "pointer_up", "x": x, "y": y, "buttons": ()})
+    [told] = picked
+    assert isinstance(told, dict) and told["name"] == cell.name
+    assert told["section"] is None or told["section"] < len(cell.sections)
+    assert view.pick(0, 0) is None
+
+    view.handle_event({"type": "pointer_down", "x": 10, "y": 10, "buttons": (1,)})
+    view.handle_event({"type": "pointer_move", "x": 40, "y": 20, "buttons": (1,)})
+    view.handle_event({"type": "pointer_up", "x": 40, "y": 20, "buttons": ()})
+    turned = np.asarray(view.image())
+    assert (turned != whole).any() and len(picked) == 1
+    eye, target, up, _ = view.camera
+    assert np.linalg.norm(up) == pytest.approx(1)
+    assert np.dot(np.subtract(eye, target), up) == pytest.approx(0, abs=1e-6)
+    view.handle_event({"type": "double_click", "x": 0, "y": 0})
+    assert (np.asarray(view.image()) == whole).all()
+
+    view.color_by = "radius"
+    assert (np.asarray(view.image()) != whole).any()
+    with pytest.raises(ValueError, match="color_by"):
+        view.color_by = "mood"
+    assert view.color_by == "radius" and view.image().size == (120, 90)
+    with pytest.raises(ValueError, match="report"):
+        view.time = 3.0
+    view.handle_event({"type": "resize", "width": 60, "height": 40, "ratio": 2.0})
+    assert view.get_frame().shape == (80, 120, 4)
+    view.close()
+    assert view.get_frame() is None
+    with pytest.raises(RuntimeError, match="closed"):
+        view.image()
+
+
+def test_views_show_times(circuit_folder: Path) -> None:
+    pytest.importorskip("jupyter_rfb")
+    circuit = nt.Circuit(circuit_folder)
+    name = next(n for n, path in circuit.reports.items() if not nt.Report(path).is_of_spikes)
+    view = nt.View(circuit, report=name, size=(80, 60), samples=1, nodes=[0, 1])
+    times = circuit.report(name).times
+    assert view.times == times.tolist() and view.time == times[0]
+    frames = {np.asarray(view.image()).tobytes()}
+    for time in times[:: len(times) // 8]:
+        view.time = float(time)
+        frames.add(np.asarray(view.image()).tobytes())
+    assert len(frames) > 1
+    view.time = 1e9
+    assert view.time == times[-1]
+    widgets = pytest.importorskip("ipywidgets")
+    slider = widgets.FloatSlider(min=times[0], max=times[-1])
+    widgets.link((slider, "value"), (view, "time"))
+    slider.value = times[3]
+    assert view.time == times[3]
+    view.close()

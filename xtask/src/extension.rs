@@ -1,0 +1,81 @@
+//! The Python package's tests: its extension module is built beside all else, and pytest runs in the
+//! environment that other readers have.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Context, bail};
+
+use crate::counts::Counts;
+use crate::python::{self, TESTS};
+use crate::steps::{cargo, root, run, run_listening, target_folder};
+
+/// The package's sources, into which the module is put, as `maturin develop` does.
+const PACKAGE: &str = "bindings/python/python";
+
+/// Sets up the environment and runs the package's tests alone.
+pub(crate) fn run_alone() -> anyhow::Result<()> {
+    println!("   {}", python::set_up(&TESTS)?);
+    let mut counts = Counts::default();
+    test(&mut counts)?;
+    print!("\n{}", counts.skipped_tests());
+    println!("{counts}");
+    match counts.failures() {
+        [] => Ok(()),
+        failures => bail!("{} failed", failures.len()),
+    }
+}
+
+/// Builds the module and runs all tests of the package.
+pub(crate) fn test(counts: &mut Counts) -> anyhow::Result<String> {
+    let Some(python) = python::interpreter(&TESTS) else {
+        counts.hear("     Running tests/python (pytest-0)");
+        counts.hear("test all ... ignored (no Python environment)");
+        counts.hear("test result: ok. 0 passed; 0 failed; 1 ignored");
+        return Ok("skipped: no Python environment".into());
+    };
+    build()?;
+    let mut pytest = Command::new(python);
+    pytest
+        .args([
+            "-m",
+            "pytest",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "tests/python",
+        ])
+        .current_dir(root())
+        .env("PYTHONPATH", root().join(PACKAGE))
+        // Beside the sources they would stay.
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("MPLBACKEND", "agg");
+    let before = counts.failures().len();
+    let ended = run_listening(&mut pytest, |line| counts.hear(line));
+    match counts.failures().len() - before {
+        // What failed stands at the end of everything.
+        0 => ended.map(|()| "as documented".into()),
+        failed => Ok(format!("{failed} failed")),
+    }
+}
+
+/// Builds the module with the features that all of the workspace has, so that nothing is built twice.
+fn build() -> anyhow::Result<()> {
+    run(&mut cargo("build --workspace --all-targets --locked"))?;
+    let (built, named) = if cfg!(windows) {
+        ("neurotess_python.dll", "_neurotess.pyd")
+    } else if cfg!(target_os = "macos") {
+        ("libneurotess_python.dylib", "_neurotess.abi3.so")
+    } else {
+        ("libneurotess_python.so", "_neurotess.abi3.so")
+    };
+    let from = target_folder()?.join("debug").join(built);
+    let to: PathBuf = root().join(PACKAGE).join("neurotess").join(named);
+    // Not over the old one: a program that has it open would see it change.
+    if to.exists() {
+        fs::remove_file(&to).with_context(|| to.display().to_string())?;
+    }
+    fs::copy(&from, &to).with_context(|| from.display().to_string())?;
+    Ok(())
+}
