@@ -94,7 +94,7 @@ def test_meshes_go_to_navis() -> None:
 
 
 def test_packages_that_are_missing_are_named() -> None:
-    from neurotess._exchange import needed
+    from neurotess._packages import needed
 
     with pytest.raises(ImportError, match="pip install 'neurotess\\[view\\]'"):
         needed("no_such_package", "view")

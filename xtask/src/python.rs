@@ -66,22 +66,26 @@ pub(crate) fn interpreter(environment: &Environment) -> Option<PathBuf> {
 }
 
 fn install(python: &str, environment: &Environment) -> anyhow::Result<()> {
-    let own = own_interpreter(&root().join(environment.folder));
-    if !own.exists() {
-        run(Command::new(python)
-            .args(["-m", "venv", environment.folder])
-            .current_dir(root()))?;
-    }
-    run(Command::new(own)
-        .args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-        ])
+    let own = make(Path::new(python), &root().join(environment.folder))?;
+    run(pip_install(&own)
         .args(["-r", environment.packages])
         .current_dir(root()))
+}
+
+/// Makes a virtual environment, unless it is there; returns its own interpreter.
+pub(crate) fn make(python: &Path, venv: &Path) -> anyhow::Result<PathBuf> {
+    if !own_interpreter(venv).exists() {
+        run(Command::new(python).args(["-m", "venv"]).arg(venv))?;
+    }
+    Ok(own_interpreter(venv))
+}
+
+/// `pip install`, without what to install.
+pub(crate) fn pip_install(own: &Path) -> Command {
+    let mut command = Command::new(own);
+    command.args(["-m", "pip", "install", "--quiet"]);
+    command.arg("--disable-pip-version-check");
+    command
 }
 
 fn system_interpreter() -> Option<&'static str> {

@@ -89,19 +89,9 @@ fn build(python: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
 
 /// Installs the wheel into a fresh environment and uses it, where no other program is.
 fn trial(python: &Path, wheel: &Path, folder: &Path) -> anyhow::Result<String> {
-    let venv = folder.join("venv");
-    run(Command::new(python).args(["-m", "venv"]).arg(&venv))?;
-    let programs = venv.join(if cfg!(windows) { "Scripts" } else { "bin" });
-    let own = programs.join("python");
-    run(Command::new(&own)
-        .args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-        ])
-        .arg(wheel))?;
+    let own = python::make(python, &folder.join("venv"))?;
+    run(python::pip_install(&own).arg(wheel))?;
+    let programs = own.parent().context("an interpreter's folder")?;
     let mut used = Command::new(&own);
     used.args(["-c", TRIAL]).current_dir(folder).env_clear();
     let said = output(&mut used)?;

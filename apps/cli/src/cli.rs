@@ -4,9 +4,11 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::check::{self, CheckArgs};
 use crate::commands::convert::{self, ConvertArgs};
+use crate::commands::diff::{self, DiffArgs};
 use crate::commands::info::{self, InfoArgs};
 use crate::commands::mesh::{self, MeshArgs};
 use crate::commands::synth::{self, SynthArgs};
+use crate::commands::tables::{self, NodesArgs, ReportArgs};
 #[cfg(feature = "view")]
 use crate::commands::view::{self, ViewArgs};
 #[cfg(feature = "render")]
@@ -72,8 +74,14 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
     Check(CheckArgs),
-    /// Write morphologies in another format
-    Convert(ConvertArgs),
+    /// Write morphologies in another format, and mend them
+    Convert(Box<ConvertArgs>),
+    /// What differs between two tracings
+    Diff(DiffArgs),
+    /// The nodes of a circuit as a table: CSV or TSV
+    Nodes(Box<NodesArgs>),
+    /// Values of a simulation report, or spikes, as a table: CSV or TSV
+    Report(Box<ReportArgs>),
     /// Grow synthetic neurons, the same for the same seed on every machine
     Synth(SynthArgs),
     /// Benchmarks to repeat on one's own machine
@@ -108,12 +116,15 @@ impl Cli {
             Some(Command::Mesh(args)) => mesh::run(args, reporter),
             Some(Command::Check(args)) => check::run(args, reporter),
             Some(Command::Convert(args)) => convert::run(args, reporter),
+            Some(Command::Diff(args)) => diff::run(args, reporter),
             #[cfg(feature = "render")]
             Some(Command::Render(args)) => render::run(args, reporter),
             #[cfg(feature = "view")]
             Some(Command::View(args)) => view::run(args, reporter),
             #[cfg(feature = "render")]
             Some(Command::Bench(args)) => bench::run(args, reporter),
+            Some(Command::Nodes(args)) => tables::nodes(args, reporter),
+            Some(Command::Report(args)) => tables::report(args, reporter),
             Some(Command::Synth(args)) => synth::run(args, reporter),
             Some(Command::Completions { shell }) => {
                 completions::run(*shell, &mut Self::command(), reporter)

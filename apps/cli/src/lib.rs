@@ -39,7 +39,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         reporter.error(&format!("{e:#}"));
     }
     match reporter.failures() {
-        0 => 0,
+        0 => u8::from(reporter.found_differences()),
         _ => code,
     }
 }

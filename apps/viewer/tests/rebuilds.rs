@@ -6,10 +6,10 @@ use neurotess::render::color::{ColorMap, Palette};
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::Edit;
-use neurotess_viewer::document::{ColorBy, Look, Neuron, SourceId};
+use neurotess_viewer::document::{ColorBy, Neuron, SourceId};
 use neurotess_viewer::state::Rebuilds;
 
-use common::{Window, gpu, run, settle, state, with_samples};
+use common::{Window, gpu, run, set_look, settle, state, with_samples};
 
 const NEURONS: usize = 2000;
 
@@ -30,12 +30,6 @@ fn many() -> Window {
 
 fn rebuilds(window: &mut Window) -> Rebuilds {
     state(window).counters.rebuilds
-}
-
-fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
-    let mut look = state(window).document.look.clone();
-    change(&mut look);
-    run(window, Edit::SetLook(Box::new(look)));
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -17,14 +17,17 @@ use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Edit, FilePurpose, Tab};
-use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
+use neurotess_viewer::document::{
+    Cut, Detail, LodKind, Look, Method, RestChoice, SomaEdit, SourceId,
+};
 use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
 use neurotess_viewer::state::{CellPart, Lowered, State};
 use neurotess_viewer::view::View;
 
 use common::{
-    SIZE, Window, click, gpu, hit_at, run, settle, snapshot, state, viewer, window, with_samples,
+    SIZE, Window, click, gpu, hit_at, rest, run, settle, snapshot, state, viewer, window,
+    with_samples,
 };
 
 /// Middle of the picture, where the soma of a single sample is: it is the target's.
@@ -77,6 +80,8 @@ fn tabs_show_their_panels() {
         (Tab::Save, "save"),
     ] {
         run(&mut window, Command::Show(tab));
+        // Figures of memory are those of what is there in the end.
+        rest(&mut window);
         snapshot(&mut window, name);
     }
     run(&mut window, Command::ToggleKeys);
@@ -285,6 +290,7 @@ fn the_surface_follows_the_soma_editor() {
 #[neurotess_testing::test(needs(gpu))]
 fn nothing_is_drawn_when_nothing_changes() {
     let mut window = with_samples(&[Kind::Star]);
+    rest(&mut window);
     window.run_steps(40);
     let output = window
         .output()
@@ -298,6 +304,7 @@ fn nothing_is_drawn_when_nothing_changes() {
         output.repaint_delay
     );
     run(&mut window, Command::Look(Side::Top));
+    rest(&mut window);
     window.run_steps(40);
     let output = window
         .output()
@@ -575,6 +582,22 @@ fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     };
     assert!(drawn > 0 && drawn <= needed);
     window.get_by_label_contains("reduced: ");
+    // One may ask for all detail all the same, and for a budget where there is no need.
+    let mut detail = state(&mut window).document.detail;
+    for (at_rest, budget) in [
+        (RestChoice::Full, false),
+        (RestChoice::Budget, true),
+        (RestChoice::Automatic, true),
+    ] {
+        detail.at_rest = at_rest;
+        run(&mut window, Edit::SetDetail(detail));
+        let lowered = state(&mut window).counters.lowered;
+        assert_eq!(
+            matches!(lowered, Some(Lowered::Triangles(_))),
+            budget,
+            "{at_rest:?}"
+        );
+    }
     // What is seen is known there too: somata, and a section by its number.
     let parts = seen_parts(&mut window);
     assert!(parts.contains(&(0, CellPart::Soma)) && parts.contains(&(2, CellPart::Soma)));

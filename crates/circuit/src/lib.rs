@@ -63,6 +63,7 @@ mod model;
 mod node_sets;
 mod nsol;
 mod open;
+mod placed;
 mod population;
 mod report;
 mod scene;

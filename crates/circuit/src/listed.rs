@@ -17,7 +17,7 @@ pub(crate) struct Cell {
     pub(crate) recentered: bool,
     /// Morphology file; `None` shows nothing.
     pub(crate) file: Option<PathBuf>,
-    pub(crate) attributes: BTreeMap<&'static str, String>,
+    pub(crate) attributes: BTreeMap<String, String>,
 }
 
 impl Cell {
@@ -64,17 +64,14 @@ pub(crate) fn circuit(
         let warning = Warning::new(&name, "", "morphology_missing", message);
         warnings.push(warning.times(count as u64));
     }
-    let mut names: Vec<&'static str> = cells
-        .iter()
-        .flat_map(|c| c.attributes.keys().copied())
-        .collect();
+    let mut names: Vec<&String> = cells.iter().flat_map(|c| c.attributes.keys()).collect();
     names.sort_unstable();
     names.dedup();
     let attributes = names.into_iter().map(|name| {
         let texts = cells
             .iter()
             .map(|c| c.attributes.get(name).map(String::as_str));
-        (name.to_owned(), column(texts))
+        (name.clone(), column(texts))
     });
     let population = Population {
         name: "cells".into(),

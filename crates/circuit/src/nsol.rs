@@ -166,7 +166,10 @@ impl Scan<'_> {
                     placement: Cell::PLACED_AT_ORIGIN,
                     recentered: false,
                     file: None,
-                    attributes: texts.chain(place).collect(),
+                    attributes: texts
+                        .chain(place)
+                        .map(|(name, text)| (name.to_owned(), text))
+                        .collect(),
                 });
             }
             "transform" if !empty => self.numbers = Some(String::new()),

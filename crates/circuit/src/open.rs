@@ -6,12 +6,12 @@ use std::path::Path;
 
 use neurotess_formats::regular;
 
-use crate::{Circuit, CircuitError, nsol, scene, sonata};
+use crate::{Circuit, CircuitError, nsol, placed, scene, sonata};
 
 impl Circuit {
     /// Opens a circuit: a SONATA configuration (the circuit's or the simulation's), the folder that
-    /// has one, nsol's XML scene, or a scene of our own (`.scene.toml`, `.scene.json`). Morphologies
-    /// are not read yet.
+    /// has one, nsol's XML scene, a scene of our own (`.scene.toml`, `.scene.json`), or a table of placed
+    /// cells (`.csv`, `.tsv`). Morphologies are not read yet.
     ///
     /// # Errors
     /// What is wrong with the file, or with all populations. What is wrong with one of several is in
@@ -24,6 +24,9 @@ impl Circuit {
         if scene::is_named_so(path) {
             return scene::open(path);
         }
+        if placed::is_named_so(path) {
+            return placed::open(path);
+        }
         if has_extension(path, "xml") {
             return nsol::open(path);
         }
@@ -32,12 +35,13 @@ impl Circuit {
 }
 
 /// Whether a file, or a folder, is to be opened as a circuit. A folder is if it has the configuration
-/// of one; any `.json` file is, since no morphology is: what is wrong with it, opening tells.
+/// of one; any `.json`, `.csv` and `.tsv` file is, since no morphology is: what is wrong with it, opening
+/// tells.
 pub fn is_circuit(path: &Path) -> bool {
     if path.is_dir() {
         return sonata::find(path).is_ok();
     }
-    if scene::is_named_so(path) {
+    if scene::is_named_so(path) || placed::is_named_so(path) {
         return true;
     }
     if has_extension(path, "xml") {

@@ -185,7 +185,7 @@ impl Entry {
             recentered: self.recenter,
             file: Some(folder.join(&self.file)),
             attributes: texts
-                .filter_map(|(name, text)| Some((name, text?.clone())))
+                .filter_map(|(name, text)| Some((name.to_owned(), text?.clone())))
                 .collect(),
         })
     }

@@ -12,6 +12,8 @@ mod by_tracing;
 mod compartments;
 #[cfg(feature = "circuit")]
 mod cut;
+#[cfg(feature = "circuit")]
+mod film;
 mod path_distance;
 #[cfg(feature = "circuit")]
 mod recording;
@@ -26,6 +28,8 @@ pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
 pub use by_tracing::{ColorBy, coloring};
 #[cfg(feature = "circuit")]
 pub use cut::{cuts, with_middles};
+#[cfg(feature = "circuit")]
+pub use film::{Film, FilmError};
 pub use path_distance::path_distances;
 #[cfg(feature = "circuit")]
 pub use recording::{DECAY, Recording, RecordingError};
@@ -33,4 +37,4 @@ pub use recording::{DECAY, Recording, RecordingError};
 pub use report_frame::ReportFrame;
 pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};
 #[cfg(feature = "circuit")]
-pub use visible::VisibleValues;
+pub use visible::{VisibleValues, fractions};

@@ -23,10 +23,27 @@ struct VisibleCompartments {
 }
 
 impl VisibleValues {
+    /// Number of color keys.
+    pub fn len(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Whether nothing shows.
+    pub fn is_empty(&self) -> bool {
+        self.keys.is_empty()
+    }
+
     /// Number of compartments that are read for a time; 0 for spikes, which have none.
     pub fn compartments(&self) -> usize {
         self.parts.iter().map(|part| part.compartments.len()).sum()
     }
+}
+
+/// Values as fractions of a range, as [`KeyColors::values`](neurotess_render::KeyColors::values) has
+/// them.
+pub fn fractions(values: &[f32], [low, high]: [f32; 2]) -> Vec<f32> {
+    let fraction = |value: &f32| (value - low) / (high - low);
+    values.iter().map(fraction).collect()
 }
 
 impl Recording {

@@ -64,6 +64,20 @@ pub enum Fault {
         /// The feature, which is named as the format is.
         feature: &'static str,
     },
+    /// Packed by gzip, and not whole.
+    #[error("the gzip is broken ({reason}): fetch or pack the file again")]
+    Packed {
+        /// What the library says.
+        reason: String,
+    },
+    /// Packed, and far larger than any tracing.
+    #[error(
+        "it unpacks to more than {most} bytes, which no tracing does: unpack it by hand if you trust it"
+    )]
+    PackedTooLarge {
+        /// Bytes that were allowed.
+        most: u64,
+    },
     /// Not a byte.
     #[error("the file is empty: fetch or export it again")]
     Empty,

@@ -1,6 +1,9 @@
 //! Which formats there are.
 
+use std::path::Path;
+
 use crate::Fault;
+use crate::packed::unpacked_name;
 
 /// A format of morphology files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -75,6 +78,12 @@ impl Format {
     }
 }
 
+/// Whether a file's name ends as those of morphologies do, packed by gzip or not.
+pub fn has_known_name(path: &Path) -> bool {
+    let extension = unpacked_name(path).extension().unwrap_or_default();
+    Format::of_extension(&extension.to_string_lossy()).is_some()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,5 +98,7 @@ mod tests {
         assert_eq!(all, EXTENSIONS);
         assert_eq!(Format::of_extension("ASC"), Some(Format::Asc));
         assert_eq!(Format::of_extension("obj"), None);
+        assert!(has_known_name(Path::new("a/cell.swc.gz")));
+        assert!(!has_known_name(Path::new("a/cell.gz")));
     }
 }

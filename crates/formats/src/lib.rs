@@ -38,6 +38,7 @@ mod losses;
 #[cfg(feature = "neuroml")]
 pub mod neuroml;
 mod number;
+mod packed;
 mod recognize;
 mod regular;
 #[cfg(any(feature = "asc", feature = "h5", feature = "neuroml"))]
@@ -54,7 +55,8 @@ use std::path::Path;
 use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
-pub use format::{EXTENSIONS, Format};
+pub use format::{EXTENSIONS, Format, has_known_name};
+pub use packed::unpacked_name;
 pub use regular::{read_regular, regular};
 use text::Located;
 pub use warning::Warning;
@@ -66,6 +68,9 @@ pub use write::write;
 pub struct ReadOptions {
     /// Take every warning as an error.
     pub strict: bool,
+    /// Take radii in SWC that are no finite numbers as 0, with a warning, instead of refusing the file: for
+    /// whoever mends radii afterwards.
+    pub zero_for_bad_radii: bool,
 }
 
 /// What a file gave.
@@ -80,7 +85,7 @@ pub struct Read {
 }
 
 /// Reads a morphology; the format is told by the name's extension, else by the content. Of an H5 file
-/// that holds many, `FILE#PATH` is one.
+/// that holds many, `FILE#PATH` is one. Files packed by gzip, as `cell.swc.gz`, are unpacked.
 ///
 /// # Errors
 /// [`ReadError`] with file and line.
@@ -92,18 +97,22 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
         Ok(bytes) => bytes,
         Err(e) => return Err(ReadError::of_file(&name, Fault::Io(e))),
     };
-    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    let extension = unpacked_name(file).extension().unwrap_or_default();
+    let extension = extension.to_string_lossy();
     match (Format::of_extension(&extension), member) {
         #[cfg(feature = "h5")]
-        (_, Some(member)) => h5::read_member(bytes, &name, member, options),
+        (_, Some(member)) => match packed::unpacked(bytes) {
+            Ok(bytes) => h5::read_member(bytes, &name, member, options),
+            Err(fault) => Err(ReadError::of_file(&name, fault)),
+        },
         #[cfg(not(feature = "h5"))]
         (_, Some(_)) => Err(ReadError::of_file(&name, Format::H5.missing())),
         (format, None) => read_bytes(bytes, &name, format, options),
     }
 }
 
-/// Reads a morphology that is in memory. `name` is what errors call it; `format`: where it is known, else
-/// the content tells.
+/// Reads a morphology that is in memory, packed by gzip or not. `name` is what errors call it; `format`: where
+/// it is known, else the content tells.
 ///
 /// # Errors
 /// [`ReadError`] with `name` and line.
@@ -113,6 +122,10 @@ pub fn read_bytes(
     format: Option<Format>,
     options: &ReadOptions,
 ) -> Result<Read, ReadError> {
+    let bytes = match packed::unpacked(bytes) {
+        Ok(bytes) => bytes,
+        Err(fault) => return Err(ReadError::of_file(name, fault)),
+    };
     match format.or_else(|| recognize::of_content(&bytes)) {
         Some(Format::Swc) => swc::read_bytes(&bytes, name, options),
         #[cfg(feature = "asc")]

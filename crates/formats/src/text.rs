@@ -1,6 +1,9 @@
 //! What all readers of text ask first: is this text at all, and what is the cell called?
 
+use std::path::Path;
+
 use crate::Fault;
+use crate::packed::unpacked_name;
 
 /// A fault and its line, before it is known which file this is.
 pub(crate) type Located<T> = Result<T, (u64, Fault)>;
@@ -43,9 +46,10 @@ pub(crate) fn refuse_other_text(bytes: &[u8]) -> Located<()> {
     Ok(())
 }
 
-/// The file's name without folder and one of the extensions; other dots belong to the name.
+/// The file's name without folder, `.gz` and one of the extensions; other dots belong to the name.
 pub(crate) fn stem<'a>(name: &'a str, extensions: &[&str]) -> &'a str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let file = unpacked_name(Path::new(file)).to_str().unwrap_or(file);
     match file.rsplit_once('.') {
         Some((stem, ext)) if extensions.contains(&ext.to_ascii_lowercase().as_str()) => stem,
         _ => file,

@@ -109,9 +109,34 @@ fn other_files_are_refused_by_name() {
 }
 
 #[test]
+fn bad_radii_are_zero_for_whoever_mends_them() {
+    let text = b"1 1 0 0 0 5 -1\n2 3 9 0 0 nan 1\n3 3 19 0 0 inf 2\n4 3 29 0 0 1 3\n";
+    let options = ReadOptions {
+        zero_for_bad_radii: true,
+        ..ReadOptions::default()
+    };
+    let read = swc::read_bytes(text, "f.swc", &options).expect("read");
+    let radii: Vec<f32> = read.morphology.points.iter().map(|p| p.radius).collect();
+    assert_eq!(radii, [0.0, 0.0, 1.0]);
+    let warning = read.warnings.iter().find(|w| w.code == "radius_not_finite");
+    let warning = warning.expect("a warning");
+    assert_eq!((warning.line, warning.count), (Some(2), 2));
+    let bad_place = b"1 1 0 0 nan 5 -1\n";
+    assert!(swc::read_bytes(bad_place, "f.swc", &options).is_err());
+}
+
+#[test]
 fn strict_reading_takes_the_first_warning_as_an_error() {
     let text = b"1 1 0 0 0 5 -1\n2 3 0 6 0 -1 1\n";
-    let e = swc::read_bytes(text, "f.swc", &ReadOptions { strict: true }).expect_err("strict");
+    let e = swc::read_bytes(
+        text,
+        "f.swc",
+        &ReadOptions {
+            strict: true,
+            ..ReadOptions::default()
+        },
+    )
+    .expect_err("strict");
     let says = "f.swc:2: negative radius: kept, measured as zero (negative_radius): \
                 mend the file, or read without --strict";
     assert_eq!(e.to_string(), says);

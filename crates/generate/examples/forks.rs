@@ -1,5 +1,5 @@
 //! How forks look: crossing pairs of facets within four radii of a fork, and facets folded by more than
-//! 120°, at levels 2 and 4.
+//! 120°, at levels 2 and 4; and the volume.
 //!
 //! ```text
 //! cargo run --release -p neurotess-generate --example forks -- [--smooth LENGTH|auto] FILES…
@@ -24,7 +24,9 @@ use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sums = [[0; 3]; 2];
-    println!("file samples ms | level 2: pairs near forks, all pairs, folded | level 4");
+    println!(
+        "file samples ms | level 2: pairs near forks, all pairs, folded | level 4 | volume (µm³)"
+    );
     let mut args = std::env::args().skip(1).peekable();
     let options = GenerateOptions {
         smooth: smooth(&mut args)?,
@@ -69,6 +71,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     if sound { "closed" } else { "OPEN" }
                 );
             }
+            let options = RefineOptions::default();
+            let refined = Refinement::new(&mesh, LodCriterion::Homogeneous(4), &options);
+            print!(" | {:.1}", refined.volume_and_area().0);
             if let Some(smoothing) = generated.smoothing {
                 print!(
                     " | length {:+.2} % moved {:.2} {:.2} radii",

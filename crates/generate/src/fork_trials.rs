@@ -67,6 +67,12 @@ impl ForkTrials {
         open.map(|(&fork, _)| fork).collect()
     }
 
+    /// Whether a fork's present choice was judged and has no faults.
+    pub(crate) fn is_sound(&self, fork: u32) -> bool {
+        let trial = self.trials.get(&fork);
+        trial.is_some_and(|trial| trial.faults[trial.current] == Some(0))
+    }
+
     /// A fork became a joint for lack of room.
     pub(crate) fn refuse(&mut self, fork: u32) {
         if let Some(trial) = self.trials.get_mut(&fork).filter(|t| !t.settled) {

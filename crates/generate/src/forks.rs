@@ -19,7 +19,7 @@ use crate::judge::faults;
 use crate::neighborhood::Neighborhood;
 use crate::skeleton::Skeleton;
 use crate::warning::Warnings;
-use crate::{crowd, fork, uncross};
+use crate::{bends, crowd, fit, fork, uncross};
 
 /// Whether a path may go straight from one node to another below it.
 type MayJoin<'a> = dyn Fn(u32, u32) -> bool + 'a;
@@ -57,7 +57,20 @@ pub(crate) fn mesh(
         Made::new(skeleton, trials.choices(), Some(somata), may_join)
     };
     warnings.extend(made.warnings);
-    made.mesh
+    let mut mesh = made.mesh;
+    let faulty = made
+        .patches
+        .iter()
+        .filter(|(fork, _)| !trials.is_sound(*fork));
+    let faulty: Vec<u32> = faulty.flat_map(|(_, range)| range.clone()).collect();
+    for ring in fit::draw_in_rings(&mut mesh, &faulty) {
+        warnings.add(
+            "drawn_in",
+            Some(i64::from(mesh.tracing[ring as usize].sample.0)),
+            "tube in its own way at a bend or fork: thinner there than it was traced",
+        );
+    }
+    mesh
 }
 
 /// A mesh, and what became of the forks.
@@ -83,7 +96,9 @@ impl Made {
         crowd::split_crowded_forks(&mut layout.skeleton, &mut warnings);
         fork::clear_the_way(&mut layout.skeleton, &mut warnings);
         let spheres = somata.map_or(&[][..], |somata| somata.soma_spheres);
-        let orientations = uncross::uncross_rings(&mut layout, spheres, may_join, &mut warnings);
+        let mut orientations =
+            uncross::uncross_rings(&mut layout, spheres, may_join, &mut warnings);
+        bends::split_sharp_bends(&mut layout.skeleton, &mut orientations);
         let mut assembly = Assembly::new(&layout, &orientations);
         if let Some(somata) = somata {
             assembly.somata(somata);

@@ -2,8 +2,11 @@
 #![forbid(unsafe_code)]
 
 mod assemble;
+mod bends;
 mod crowd;
 mod error;
+mod facets;
+mod fit;
 mod fork;
 mod fork_trials;
 mod forks;
@@ -14,6 +17,7 @@ mod judge;
 mod neighborhood;
 mod normals;
 mod options;
+mod part;
 mod prepare;
 mod rings;
 mod separate;

@@ -14,7 +14,8 @@
 //! ```
 //!
 //! Readers and generators hand over flat **nodes** and get the arrays from
-//! [`Morphology::from_nodes`]; [`Measures::of`] and the functions of [`shape`] measure them.
+//! [`Morphology::from_nodes`]. [`Measures::of`] measures a cell, the functions of [`shape`] its sections, [`sholl`]
+//! its reach and [`barcode`](mod@barcode) its branching; [`edit`] mends tracings and [`Difference`] compares two.
 //!
 //! ```
 //! use glam::DVec3;
@@ -38,15 +39,21 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod barcode;
 mod build;
+mod diff;
+pub mod edit;
 mod frustum;
 mod kind;
 mod measures;
 mod model;
 pub mod shape;
+pub mod sholl;
+pub mod smoothing;
 mod soma;
 
 pub use build::{BuildError, BuildNote, Built, Node, Oddity};
+pub use diff::{Difference, Differing, MatchedBy, Retyped, SomaDifference};
 pub use kind::NeuriteKind;
 pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
 pub use model::{Attachment, Morphology, Point, Section, SectionId, Soma, SomaKind, SomaSample};

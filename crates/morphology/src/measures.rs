@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use crate::frustum::{distance, frustum_area, frustum_volume};
-use crate::{Attachment, Morphology, NeuriteKind, SectionId, SomaKind, shape, soma_area_volume};
+use crate::{Attachment, Morphology, NeuriteKind, SectionId, shape, soma_area_volume};
 
 /// What `info --json` tells of one cell, µm, µm², µm³.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -149,15 +149,9 @@ fn soma_measures(morphology: &Morphology) -> SomaMeasures {
         };
     };
     let (area, volume) = soma_area_volume(soma);
-    let kind = match soma.kind {
-        SomaKind::Point => "point",
-        SomaKind::ThreePoint => "three_point",
-        SomaKind::Contour => "contour",
-        SomaKind::Cylinders => "cylinders",
-    };
     let center = Some((morphology.origin + soma.center.as_dvec3()).to_array());
     SomaMeasures {
-        kind,
+        kind: soma.kind.name(),
         center,
         radius: f64::from(soma.radius),
         area,

@@ -104,6 +104,22 @@ pub enum SomaKind {
     Cylinders,
 }
 
+impl SomaKind {
+    /// Name as the command line and the Python package give it.
+    ///
+    /// ```
+    /// assert_eq!(neurotess_morphology::SomaKind::ThreePoint.name(), "three_point");
+    /// ```
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::ThreePoint => "three_point",
+            Self::Contour => "contour",
+            Self::Cylinders => "cylinders",
+        }
+    }
+}
+
 /// A soma: what was traced of it and the sphere that stands for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Soma {

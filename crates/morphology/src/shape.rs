@@ -1,11 +1,11 @@
-//! Shape of the trees, section by section: orders, path lengths, contraction, fork angles.
+//! Shape of the trees, section by section: orders, lengths, areas, distances, contraction, forks.
 //!
 //! Every function is linear in its input and gives one value per section, in the order of
 //! [`Morphology::sections`], unless it says otherwise.
 
 use glam::DVec3;
 
-use crate::frustum::distance;
+use crate::frustum::{distance, frustum_area, frustum_volume};
 use crate::{Attachment, Morphology, Point, SectionId};
 
 /// Consecutive points of a section, from the point that it branches from on; that point is left
@@ -70,10 +70,57 @@ pub fn branch_orders(morphology: &Morphology) -> Vec<u32> {
     orders
 }
 
+/// Strahler order: 1 of an end; of a fork the greatest of its children's, and one more if two of them have it
+/// (Strahler, Quantitative Analysis of Watershed Geomorphology, 1957). A change of type is no fork.
+pub fn strahler_orders(morphology: &Morphology) -> Vec<u32> {
+    let mut orders = vec![1; morphology.sections.len()];
+    // Of the children so far: the greatest order, and how many have it.
+    let mut greatest = vec![(0_u32, 0_u32); orders.len()];
+    for (index, section) in morphology.sections.iter().enumerate().rev() {
+        orders[index] = match greatest[index] {
+            (0, _) => 1,
+            (order, 1) => order,
+            (order, _) => order + 1,
+        };
+        if let Some(parent) = section.parent() {
+            let (order, count) = &mut greatest[parent.index()];
+            match orders[index].cmp(order) {
+                std::cmp::Ordering::Greater => (*order, *count) = (orders[index], 1),
+                std::cmp::Ordering::Equal => *count += 1,
+                std::cmp::Ordering::Less => {}
+            }
+        }
+    }
+    orders
+}
+
 /// Length (µm) of each section along its points.
 pub fn section_lengths(morphology: &Morphology) -> Vec<f64> {
     let length = |id| links(morphology, id).map(|(a, b)| distance(a, b)).sum();
     ids(morphology).map(length).collect()
+}
+
+/// Area (µm²) of each section's frusta, without caps.
+pub fn section_areas(morphology: &Morphology) -> Vec<f64> {
+    let area = |(a, b): (&Point, &Point)| frustum_area(a.radius, b.radius, distance(a, b));
+    let areas = ids(morphology).map(|id| links(morphology, id).map(area).sum());
+    areas.collect()
+}
+
+/// Volume (µm³) of each section's frusta.
+pub fn section_volumes(morphology: &Morphology) -> Vec<f64> {
+    let volume = |(a, b): (&Point, &Point)| frustum_volume(a.radius, b.radius, distance(a, b));
+    let volumes = ids(morphology).map(|id| links(morphology, id).map(volume).sum());
+    volumes.collect()
+}
+
+/// Distance (µm) of each section's last point from a place, given in the file's coordinates.
+pub fn end_distances(morphology: &Morphology, from: DVec3) -> Vec<f64> {
+    let from = from - morphology.origin;
+    let last = |section: &crate::Section| morphology.points[section.end as usize - 1];
+    let ends = morphology.sections.iter().map(last);
+    ends.map(|point| point.position.as_dvec3().distance(from))
+        .collect()
 }
 
 /// Length (µm) of the way from the neurite's first point to the section's end.
@@ -136,6 +183,69 @@ fn leaving(morphology: &Morphology, id: SectionId, reach: f64) -> Option<DVec3> 
     (to - from).try_normalize()
 }
 
+/// Partition asymmetry |n − m| / (n + m) of the numbers n and m of sections on the two children of a section, in
+/// [0, 1), 0 where both are ends; `None` where there are not two children. As in the Petilla convention (Scorcioni,
+/// Polavaram and Ascoli, L-Measure, 2008) and in NeuroM.
+pub fn partition_asymmetries(morphology: &Morphology) -> Vec<Option<f64>> {
+    let count = morphology.sections.len();
+    let mut sizes = vec![1_u32; count];
+    let mut children: Vec<Vec<u32>> = vec![Vec::new(); count];
+    for (index, section) in morphology.sections.iter().enumerate().rev() {
+        if let Some(parent) = section.parent() {
+            sizes[parent.index()] += sizes[index];
+            children[parent.index()].push(sizes[index]);
+        }
+    }
+    let asymmetry = |sizes: &Vec<u32>| match sizes[..] {
+        [n, m] => Some(f64::from(n.abs_diff(m)) / (f64::from(n) + f64::from(m))),
+        _ => None,
+    };
+    children.iter().map(asymmetry).collect()
+}
+
 fn ids(morphology: &Morphology) -> impl Iterator<Item = SectionId> + use<> {
     (0..morphology.sections.len() as u32).map(SectionId)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{NeuriteKind, Node};
+
+    /// A trunk that forks into an end and a branch that forks into two; the trunk's type changes half-way.
+    fn cell() -> Morphology {
+        let row = |id: i64, kind: i32, x: f64, y: f64, parent: Option<u32>| Node {
+            id,
+            kind: NeuriteKind(kind),
+            position: DVec3::new(x, y, 0.0),
+            radius: 1.0,
+            parent,
+        };
+        let nodes = [
+            row(1, 3, 0.0, 0.0, None),
+            row(2, 3, 5.0, 0.0, Some(0)),
+            row(3, 4, 10.0, 0.0, Some(1)),
+            row(4, 4, 20.0, 0.0, Some(2)),
+            row(5, 4, 10.0, 10.0, Some(2)),
+            row(6, 4, 10.0, 20.0, Some(4)),
+            row(7, 4, 20.0, 10.0, Some(4)),
+        ];
+        let built = Morphology::from_nodes("cell", Vec::new(), &nodes);
+        built.expect("built").morphology
+    }
+
+    #[test]
+    fn orders_and_partitions_are_those_of_the_literature() {
+        let cell = cell();
+        assert_eq!(strahler_orders(&cell), [2, 2, 1, 2, 1, 1]);
+        assert_eq!(branch_orders(&cell), [0, 0, 1, 1, 2, 2]);
+        let asymmetries = partition_asymmetries(&cell);
+        assert_eq!(asymmetries, [None, Some(0.5), None, Some(0.0), None, None]);
+        assert_eq!(end_distances(&cell, DVec3::ZERO)[..3], [5.0, 10.0, 20.0]);
+        assert_eq!(section_lengths(&cell), [5.0, 5.0, 10.0, 10.0, 10.0, 10.0]);
+        let sum: f64 = section_areas(&cell).iter().sum();
+        assert!((sum - crate::Measures::of(&cell).area).abs() < 1e-9);
+        let sum: f64 = section_volumes(&cell).iter().sum();
+        assert!((sum - crate::Measures::of(&cell).volume).abs() < 1e-9);
+    }
 }

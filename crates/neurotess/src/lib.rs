@@ -56,7 +56,7 @@
 //!
 //! | module | what | feature |
 //! | --- | --- | --- |
-//! | [`morphology`] | the traced cell and its measures | |
+//! | [`morphology`] | the traced cell, its measures, edits and comparisons | |
 //! | [`formats`] | morphology files, there and back | SWC; `asc`, `h5`, `neuroml` |
 //! | [`circuit`] | many neurons: circuits, scenes, reports | `circuit` |
 //! | [`synth`] | synthetic neurons and circuits | `synth` |

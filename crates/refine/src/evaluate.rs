@@ -292,7 +292,7 @@ impl PatchShape {
         (center.position + around.position, normal)
     }
 
-    fn side(&self, side: usize, path: Path, t: f32) -> Jet {
+    pub(crate) fn side(&self, side: usize, path: Path, t: f32) -> Jet {
         let (from, to) = SIDES[side];
         let (a, b) = (&self.corners[from], &self.corners[to]);
         let (kind, reversed) = self.sides[side];

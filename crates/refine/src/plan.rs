@@ -284,6 +284,13 @@ fn find_edges(mesh: &CoarseMesh) -> (Vec<Edge>, Vec<[u32; 4]>) {
     (edges, patch_edges)
 }
 
+/// Kind of a patch's side, and whether its edge runs against the patch's coordinate.
+pub(crate) fn side_of(mesh: &CoarseMesh, patch: usize, side: usize) -> (EdgeKind, bool) {
+    let edge = describe(mesh, patch, side);
+    let start = mesh.patches[patch].corners[SIDES[side].0];
+    (edge.kind, edge.from != start)
+}
+
 fn describe(mesh: &CoarseMesh, patch: usize, side: usize) -> Edge {
     let Patch { corners, kind } = mesh.patches[patch];
     let (a, b) = (corners[SIDES[side].0], corners[SIDES[side].1]);

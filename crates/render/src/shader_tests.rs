@@ -182,7 +182,7 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
                     highlighted,
                     jitter,
                     batch,
-                    pad,
+                    least_half_width,
                     edge
                 ]
             );

@@ -254,4 +254,30 @@ fn occlusion_darkens_what_lies_close_behind() {
     assert!(close > Some(12) && far <= Some(3), "{close:?} {far:?}");
 }
 
+#[neurotess_testing::test(needs(gpu))]
+fn thin_neurites_are_as_wide_as_is_asked_and_not_fainter() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    // So small that neurites are about a pixel wide.
+    let plain = small([64, 48]);
+    let camera = camera(&mesh, plain.size);
+    let [as_it_is, one, five] = [0.0, 1.0, 5.0].map(|least_width| {
+        let look = Look {
+            least_width,
+            ..plain.look
+        };
+        picture(&gpu, &mesh, &camera, &PictureOptions { look, ..plain })
+    });
+    let pixels = [&as_it_is, &one, &five].map(|image| drawn(image, WHITE));
+    assert!(
+        pixels[1] >= pixels[0] && pixels[2] > 2 * pixels[0],
+        "{pixels:?}"
+    );
+    let ink = [&as_it_is, &one, &five].map(|image| {
+        let bytes = image.pixels.chunks(4).flat_map(|pixel| &pixel[..3]);
+        bytes.map(|&byte| u64::from(255 - byte)).sum::<u64>()
+    });
+    assert!(ink[1] >= ink[0] && ink[2] > 2 * ink[0], "{ink:?}");
+}
+
 neurotess_testing::main!();

@@ -1,6 +1,7 @@
 //! Static pictures: colored anew they equal pictures that are drawn anew.
 mod adapter;
 mod pictured;
+mod renderer;
 
 use std::convert::Infallible;
 
@@ -12,8 +13,8 @@ use neurotess_render::color::{ColorMap, ColorTable, InstanceValues, category, fr
 use neurotess_render::state::{GHOSTED, HIGHLIGHTED};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Clip, Exploration, Gpu, Image, Instance, KeyColors, Light,
-    Look, PictureOptions, Placement, Proxy, Scene, StaticError, StillRenderer, Template,
-    TemplateId, Templates, VertexSource, Viewpoint,
+    Look, Occlusion, PictureOptions, Placement, ProgressiveRenderer, Proxy, Scene, StaticError,
+    Steps, StillRenderer, Template, TemplateId, Templates, VertexSource, ViewParams, Viewpoint,
 };
 use neurotess_testing::note;
 use pictured::{CELL, camera, mesh};
@@ -323,6 +324,123 @@ fn only_what_shows_has_keys_and_values_for_them_are_enough() {
     let found = made.image(&gpu).expect("read");
     let expected = drawn(&gpu, &mut renderer, &mut source, &view, &full, &options());
     assert_equal("values by key", &expected, &found);
+}
+
+/// A view of a window that is higher than a band.
+fn window(camera: Camera) -> ViewParams {
+    ViewParams {
+        camera,
+        near: 0.1,
+        size: [640, 600],
+        look: options().look,
+        occlusion: Occlusion::Fit,
+        background: [255; 3],
+        frozen: None,
+    }
+}
+
+const STEPS: Steps = Steps {
+    steps: 4,
+    slices: 2,
+};
+
+/// Makes the static picture of a window's view, with a draft after each part.
+fn make_static(
+    gpu: &Gpu,
+    renderer: &mut ProgressiveRenderer,
+    source: &mut Adaptive,
+    params: &ViewParams,
+) {
+    let begun = renderer.begin_static(gpu, source, params, STEPS);
+    assert!(begun.expect("begun"));
+    let mut parts = 0;
+    while !renderer.static_slice(gpu, source).expect("made") {
+        gpu.wait().expect("done");
+        renderer.draft(gpu, source, params).expect("drawn");
+        assert!(renderer.shows_draft());
+        parts += 1;
+    }
+    assert!(parts >= 8, "two bands of four steps: {parts}");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn a_window_recolors_its_picture_as_if_it_drew_it_anew() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let keys = by_value(&mesh);
+    let tables = [0.1, 0.6].map(|shift| table(ColorMap::Viridis, shift, true, keys.len()));
+    let mut source = adaptive(&gpu, &mesh, &keys, LodCriterion::PixelError(0.5));
+    let whole = window(camera(&mesh, [640, 600]));
+    let cut = ViewParams {
+        occlusion: Occlusion::Off,
+        look: Look {
+            clip: Some(Clip {
+                point: DVec3::ZERO,
+                normal: DVec3::new(0.2, 0.1, -1.0).normalize_or(DVec3::Z),
+            }),
+            ..whole.look
+        },
+        ..whole
+    };
+    for (what, params) in [("window", whole), ("cut in a window", cut)] {
+        let mut renderer = ProgressiveRenderer::new(&gpu);
+        renderer.set_colors(tables[0].clone());
+        // Without a picture before, and after one.
+        make_static(&gpu, &mut renderer, &mut source, &params);
+        let none = renderer.static_picture().expect("made").bytes();
+        let first = renderer::picture(&gpu, &mut renderer, &mut source, params, STEPS);
+        make_static(&gpu, &mut renderer, &mut source, &params);
+        assert_eq!(renderer.static_picture().expect("made").bytes(), none);
+        for (table, states) in [
+            (&tables[1], vec![]),
+            (&tables[0], vec![HIGHLIGHTED, 0, 0]),
+            (&tables[0], vec![]),
+        ] {
+            renderer.set_colors(table.clone());
+            renderer.set_states(states.clone());
+            renderer.recolor(&gpu, None).expect("colored");
+            assert!(!renderer.shows_draft());
+            let found = renderer::pixels(&gpu, &renderer);
+            let mut other = ProgressiveRenderer::new(&gpu);
+            other.set_colors(table.clone());
+            other.set_states(states);
+            let expected = renderer::picture(&gpu, &mut other, &mut source, params, STEPS);
+            assert_equal(what, &expected, &found);
+        }
+        let last = renderer::pixels(&gpu, &renderer);
+        assert_equal("as it was", &first, &last);
+    }
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn a_window_draws_anew_what_cannot_be_recolored() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let keys = by_value(&mesh);
+    let mut source = adaptive(&gpu, &mesh, &keys, LodCriterion::PixelError(0.5));
+    let mut renderer = ProgressiveRenderer::new(&gpu);
+    let whole = window(camera(&mesh, [640, 600]));
+    let mut wires = whole;
+    wires.look.wire = 1.0;
+    let frozen = ViewParams {
+        frozen: Some((whole.camera, whole.near)),
+        ..whole
+    };
+    for params in [wires, frozen] {
+        let begun = renderer.begin_static(&gpu, &source, &params, STEPS);
+        assert!(!begun.expect("no fault"));
+        assert!(renderer.static_progress().is_none());
+    }
+    assert!(
+        renderer
+            .begin_static(&gpu, &source, &whole, STEPS)
+            .expect("begun")
+    );
+    renderer.static_slice(&gpu, &mut source).expect("drawn");
+    // Another picture: what was made is of no use.
+    renderer.begin(whole, STEPS);
+    assert!(renderer.static_progress().is_none() && renderer.static_picture().is_none());
+    renderer.recolor(&gpu, None).expect("nothing to color");
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -242,7 +242,14 @@ fn a_purkinje_cells_fan_is_flat() {
 fn files_of_synthetic_cells_are_read_strictly_and_equal() {
     for (name, cell) in cells() {
         let file = format!("{}.swc", cell.name);
-        let read = swc::read_bytes(&written(&cell), &file, &ReadOptions { strict: true });
+        let read = swc::read_bytes(
+            &written(&cell),
+            &file,
+            &ReadOptions {
+                strict: true,
+                ..ReadOptions::default()
+            },
+        );
         assert!(read.expect(&name).morphology == cell, "{name}");
     }
 }

@@ -153,15 +153,14 @@ impl Search<'_> {
     }
 
     fn is_readable(&self, path: &Path) -> bool {
-        let extension = path.extension().unwrap_or_default().to_string_lossy();
-        let hidden = path
-            .file_name()
-            .is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
-        let known = self.extensions.iter();
-        !hidden
-            && known
-                .into_iter()
-                .any(|known| extension.eq_ignore_ascii_case(known))
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = name.to_ascii_lowercase();
+        // Of files packed by gzip, the extension is two words.
+        let ends = |known: &&str| {
+            let stem = name.strip_suffix(*known);
+            stem.is_some_and(|stem| stem.ends_with('.'))
+        };
+        !name.starts_with('.') && self.extensions.iter().any(ends)
     }
 
     fn add(&mut self, path: PathBuf, relative: PathBuf) {
@@ -201,7 +200,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let root = folder.path();
         fs::create_dir(root.join("sub")).expect("made");
-        for name in ["b.swc", "a.SWC", "note.txt", "sub/c.swc", ".hidden.swc"] {
+        for name in [
+            "b.swc",
+            "a.SWC",
+            "note.txt",
+            "sub/c.swc",
+            ".hidden.swc",
+            "d.swc.gz",
+        ] {
             fs::write(root.join(name), "").expect("written");
         }
         let find = |arguments: &[PathBuf]| Inputs::find(arguments, &["swc"]);

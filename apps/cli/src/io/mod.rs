@@ -8,5 +8,6 @@ pub(crate) mod morphologies;
 pub(crate) mod output;
 pub(crate) mod record;
 pub(crate) mod standard_input;
+pub(crate) mod table;
 pub(crate) mod targets;
 pub(crate) mod workers;

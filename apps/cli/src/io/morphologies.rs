@@ -29,6 +29,11 @@ impl ReaderWarning {
         &self.message
     }
 
+    /// Whether the unit is likely not the micrometer.
+    pub(crate) fn is_of_unit(&self) -> bool {
+        self.code == OF_UNIT
+    }
+
     /// As text: `FILE:LINE: message (code)`.
     pub(crate) fn in_file(&self, file: &str) -> String {
         let place = place(file, self.line);
@@ -36,14 +41,21 @@ impl ReaderWarning {
     }
 }
 
+/// The code of a cell whose unit is likely not the micrometer.
+const OF_UNIT: &str = "too_large";
+
 impl From<formats::Warning> for ReaderWarning {
     fn from(warning: formats::Warning) -> Self {
         let formats::Warning {
             line,
             code,
-            message,
+            mut message,
             count,
         } = warning;
+        if code == OF_UNIT {
+            message
+                .push_str(": neurotess convert --units nm or voxel=X,Y,Z makes micrometers of it");
+        }
         Self {
             line,
             code,
@@ -54,7 +66,22 @@ impl From<formats::Warning> for ReaderWarning {
 }
 
 /// Extensions of morphologies that are looked for in folders.
-pub(crate) const MORPHOLOGIES: [&str; 7] = formats::EXTENSIONS;
+pub(crate) const MORPHOLOGIES: [&str; 14] = [
+    "swc",
+    "eswc",
+    "asc",
+    "h5",
+    "hdf5",
+    "nml",
+    "neuroml",
+    "swc.gz",
+    "eswc.gz",
+    "asc.gz",
+    "h5.gz",
+    "hdf5.gz",
+    "nml.gz",
+    "neuroml.gz",
+];
 
 /// Reads the morphology of an input.
 pub(crate) fn read_morphology(
@@ -103,4 +130,19 @@ pub(crate) fn write_morphology(
 /// Formats that are written, by their extensions.
 pub(crate) fn written() -> [&'static str; Format::WRITTEN.len()] {
     Format::WRITTEN.map(|format| format.extensions()[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_is_looked_for_packed_or_not() {
+        let packed = formats::EXTENSIONS.map(|extension| format!("{extension}.gz"));
+        let all: Vec<&str> = formats::EXTENSIONS
+            .into_iter()
+            .chain(packed.iter().map(String::as_str))
+            .collect();
+        assert_eq!(all, MORPHOLOGIES);
+    }
 }

@@ -71,9 +71,9 @@ pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Resu
     Ok(jobs)
 }
 
-/// The path with this extension instead of its own; dots within the name stay.
+/// The path with this extension instead of its own, and of `.gz`; dots within the name stay.
 fn named(path: &Path, extension: &str) -> PathBuf {
-    path.with_extension(extension)
+    formats::unpacked_name(path).with_extension(extension)
 }
 
 fn ends_in_separator(path: &Path) -> bool {
@@ -124,6 +124,8 @@ mod tests {
         let jobs = plan(&inputs(&["a.swc"], true), Path::new("x/b.ply"), "ply").expect("a plan");
         assert_eq!(jobs[0].out, Path::new("x/b.ply"));
         let jobs = plan(&inputs(&["a.swc"], true), Path::new("x/"), "ply").expect("a plan");
+        assert_eq!(jobs[0].out, Path::new("x/a.ply"));
+        let jobs = plan(&inputs(&["a.swc.gz"], true), Path::new("x/"), "ply").expect("a plan");
         assert_eq!(jobs[0].out, Path::new("x/a.ply"));
     }
 

@@ -8,4 +8,5 @@ pub(crate) mod shard;
 #[cfg(feature = "render")]
 pub(crate) mod size;
 pub(crate) mod soma;
+pub(crate) mod time;
 pub(crate) mod types;

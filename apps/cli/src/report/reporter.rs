@@ -31,6 +31,8 @@ pub(crate) struct Reporter {
     occupied: AtomicBool,
     /// Whether writing to standard output failed.
     broken: AtomicBool,
+    /// Whether what was compared differs.
+    different: AtomicBool,
     /// What is told, where it is not printed.
     recorded: Option<Mutex<Vec<String>>>,
 }
@@ -51,6 +53,7 @@ impl Reporter {
             documented: Arc::default(),
             occupied: AtomicBool::new(false),
             broken: AtomicBool::new(false),
+            different: AtomicBool::new(false),
             recorded: None,
         };
         if let Some(threads) = common.threads.filter(|&n| n > most_threads()) {
@@ -147,6 +150,16 @@ impl Reporter {
     /// Reports an input that failed, and counts it.
     pub(crate) fn failure(&self, failure: &Failure) {
         self.error(&failure.0);
+    }
+
+    /// Makes the exit code 1 without an error: what was compared differs.
+    pub(crate) fn differs(&self) {
+        self.different.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether what was compared differs.
+    pub(crate) fn found_differences(&self) -> bool {
+        self.different.load(Ordering::Relaxed)
     }
 
     /// Number of errors that were printed.

@@ -84,3 +84,24 @@ fn exploration_is_timed_beside_adaptive_refinement() {
     assert!(rows[1]["ratio"].is_null());
     assert!(work.run(small).exits(0).stdout().contains("wanted"));
 }
+
+#[neurotess_testing::test(needs(gpu))]
+fn static_pictures_are_colored_beside_drawn_ones() {
+    let work = Work::new();
+    let small =
+        "bench static --neurons 2,6 --distinct 2 --points 60 --frames 2 --drawn 1 --size 96x64";
+    let json = work.run(&format!("{small} --json")).exits(0).json();
+    let rows = json["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 2);
+    for row in rows {
+        for time in ["drawn_ms", "made_ms", "recolored_ms", "ratio"] {
+            assert!(row[time].as_f64().is_some_and(|ms| ms > 0.0), "{row}");
+        }
+        // Only what shows has a color.
+        let [keys, values, weights] =
+            ["keys", "values", "weights"].map(|name| row[name].as_u64().expect("a number"));
+        assert!(0 < keys && keys <= values && keys <= weights, "{row}");
+    }
+    let table = work.run(small).exits(0).stdout();
+    assert!(table.contains("recolored ms"), "{table}");
+}

@@ -2,6 +2,7 @@
 #![cfg(target_os = "linux")]
 
 use std::fs;
+use std::io::Read;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
@@ -161,10 +162,27 @@ pub(crate) fn ends(child: &mut Child) -> std::process::ExitStatus {
     }
 }
 
-pub(crate) fn wait_for(what: &str, mut until: impl FnMut() -> bool) {
+/// Waits for something that the program does. The limit is far beyond what it takes on a machine with other
+/// work (13 s for a first picture on two idle cores, over 90 s among compilers): it is for what hangs.
+pub(crate) fn wait_for(what: &str, child: &mut Child, mut until: impl FnMut() -> bool) {
     let clock = Instant::now();
     while !until() {
-        assert!(clock.elapsed() < Duration::from_secs(90), "never: {what}");
+        if let Some(status) = child.try_wait().expect("a child") {
+            panic!("{status} before {what}: {}", said(child));
+        }
+        if clock.elapsed() > Duration::from_secs(300) {
+            drop(child.kill());
+            panic!("never: {what}; it said: {}", said(child));
+        }
         sleep(Duration::from_millis(200));
     }
+}
+
+/// What the program wrote to its standard error, if nobody else reads it.
+fn said(child: &mut Child) -> String {
+    let mut text = String::new();
+    if let Some(mut errors) = child.stderr.take() {
+        drop(errors.read_to_string(&mut text));
+    }
+    text
 }

@@ -12,6 +12,7 @@ fn help_is_as_agreed() {
         "render",
         "check",
         "convert",
+        "diff",
         "synth",
         "bench refinement",
         "bench exploration",

@@ -15,6 +15,7 @@ mod render;
 mod resume;
 mod streams;
 mod synth;
+mod tables;
 mod values;
 mod view;
 mod view_keys;

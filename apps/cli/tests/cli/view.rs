@@ -19,11 +19,13 @@ fn a_window_opens_a_file_is_driven_and_closes() {
     work.file("cell.swc", SMALL);
     let mut child = start(&display, &work, "view cell.swc");
     let mut window = String::new();
-    wait_for("a window", || {
+    wait_for("a window", &mut child, || {
         window = display.xdotool("search --onlyvisible --name neurotess");
         !window.is_empty()
     });
-    wait_for("a picture of the cell", || display.screenshot("open") > 300);
+    wait_for("a picture of the cell", &mut child, || {
+        display.screenshot("open") > 300
+    });
     display.focus();
     // Round, nearer, and a click in the middle.
     display.xdotool(
@@ -57,7 +59,7 @@ fn a_window_that_is_terminated_remembers_its_settings() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let mut child = start(&display, &work, "view cell.swc -v");
-    wait_for("a picture of the cell", || {
+    wait_for("a picture of the cell", &mut child, || {
         display.screenshot("ended") > 300
     });
     display.focus();
@@ -100,7 +102,7 @@ fn a_lost_device_ends_the_window_with_an_error_and_a_session() {
         .stdout(Stdio::null())
         .stderr(Stdio::piped());
     let mut child = command.spawn().expect("it starts");
-    wait_for("a picture of the cell", || {
+    wait_for("a picture of the cell", &mut child, || {
         display.screenshot("before_loss") > 300
     });
     work.file("lose", "");

@@ -78,7 +78,9 @@ fn every_shortcut_of_a_real_window_runs_its_command() {
     work.file("cell.swc", SMALL);
     let mut child = start(&display, &work, "view cell.swc -v");
     let lines = lines(&mut child);
-    wait_for("a picture of the cell", || display.screenshot("keys") > 300);
+    wait_for("a picture of the cell", &mut child, || {
+        display.screenshot("keys") > 300
+    });
     display.focus();
     let items = listed(&Toggles::default());
     for item in items.into_iter().flat_map(|(_, items)| items) {

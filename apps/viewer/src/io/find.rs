@@ -122,9 +122,7 @@ fn find_folder(folder: &Path, found: &mut Found) {
 /// Whether a file has the extension of a tracing.
 pub(crate) fn is_readable(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default();
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let mut known = formats::EXTENSIONS.iter();
-    !name.as_encoded_bytes().starts_with(b".") && known.any(|k| extension.eq_ignore_ascii_case(k))
+    !name.as_encoded_bytes().starts_with(b".") && formats::has_known_name(path)
 }
 
 /// Whether a file has the extension of HDF5, which morphologies, reports and spikes have.

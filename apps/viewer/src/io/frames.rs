@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use neurotess::coloring::Recording;
+use neurotess::coloring::{Recording, VisibleValues};
 use neurotess::render::color::InstanceValues;
 
 use crate::io::task::caught;
@@ -19,21 +19,79 @@ pub(crate) struct FrameReader {
     recording: Arc<Recording>,
 }
 
-/// What values depend on besides the frame.
+/// Values of a frame.
 #[derive(Clone, Debug)]
+pub(crate) enum FrameValues {
+    /// Of all neurons that are shown, as fractions of the scale: for a picture that is drawn.
+    Neurons(InstanceValues),
+    /// Of what shows in a static picture, in the recording's unit.
+    Visible(Vec<f32>),
+}
+
+/// Whose values are read.
+#[derive(Clone, Debug)]
+pub(crate) enum ValuesOf {
+    /// Those of neurons.
+    Neurons {
+        /// By neuron: whether it is shown.
+        shows: Arc<[bool]>,
+        /// Numbers at both ends of the color map.
+        range: [f32; 2],
+    },
+    /// Those that show in a static picture.
+    Visible(Arc<VisibleValues>),
+}
+
+/// What values depend on besides the frame.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ValueInputs {
-    /// By neuron: whether it is shown.
-    pub(crate) shows: Arc<[bool]>,
-    /// Numbers at both ends of the color map.
-    pub(crate) range: [f32; 2],
+    pub(crate) of: ValuesOf,
     /// Decay of flashes (ms).
     pub(crate) decay: f64,
 }
 
-impl PartialEq for ValueInputs {
+impl PartialEq for ValuesOf {
     fn eq(&self, other: &Self) -> bool {
-        let same = Arc::ptr_eq(&self.shows, &other.shows) || self.shows == other.shows;
-        same && (self.range, self.decay) == (other.range, other.decay)
+        match (self, other) {
+            (
+                Self::Neurons { shows, range },
+                Self::Neurons {
+                    shows: others,
+                    range: other,
+                },
+            ) => (Arc::ptr_eq(shows, others) || shows == others) && range == other,
+            (Self::Visible(visible), Self::Visible(other)) => Arc::ptr_eq(visible, other),
+            _ => false,
+        }
+    }
+}
+
+impl ValueInputs {
+    fn read(&self, recording: &Recording, frame: u64) -> Result<FrameValues, String> {
+        let time = recording.time.time_of(frame);
+        let values = match &self.of {
+            ValuesOf::Neurons { shows, range } => {
+                let shows = |place: usize| shows.get(place).copied().unwrap_or(true);
+                let values = recording.at(time, self.decay, &shows);
+                values.map(|values| FrameValues::Neurons(values.values(*range)))
+            }
+            ValuesOf::Visible(visible) => recording
+                .visible_at(time, self.decay, visible)
+                .map(FrameValues::Visible),
+        };
+        values.map_err(|e| e.to_string())
+    }
+
+    /// Instead of values that cannot be read: with these, neurons are gray.
+    fn none(&self) -> FrameValues {
+        match &self.of {
+            ValuesOf::Neurons { shows, .. } => {
+                let mut values = InstanceValues::default();
+                shows.iter().for_each(|_| values.push(&[]));
+                FrameValues::Neurons(values)
+            }
+            ValuesOf::Visible(visible) => FrameValues::Visible(vec![f32::NAN; visible.len()]),
+        }
     }
 }
 
@@ -49,7 +107,7 @@ struct Inner {
     frame: u64,
     /// Frames from one picture to the next; 0: a single frame is needed.
     stride: u64,
-    ready: BTreeMap<u64, Arc<InstanceValues>>,
+    ready: BTreeMap<u64, Arc<FrameValues>>,
     problem: Option<String>,
     ends: bool,
 }
@@ -81,7 +139,7 @@ impl FrameReader {
         frame: u64,
         stride: u64,
         inputs: &ValueInputs,
-    ) -> Option<Arc<InstanceValues>> {
+    ) -> Option<Arc<FrameValues>> {
         let mut inner = self.shared.lock();
         if inner.inputs.as_deref() != Some(inputs) {
             inner.inputs = Some(Arc::new(inputs.clone()));
@@ -125,7 +183,7 @@ impl Inner {
         Some((missing.next()?, Arc::clone(inputs)))
     }
 
-    fn keep(&mut self, frame: u64, values: InstanceValues, frames: u64) {
+    fn keep(&mut self, frame: u64, values: FrameValues, frames: u64) {
         self.ready.insert(frame, Arc::new(values));
         // Drops the frame that will not be needed for longest.
         let until = |&frame: &u64| (frame + frames - self.frame.min(frames)) % frames.max(1);
@@ -154,17 +212,10 @@ fn read(shared: &Shared, recording: &Recording, wake: &impl Fn()) {
             };
         };
         drop(inner);
-        let shows = |place: usize| inputs.shows.get(place).copied().unwrap_or(true);
-        let time = recording.time.time_of(frame);
-        let values = caught(|| {
-            let values = recording.at(time, inputs.decay, &shows);
-            values.map_err(|e| e.to_string())
-        });
-        let (values, problem) = match values {
-            Ok(values) => (values.values(inputs.range), None),
-            // Without values the neurons are gray. The empty values are kept, so that the frame is
-            // not read again and again.
-            Err(why) => (none(inputs.shows.len()), Some(why)),
+        let (values, problem) = match caught(|| inputs.read(recording, frame)) {
+            Ok(values) => (values, None),
+            // Empty values are kept, so that the frame is not read again and again.
+            Err(why) => (inputs.none(), Some(why)),
         };
         let mut inner = shared.lock();
         inner.problem = problem.or(inner.problem.take());
@@ -183,27 +234,27 @@ fn read(shared: &Shared, recording: &Recording, wake: &impl Fn()) {
     }
 }
 
-fn none(neurons: usize) -> InstanceValues {
-    let mut values = InstanceValues::default();
-    (0..neurons).for_each(|_| values.push(&[]));
-    values
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn no_values() -> FrameValues {
+        FrameValues::Visible(Vec::new())
+    }
+
     fn inner(frame: u64, stride: u64, ready: &[u64]) -> Inner {
         let inputs = ValueInputs {
-            shows: [true].into(),
-            range: [0.0, 1.0],
+            of: ValuesOf::Neurons {
+                shows: [true].into(),
+                range: [0.0, 1.0],
+            },
             decay: 5.0,
         };
         Inner {
             inputs: Some(Arc::new(inputs)),
             frame,
             stride,
-            ready: ready.iter().map(|&f| (f, Arc::default())).collect(),
+            ready: ready.iter().map(|&f| (f, Arc::new(no_values()))).collect(),
             ..Inner::default()
         }
     }
@@ -221,7 +272,7 @@ mod tests {
     fn what_is_long_over_is_forgotten() {
         let mut inner = inner(50, 1, &[]);
         for frame in 0..=MOST as u64 + 20 {
-            inner.keep(frame, InstanceValues::default(), 100);
+            inner.keep(frame, no_values(), 100);
         }
         assert_eq!(inner.ready.len(), MOST);
         assert!(inner.ready.contains_key(&50) && !inner.ready.contains_key(&49));

@@ -128,6 +128,25 @@ impl StatesKey {
     }
 }
 
+/// What states change besides colors: which parts show, and which neurons are ghosts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CoverageKey {
+    members: Revision,
+    parts: VisibleParts,
+    /// Revision of the selection, if what is not selected is a ghost.
+    ghosts: Option<Revision>,
+}
+
+impl StatesKey {
+    pub(crate) fn coverage(&self) -> CoverageKey {
+        CoverageKey {
+            members: self.members,
+            parts: self.parts,
+            ghosts: self.ghosts.then_some(self.selection),
+        }
+    }
+}
+
 /// An instance: the source and the placement of a neuron, and whether it is hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SceneInstance {
@@ -234,6 +253,7 @@ pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
         highlighted: (SELECTION, 0.75),
         ghosted: look.ghost_opacity.clamp(0.0, 1.0),
         contrast: Some(look.background),
+        least_width: look.least_width.clamp(0.0, 100.0),
     }
 }
 

@@ -18,7 +18,7 @@ use crate::io::task::Progress;
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
 use crate::scene::content;
-use crate::scene::film::{self, Film};
+use crate::scene::film;
 
 pub(crate) use crate::scene::still_scene::StillScene;
 
@@ -95,14 +95,17 @@ pub(crate) fn pictures(
         let mut drawn = Ok(());
         if number == 0 && film::is_static(still_scene, film_frames, options) {
             match renderer.render_static(gpu, &mut adaptive, &view, &table, &picture) {
-                Ok(picture) => film = Some(Film::new(still_scene, picture)),
+                Ok(picture) => film = film::film(still_scene, picture),
                 Err(StaticError::Wireframe | StaticError::Source) => {}
                 Err(StaticError::Stopped) => drawn = Err(PictureError::Stopped),
                 Err(StaticError::Device(e)) => drawn = Err(PictureError::Device(e)),
             }
         }
-        if let Some(film) = &film {
-            let image = film.picture(gpu, still_scene, film_frame.time)?;
+        let recolored = match &film {
+            Some(film) => film::picture(film, gpu, still_scene, film_frame.time)?,
+            None => None,
+        };
+        if let Some(image) = recolored {
             drawn = lay(0, image).map_err(PictureError::Sink);
         } else if drawn.is_ok() {
             let whole = renderer.render(gpu, &mut adaptive, &view, &table, &picture, lay);

@@ -10,6 +10,9 @@ use neurotess::synth::circuit::{
     CIRCUIT, CircuitOptions, POPULATION, circuit, circuit_config, voltages,
 };
 use neurotess::synth::grow;
+use neurotess_viewer::Command;
+
+use super::{Window, run, state, window};
 
 /// Writes a circuit: `voltage.h5` has the first `reported` cells, 20 frames of 0.5 ms.
 pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, reported: usize) {
@@ -83,4 +86,19 @@ pub(crate) fn make_sticks(folder: &Path, values: &[f32]) {
     let data: Vec<f32> = frame().chain(frame()).collect();
     let file = File::create(folder.join("stick.h5")).expect("a file");
     write::report(&layout, &data, file).expect("written");
+}
+
+/// A window with a circuit of nine cells, of which seven are in the report.
+pub(crate) fn with_circuit() -> (Window, tempfile::TempDir) {
+    let mut window = window();
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_circuit(folder.path(), 9, 3, 7);
+    run(
+        &mut window,
+        Command::Open(vec![folder.path().to_path_buf()]),
+    );
+    let count = state(&mut window).document.neurons.len();
+    assert_eq!(count, 9, "{:?}", state(&mut window).problems);
+    (window, folder)
 }

@@ -16,6 +16,8 @@ use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
 use egui_wgpu::RendererOptions;
 use neurotess::render::adapter::adapters;
 use neurotess::synth::Kind;
+use neurotess_viewer::command::Edit;
+use neurotess_viewer::document::Look;
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::state::State;
 use neurotess_viewer::{Command, Viewer, wgpu_setup};
@@ -84,6 +86,38 @@ pub(crate) fn settle(window: &mut Window) {
 pub(crate) fn run(window: &mut Window, command: impl Into<Command>) {
     state(window).run(command);
     settle(window);
+}
+
+pub(crate) fn set_look(window: &mut Window, change: impl FnOnce(&mut Look)) {
+    let mut look = state(window).document.look.clone();
+    change(&mut look);
+    run(window, Edit::SetLook(Box::new(look)));
+}
+
+pub(crate) fn wait(window: &mut Window, until: impl Fn(&mut Window) -> bool) {
+    let begun = Instant::now();
+    while !until(window) {
+        let playback = state(window).playback.clone();
+        assert!(
+            begun.elapsed() < Duration::from_secs(30),
+            "never: {playback:?}"
+        );
+        window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Frames until the picture can be colored anew.
+pub(crate) fn rest(window: &mut Window) {
+    settle(window);
+    wait(window, |w| viewer(w).stage.is_static());
+    settle(window);
+}
+
+/// Number of pixels of two pictures that differ by more than 1 of 255.
+pub(crate) fn differing(a: &[u8], b: &[u8]) -> usize {
+    let far = |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1);
+    a.chunks(4).zip(b.chunks(4)).filter(far).count()
 }
 
 pub(crate) fn with_samples(kinds: &[Kind]) -> Window {

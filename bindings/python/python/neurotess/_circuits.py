@@ -7,9 +7,10 @@ import warnings
 
 from . import _neurotess, _options
 from ._errors import ReadWarning
-from ._exchange import needed
-from ._meshes import Mesh, _of
+from ._meshes import Mesh, Outcome, _of
 from ._morphology import Morphology, Notice, _with_warnings
+from ._packages import needed
+from ._pictures import DrawnCircuit, Image, render
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,10 +23,9 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._meshes import MeshOptions
-    from ._pictures import Image
 
 
-class Circuit:
+class Circuit(DrawnCircuit):
     """A circuit: SONATA, a scene of nsol or one of your own.
 
     `path` is a configuration, or the folder of one. Parts that are missing are warned of.
@@ -230,8 +230,6 @@ class Circuit:
 
         A `time` without a `report` is of the first report with values.
         """
-        from ._pictures import render
-
         if options.get("time") is not None and options.get("report") is None:
             files = self.reports.values()
             options["report"] = next((file for file in files if not Report(file).is_of_spikes), None)
@@ -244,34 +242,23 @@ class Circuit:
         return f"<Circuit {self.file!r}: {len(self)} nodes>"
 
 
-class NodeMesh:
-    """A cell of `Circuit.mesh`: a mesh, or the error that it met."""
+class NodeMesh(Outcome):
+    """A cell of `Circuit.mesh`: a mesh in the coordinates of the circuit, or the error that it met."""
 
     population: str
     """The population of the node."""
     node_id: int
     """Its id."""
-    mesh: Mesh | None
-    """The mesh in the coordinates of the circuit; none if there is an error."""
-    error: Exception | None
-    """Why there is none."""
 
-    __slots__ = ("error", "mesh", "node_id", "population")
+    __slots__ = ("node_id", "population")
 
     def __init__(self, population: str, node_id: int, mesh: Mesh | None, error: Exception | None) -> None:
+        super().__init__(mesh, error)
         self.population = population
         self.node_id = node_id
-        self.mesh = mesh
-        self.error = error
-
-    @property
-    def ok(self) -> bool:
-        """Whether there is a mesh."""
-        return self.error is None
 
     def __repr__(self) -> str:
-        what = self.mesh if self.ok else self.error
-        return f"<NodeMesh {self.node_id} of {self.population!r}: {what!r}>"
+        return f"<NodeMesh {self.node_id} of {self.population!r}: {self._said()}>"
 
 
 class Report:

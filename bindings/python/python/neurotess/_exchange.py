@@ -1,4 +1,4 @@
-"""Cells of other packages, which are imported when they are needed."""
+"""Cells of other packages, there and back: tables and cells of the extension, which `_morphology` wraps."""
 
 from __future__ import annotations
 
@@ -6,38 +6,28 @@ import warnings
 
 from . import _neurotess
 from ._errors import NeurotessWarning
-from ._morphology import Morphology, _with_warnings
+from ._packages import needed
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
 
-def needed(package: str, extra: str | None = None) -> Any:
-    """Imports a package, or says how to install it."""
-    import importlib
-
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        name = package.partition(".")[0]
-        wanted = f"'neurotess[{extra}]'" if extra else name
-        raise ImportError(f"this needs {name}: pip install {wanted}", name=name) from error
-
-
-def to_navis(cell: Morphology) -> Any:
+def to_navis(points: Any, name: str) -> Any:
+    """`points`: as `Morphology.to_table` gives them."""
     navis = needed("navis")
     pandas = needed("pandas")
     names = {"id": "node_id", "type": "label", "parent": "parent_id"}
-    table = pandas.DataFrame(cell.to_table()).rename(columns=names)
+    table = pandas.DataFrame(points).rename(columns=names)
     soma = table.loc[table.label == 1, "node_id"]
-    neuron = navis.TreeNeuron(table, units="1 micrometer", name=cell.name)
+    neuron = navis.TreeNeuron(table, units="1 micrometer", name=name)
     if len(soma):
         neuron.soma = int(soma.iloc[0])
     return neuron
 
 
-def from_navis(neuron: Any, strict: bool) -> Morphology:
+def from_navis(neuron: Any) -> tuple[Any, str]:
+    """A table as `Morphology.from_table` takes it, and a name."""
     table = neuron.nodes[["node_id", "label", "x", "y", "z", "radius", "parent_id"]].copy()
     # Labels are of any kind in navis; those that are no SWC types are undefined.
     pandas = needed("pandas")
@@ -55,21 +45,21 @@ def from_navis(neuron: Any, strict: bool) -> Morphology:
         import numpy as np
 
         table.loc[table["node_id"].isin(np.atleast_1d(soma)), "label"] = 1
-    return Morphology.from_table(table, name=str(neuron.name or "navis"), strict=strict)
+    return table, str(neuron.name or "navis")
 
 
-def to_morphio(cell: Morphology) -> Any:
+def to_morphio(cell: _neurotess.Cell) -> Any:
     morphio = needed("morphio")
     # SWC has no outlines.
-    contour = any(soma.kind == "contour" for soma in cell.somata)
+    contour = any(soma["kind"] == "contour" for soma in cell.somata())
     format = "asc" if contour else "swc"
     # Neurites may change their type without a fork, as in many files.
     option = morphio.Option.allow_unifurcated_section_change
-    text = cell._cell.to_bytes(format).decode()
+    text = cell.to_bytes(format).decode()
     return morphio.Morphology(text, extension=format, options=option)
 
 
-def from_morphio(morphology: Any, strict: bool) -> Morphology:
+def from_morphio(morphology: Any, strict: bool) -> _neurotess.Cell:
     import numpy as np
 
     morphio = needed("morphio")
@@ -107,7 +97,7 @@ def from_morphio(morphology: Any, strict: bool) -> Morphology:
     points = np.asarray(morphology.points)
     soma_points = np.asarray(soma.points).reshape(-1, 3)
     x, y, z = (column(soma_points[:, k], points[:, k], float) for k in range(3))
-    cell = _neurotess.Cell.from_columns(
+    return _neurotess.Cell.from_columns(
         column(np.arange(1, n_soma + 1), ids, np.int64),
         column(np.ones(n_soma), types, np.int64),
         x,
@@ -118,15 +108,14 @@ def from_morphio(morphology: Any, strict: bool) -> Morphology:
         "morphio",
         strict,
     )
-    return _with_warnings(cell, 4)
 
 
-def to_neurom(cell: Morphology) -> Any:
+def to_neurom(cell: _neurotess.Cell, name: str) -> Any:
     neurom = needed("neurom")
     morphology = neurom.load_morphology(to_morphio(cell))
-    morphology.name = cell.name
+    morphology.name = name
     return morphology
 
 
-def from_neurom(morphology: Any, strict: bool) -> Morphology:
+def from_neurom(morphology: Any, strict: bool) -> _neurotess.Cell:
     return from_morphio(morphology.to_morphio(), strict)

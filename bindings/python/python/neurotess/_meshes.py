@@ -6,8 +6,8 @@ import os
 from collections import deque
 
 from . import _neurotess, _options
-from ._exchange import needed
 from ._morphology import Morphology, Notice, _read, read
+from ._packages import needed
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -340,20 +340,17 @@ def check(mesh: Mesh | str | os.PathLike[str], *, merge: bool = False) -> dict[s
     return mesh.check(merge=merge)
 
 
-class MeshResult:
-    """What became of a cell in `mesh_many`: a mesh, or the error that it met."""
+class Outcome:
+    """A mesh, or the error instead of it."""
 
-    input: Source
-    """What was to be meshed."""
     mesh: Mesh | None
     """The mesh; none if there is an error."""
     error: Exception | None
     """Why there is none."""
 
-    __slots__ = ("error", "input", "mesh")
+    __slots__ = ("error", "mesh")
 
-    def __init__(self, input: Source, mesh: Mesh | None, error: Exception | None) -> None:
-        self.input = input
+    def __init__(self, mesh: Mesh | None, error: Exception | None) -> None:
         self.mesh = mesh
         self.error = error
 
@@ -362,8 +359,24 @@ class MeshResult:
         """Whether there is a mesh."""
         return self.error is None
 
+    def _said(self) -> str:
+        return repr(self.mesh if self.ok else self.error)
+
+
+class MeshResult(Outcome):
+    """What became of a cell in `mesh_many`: a mesh, or the error that it met."""
+
+    input: Source
+    """What was to be meshed."""
+
+    __slots__ = ("input",)
+
+    def __init__(self, input: Source, mesh: Mesh | None, error: Exception | None) -> None:
+        super().__init__(mesh, error)
+        self.input = input
+
     def __repr__(self) -> str:
-        return f"<MeshResult {self.input!r}: {self.mesh if self.ok else self.error!r}>"
+        return f"<MeshResult {self.input!r}: {self._said()}>"
 
 
 def mesh_many(

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ._meshes import Mesh
-
 
 class Notice:
     """A warning as data."""
@@ -158,7 +156,7 @@ class Section:
         return isinstance(other, Section) and (self._cell, self.id) == (other._cell, other.id)
 
     def __hash__(self) -> int:
-        return hash((id(self._cell), self.id))
+        return hash((self._cell, self.id))
 
     def __repr__(self) -> str:
         count = self.indices.stop - self.indices.start
@@ -335,12 +333,6 @@ class Morphology:
         """
         return self._cell.measures()
 
-    def mesh(self, **options: Any) -> Mesh:
-        """The surface of the cell: `neurotess.mesh` with this cell."""
-        from ._meshes import mesh
-
-        return mesh(self, **options)
-
     # Files and tables
 
     def save(
@@ -389,40 +381,41 @@ class Morphology:
         """A `navis.TreeNeuron`, in µm."""
         from ._exchange import to_navis
 
-        return to_navis(self)
+        return to_navis(self.to_table(), self.name)
 
     @classmethod
     def from_navis(cls, neuron: Any, *, strict: bool = False) -> Morphology:
         """A cell of a `navis.TreeNeuron`, whose units are taken into account; without units it is in µm."""
         from ._exchange import from_navis
 
-        return from_navis(neuron, strict)
+        table, name = from_navis(neuron)
+        return cls.from_table(table, name=name, strict=strict)
 
     def to_morphio(self) -> Any:
         """A `morphio.Morphology`. MorphIO leaves out sections of a single point, and takes one soma only."""
         from ._exchange import to_morphio
 
-        return to_morphio(self)
+        return to_morphio(self._cell)
 
     @classmethod
     def from_morphio(cls, morphology: Any, *, strict: bool = False) -> Morphology:
         """A cell of a `morphio.Morphology`."""
         from ._exchange import from_morphio
 
-        return from_morphio(morphology, strict)
+        return _with_warnings(from_morphio(morphology, strict))
 
     def to_neurom(self) -> Any:
         """A `neurom.core.Morphology`."""
         from ._exchange import to_neurom
 
-        return to_neurom(self)
+        return to_neurom(self._cell, self.name)
 
     @classmethod
     def from_neurom(cls, morphology: Any, *, strict: bool = False) -> Morphology:
         """A cell of a `neurom.core.Morphology`."""
         from ._exchange import from_neurom
 
-        return from_neurom(morphology, strict)
+        return _with_warnings(from_neurom(morphology, strict))
 
     # Python
 
@@ -484,11 +477,11 @@ def _read(source: Any, format: str | None, name: str | None, strict: bool) -> _n
     return _neurotess.Cell.read_bytes(bytes(source), str(name or "<bytes>"), format, strict)
 
 
-def _with_warnings(cell: _neurotess.Cell, depth: int = 3) -> Morphology:
+def _with_warnings(cell: _neurotess.Cell) -> Morphology:
     """The cell; its warnings are given at the caller's caller."""
     for code, message, line, _ in cell.warnings:
         place = cell.name if line is None else f"{cell.name}:{line}"
-        warnings.warn(ReadWarning(f"{place}: {message} ({code})"), stacklevel=depth)
+        warnings.warn(ReadWarning(f"{place}: {message} ({code})"), stacklevel=3)
     return Morphology(cell)
 
 

@@ -6,21 +6,31 @@ import os
 import warnings
 
 from . import _neurotess, _options
-from ._circuits import Circuit
 from ._errors import NeurotessWarning, RenderError
 from ._morphology import Morphology, read
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Literal
+    from typing import Any, Literal, TypeAlias
 
     import numpy as np
     from numpy.typing import NDArray
 
-    Drawable = Morphology | Circuit | str | os.PathLike[str]
+    Drawable: TypeAlias = "Morphology | DrawnCircuit | str | os.PathLike[str]"
     ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
     Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
+
+
+class DrawnCircuit:
+    """What pictures take of a `Circuit`."""
+
+    _path: str
+
+    @property
+    def reports(self) -> dict[str, str]:
+        """The files of reports and spikes that the configuration names, by their names."""
+        raise NotImplementedError
 
 
 class Image:
@@ -63,7 +73,7 @@ class Image:
 
     def to_pillow(self) -> Any:
         """A `PIL.Image.Image`."""
-        from ._exchange import needed
+        from ._packages import needed
 
         image = needed("PIL.Image").fromarray(self._pixels)
         return image if self._transparent else image.convert("RGB")
@@ -78,10 +88,10 @@ class Image:
 
 def _sources(what: Any) -> tuple[list[_neurotess.Cell], str | None]:
     """Cells, or the path of a circuit."""
-    if isinstance(what, Circuit):
+    if isinstance(what, DrawnCircuit):
         return [], what._path
     many = [what] if isinstance(what, (Morphology, str, os.PathLike)) else list(what)
-    if any(isinstance(one, Circuit) for one in many):
+    if any(isinstance(one, DrawnCircuit) for one in many):
         raise ValueError("a circuit is drawn alone")
     if not many:
         raise ValueError("there is no cell to draw")
@@ -122,6 +132,7 @@ def render(
     up: Sequence[float] | None = None,
     fov: float | None = None,
     wireframe: bool = False,
+    least_width: float | None = None,
     light: str | Sequence[float] | None = None,
     ao: float | None = None,
     lod: Literal["adaptive", "homogeneous", "prerefined", "exploration", "static"] | None = None,
@@ -151,8 +162,8 @@ def render(
 
     Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees).
 
-    Look: `wireframe`, `light` (``"soft"``, ``"flat"`` or a direction), `ao` (radius of ambient occlusion, µm),
-    `lod` with `level`, `pixels` or `budget`.
+    Look: `wireframe`, `least_width` (pixels, of neurites), `light` (``"soft"``, ``"flat"`` or a direction), `ao`
+    (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
 
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
     `sample` and `sample_seed`.
@@ -180,6 +191,7 @@ def render(
         "up": up,
         "fov": fov,
         "wireframe": wireframe,
+        "least_width": least_width,
         "light": light,
         "ao": ao,
         "lod": lod,
@@ -225,7 +237,7 @@ def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
     """All pictures that the options ask for."""
     options = dict(options)
     report, region = options.get("report"), options.get("region")
-    if report is not None and isinstance(what, Circuit):
+    if report is not None and isinstance(what, DrawnCircuit):
         options["report"] = what.reports.get(os.fspath(report), os.fspath(report))
     if region is not None:
         options["region"] = [*region[0], *region[1]]

@@ -6,7 +6,7 @@ import math
 import warnings
 
 from ._errors import NeurotessWarning
-from ._exchange import needed
+from ._packages import needed
 from ._pictures import Image, _drawing
 
 TYPE_CHECKING = False

@@ -5,7 +5,7 @@ Each function draws into `ax`, or a new figure's, and returns it.
 
 from __future__ import annotations
 
-from ._exchange import needed
+from ._packages import needed
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

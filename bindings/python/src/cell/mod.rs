@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
-use neurotess::morphology::{Measures, Morphology, SomaKind, shape, soma_area_volume};
+use neurotess::morphology::{Measures, Morphology, shape, soma_area_volume};
 use neurotess::output::{Existing, Output};
 use neurotess::synth;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
@@ -86,7 +86,7 @@ impl Cell {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, strict: bool) -> PyResult<Self> {
         // Small files take less time than a thread.
-        let read = py.detach(|| formats::read(path, &ReadOptions { strict }));
+        let read = py.detach(|| formats::read(path, &reading(strict)));
         Self::of_result(py, read)
     }
 
@@ -99,7 +99,7 @@ impl Cell {
         strict: bool,
     ) -> PyResult<Self> {
         let format = format.map(|name| format_named(&name)).transpose()?;
-        let options = ReadOptions { strict };
+        let options = reading(strict);
         let read = py.detach(|| formats::read_bytes(bytes, &name, format, &options));
         Self::of_result(py, read)
     }
@@ -127,7 +127,7 @@ impl Cell {
                 radii.as_slice()?,
             ],
         };
-        let read = py.detach(|| columns.read(&name, &ReadOptions { strict }));
+        let read = py.detach(|| columns.read(&name, &reading(strict)));
         Self::of_result(py, read)
     }
 
@@ -229,18 +229,12 @@ impl Cell {
         let origin = self.morphology.origin;
         let one = |soma: &neurotess::morphology::Soma| {
             let (area, volume) = soma_area_volume(soma);
-            let kind = match soma.kind {
-                SomaKind::Point => "point",
-                SomaKind::ThreePoint => "three_point",
-                SomaKind::Contour => "contour",
-                SomaKind::Cylinders => "cylinders",
-            };
             let samples = soma.samples.iter();
             let at = |p: glam::Vec3| (origin + p.as_dvec3()).to_array();
             let points = samples.clone().map(|s| at(s.position)).collect();
             let radii = samples.map(|s| f64::from(s.radius)).collect();
             let told = PyDict::new(py);
-            told.set_item("kind", kind)?;
+            told.set_item("kind", soma.kind.name())?;
             told.set_item("center", at(soma.center))?;
             told.set_item("radius", f64::from(soma.radius))?;
             told.set_item("area", area)?;
@@ -343,6 +337,14 @@ fn unwritten(format: Format, error: std::io::Error) -> PyErr {
             format.name()
         )),
         _ => error.into(),
+    }
+}
+
+/// How files are read.
+fn reading(strict: bool) -> ReadOptions {
+    ReadOptions {
+        strict,
+        ..ReadOptions::default()
     }
 }
 

@@ -21,12 +21,15 @@ mod number;
 mod rows;
 mod write;
 
+use std::path::Path;
+
 use neurotess_morphology::{BuildError, Morphology};
 
+use crate::packed::unpacked_name;
 use crate::text::{Located, refuse_foreign};
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
-use rows::Records;
+use rows::{Reading, Records};
 pub use write::write;
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
@@ -37,9 +40,14 @@ pub use write::write;
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
-    let extended = name.to_ascii_lowercase().ends_with(".eswc");
+    let extension = unpacked_name(Path::new(name)).extension();
+    let extended = extension.is_some_and(|e| e.eq_ignore_ascii_case("eswc"));
+    let reading = Reading {
+        extended,
+        zero_for_bad_radii: options.zero_for_bad_radii,
+    };
     read_text(Format::Swc, name, options, |name, warnings| {
-        interpret(bytes, name, extended, warnings)
+        interpret(bytes, name, reading, warnings)
     })
 }
 
@@ -51,11 +59,11 @@ pub(crate) fn looks_like(bytes: &[u8]) -> bool {
 fn interpret(
     bytes: &[u8],
     name: &str,
-    extended: bool,
+    reading: Reading,
     warnings: &mut Warnings,
 ) -> Located<Morphology> {
     refuse_foreign(bytes)?;
-    let mut records = rows::records(bytes, extended, warnings)?;
+    let mut records = rows::records(bytes, reading, warnings)?;
     if records.nodes.is_empty() {
         return Err((1, Fault::NoSample));
     }

@@ -45,9 +45,7 @@ fn ends(rest: &[u8]) -> bool {
 
 /// A number at the start of the text and how long it is.
 pub(super) fn float(text: &[u8], column: &'static str, limit: f64) -> Result<(f64, usize), Fault> {
-    let quick = if long(text) { None } else { plain(text) };
-    let read = quick.or_else(|| lenient(text));
-    let (number, length) = read.ok_or_else(|| not_a_number(text, column))?;
+    let (number, length) = any_float(text, column)?;
     if number.abs() <= limit {
         Ok((number, length))
     } else {
@@ -56,6 +54,14 @@ pub(super) fn float(text: &[u8], column: &'static str, limit: f64) -> Result<(f6
             text: shown(text),
         })
     }
+}
+
+/// A number at the start of the text, finite or not, and how long it is.
+#[inline]
+pub(super) fn any_float(text: &[u8], column: &'static str) -> Result<(f64, usize), Fault> {
+    let quick = if long(text) { None } else { plain(text) };
+    let read = quick.or_else(|| lenient(text));
+    read.ok_or_else(|| not_a_number(text, column))
 }
 
 /// A whole number at the start of the text, how long it is, and whether it was written `1.0`.

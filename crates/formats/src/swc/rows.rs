@@ -21,6 +21,15 @@ pub(super) struct Records {
     pub(super) header: Vec<String>,
 }
 
+/// How rows are read.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Reading {
+    /// The file has columns of its own, which are passed over.
+    pub(super) extended: bool,
+    /// Radii that are no finite numbers are 0.
+    pub(super) zero_for_bad_radii: bool,
+}
+
 /// One row.
 struct Row {
     node: Node,
@@ -37,11 +46,13 @@ struct Oddities {
     float_ids: bool,
     /// More than seven columns.
     extra_columns: bool,
+    /// A radius that is no finite number, taken as 0.
+    bad_radius: bool,
     any: bool,
 }
 
-/// All rows. `extended` files have columns of their own, which are passed over.
-pub(super) fn records(bytes: &[u8], extended: bool, warnings: &mut Warnings) -> Located<Records> {
+/// All rows.
+pub(super) fn records(bytes: &[u8], reading: Reading, warnings: &mut Warnings) -> Located<Records> {
     let mut records = Records::default();
     // 32 bytes is a short row: better one allocation too large than a dozen that are copied.
     let rows = bytes.len() / 32;
@@ -55,9 +66,9 @@ pub(super) fn records(bytes: &[u8], extended: bool, warnings: &mut Warnings) -> 
             Some(b'#') if records.nodes.is_empty() => records.header.push(comment(text)),
             Some(b'#') => {}
             Some(_) => {
-                let row = row(text).map_err(|fault| (line, fault))?;
+                let row = row(text, reading).map_err(|fault| (line, fault))?;
                 if row.oddities.any {
-                    warn(row.oddities, line, extended, warnings);
+                    warn(row.oddities, line, reading.extended, warnings);
                 }
                 records.nodes.push(row.node);
                 records.parents.push(row.parent);
@@ -74,7 +85,7 @@ pub(super) fn records(bytes: &[u8], extended: bool, warnings: &mut Warnings) -> 
 pub(super) fn first_is_sample(bytes: &[u8]) -> bool {
     let mut rows = lines(bytes).map(|(_, text)| skip_blanks(text));
     rows.find(|text| text.first().is_some_and(|&b| b != b'#'))
-        .is_some_and(|t| row(t).is_ok())
+        .is_some_and(|t| row(t, Reading::default()).is_ok())
 }
 
 /// Lines with their numbers; they end with LF, CRLF or CR.
@@ -135,10 +146,17 @@ fn warn(oddities: Oddities, line: u64, extended: bool, warnings: &mut Warnings) 
             "more than 7 columns: the others are not read",
         );
     }
+    if oddities.bad_radius {
+        warnings.add(
+            line,
+            "radius_not_finite",
+            "a radius is no finite number: taken as 0",
+        );
+    }
 }
 
 /// One row, from its first field on.
-fn row(text: &[u8]) -> Result<Row, Fault> {
+fn row(text: &[u8], reading: Reading) -> Result<Row, Fault> {
     const LIMIT: f64 = Morphology::MAX_COORDINATE;
     let mut fields = Fields {
         rest: text,
@@ -152,7 +170,10 @@ fn row(text: &[u8]) -> Result<Row, Fault> {
     let x = fields.float("x", LIMIT)?;
     let y = fields.float("y", LIMIT)?;
     let z = fields.float("z", LIMIT)?;
-    let radius = fields.float("the radius", LIMIT)?;
+    let radius = match reading.zero_for_bad_radii {
+        true => fields.float_or_zero("the radius", LIMIT)?,
+        false => fields.float("the radius", LIMIT)?,
+    };
     let parent = fields.whole("the parent's number")?;
     let oddities = fields.finish()?;
     if id < 0 {
@@ -209,6 +230,17 @@ impl Fields<'_> {
         let (value, length) = number::float(self.rest, column, limit)?;
         self.rest = &self.rest[length..];
         Ok(value)
+    }
+
+    /// A number, or 0 where it is not finite or out of range.
+    fn float_or_zero(&mut self, column: &'static str, limit: f64) -> Result<f64, Fault> {
+        self.next_field(column)?;
+        let (value, length) = number::any_float(self.rest, column)?;
+        self.rest = &self.rest[length..];
+        let good = value.abs() <= limit;
+        self.row.bad_radius |= !good;
+        self.row.any |= !good;
+        Ok(if good { value } else { 0.0 })
     }
 
     /// Goes to the start of the next field.

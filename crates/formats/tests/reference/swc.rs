@@ -189,7 +189,13 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
             message.contains(says),
             "{file}: {message:?} does not say {says:?}"
         );
-        let strict = read(&path, &ReadOptions { strict: true });
+        let strict = read(
+            &path,
+            &ReadOptions {
+                strict: true,
+                ..ReadOptions::default()
+            },
+        );
         assert!(strict.is_err(), "{file} passes strictly");
     }
 }

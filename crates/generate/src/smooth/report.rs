@@ -48,7 +48,7 @@ fn median_and_largest(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// The value in the middle, in linear time.
-pub(super) fn median(values: &mut [f64]) -> Option<f64> {
+fn median(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     let in_order =
         (middle < values.len()).then(|| values.select_nth_unstable_by(middle, f64::total_cmp));

@@ -12,6 +12,7 @@
 
 mod notes;
 mod origin;
+mod size;
 mod somata;
 mod tree;
 
@@ -155,9 +156,11 @@ fn build(
         ..Morphology::default()
     };
     walk.neurites(&starts, &frame, &mut morphology);
-    notes.radii(nodes, |i| {
-        is_soma(&nodes[i as usize]) && somata.of(i) != NONE
-    });
+    let is_of_soma = |i: u32| is_soma(&nodes[i as usize]) && somata.of(i) != NONE;
+    notes.radii(nodes, is_of_soma);
+    if size::too_large(nodes, is_of_soma) {
+        notes.add(Oddity::TooLarge, 0);
+    }
     Ok(Built {
         morphology,
         notes: notes.into_vec(),

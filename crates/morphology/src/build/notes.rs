@@ -27,6 +27,8 @@ pub enum Oddity {
     ZeroRadius,
     /// Samples with a negative radius.
     NegativeRadius,
+    /// The cell is far larger than neurons are, as if its unit were not the micrometer.
+    TooLarge,
 }
 
 impl Oddity {
@@ -42,6 +44,7 @@ impl Oddity {
             Self::Disconnected => "disconnected",
             Self::ZeroRadius => "zero_radius",
             Self::NegativeRadius => "negative_radius",
+            Self::TooLarge => "too_large",
         }
     }
 }
@@ -58,6 +61,7 @@ impl fmt::Display for Oddity {
             Self::Disconnected => "neurites that are connected to nothing: kept where they are",
             Self::ZeroRadius => "points with radius zero",
             Self::NegativeRadius => "negative radius: kept, measured as zero",
+            Self::TooLarge => "the cell is far larger than neurons are: its unit may be the nanometer or the voxel",
         })
     }
 }

@@ -9,6 +9,7 @@ use crate::scene::color::Rgb;
 pub struct Legend {
     title: String,
     note: String,
+    widths: String,
     kind: Kind,
 }
 
@@ -31,6 +32,7 @@ impl Legend {
         Self {
             title: title.to_owned(),
             note: String::new(),
+            widths: String::new(),
             kind: Kind::Swatches(entries.into_iter().collect()),
         }
     }
@@ -45,6 +47,7 @@ impl Legend {
         Self {
             title,
             note: String::new(),
+            widths: String::new(),
             kind: Kind::Bar { scale, range, more },
         }
     }
@@ -58,6 +61,17 @@ impl Legend {
     #[must_use]
     pub fn noted(mut self, note: &str) -> Self {
         note.clone_into(&mut self.note);
+        self
+    }
+
+    /// Says that neurites are drawn at least so many pixels wide, below all else; 0: nothing. See
+    /// [`Look::least_width`](crate::Look::least_width).
+    #[must_use]
+    pub fn with_least_width(mut self, pixels: f32) -> Self {
+        self.widths = match pixels > 0.0 {
+            true => format!("neurites at least {pixels} px wide"),
+            false => String::new(),
+        };
         self
     }
 
@@ -82,19 +96,17 @@ impl Legend {
                 BAR_LINES * line + line,
             ),
         };
-        let width = width
-            .max(text.width(&self.title))
-            .max(text.width(&self.note))
-            + 2.0;
-        let note = if self.note.is_empty() {
-            0.0
-        } else {
-            1.35 * line
-        };
-        let all = (height + title + note).ceil();
+        let below = [&self.note, &self.widths].map(String::as_str);
+        let below: Vec<&str> = below.into_iter().filter(|note| !note.is_empty()).collect();
+        let widths = below.iter().map(|note| text.width(note));
+        let width = widths.fold(width.max(text.width(&self.title)), f32::max) + 2.0;
+        let all = (height + title + 1.35 * line * below.len() as f32).ceil();
         let mut image = Image::new(width.ceil() as u32, all as u32);
         text.draw(&mut image, 0.0, 0.55 * line, &self.title, ink);
-        text.draw(&mut image, 0.0, all - 0.6 * line, &self.note, ink);
+        for (note, row) in below.iter().rev().zip(0_u16..) {
+            let y = all - (0.6 + 1.35 * f32::from(row)) * line;
+            text.draw(&mut image, 0.0, y, note, ink);
+        }
         match &self.kind {
             Kind::Swatches(entries) => {
                 for ((color, name), row) in entries.iter().zip(0_u16..) {

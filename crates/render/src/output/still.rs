@@ -13,7 +13,7 @@ use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
 use crate::output::static_picture::StaticPicture;
-use crate::output::static_picture::matrix::Weights;
+use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
 use crate::output::tiles::{Finishing, TileRenderer};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb};
@@ -372,8 +372,9 @@ impl StillRenderer {
         let finishing = parting.finishing(options);
         let size = options.size.map(|n| n.max(1));
         let step = parting.step.map(|n| n as usize);
-        let mut weights = Weights::new(size);
+        let mut matrix = MatrixBuilder::default();
         for top in (0..size[1]).step_by(step[1]) {
+            let mut band = Weights::new([size[0], parting.step[1].min(size[1] - top)]);
             for left in (0..size[0]).step_by(step[0]) {
                 if watch.as_ref().is_some_and(Watch::is_stopped) {
                     return Err(StaticError::Stopped);
@@ -383,13 +384,15 @@ impl StillRenderer {
                 let collected =
                     renderer.collect(gpu, source, &frame, look, &finishing, &mut collector)?;
                 if let Some(collected) = collected {
-                    weights.add([left, top], &collected);
+                    band.add([left, 0], &collected);
                 }
                 watch.iter().for_each(Watch::note_tile);
             }
+            matrix.add(&band, 1);
         }
         let (look, background) = (&options.look, options.background);
-        Ok(StaticPicture::new(gpu, size, &weights, look, background)?)
+        let matrix = matrix.finish();
+        Ok(StaticPicture::new(gpu, size, matrix, look, background)?)
     }
 }
 

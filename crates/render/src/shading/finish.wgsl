@@ -21,7 +21,7 @@ struct Finish {
     clear: u32,
     // Size of the part that is kept (pixels).
     kept: vec2<u32>,
-    // For accumulate: number of steps before this one.
+    // For accumulate: number of steps before this one. For collect: rows above the band.
     spare: u32,
     // Bytes of a pixel where nothing is.
     empty: u32,

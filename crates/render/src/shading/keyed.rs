@@ -5,6 +5,7 @@ use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile};
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
 use crate::shading::shade::{self, DEPTH_FORMAT, DrawPass, GUARD, PipelineKey};
+use crate::shading::targets::target;
 use crate::sources::VertexSource;
 
 /// Of all targets: four whole numbers of 16 bits, the largest that can be multisampled everywhere.
@@ -26,27 +27,16 @@ pub(crate) struct KeyedTargets {
     pub(crate) owners: wgpu::TextureView,
     depth: wgpu::TextureView,
     pub(crate) size: [u32; 2],
+    pub(crate) bytes: u64,
 }
 
 impl KeyedTargets {
     pub(crate) fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Self {
-        let texture = |format| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("keyed target"),
-                size: wgpu::Extent3d {
-                    width: size[0],
-                    height: size[1],
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
-            texture.create_view(&Default::default())
+        let mut bytes = 0;
+        let mut texture = |format| {
+            let (view, more) = target(gpu, size, samples, format);
+            bytes += more;
+            view
         };
         Self {
             weights: texture(FORMAT),
@@ -54,6 +44,7 @@ impl KeyedTargets {
             owners: texture(FORMAT),
             depth: texture(DEPTH_FORMAT),
             size,
+            bytes,
         }
     }
 }

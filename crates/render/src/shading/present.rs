@@ -7,7 +7,6 @@ use crate::gpu::buffers::{UNFILTERED, group_layout, storage, texture, texture_bi
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
 use crate::scene::color::Rgb;
-use crate::shading::targets::Targets;
 
 /// The format that windows show without conversion: the screen's bytes.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -159,11 +158,12 @@ impl Presenter {
         );
     }
 
-    /// Encodes the pass.
+    /// Encodes the pass. `pixels`: bytes of the picture; `normals`: the texture in which a draft has
+    /// what is outlined.
     pub(crate) fn present(
         &self,
         gpu: &Gpu,
-        targets: &Targets,
+        (pixels, normals): (&wgpu::Buffer, &wgpu::TextureView),
         to: &Screen,
         outlines: &Outlines,
         encoder: &mut wgpu::CommandEncoder,
@@ -176,14 +176,14 @@ impl Presenter {
         gpu.queue
             .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         if let (Some(drawn), Some(_)) = (&to.drawn, outlines) {
-            let normals = wgpu::BindingResource::TextureView(&targets.normal);
+            let normals = wgpu::BindingResource::TextureView(normals);
             self.gather.run(gpu, &[normals], drawn, encoder);
         }
         let mask = to.drawn.as_ref().unwrap_or(&self.mask);
         let mask = mask.create_view(&Default::default());
         let resources = [
             self.uniform.as_entire_binding(),
-            targets.pixels.as_entire_binding(),
+            pixels.as_entire_binding(),
             wgpu::BindingResource::TextureView(&mask),
         ];
         self.show.run(gpu, &resources, &to.texture, encoder);

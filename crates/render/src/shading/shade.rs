@@ -9,7 +9,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::shader;
 use crate::scene::color::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
 use crate::sources::{SourceKey, VertexSource};
-use crate::view::frame::Frame;
+use crate::view::frame::{Frame, Tile};
 
 /// Linear color, premultiplied.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -37,6 +37,9 @@ pub struct Look {
     /// background have edges, dark ones on a light background and light ones on a dark one. None,
     /// or [`Light::Flat`]: no edges.
     pub contrast: Option<Rgb>,
+    /// Least width (pixels) of neurites: thinner ones are drawn this wide, and no fainter. 0: as wide as
+    /// they are, and from a pixel on fainter instead of thinner.
+    pub least_width: f32,
 }
 
 /// A plane behind which everything is cut away.
@@ -82,6 +85,7 @@ impl Default for Look {
             highlighted: ([255, 160, 0], 0.0),
             ghosted: 0.25,
             contrast: None,
+            least_width: 0.0,
         }
     }
 }
@@ -116,7 +120,7 @@ pub(crate) struct Shade {
     pub(crate) highlighted: [f32; 4],
     pub(crate) jitter: [f32; 2],
     pub(crate) batch: u32,
-    pub(crate) pad: u32,
+    pub(crate) least_half_width: f32,
     pub(crate) edge: [f32; 4],
 }
 
@@ -156,9 +160,9 @@ impl Shade {
             key: key.normalize_or(KEY).to_array(),
             wire: 0.5 * look.wire * scale as f32,
             size: frame.size.map(|n| n as f32),
-            tile_origin: [frame.tile.x as f32, frame.tile.y as f32],
-            viewport_origin: [frame.tile.x, frame.tile.y].map(|n| n as f32 - GUARD),
-            viewport_size: [frame.tile.width, frame.tile.height].map(|n| n as f32 + 2.0 * GUARD),
+            tile_origin: [0.0; 2],
+            viewport_origin: [0.0; 2],
+            viewport_size: [0.0; 2],
             lit,
             scale_entries: table.scale,
             colors: table.colors,
@@ -169,10 +173,19 @@ impl Shade {
             highlighted: [r, g, b, look.highlighted.1],
             jitter: [0.0; 2],
             batch: 0,
-            pad: 0,
+            least_half_width: 0.5 * look.least_width.max(0.0) * scale as f32,
             // Plain colors have no edges.
             edge: edge(look.contrast.filter(|_| lit > 0.0)),
         }
+        .within(&frame.tile)
+    }
+
+    /// For targets that hold a tile of the picture.
+    pub(crate) fn within(mut self, tile: &Tile) -> Self {
+        self.tile_origin = [tile.x as f32, tile.y as f32];
+        self.viewport_origin = [tile.x, tile.y].map(|n| n as f32 - GUARD);
+        self.viewport_size = [tile.width, tile.height].map(|n| n as f32 + 2.0 * GUARD);
+        self
     }
 
     /// For a step of a progressive picture: offset by `jitter` (sub-pixels), its dither pattern by

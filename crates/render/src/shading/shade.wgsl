@@ -43,7 +43,8 @@ struct Shade {
     jitter: vec2<f32>,
     // Index of the batch that is drawn: for picking ids.
     batch: u32,
-    pad: u32,
+    // Half the least width (sub-pixels) that neurites are widened to; 0: none.
+    least_half_width: f32,
     // Linear color of edges, and luminance of the background, against which they make colors of the
     // scale stand out.
     edge: vec4<f32>,
@@ -180,11 +181,13 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
         // only.
         let narrowest = shade.half_width * shade.slope * depth;
         thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
-        if v.radius < narrowest {
+        let least = shade.least_half_width * shade.slope * depth;
+        let widened = max(narrowest, least);
+        if v.radius < widened {
             let offset = v.position - v.axis;
             let away = select(v.normal, normalize(offset), dot(offset, offset) > 0.0);
-            relative += away * (narrowest - v.radius);
-            coverage = ink_of(v.radius / narrowest);
+            relative += away * (widened - v.radius);
+            coverage = select(ink_of(v.radius / narrowest), 1.0, least > 0.0);
         }
     }
     let clip = shade.clip_from_relative * vec4(relative, 1.0);

@@ -21,27 +21,12 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Self {
-        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let bound = wgpu::TextureUsages::TEXTURE_BINDING;
         let mut bytes = 0;
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let mut texture = |format: wgpu::TextureFormat, samples: u32| {
-            bytes += pixels * u64::from(samples * format.block_copy_size(None).unwrap_or(4));
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("target"),
-                size: wgpu::Extent3d {
-                    width: size[0],
-                    height: size[1],
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: attachment | bound,
-                view_formats: &[],
-            });
-            texture.create_view(&Default::default())
+            let (view, more) = target(gpu, size, samples, format);
+            bytes += more;
+            view
         };
         let color = texture(COLOR_FORMAT, samples);
         let resolved = (samples > 1).then(|| texture(COLOR_FORMAT, 1));
@@ -69,4 +54,30 @@ impl Targets {
             bytes: bytes + 16 * pixels,
         }
     }
+}
+
+/// A texture that is drawn into and then read, and its bytes.
+pub(crate) fn target(
+    gpu: &Gpu,
+    size: [u32; 2],
+    samples: u32,
+    format: wgpu::TextureFormat,
+) -> (wgpu::TextureView, u64) {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("target"),
+        size: wgpu::Extent3d {
+            width: size[0],
+            height: size[1],
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let pixel = samples * format.block_copy_size(None).unwrap_or(4);
+    let bytes = u64::from(size[0]) * u64::from(size[1]) * u64::from(pixel);
+    (texture.create_view(&Default::default()), bytes)
 }

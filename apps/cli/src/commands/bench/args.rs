@@ -21,6 +21,46 @@ pub(crate) enum Bench {
     Refinement(RefinementArgs),
     /// Exploration within a budget beside adaptive refinement, in ever larger scenes
     Exploration(ExplorationArgs),
+    /// Further pictures of a recording from a fixed camera: drawn anew, and colored anew
+    Static(StaticArgs),
+}
+
+/// `neurotess bench static`
+#[derive(Args, Debug)]
+pub(crate) struct StaticArgs {
+    /// Neurons of each scene; all are seen by the camera that shows the first as a whole
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "100,1000,10000",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) neurons: Vec<u32>,
+    /// Distinct neurons: scenes of more show them several times
+    #[arg(long, value_name = "N", default_value_t = 30,
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) distinct: u32,
+    /// Points of a neuron, about: each has a value
+    #[arg(long, value_name = "N", default_value_t = 300,
+          value_parser = clap::value_parser!(u32).range(50..=500_000))]
+    pub(crate) points: u32,
+    /// Most triangles of a picture
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+    pub(crate) budget: u32,
+    /// Width and height (pixels)
+    #[arg(long, value_name = "WxH", default_value = "1280x820")]
+    pub(crate) size: Size,
+    /// Samples of a pixel: 1, 4, 16, 36 or 64
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    pub(crate) samples: u32,
+    /// Pictures that are timed of each scene, colored anew; the median counts
+    #[arg(long, value_name = "N", default_value_t = 20,
+          value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: u32,
+    /// Pictures that are timed of each scene, drawn anew
+    #[arg(long, value_name = "N", default_value_t = 3,
+          value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) drawn: u32,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
 }
 
 /// `neurotess bench exploration`

@@ -1,6 +1,8 @@
 //! `neurotess info`: describes morphologies; circuits.rs describes circuits.
 
 mod circuits;
+mod rows;
+mod table;
 mod text;
 
 use std::path::PathBuf;
@@ -8,6 +10,7 @@ use std::path::PathBuf;
 use clap::Args;
 use neurotess::formats::{Format, ReadOptions};
 use neurotess::morphology::Measures;
+use neurotess::morphology::sholl::{self, TooManySpheres};
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
@@ -15,8 +18,11 @@ use crate::io::batch::each;
 use crate::io::circuits::partition;
 use crate::io::inputs::{Input, Inputs};
 use crate::io::morphologies::{MORPHOLOGIES, ReaderWarning, read_morphology};
-use crate::report::{Entry, Failure, Reporter};
-use text::{header, row, table};
+use crate::io::output;
+use crate::options::numbers::positive;
+use crate::report::{Entry, Failure, Reporter, count, usage};
+use rows::{Per, Row};
+use table::Target;
 
 /// `neurotess info`
 #[derive(Args, Debug)]
@@ -31,6 +37,19 @@ pub(crate) struct InfoArgs {
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Write the numbers of all tracings as a table: FILE.csv, FILE.tsv, or - for standard output (tsv there
+    /// with tabs)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) table: Option<Target>,
+    /// What a row of the table, and of `rows` of --json, is of [default: cell]
+    #[arg(long, visible_alias = "by", value_name = "WHAT", value_enum)]
+    pub(crate) per: Option<Per>,
+    /// Sholl analysis: crossings of spheres STEP (µm) apart around the soma
+    #[arg(long, value_name = "STEP", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) sholl: Option<f64>,
+    /// Replace a table that exists
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// One object of the JSON list.
@@ -41,28 +60,54 @@ struct Info {
     #[serde(flatten)]
     measures: Measures,
     warnings: Vec<ReaderWarning>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sholl: Option<Sholl>,
+    /// As in the table, if that or --per is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rows: Option<Vec<Row>>,
+}
+
+/// Crossings of spheres around the soma.
+#[derive(Serialize)]
+struct Sholl {
+    /// Radius of the first sphere, and distance of the others (µm).
+    step: f64,
+    crossings: Vec<u64>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let (circuits, others) = partition(&args.inputs);
+    if let Some(table) = &args.table {
+        if !circuits.is_empty() {
+            return usage("--table is of tracings, not of circuits: give morphology files");
+        }
+        output::reserve_standard(&table.path, reporter)?;
+        output::check(&table.path, args.force)?;
+    } else if args.per.is_some() && !reporter.json() {
+        return usage("--per is of --table and of --json: say --table - for standard output");
+    }
     let mut inputs = Inputs::default();
     if !others.is_empty() {
         inputs = Inputs::find(&others, &MORPHOLOGIES);
     }
     let options = ReadOptions {
         strict: args.strict,
+        ..ReadOptions::default()
     };
-    let results = each(&inputs, reporter, |input| {
-        measure(input, args.format, options)
-    })?;
+    let results = each(&inputs, reporter, |input| measure(input, args, options))?;
     let several = results.len() > 1;
-    if several {
-        reporter.answer(&header());
+    match &args.table {
+        Some(table) => write_table(table, args, &results, reporter)?,
+        None if several => reporter.answer(&text::header()),
+        None => {}
     }
     for entry in &results {
         if let Entry::Done(info) = entry {
-            reporter.answer(&if several { row(info) } else { table(info) });
+            if args.table.is_none() {
+                let line = if several { text::row } else { text::table };
+                reporter.answer(&line(info));
+            }
             warn(info, several, reporter);
         }
     }
@@ -94,14 +139,57 @@ fn morphology_format(name: &str) -> Result<Format, String> {
         .ok_or_else(|| "use swc, asc, h5 or nml".into())
 }
 
-fn measure(input: &Input, format: Option<Format>, options: ReadOptions) -> Result<Info, Failure> {
-    let read = read_morphology(&input.path, format, &options)?;
+fn measure(input: &Input, args: &InfoArgs, options: ReadOptions) -> Result<Info, Failure> {
+    let read = read_morphology(&input.path, args.format, &options)?;
+    let file = input.path.display().to_string();
+    let failed = |e: TooManySpheres| Failure(format!("{file}: {e}"));
+    let sholl = |step| {
+        let sections = 0..read.morphology.sections.len() as u32;
+        let crossings = sholl::crossings(&read.morphology, step, sections);
+        crossings.map(|crossings| Sholl { step, crossings })
+    };
+    let sholl = args.sholl.map(sholl).transpose().map_err(failed)?;
+    let wants_rows = args.table.is_some() || args.per.is_some();
+    let rows = wants_rows.then(|| rows::rows(&read.morphology, args.rows_per(), args.sholl));
+    let rows = rows.transpose().map_err(failed)?;
     Ok(Info {
-        file: input.path.display().to_string(),
         format: read.format,
         measures: Measures::of(&read.morphology),
         warnings: read.warnings.into_iter().map(ReaderWarning::from).collect(),
+        sholl,
+        rows,
+        file,
     })
+}
+
+impl InfoArgs {
+    fn rows_per(&self) -> Per {
+        self.per.unwrap_or(Per::Cell)
+    }
+}
+
+/// Writes the rows of what could be read; nothing if that is none.
+fn write_table(
+    table: &Target,
+    args: &InfoArgs,
+    results: &[Entry<Info>],
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    let done = results.iter().filter_map(|entry| match entry {
+        Entry::Done(info) => Some((&*info.file, info.rows.as_deref().unwrap_or_default())),
+        Entry::Failed(_) => None,
+    });
+    let files: Vec<(&str, &[Row])> = done.collect();
+    if files.is_empty() {
+        return Ok(());
+    }
+    table.write(&files, args.rows_per(), args.sholl, args.force)?;
+    if !output::is_standard(&table.path) {
+        let rows = files.iter().map(|(_, rows)| rows.len()).sum();
+        let (rows, cells) = (count(rows, "row"), count(files.len(), "tracing"));
+        reporter.result(&format!("{}: {rows} of {cells}", table.path.display()));
+    }
+    Ok(())
 }
 
 fn warn(info: &Info, several: bool, reporter: &Reporter) {

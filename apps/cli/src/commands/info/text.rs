@@ -53,6 +53,11 @@ pub(super) fn table(info: &Info) -> String {
         let [x, y, z] = [0, 1, 2].map(|axis: usize| bounds.max[axis] - bounds.min[axis]);
         line("extent", format!("{x:.1} × {y:.1} × {z:.1} µm"));
     }
+    if let Some(sholl) = &info.sholl {
+        let crossings: Vec<String> = sholl.crossings.iter().map(u64::to_string).collect();
+        let spheres = format!("every {} µm: {}", sholl.step, crossings.join(" "));
+        line("crossings", spheres);
+    }
     line("warnings", info.warnings.len().to_string());
     lines.join("\n")
 }

@@ -160,6 +160,7 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     let clock = Instant::now();
     let read_options = ReadOptions {
         strict: options.strict,
+        ..ReadOptions::default()
     };
     let read = read_morphology(input, None, &read_options)?;
     seconds.read = clock.elapsed().as_secs_f64();

@@ -7,12 +7,13 @@ use clap::{Args, ValueEnum};
 use neurotess::render::MOST_BUDGET;
 use neurotess::render::color::{ColorMap, Palette};
 
-use super::times::{MOST, Time, times};
+use super::times::{MOST, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};
 use crate::options::cells::CellArgs;
 use crate::options::rings::RingArgs;
 use crate::options::size::Size;
 use crate::options::soma::SomaArg;
+use crate::options::time::Time;
 use crate::options::types::Types;
 use crate::report::usage;
 
@@ -115,6 +116,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
           help_heading = "Picture")]
     pub(crate) scale_bar: Option<Fit>,
+    /// Draw neurites at least this wide (pixels), so that thin ones can be seen in a figure; the legend
+    /// says so
+    #[arg(long, value_name = "PX", value_parser = crate::options::numbers::positive,
+          allow_negative_numbers = true, help_heading = "Picture")]
+    pub(crate) least_width: Option<f64>,
     /// How vertices are made [default: adaptive; homogeneous where --level is given]
     #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
     pub(crate) lod: Option<LodMode>,
@@ -218,6 +224,11 @@ pub(crate) struct RenderArgs {
 }
 
 impl RenderArgs {
+    /// Least width (pixels) of neurites; 0: as wide as they are.
+    pub(crate) fn least_width(&self) -> f32 {
+        self.least_width.unwrap_or(0.0) as f32
+    }
+
     /// Greatest error (pixels): one that cannot be seen; with a wireframe a larger one, so that its
     /// lines do not run together.
     pub(crate) fn error(&self) -> f64 {

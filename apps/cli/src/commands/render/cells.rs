@@ -36,6 +36,7 @@ pub(crate) fn read(
     let options = options(args);
     let read = ReadOptions {
         strict: args.strict,
+        ..ReadOptions::default()
     };
     let entries = each(inputs, reporter, |input| {
         let cut = cuts.get(&input.path).map_or(&[][..], Vec::as_slice);

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ColorScheme, Coloring, DECAY, Recording, VisibleValues, by_attribute,
+    self, Cell, ColorScheme, Coloring, DECAY, Film, FilmError, Recording, by_attribute,
 };
-use neurotess::render::VisibleKey;
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
+use neurotess::render::{Gpu, Image, StaticPicture};
 
 use super::args::{ColorBy, RenderArgs};
 use super::cells::MeshedCell;
@@ -21,6 +22,8 @@ pub(crate) struct PictureColors {
     pub(crate) coloring: Coloring,
     /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
+    /// Least width (pixels) of neurites, which the legend tells; 0: none.
+    least_width: f32,
 }
 
 /// A recording, and the time (ms) of each picture.
@@ -58,6 +61,7 @@ impl PictureColors {
     /// Legend of a picture.
     pub(crate) fn legend(&self, number: usize) -> Legend {
         let legend = self.coloring.legend.clone();
+        let legend = legend.with_least_width(self.least_width);
         let series = self.series.as_ref();
         match series.and_then(|series| Some((series, *series.times.get(number)?))) {
             Some((series, time)) => legend.noted(&time_text(&series.times, time)),
@@ -65,33 +69,28 @@ impl PictureColors {
         }
     }
 
-    /// Where the recording holds what shows in a static picture.
-    pub(crate) fn visible(&self, keys: &[VisibleKey]) -> VisibleValues {
-        let series = self.series.as_ref();
-        series.map_or_else(VisibleValues::default, |series| {
-            series.recording.visible(keys)
-        })
+    /// A film of the series.
+    pub(crate) fn film(&self, picture: StaticPicture) -> Option<Film> {
+        let series = self.series.as_ref()?;
+        Some(Film::new(picture, &series.recording, series.range, DECAY))
     }
 
-    /// Values of what shows in a picture: fractions of the range.
-    pub(crate) fn visible_values(
+    /// A picture of the film of the series.
+    pub(crate) fn film_picture(
         &self,
+        gpu: &Gpu,
+        film: &Film,
         number: usize,
-        visible: &VisibleValues,
-    ) -> anyhow::Result<Vec<f32>> {
-        let time = |series: &RecordedSeries| series.times.get(number).copied();
-        let Some((series, time)) = self.series.as_ref().and_then(|s| Some((s, time(s)?))) else {
-            return Ok(Vec::new());
-        };
-        let [low, high] = series.range;
-        let values = series
-            .recording
-            .visible_at(time, DECAY, visible)
-            .map_err(whole)?;
-        Ok(values
-            .iter()
-            .map(|value| (value - low) / (high - low))
-            .collect())
+    ) -> anyhow::Result<Image> {
+        let series = self.series.as_ref();
+        let timed = series.and_then(|series| Some((series, *series.times.get(number)?)));
+        let (series, time) = timed.context("there is no such picture")?;
+        let colors = (&self.coloring.table, &[][..]);
+        film.picture(gpu, &series.recording, time, colors)
+            .map_err(|e| match e {
+                FilmError::Recording(e) => whole(e),
+                FilmError::Device(e) => e.into(),
+            })
     }
 }
 
@@ -141,6 +140,7 @@ pub(crate) fn of_pictures(
     Ok(PictureColors {
         coloring: coloring.unwrap_or_else(by_tracing),
         series: None,
+        least_width: args.least_width(),
     })
 }
 
@@ -198,7 +198,11 @@ fn over_time(
         times,
         range,
     });
-    let mut colored = PictureColors { coloring, series };
+    let mut colored = PictureColors {
+        coloring,
+        series,
+        least_width: args.least_width(),
+    };
     let (table, legend) = colored.picture(0)?;
     (colored.coloring.table, colored.coloring.legend) = (table, legend);
     Ok(colored)

@@ -12,7 +12,7 @@ use neurotess::render::{
 use super::args::RenderArgs;
 use super::cameras;
 use super::coloring::PictureColors;
-use super::film::Film;
+use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::stats::{Stage, Stages, Stats};
 use super::values::Fit;
@@ -77,7 +77,7 @@ pub(super) fn draw(
     let mut source = PictureSource::new(gpu, &options, job)?;
     let mut renderer = StillRenderer::new();
     stages.end(Stage::Upload);
-    let mut film = Film::new(
+    let mut film = FixedFilm::new(
         gpu,
         colored,
         (cameras, spheres),
@@ -121,7 +121,7 @@ pub(super) fn draw(
             counted = source.stats(gpu, camera, near, &options)?;
         }
         stats.add(&cost, counted.clone());
-        stats.film = film.as_ref().map(Film::stats);
+        stats.film = film.as_ref().map(FixedFilm::stats);
         if let Some(lowered) = stats.lowered() {
             reporter.warning(&lowered);
         }
@@ -141,6 +141,7 @@ pub(super) fn picture_options(args: &RenderArgs) -> PictureOptions {
             light: args.light.0,
             wire: if args.wireframe { WIRE } else { 0.0 },
             contrast: (!args.transparent).then_some(args.background.0),
+            least_width: args.least_width(),
             ..Look::default()
         },
         occlusion: match args.ao {

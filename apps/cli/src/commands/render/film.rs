@@ -2,22 +2,17 @@
 
 use std::time::Instant;
 
-use neurotess::coloring::VisibleValues;
+use neurotess::coloring::Film;
 use neurotess::render::{
-    BoundingSphere, Camera, Cost, Gpu, Image, KeyColors, PictureOptions, StaticError,
-    StaticPicture, StillRenderer, Viewpoint,
+    BoundingSphere, Camera, Cost, Gpu, Image, PictureOptions, StaticError, StillRenderer, Viewpoint,
 };
 
 use super::coloring::PictureColors;
 use super::vertex_source::PictureSource;
 
-/// Most pixels of a picture that is held as a whole, with its weights: larger ones are drawn anew.
-const MOST_PIXELS: u64 = 1 << 24;
-
-/// A picture, and where the values are of what shows in it.
-pub(super) struct Film {
-    picture: StaticPicture,
-    visible: VisibleValues,
+/// A film, and what its next picture costs besides being colored.
+pub(super) struct FixedFilm {
+    film: Film,
     cost: Cost,
 }
 
@@ -30,7 +25,7 @@ pub(super) struct FilmStats {
     bytes: u64,
 }
 
-impl Film {
+impl FixedFilm {
     /// Draws the picture; none if the pictures must be drawn one by one. `cameras`: of all pictures.
     pub(super) fn new(
         gpu: &Gpu,
@@ -40,12 +35,11 @@ impl Film {
         (source, renderer): (&mut PictureSource, &mut StillRenderer),
     ) -> anyhow::Result<Option<Self>> {
         let (cameras, spheres) = cameras;
-        let [width, height] = options.size.map(u64::from);
         let fixed = cameras.windows(2).all(|pair| pair[0] == pair[1]);
         let Some(camera) = cameras.first().filter(|_| fixed) else {
             return Ok(None);
         };
-        if cameras.len() < 2 || !colored.is_series() || width * height > MOST_PIXELS {
+        if cameras.len() < 2 || !colored.is_series() || !Film::holds(options.size) {
             return Ok(None);
         }
         let clock = Instant::now();
@@ -60,17 +54,15 @@ impl Film {
             Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),
             Err(e) => anyhow::bail!("{e}"),
         };
-        let visible = colored.visible(picture.keys());
+        let Some(film) = colored.film(picture) else {
+            return Ok(None);
+        };
         let cost = Cost {
             cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
             tiles: options.tiles(gpu, camera),
             ..Cost::default()
         };
-        Ok(Some(Self {
-            picture,
-            visible,
-            cost,
-        }))
+        Ok(Some(Self { film, cost }))
     }
 
     /// The picture of a number.
@@ -81,14 +73,7 @@ impl Film {
         number: usize,
     ) -> anyhow::Result<(Image, Cost)> {
         let clock = Instant::now();
-        let values = colored.visible_values(number, &self.visible)?;
-        let colors = KeyColors {
-            table: &colored.coloring.table,
-            states: &[],
-            values: Some(&values),
-        };
-        self.picture.recolor(gpu, &colors)?;
-        let image = self.picture.image(gpu)?;
+        let image = colored.film_picture(gpu, &self.film, number)?;
         let mut cost = self.cost.clone();
         // The first picture took the time to draw it.
         cost.cpu_ms += clock.elapsed().as_secs_f64() * 1e3;
@@ -97,11 +82,12 @@ impl Film {
     }
 
     pub(super) fn stats(&self) -> FilmStats {
+        let picture = self.film.static_picture();
         FilmStats {
-            visible_keys: self.picture.keys().len(),
-            compartments_read: self.visible.compartments(),
-            weights: self.picture.weights(),
-            bytes: self.picture.bytes(),
+            visible_keys: picture.keys().len(),
+            compartments_read: self.film.compartments(),
+            weights: picture.weights(),
+            bytes: picture.bytes(),
         }
     }
 }

@@ -16,7 +16,7 @@ use super::args::RenderArgs;
 use super::cells::{self, MeshedCell};
 use super::circuit_instances::CircuitInstances;
 use super::coloring::PictureColors;
-use super::film::Film;
+use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::scene::RenderScene;
 use super::vertex_source::{self, PictureSource};
@@ -64,7 +64,7 @@ pub struct Drawing {
     source: PictureSource,
     renderer: StillRenderer,
     /// Of a series of times from a fixed camera: drawn with the first of its pictures.
-    film: Option<Film>,
+    film: Option<FixedFilm>,
 }
 
 /// What is at a pixel.
@@ -192,7 +192,7 @@ impl Drawing {
         };
         let options = draw::picture_options(&self.args);
         if self.film.is_none() {
-            let drawn = Film::new(
+            let drawn = FixedFilm::new(
                 gpu,
                 &self.colored,
                 (&self.cameras, &self.spheres),

@@ -19,6 +19,21 @@ pub struct Detail {
     pub far: f32,
     /// Patches smaller than this (pixels) are left out.
     pub smallest: f32,
+    /// How the picture at rest is drawn.
+    pub at_rest: RestChoice,
+}
+
+/// How the picture at rest is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RestChoice {
+    /// With all detail, or within a budget where that would block the window.
+    #[default]
+    Automatic,
+    /// With all detail, however long it takes.
+    Full,
+    /// Within a budget, as drafts are.
+    Budget,
 }
 
 /// What decides on levels.
@@ -45,6 +60,7 @@ impl Default for Detail {
             level: 4,
             far: 500.0,
             smallest: 0.0,
+            at_rest: RestChoice::Automatic,
         }
     }
 }

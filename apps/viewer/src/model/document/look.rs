@@ -54,6 +54,8 @@ pub struct Look {
     /// Opacity of transparent neurons, 0 to 1.
     #[serde(alias = "faint")]
     pub ghost_opacity: f32,
+    /// Least width (pixels) of neurites; 0: as they are.
+    pub least_width: f32,
     /// Which parts of cells are drawn.
     pub parts: VisibleParts,
     /// A plane that cuts a part of the scene away.
@@ -210,6 +212,7 @@ impl Default for Look {
             highlight_selected: false,
             ghost_others: false,
             ghost_opacity: 0.25,
+            least_width: 0.0,
             parts: VisibleParts::All,
             cut: None,
         }

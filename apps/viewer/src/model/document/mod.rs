@@ -14,7 +14,7 @@ use neurotess::render::Placement;
 use crate::model::revision::Tracked;
 
 pub use crate::model::ids::{CircuitNode, SourceId};
-pub use detail::{Detail, LodKind};
+pub use detail::{Detail, LodKind, RestChoice};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;

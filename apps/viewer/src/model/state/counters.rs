@@ -17,6 +17,19 @@ pub struct Counters {
     pub draft: Draft,
     /// How the quality of the picture at rest is reduced, if it is.
     pub lowered: Option<Lowered>,
+    /// The picture at rest, once it can be colored anew.
+    pub static_picture: Option<StaticFigures>,
+}
+
+/// What a picture holds that is colored anew without being drawn anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StaticFigures {
+    /// Number of colors that show: of a tracing point or compartment of a neuron.
+    pub colors: usize,
+    /// Compartments of the recording that are read for a frame; none without a recording.
+    pub compartments: Option<usize>,
+    /// Bytes on the device.
+    pub bytes: u64,
 }
 
 /// How the quality of the picture at rest is reduced, so that the window stays responsive.

@@ -17,7 +17,7 @@ use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources, extent};
 use crate::model::view::View;
 
-pub use counters::{Counters, Draft, Lowered, Rebuilds};
+pub use counters::{Counters, Draft, Lowered, Rebuilds, StaticFigures};
 use derived::Derived;
 pub(crate) use derived::{PlacementsKey, SpheresKey};
 

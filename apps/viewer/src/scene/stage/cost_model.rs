@@ -5,6 +5,7 @@ use neurotess::render::bounds::any_shows;
 use neurotess::render::{Frame, ViewParams};
 
 use super::Stage;
+use crate::model::document::RestChoice;
 use crate::model::state::{Lowered, State};
 use crate::scene::content::SceneInstance;
 
@@ -147,14 +148,17 @@ impl Stage {
     }
 
     /// How the picture at rest is drawn.
-    pub(super) fn select_rest_mode(&mut self, params: &ViewParams) -> RestMode {
-        if !self.cost_model.too_many(self.patches) {
-            return RestMode::Refined;
-        }
+    pub(super) fn select_rest_mode(&mut self, params: &ViewParams, choice: RestChoice) -> RestMode {
         let has_proxies = explorable(params) && self.explorer.fits(&self.content);
-        match has_proxies {
-            true => RestMode::Explored,
-            false => RestMode::Coarser,
+        let too_many = self.cost_model.too_many(self.patches);
+        match (choice, has_proxies) {
+            (RestChoice::Full, _) => RestMode::Refined,
+            (RestChoice::Budget, true) => RestMode::Explored,
+            (RestChoice::Automatic, _) | (RestChoice::Budget, false) if !too_many => {
+                RestMode::Refined
+            }
+            (_, true) => RestMode::Explored,
+            (_, false) => RestMode::Coarser,
         }
     }
 

@@ -12,6 +12,7 @@ use neurotess::render::{
 use super::cost_model::explorable;
 use super::pointing::OUTLINES;
 use super::rest::REST;
+use super::static_mode::StaticKey;
 use super::{PictureInputs, RestPhase, Stage};
 use crate::model::state::State;
 use crate::scene::content::{self, InstancesKey, StatesKey};
@@ -87,9 +88,7 @@ impl Stage {
         inputs: PictureInputs,
         ctx: &egui::Context,
     ) -> Result<(), DeviceError> {
-        self.moved = Instant::now();
-        self.phase = RestPhase::Waits;
-        self.progressive.stop();
+        self.note_change(state, &inputs);
         if self.progressive.is_busy(&self.gpu) {
             // Waits for the draft before: if drafts piled up, they would be shown too late.
             ctx.request_repaint_after(Duration::from_millis(3));
@@ -107,7 +106,7 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(15));
             return Ok(());
         }
-        if self.drawn.is_some() && self.progressive.shows_draft() {
+        if self.drafted && self.progressive.shows_draft() {
             self.keep_up();
         }
         if self.states != Some(inputs.states) {
@@ -134,8 +133,31 @@ impl Stage {
         self.drawn = Some(inputs);
         self.legend.clone_from(&self.content.legend);
         self.revalued = false;
-        ctx.request_repaint_after(REST);
+        self.drafted = true;
+        ctx.request_repaint_after(match self.phase {
+            RestPhase::Collects => Duration::ZERO,
+            _ => REST,
+        });
         Ok(())
+    }
+
+    /// Begins to wait for rest. If only colors have changed, a static picture that is being made goes
+    /// on; and a recording that is played does not put it off.
+    fn note_change(&mut self, state: &State, inputs: &PictureInputs) {
+        let key = StaticKey::new(inputs);
+        let same = self.shape == Some(key);
+        if same && self.phase == RestPhase::Collects {
+            return;
+        }
+        if !same {
+            self.leave_static();
+            self.shape = Some(key);
+        }
+        if !same || !state.playback.playing {
+            self.moved = Instant::now();
+        }
+        self.phase = RestPhase::Waits;
+        self.progressive.stop();
     }
 
     /// Draws a draft, in exploration mode if possible.
@@ -186,7 +208,7 @@ impl Stage {
         self.rebuilds.instances += 1;
     }
 
-    fn set_states(&mut self, state: &State, key: StatesKey) {
+    pub(super) fn set_states(&mut self, state: &State, key: StatesKey) {
         let mut states = content::states(&state.document);
         for &neuron in state.document.neurons.selected() {
             states[neuron] |= OUTLINED;

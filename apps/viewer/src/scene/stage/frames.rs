@@ -8,7 +8,7 @@ use eframe::egui;
 use neurotess::render::color::ColorTable;
 
 use super::Stage;
-use crate::io::frames::{FrameReader, ValueInputs};
+use crate::io::frames::{FrameReader, FrameValues, ValueInputs, ValuesOf};
 use crate::model::playback::Facts;
 use crate::model::state::State;
 use crate::scene::colors::{ColorInputs, color_scheme};
@@ -29,6 +29,7 @@ impl Stage {
                 FrameReader::new(Arc::clone(recording), move || ctx.request_repaint())
             });
             self.values = None;
+            self.find_visible();
         }
         self.tell(state);
     }
@@ -79,8 +80,8 @@ impl Stage {
         valued == 0 || valued == state.document.neurons.len()
     }
 
-    /// Takes the values of the current frame if they have been read. True if they differ from those
-    /// before.
+    /// Takes the values of the current frame if they have been read: those that show in the static
+    /// picture, or those of all neurons that are shown. True if they differ from those before.
     pub(super) fn take_values(&mut self, state: &mut State, ctx: &egui::Context) -> bool {
         self.values_due = false;
         let (Some(reader), Some(facts)) = (&self.reader, &state.playback.facts) else {
@@ -89,9 +90,15 @@ impl Stage {
         let Some(frame) = state.playback.frame() else {
             return false;
         };
+        let of = match &self.visible {
+            Some(visible) => ValuesOf::Visible(Arc::clone(visible)),
+            None => ValuesOf::Neurons {
+                shows: Arc::clone(&self.shows),
+                range: facts.range,
+            },
+        };
         let value_inputs = ValueInputs {
-            shows: Arc::clone(&self.shows),
-            range: facts.range,
+            of,
             decay: state.document.look.decay,
         };
         let stride = match state.playback.playing {
@@ -116,8 +123,10 @@ impl Stage {
         {
             return false;
         }
-        self.progressive.set_values((*values).clone());
-        self.content.table.values = (*values).clone();
+        if let FrameValues::Neurons(values) = &*values {
+            self.progressive.set_values(values.clone());
+            self.content.table.values = values.clone();
+        }
         self.values = Some(values);
         true
     }

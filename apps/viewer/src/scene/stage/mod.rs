@@ -7,6 +7,7 @@ mod drafts;
 mod frames;
 mod pointing;
 mod rest;
+mod static_mode;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -14,15 +15,14 @@ use std::time::Instant;
 
 use eframe::egui;
 use egui_wgpu::RenderState;
-use neurotess::coloring::{ColorBy, coloring};
-use neurotess::render::color::InstanceValues;
+use neurotess::coloring::{ColorBy, VisibleValues, coloring};
 use neurotess::render::overlay::Legend;
 use neurotess::render::{
     Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Gpu, ProgressiveRenderer, Scene,
     ViewParams,
 };
 
-use crate::io::frames::FrameReader;
+use crate::io::frames::{FrameReader, FrameValues};
 use crate::io::task::Task;
 use crate::model::document::{Cut, Detail, Look};
 use crate::model::revision::Revision;
@@ -35,6 +35,7 @@ use building::Built;
 use cost_model::{CostModel, RestMode};
 pub(crate) use pointing::OUTLINES;
 use pointing::{MaskKey, Resolver};
+use static_mode::StaticKey;
 
 /// Draws the picture in the window.
 pub struct Stage {
@@ -66,12 +67,20 @@ pub struct Stage {
     building: Option<(Checked, Task<Built>)>,
     /// Reads the recording.
     reader: Option<FrameReader>,
-    values: Option<Arc<InstanceValues>>,
+    values: Option<Arc<FrameValues>>,
+    /// Where the recording has what shows in the static picture.
+    visible: Option<Arc<VisibleValues>>,
     /// Whether values of the current frame are still to be read.
     values_due: bool,
     /// Whether values have changed since they were drawn.
     revalued: bool,
     drawn: Option<PictureInputs>,
+    /// Whether the static picture is still to be colored anew.
+    recolor_due: bool,
+    /// Of the last draft: what its static picture depends on.
+    shape: Option<StaticKey>,
+    /// Whether a draft is what was drawn last.
+    drafted: bool,
     moved: Instant,
     phase: RestPhase,
     coarser: f32,
@@ -117,6 +126,8 @@ enum RestPhase {
     Slices,
     /// Everything is drawn in exploration mode; finds out what it left out.
     Surveys,
+    /// The picture is made static.
+    Collects,
     /// Everything is drawn.
     Done,
 }
@@ -156,9 +167,13 @@ impl Stage {
             building: None,
             reader: None,
             values: None,
+            visible: None,
             values_due: false,
             revalued: false,
             drawn: None,
+            recolor_due: false,
+            shape: None,
+            drafted: false,
             moved: Instant::now(),
             phase: RestPhase::Done,
             coarser: if software { 4.0 } else { 1.0 },
@@ -194,8 +209,15 @@ impl Stage {
 
     /// Whether everything is drawn.
     pub fn is_settled(&self) -> bool {
-        let drawn = self.phase == RestPhase::Done && self.drawn.is_some();
-        drawn && self.building.is_none() && !self.values_due
+        let shown = match self.phase {
+            RestPhase::Done => true,
+            // Outlines and picking need ids.
+            RestPhase::Collects => self.is_sharp() && self.can_pick(),
+            _ => false,
+        };
+        let ids_due = self.resolver.is_some();
+        let due = self.values_due || self.recolor_due || ids_due;
+        shown && self.drawn.is_some() && self.building.is_none() && !due
     }
 
     /// Whether the picture, perhaps a draft, shows the recording's current frame.
@@ -254,9 +276,21 @@ impl Stage {
             // Neurons were added or removed: the values do not belong to them yet.
             return Ok(self.texture_id());
         }
-        self.revalued |= self.take_values(state, ctx);
         let inputs = self.inputs(state, size);
-        if self.revalued || self.drawn.as_ref() != Some(&inputs) {
+        if self
+            .shape
+            .is_some_and(|shape| shape != StaticKey::new(&inputs))
+        {
+            self.leave_static();
+        }
+        self.revalued |= self.take_values(state, ctx);
+        // A draft may have been drawn while the static picture was made.
+        let behind = self.is_static() && !self.is_sharp();
+        let changed = behind || self.revalued || self.drawn.as_ref() != Some(&inputs);
+        self.recolor_due = changed && self.recolors(&inputs);
+        if self.recolor_due {
+            self.recolor(state, inputs, ctx)?;
+        } else if changed && !self.goes_on(&inputs) {
             self.draft(state, inputs, ctx)?;
         } else {
             self.refine(state, ctx)?;
@@ -273,6 +307,7 @@ impl Stage {
             false => Draft::Error(self.coarser),
         };
         state.counters.lowered = self.lowered();
+        state.counters.static_picture = self.static_figures();
         self.gpu.check()?;
         Ok(self.texture_id())
     }

@@ -20,6 +20,26 @@ const SLICE_MS: f64 = 120.0;
 /// would take longer in all.
 const MOST_SLICES: f64 = 3.0;
 
+/// The source of the picture at rest, without borrowing the whole stage; none if exploration mode cannot
+/// draw it any more.
+macro_rules! rest_source {
+    ($stage:ident) => {{
+        let source: Option<&mut dyn VertexSource> = match $stage.rest_mode {
+            RestMode::Refined | RestMode::Coarser => Some(&mut $stage.adaptive),
+            RestMode::Explored => {
+                let (gpu, content) = (&$stage.gpu, &$stage.content);
+                let budget = $stage.cost_model.budget;
+                let explored = $stage
+                    .explorer
+                    .exploration(gpu, content, $stage.instances, budget);
+                explored.map(|source| source as &mut dyn VertexSource)
+            }
+        };
+        source
+    }};
+}
+pub(super) use rest_source;
+
 impl Stage {
     pub(super) fn refine(
         &mut self,
@@ -30,32 +50,56 @@ impl Stage {
             return Ok(());
         };
         let (params, detail) = (drawn.params, drawn.detail);
-        match self.phase {
-            RestPhase::Waits if self.moved.elapsed() < REST => {
+        let phase = self.phase;
+        if matches!(phase, RestPhase::Done | RestPhase::Collects) {
+            self.count(state)?;
+        }
+        if phase != RestPhase::Done && self.progressive.is_busy(&self.gpu) {
+            ctx.request_repaint_after(Duration::from_millis(5));
+            return Ok(());
+        }
+        let waits = phase == RestPhase::Waits && self.moved.elapsed() < REST;
+        self.drafted &= waits || phase == RestPhase::Done;
+        match phase {
+            RestPhase::Done => {}
+            RestPhase::Waits if waits => {
                 ctx.request_repaint_after(REST.saturating_sub(self.moved.elapsed()));
             }
-            RestPhase::Done => self.count(state)?,
-            _ if self.progressive.is_busy(&self.gpu) => {
-                ctx.request_repaint_after(Duration::from_millis(5));
-            }
             RestPhase::Waits => {
-                self.begin(params, detail);
+                self.rest_mode = self.select_rest_mode(&params, detail.at_rest);
+                // While a recording is played, a picture would be of many times.
+                self.phase = match state.playback.playing {
+                    true => RestPhase::Collects,
+                    false => self.begin(params, detail),
+                };
                 ctx.request_repaint();
             }
             RestPhase::Slices => {
-                self.slice(params)?;
+                self.slice(params, detail)?;
                 ctx.request_repaint();
             }
             RestPhase::Surveys => {
                 self.survey()?;
                 ctx.request_repaint();
             }
+            RestPhase::Collects => {
+                self.collect(params, detail)?;
+                ctx.request_repaint();
+            }
         }
         Ok(())
     }
 
-    fn begin(&mut self, params: ViewParams, detail: Detail) {
-        self.rest_mode = self.select_rest_mode(&params);
+    fn begin(&mut self, params: ViewParams, detail: Detail) -> RestPhase {
+        self.set_rest_detail(&params, detail);
+        self.progressive.begin(params, self.steps());
+        self.cost_model.begin();
+        self.timed = false;
+        RestPhase::Slices
+    }
+
+    /// Sets the detail of the picture at rest.
+    pub(super) fn set_rest_detail(&mut self, params: &ViewParams, detail: Detail) {
         let lod = match self.rest_mode {
             RestMode::Coarser => detail.lod().coarser(self.coarser),
             RestMode::Refined | RestMode::Explored => detail.lod(),
@@ -66,21 +110,20 @@ impl Stage {
             wireframe: params.look.wire > 0.0,
             ..AdaptiveSettings::default()
         });
-        let steps = Steps {
-            steps: 4,
-            slices: self.slices,
-        };
-        self.progressive.begin(params, steps);
-        self.cost_model.begin();
-        self.timed = false;
-        self.phase = RestPhase::Slices;
     }
 
-    fn slice(&mut self, params: ViewParams) -> Result<(), DeviceError> {
+    pub(super) fn steps(&self) -> Steps {
+        Steps {
+            steps: 4,
+            slices: self.slices,
+        }
+    }
+
+    fn slice(&mut self, params: ViewParams, detail: Detail) -> Result<(), DeviceError> {
         if self.timed {
             self.learn();
             if self.rest_mode == RestMode::Refined
-                && self.select_rest_mode(&params) != RestMode::Refined
+                && self.select_rest_mode(&params, detail.at_rest) != RestMode::Refined
             {
                 // The next slices would be as slow: stops, and begins again in another mode.
                 self.progressive.stop();
@@ -89,42 +132,42 @@ impl Stage {
             }
         }
         // Ids for picking are drawn as soon as the first step is shown.
-        let identifies =
-            !self.progressive.shows_draft() && self.resolver.is_none() && !self.can_pick();
+        let identifies = !self.progressive.shows_draft() && self.lacks_ids();
         self.timed = !identifies;
-        let budget = self.cost_model.budget;
-        let adaptive: &mut dyn VertexSource = match self.rest_mode {
-            RestMode::Refined | RestMode::Coarser => &mut self.adaptive,
-            RestMode::Explored => {
-                match self
-                    .explorer
-                    .exploration(&self.gpu, &self.content, self.instances, budget)
-                {
-                    Some(adaptive) => adaptive,
-                    None => {
-                        self.phase = RestPhase::Waits;
-                        return Ok(());
-                    }
-                }
-            }
-        };
         if identifies {
-            self.progressive.identify(&self.gpu, adaptive, &params)?;
-            self.resolver = match self.rest_mode {
-                RestMode::Refined | RestMode::Coarser => {
-                    Some(Resolver::Refined(self.adaptive.resolver()))
-                }
-                RestMode::Explored => self.explorer.resolver().map(Resolver::Explored),
-            };
-            return Ok(());
+            return self.identify(&params);
         }
-        self.progressive.slice(&self.gpu, adaptive)?;
+        let Some(source) = rest_source!(self) else {
+            self.phase = RestPhase::Waits;
+            return Ok(());
+        };
+        self.progressive.slice(&self.gpu, source)?;
         if self.progressive.progress().is_none() {
             self.phase = match self.rest_mode {
                 RestMode::Explored => RestPhase::Surveys,
-                RestMode::Refined | RestMode::Coarser => RestPhase::Done,
+                RestMode::Refined | RestMode::Coarser => RestPhase::Collects,
             };
         }
+        Ok(())
+    }
+
+    /// Whether ids for picking are neither there nor on their way.
+    pub(super) fn lacks_ids(&self) -> bool {
+        self.resolver.is_none() && !self.can_pick()
+    }
+
+    /// Draws the ids of the picture at rest.
+    pub(super) fn identify(&mut self, params: &ViewParams) -> Result<(), DeviceError> {
+        let Some(source) = rest_source!(self) else {
+            return Ok(());
+        };
+        self.progressive.identify(&self.gpu, source, params)?;
+        self.resolver = match self.rest_mode {
+            RestMode::Refined | RestMode::Coarser => {
+                Some(Resolver::Refined(self.adaptive.resolver()))
+            }
+            RestMode::Explored => self.explorer.resolver().map(Resolver::Explored),
+        };
         Ok(())
     }
 
@@ -144,7 +187,7 @@ impl Stage {
     /// is drawn again.
     fn survey(&mut self) -> Result<(), DeviceError> {
         self.learn();
-        self.phase = RestPhase::Done;
+        self.phase = RestPhase::Collects;
         let budget = self.cost_model.budget;
         let Some(adaptive) =
             self.explorer

@@ -9,7 +9,7 @@ use super::number::slider;
 use super::tip::Tip;
 use super::{figures, grouped, heading};
 use crate::model::command::{Command, Edit};
-use crate::model::document::{Detail, LodKind};
+use crate::model::document::{Detail, LodKind, RestChoice};
 use crate::model::state::{Draft, Lowered, State};
 use crate::ui::file_panel::size;
 
@@ -57,6 +57,17 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
         state.history.end_joining();
     }
     ui.separator();
+    heading(ui, "Picture at rest");
+    let mut detail = state.document.detail;
+    ui.horizontal_wrapped(|ui| {
+        for (choice, name, says) in REST_CHOICES {
+            ui.selectable_value(&mut detail.at_rest, choice, name)
+                .tip(says);
+        }
+    });
+    if detail.at_rest != state.document.detail.at_rest {
+        state.requests.push(Edit::SetDetail(detail).into());
+    }
     counters(state, ui);
 }
 
@@ -80,6 +91,24 @@ const LOD_KINDS: [(LodKind, &str, &str); 4] = [
         LodKind::Distance,
         "Distance",
         "Fewer subdivisions with the distance from the camera (García-Cantero et al. 2017)",
+    ),
+];
+
+const REST_CHOICES: [(RestChoice, &str, &str); 3] = [
+    (
+        RestChoice::Automatic,
+        "Automatic",
+        "With all detail, or within a budget where that would block the window",
+    ),
+    (
+        RestChoice::Full,
+        "Full",
+        "With all detail, however long it takes",
+    ),
+    (
+        RestChoice::Budget,
+        "Budget",
+        "As many triangles as there is time for, as while moving",
     ),
 ];
 
@@ -109,7 +138,6 @@ fn log<N: Numeric>(ui: &mut Ui, value: &mut N, range: RangeInclusive<N>, name: &
 
 fn counters(state: &State, ui: &mut Ui) {
     let c = &state.counters;
-    heading(ui, "Picture at rest");
     let mut rows = match c.lowered {
         None => vec![
             ("triangles", grouped(c.triangles)),
@@ -125,6 +153,13 @@ fn counters(state: &State, ui: &mut Ui) {
         Some(Lowered::Triangles(None)) => vec![],
         Some(Lowered::Error(times)) => vec![("reduced", format!("{times:.0} times as coarse"))],
     };
+    if let Some(picture) = c.static_picture {
+        rows.push(("colors that show", grouped(picture.colors as u64)));
+        if let Some(compartments) = picture.compartments {
+            rows.push(("values read per frame", grouped(compartments as u64)));
+        }
+        rows.push(("GPU memory, recoloring", size(picture.bytes)));
+    }
     rows.push(("GPU memory, neurons", size(c.bytes[0])));
     rows.push(("GPU memory, images", size(c.bytes[1])));
     figures(ui, "counters", &rows);

@@ -26,6 +26,10 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     ui.checkbox(&mut look.axes, "Axes");
     ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
+    slider(ui, &mut look.least_width, 0.0..=8.0, Some(1), |slider| {
+        slider.text("neurites at least (px)")
+    })
+    .tip("Thin neurites are drawn this wide, for figures; 0: as they are");
     heading(ui, "Selection");
     ui.checkbox(&mut look.highlight_selected, "Color of its own");
     ui.checkbox(&mut look.ghost_others, "Fade the others");

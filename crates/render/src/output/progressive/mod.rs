@@ -10,9 +10,12 @@
 //! source ─▶ draw, band by band ─▶ occlude once ─▶ accumulate ─▶ present: texture, outlines
 //!      └─▶ ids: which patch is at which pixel
 //! ```
+//!
+//! After that it can be made into a picture that is colored anew without being drawn: `recoloring.rs`.
 
 mod canvas;
 mod clock;
+mod recoloring;
 mod step;
 
 use std::sync::Arc;
@@ -22,6 +25,7 @@ use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::output::ids::Identifier;
+use crate::output::static_picture::StaticPicture;
 use crate::output::still::{Occlusion, samples_in_sub_pixel};
 use crate::output::tiles::{TilePass, TileRenderer};
 use crate::scene::color::{ColorTable, InstanceValues};
@@ -34,6 +38,7 @@ use crate::view::frame::Frame;
 
 use canvas::Canvas;
 use clock::Clock;
+use recoloring::Recoloring;
 use step::{finish_uniform, offset, selected, shade};
 
 pub use step::{Steps, ViewParams};
@@ -54,6 +59,9 @@ pub struct ProgressiveRenderer {
     tables: u64,
     states: Vec<u32>,
     under_way: Option<UnderWay>,
+    /// The view whose occlusion the fine canvas holds.
+    occluded: Option<ViewParams>,
+    recoloring: Recoloring,
     clock: Arc<Clock>,
 }
 
@@ -67,6 +75,25 @@ struct UnderWay {
     slice: u32,
     /// Whether slices are bands of rows, each with a selection of its own.
     banded: bool,
+    /// Whether it is drawn for its depths and occlusion alone, and only in its first step.
+    hidden: bool,
+}
+
+impl UnderWay {
+    fn new(params: ViewParams, steps: Steps) -> Self {
+        Self {
+            params,
+            steps: Steps {
+                slices: steps.slices.clamp(1, params.size[1].max(1)),
+                steps: steps.steps.max(1),
+            },
+            draft: false,
+            step: 0,
+            slice: 0,
+            banded: false,
+            hidden: false,
+        }
+    }
 }
 
 impl ProgressiveRenderer {
@@ -91,6 +118,8 @@ impl ProgressiveRenderer {
             tables: 1,
             states: Vec::new(),
             under_way: None,
+            occluded: None,
+            recoloring: Recoloring::default(),
             clock: Arc::default(),
         }
     }
@@ -133,7 +162,7 @@ impl ProgressiveRenderer {
         source: &mut dyn VertexSource,
         params: &ViewParams,
     ) -> Result<(), DeviceError> {
-        self.under_way = None;
+        self.stop();
         // As many samples as the first step at rest has: with one, lines thinner than a pixel are
         // dots.
         let samples = samples_in_sub_pixel(gpu, 4);
@@ -152,6 +181,7 @@ impl ProgressiveRenderer {
             step: 0,
             slice: 0,
             banded: false,
+            hidden: false,
         };
         self.shows_draft = true;
         self.draw(gpu, source, renderer, &way)
@@ -159,22 +189,14 @@ impl ProgressiveRenderer {
 
     /// Begins a picture, which [`ProgressiveRenderer::slice`] then draws.
     pub fn begin(&mut self, params: ViewParams, steps: Steps) {
-        self.under_way = Some(UnderWay {
-            params,
-            steps: Steps {
-                slices: steps.slices.clamp(1, params.size[1].max(1)),
-                steps: steps.steps.max(1),
-            },
-            draft: false,
-            step: 0,
-            slice: 0,
-            banded: false,
-        });
+        self.drop_static();
+        self.occluded = None;
+        self.under_way = Some(UnderWay::new(params, steps));
     }
 
-    /// Draws no more of the picture under way.
+    /// Draws no more of the picture under way. A static picture goes on.
     pub fn stop(&mut self) {
-        self.under_way = None;
+        self.under_way = self.under_way.filter(|way| way.hidden);
     }
 
     /// Share of the picture under way that has been drawn; none if no picture is under way.
@@ -207,9 +229,11 @@ impl ProgressiveRenderer {
         let whole = next.slice == way.steps.slices;
         if whole {
             (next.slice, next.step) = (0, next.step + 1);
-            self.shows_draft = false;
+            self.shows_draft &= way.hidden;
+            self.occluded = Some(way.params);
         }
-        self.under_way = (next.step < way.steps.steps).then_some(next);
+        let ends = next.step == way.steps.steps || (whole && way.hidden);
+        self.under_way = (!ends).then_some(next);
         Ok(whole)
     }
 
@@ -231,9 +255,7 @@ impl ProgressiveRenderer {
     pub fn show(&self, gpu: &Gpu) {
         if let Some(canvas) = self.shown() {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            let (targets, screen) = (&canvas.targets, &canvas.screen);
-            self.presenter
-                .present(gpu, targets, screen, &self.outlines, &mut encoder);
+            self.present(gpu, canvas, &mut encoder);
             gpu.queue.submit([encoder.finish()]);
         }
     }
@@ -292,7 +314,8 @@ impl ProgressiveRenderer {
     /// Bytes of textures and buffers.
     pub fn bytes(&self) -> u64 {
         let canvases = self.draft.iter().chain(&self.fine);
-        canvases.map(|c| c.targets.bytes + c.sums.size()).sum()
+        let drawn: u64 = canvases.map(|c| c.targets.bytes + c.sums.size()).sum();
+        drawn + self.recoloring.bytes()
     }
 
     fn shown(&self) -> Option<&Canvas> {
@@ -353,6 +376,9 @@ impl ProgressiveRenderer {
         if !place.as_ref().is_some_and(fits) {
             *place = None;
             *place = Some(Canvas::new(gpu, size, samples, draft));
+            if !draft {
+                self.occluded = None;
+            }
             gpu.check()?;
         }
         Ok(())
@@ -451,9 +477,19 @@ impl ProgressiveRenderer {
         pass.set_pipeline(&finisher.last);
         pass.dispatch_workgroups(over[0], over[1], 1);
         drop(pass);
-        let (targets, screen) = (&canvas.targets, &canvas.screen);
+        if !way.hidden {
+            self.present(gpu, canvas, encoder);
+        }
+    }
+
+    /// Encodes writing the picture of a canvas into its texture.
+    fn present(&self, gpu: &Gpu, canvas: &Canvas, encoder: &mut wgpu::CommandEncoder) {
+        let fine = !self.shows_draft;
+        let recolored = self.recoloring.colored().filter(|_| fine);
+        let pixels = recolored.map_or(&canvas.targets.pixels, StaticPicture::pixels);
+        let from = (pixels, &canvas.targets.normal);
         self.presenter
-            .present(gpu, targets, screen, &self.outlines, encoder);
+            .present(gpu, from, &canvas.screen, &self.outlines, encoder);
     }
 }
 

@@ -84,6 +84,16 @@ pub(crate) struct Wanted<'a> {
     pub(crate) finish_layout: &'a wgpu::BindGroupLayout,
 }
 
+/// What is drawn and collected at once.
+pub(crate) struct Part<'a> {
+    /// For which the source selects.
+    pub(crate) frame: &'a Frame,
+    /// Width and height (sub-pixels) of the targets.
+    pub(crate) size: [u32; 2],
+    /// Width and height (pixels) of what is collected.
+    pub(crate) kept: [u32; 2],
+}
+
 impl Collector {
     /// None if the source has no color keys to look up.
     pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, wanted: &Wanted<'_>) -> Option<Self> {
@@ -120,6 +130,11 @@ impl Collector {
         })
     }
 
+    /// Whether its pipelines are those of this key.
+    pub(crate) fn fits(&self, key: PipelineKey) -> bool {
+        self.key == key
+    }
+
     /// Draws a tile whose depths and occlusion are there, and collects `kept` pixels of it. `groups`:
     /// the shading's, and that of the passes that finish a tile.
     pub(crate) fn collect(
@@ -130,11 +145,24 @@ impl Collector {
         groups: [&wgpu::BindGroup; 2],
         kept: [u32; 2],
     ) -> Result<Collected, DeviceError> {
-        self.make_room(gpu, [frame.tile.width, frame.tile.height], kept)?;
+        let size = [frame.tile.width, frame.tile.height];
+        self.submit(gpu, source, &Part { frame, size, kept }, groups)?;
+        self.read(gpu, groups[1], kept)
+    }
+
+    /// Draws and collects without waiting: [`Collector::read`] has the result.
+    pub(crate) fn submit(
+        &mut self,
+        gpu: &Gpu,
+        source: &mut dyn VertexSource,
+        part: &Part<'_>,
+        groups: [&wgpu::BindGroup; 2],
+    ) -> Result<(), DeviceError> {
+        self.make_room(gpu, part.size, part.kept)?;
         let Some(targets) = &self.targets else {
-            return Ok(Collected::default());
+            return Ok(());
         };
-        let rounds = source.prepare_keyed(gpu, frame)?.max(1);
+        let rounds = source.prepare_keyed(gpu, part.frame)?.max(1);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for round in 0..rounds {
             source.select(round, &mut encoder, None);
@@ -142,14 +170,25 @@ impl Collector {
                 .draw(source, round, targets, groups[0], &mut encoder);
         }
         gpu.queue.submit([encoder.finish()]);
+        self.dispatch(gpu, groups[1], part.kept);
+        gpu.check()
+    }
+
+    /// What was collected last. Waits for the device. `finish_group`, `kept`: as submitted.
+    pub(crate) fn read(
+        &mut self,
+        gpu: &Gpu,
+        finish_group: &wgpu::BindGroup,
+        kept: [u32; 2],
+    ) -> Result<Collected, DeviceError> {
         let count = loop {
-            self.dispatch(gpu, groups[1], kept);
             let count: Vec<u32> = read_back(gpu, &self.cursor, 1)?;
             let needed = u64::from(count[0]) * size_of::<Weighed>() as u64;
             if needed <= self.weighed.size() {
                 break count[0];
             }
             self.make_weighed(gpu, needed)?;
+            self.dispatch(gpu, finish_group, kept);
         };
         let pixels = kept[0] as usize * kept[1] as usize;
         Ok(Collected {
@@ -157,6 +196,20 @@ impl Collector {
             fixed: read_back(gpu, &self.fixed, pixels)?,
             weighed: read_back(gpu, &self.weighed, count as usize)?,
         })
+    }
+
+    /// Gives its textures and buffers back, and keeps the pipelines.
+    pub(crate) fn release(&mut self, gpu: &Gpu) {
+        self.targets = None;
+        for buffer in [&mut self.fixed, &mut self.weighed] {
+            *buffer = make(gpu, "weights", 16, buffer.usage());
+        }
+    }
+
+    /// Bytes of its textures and buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        let targets = self.targets.as_ref().map_or(0, |targets| targets.bytes);
+        targets + self.fixed.size() + self.weighed.size()
     }
 
     fn dispatch(&self, gpu: &Gpu, finish_group: &wgpu::BindGroup, kept: [u32; 2]) {

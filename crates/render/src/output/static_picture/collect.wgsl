@@ -82,12 +82,14 @@ fn collect(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var y = 0u; y < finish.scale; y++) {
         for (var x = 0u; x < finish.scale; x++) {
             let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.margin);
-            if textureLoad(colors, p, 0).a == 0.0 {
+            // A band has targets of its own for keys, but not for what is finished.
+            let finished = p + vec2(0, i32(finish.spare));
+            if textureLoad(colors, finished, 0).a == 0.0 {
                 continue;
             }
             var light = share;
             if finish.radius > 0.0 {
-                light *= occlusion_at(p);
+                light *= occlusion_at(finished);
             }
             for (var k = 0; k < i32(SAMPLES); k++) {
                 let bits = textureLoad(weights, p, k);

@@ -1,4 +1,4 @@
-//! The weights of a whole picture, put together from tiles or steps, as a sparse matrix: rows are
+//! The weights of a whole picture, put together from tiles and steps, as a sparse matrix: rows are
 //! pixels, columns are the color keys that show.
 
 use std::collections::{BTreeMap, HashMap};
@@ -25,7 +25,7 @@ pub(crate) struct Weight {
     pub(crate) high: u32,
 }
 
-/// The weights of all pixels of a picture.
+/// The weights of all pixels of a picture, by [`MatrixBuilder`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Matrix {
     pub(crate) keys: Vec<VisibleKey>,
@@ -34,7 +34,8 @@ pub(crate) struct Matrix {
     pub(crate) weights: Vec<Weight>,
 }
 
-/// What was collected of a whole picture: of all its samples, or of those of each of several steps.
+/// What was collected of some rows of pixels: of all their samples, or of those of each of several
+/// steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Weights {
     size: [u32; 2],
@@ -43,7 +44,7 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Of a picture in which nothing shows.
+    /// Of rows in which nothing shows.
     pub(crate) fn new(size: [u32; 2]) -> Self {
         Self {
             size,
@@ -74,53 +75,66 @@ impl Weights {
     }
 }
 
-impl Matrix {
-    /// `steps`: how often each pixel was collected.
-    pub(crate) fn new(weights: &Weights, steps: u32) -> Self {
-        let mut numbers = Numbers::default();
-        let mut sorted: Vec<(u32, u32, [u32; 2])> = weights
-            .weighed
-            .iter()
-            .map(|one| {
-                let key = VisibleKey {
-                    instance: one.instance,
-                    color_key: one.color_key,
-                };
-                (one.pixel, numbers.of(key), [one.low, one.high])
-            })
-            .collect();
-        let (keys, new) = numbers.sorted();
-        for (_, number, _) in &mut sorted {
-            *number = new[*number as usize];
-        }
+/// Puts a matrix together from the top of the picture to its bottom.
+#[derive(Default)]
+pub(crate) struct MatrixBuilder {
+    numbers: Numbers,
+    rows: Vec<[u32; 2]>,
+    weights: Vec<Weight>,
+}
+
+impl MatrixBuilder {
+    /// Adds the next rows of pixels. `steps`: how often each pixel was collected; the mean of the steps
+    /// is taken.
+    pub(crate) fn add(&mut self, collected: &Weights, steps: u32) {
+        let numbered = collected.weighed.iter().map(|one| {
+            let key = VisibleKey {
+                instance: one.instance,
+                color_key: one.color_key,
+            };
+            (one.pixel, self.numbers.of(key), [one.low, one.high])
+        });
+        let mut sorted: Vec<(u32, u32, [u32; 2])> = numbered.collect();
         // Sums of whole numbers, so that the order in which the device wrote does not matter.
         sorted.sort_unstable_by_key(|&(pixel, number, _)| (pixel, number));
-        let mut made = Self {
-            keys,
-            ..Self::default()
-        };
         let mut rest = sorted.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).peekable();
-        for (&fixed, pixel) in weights.fixed.iter().zip(0..) {
+        for (&fixed, pixel) in collected.fixed.iter().zip(0..) {
             let fixed = fixed.map(|sum| sum / steps as f32);
-            made.rows.push([made.weights.len() as u32, packed(fixed)]);
+            self.rows.push([self.weights.len() as u32, packed(fixed)]);
             while let Some(same) = rest.next_if(|same| same[0].0 == pixel) {
-                let sum = |half: usize, shift: u32| -> u32 {
+                let mean = |half: usize, shift: u32| -> u32 {
                     let all = same
                         .iter()
                         .map(|(_, _, bits)| (bits[half] >> shift) & 0xffff);
                     (all.sum::<u32>() + steps / 2) / steps
                 };
                 let both =
-                    |half: usize| sum(half, 0).min(0xffff) | (sum(half, 16).min(0xffff) << 16);
-                made.weights.push(Weight {
+                    |half: usize| mean(half, 0).min(0xffff) | (mean(half, 16).min(0xffff) << 16);
+                self.weights.push(Weight {
                     color: same[0].1,
                     low: both(0),
                     high: both(1),
                 });
             }
         }
-        made.rows.push([made.weights.len() as u32, 0]);
-        made
+    }
+
+    /// The matrix of all rows that were added. Keys are in order, and so are the weights of a pixel.
+    pub(crate) fn finish(mut self) -> Matrix {
+        self.rows.push([self.weights.len() as u32, 0]);
+        let (keys, new) = self.numbers.sorted();
+        for weight in &mut self.weights {
+            weight.color = new[weight.color as usize];
+        }
+        for pair in self.rows.windows(2) {
+            self.weights[pair[0][0] as usize..pair[1][0] as usize]
+                .sort_unstable_by_key(|w| w.color);
+        }
+        Matrix {
+            keys,
+            rows: self.rows,
+            weights: self.weights,
+        }
     }
 }
 
@@ -176,6 +190,12 @@ mod tests {
         }
     }
 
+    fn of_one_step(weights: &Weights) -> Matrix {
+        let mut builder = MatrixBuilder::default();
+        builder.add(weights, 1);
+        builder.finish()
+    }
+
     fn factor(weight: &Weight) -> f32 {
         (weight.low & 0xffff) as f32 / 65535.0 * 2.0
     }
@@ -197,7 +217,9 @@ mod tests {
             };
             weights.add([1, 0], &tile);
         }
-        let matrix = Matrix::new(&weights, 2);
+        let mut builder = MatrixBuilder::default();
+        builder.add(&weights, 2);
+        let matrix = builder.finish();
         let key = |instance, color_key| VisibleKey {
             instance,
             color_key,
@@ -236,11 +258,35 @@ mod tests {
                     weighed: all,
                 },
             );
-            Matrix::new(&weights, 1)
+            of_one_step(&weights)
         };
         let backward: Vec<Weighed> = all.iter().rev().copied().collect();
         let (a, b) = (made(all), made(backward));
         assert_eq!((a.keys, a.rows, a.weights), (b.keys, b.rows, b.weights));
+    }
+
+    #[test]
+    fn rows_follow_one_another_and_share_keys() {
+        let band = |key: u32, instance: u32| {
+            let mut weights = Weights::new([2, 1]);
+            let tile = Collected {
+                size: [2, 1],
+                fixed: vec![[0.0, 1.0]; 2],
+                weighed: vec![weighed(1, key, instance, 1.0), weighed(1, 2, 5, 0.5)],
+            };
+            weights.add([0, 0], &tile);
+            weights
+        };
+        let mut builder = MatrixBuilder::default();
+        builder.add(&band(9, 6), 1);
+        builder.add(&band(9, 1), 1);
+        let matrix = builder.finish();
+        let instances: Vec<u32> = matrix.keys.iter().map(|key| key.instance).collect();
+        assert_eq!(instances, [1, 5, 6]);
+        let firsts: Vec<u32> = matrix.rows.iter().map(|row| row[0]).collect();
+        assert_eq!(firsts, [0, 0, 2, 2, 4]);
+        let colors: Vec<u32> = matrix.weights.iter().map(|weight| weight.color).collect();
+        assert_eq!(colors, [1, 2, 0, 1]);
     }
 
     #[test]
@@ -254,6 +300,6 @@ mod tests {
         weights.add([1, 1], &tile);
         let covered: Vec<bool> = weights.fixed.iter().map(|fixed| fixed[1] > 0.0).collect();
         assert_eq!(covered, [false, false, false, true]);
-        assert_eq!(Matrix::new(&weights, 1).weights.len(), 1);
+        assert_eq!(of_one_step(&weights).weights.len(), 1);
     }
 }

@@ -25,7 +25,7 @@ use crate::scene::color::{ColorTable, Rgb, linear};
 use crate::shading::shade::{Look, edge_color};
 
 use key_color::Contrast;
-use matrix::{Matrix, Weights};
+use matrix::Matrix;
 use recolor::{Product, Recolor};
 
 pub use matrix::VisibleKey;
@@ -57,11 +57,10 @@ impl StaticPicture {
     pub(crate) fn new(
         gpu: &Gpu,
         size: [u32; 2],
-        weights: &Weights,
+        matrix: Matrix,
         look: &Look,
         background: Option<Rgb>,
     ) -> Result<Self, DeviceError> {
-        let matrix = Matrix::new(weights, 1);
         let [r, g, b] = linear(background.unwrap_or_default());
         let empty = background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let settings = Recolor {
@@ -104,6 +103,19 @@ impl StaticPicture {
     /// # Panics
     /// If there are values, but not one for each key.
     pub fn recolor(&self, gpu: &Gpu, colors: &KeyColors<'_>) -> Result<(), DeviceError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.encode(gpu, colors, &mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.check()
+    }
+
+    /// Encodes coloring it anew: see [`StaticPicture::recolor`].
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        colors: &KeyColors<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
         let values = colors.values;
         assert!(
             values.is_none_or(|values| values.len() == self.keys.len()),
@@ -122,10 +134,12 @@ impl StaticPicture {
                 contrast.in_state(color, state.unwrap_or_default())
             })
             .collect();
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.product.multiply(gpu, &colored, &mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        gpu.check()
+        self.product.multiply(gpu, &colored, encoder);
+    }
+
+    /// Bytes of its pixels, as it was colored last: sRGB, by row.
+    pub(crate) fn pixels(&self) -> &wgpu::Buffer {
+        &self.product.pixels
     }
 
     /// The picture, as it was colored last. Waits for the device.

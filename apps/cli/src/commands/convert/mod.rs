@@ -1,0 +1,220 @@
+//! `neurotess convert`: morphologies in another format, and mended on the way.
+
+mod edits;
+mod report;
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use neurotess::formats::{self, Format, ReadOptions};
+use neurotess::morphology::edit::{self, Edit, EditReport};
+use serde::Serialize;
+
+use crate::io::batch::each;
+use crate::io::inputs::{Input, Inputs};
+use crate::io::morphologies::{
+    MORPHOLOGIES, ReaderWarning, read_morphology, readable, write_morphology, written,
+};
+use crate::io::output::{self, OutputError};
+use crate::io::targets;
+use crate::report::{Entry, Failure, Reporter, usage};
+use edits::EditArgs;
+
+/// `neurotess convert`
+#[derive(Args, Debug)]
+#[command(after_help = "Lengths are µm after --scale or --units. \
+    Numbers of samples are those of the input; of formats that have none, from 1 on in \
+    the order of the file.")]
+pub(crate) struct ConvertArgs {
+    /// Morphology files, folders (searched recursively) or globs; FILE.h5#PATH for one cell of a container; -
+    /// for standard input
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// A file for one input, - for standard output; a folder for several, or for a folder, whose
+    /// structure it repeats
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Format to write, where OUT's extension does not tell: swc, asc or h5
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<String>,
+    /// Take every warning of the reader as an error
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Say what would change, and write nothing; needs no OUT
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    #[command(flatten)]
+    pub(crate) edits: EditArgs,
+}
+
+/// One object of the JSON list.
+#[derive(Serialize)]
+struct Converted {
+    file: String,
+    out: Option<String>,
+    format: Option<&'static str>,
+    warnings: Vec<ReaderWarning>,
+    /// What the format cannot represent.
+    lost: Vec<ReaderWarning>,
+    /// What each edit changed.
+    edits: Vec<EditReport>,
+    /// Whether nothing was written.
+    dry_run: bool,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
+    let target = args
+        .out
+        .as_deref()
+        .map(|out| target(out, args, &inputs, reporter))
+        .transpose()?;
+    let edits = args.edits.edits();
+    let converted = each(&inputs, reporter, |input| {
+        convert(input, args, target.as_ref(), &edits)
+    })?;
+    for entry in &converted {
+        if let Entry::Done(done) = entry {
+            tell(done, args, reporter);
+        }
+    }
+    reporter.document(&converted)
+}
+
+/// Where results go.
+struct Target {
+    format: Format,
+    /// The file that each input becomes.
+    outs: BTreeMap<PathBuf, PathBuf>,
+}
+
+fn target(
+    out: &Path,
+    args: &ConvertArgs,
+    inputs: &Inputs,
+    reporter: &Reporter,
+) -> anyhow::Result<Target> {
+    if !args.dry_run {
+        output::reserve_standard(out, reporter)?;
+    }
+    let format = format(out, args, inputs)?;
+    let named = out.extension().unwrap_or_default();
+    let named = Format::of_extension(&named.to_string_lossy());
+    reporter.warn_of_name(out, format.name(), named.map(Format::name));
+    let jobs = targets::plan(inputs, out, format.extensions()[0])?;
+    let outs = jobs.into_iter().map(|job| (job.input, job.out)).collect();
+    Ok(Target { format, outs })
+}
+
+fn convert(
+    input: &Input,
+    args: &ConvertArgs,
+    target: Option<&Target>,
+    edits: &[Edit],
+) -> Result<Converted, Failure> {
+    let file = input.path.display().to_string();
+    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    readable(&input.path)?;
+    let out = target.map(|target| target.outs[&input.path].as_path());
+    if let Some(out) = out {
+        output::check(out, args.force).map_err(failed)?;
+    }
+    let options = ReadOptions {
+        strict: args.strict,
+        zero_for_bad_radii: args.edits.mends_radii(),
+    };
+    let read = read_morphology(&input.path, None, &options)?;
+    let edited = edit::apply(&read.morphology, edits);
+    let edited = edited.map_err(|e| Failure(format!("{file}: {e}")))?;
+    let format = target.map(|target| target.format);
+    let lost = match (out, format) {
+        (Some(out), Some(format)) if args.dry_run => {
+            formats::write(&edited.morphology, format, io::sink())
+                .map_err(|e| failed(OutputError::broken(out, e)))?
+        }
+        (Some(out), Some(format)) => {
+            write_morphology(&edited.morphology, format, out, args.force).map_err(failed)?
+        }
+        _ => Vec::new(),
+    };
+    Ok(Converted {
+        out: out.map(|out| out.display().to_string()),
+        format: format.map(|format| format.extensions()[0]),
+        lost: lost.into_iter().map(ReaderWarning::from).collect(),
+        warnings: read.warnings.into_iter().map(ReaderWarning::from).collect(),
+        edits: edited.reports,
+        dry_run: args.dry_run,
+        file,
+    })
+}
+
+/// Says what was done, or would be.
+fn tell(done: &Converted, args: &ConvertArgs, reporter: &Reporter) {
+    let out = done.out.as_deref().map(|out| format!(" → {out}"));
+    let mut lines = vec![format!("{}{}", done.file, out.unwrap_or_default())];
+    lines.extend(done.edits.iter().map(report::line));
+    match args.dry_run {
+        true => {
+            lines[0].push_str(" (dry run: nothing is written)");
+            reporter.answer(&lines.join("\n"));
+        }
+        false => reporter.result(&lines.join("\n")),
+    }
+    for warning in &done.warnings {
+        let of_unit = warning.is_of_unit() && !args.edits.changes_units();
+        if of_unit || reporter.verbose() {
+            reporter.warning(&warning.in_file(&done.file));
+        }
+    }
+    report_losses(done, reporter);
+}
+
+/// Reports what OUT lacks: everything with --verbose, else the codes.
+fn report_losses(done: &Converted, reporter: &Reporter) {
+    let (Some(out), Some(format)) = (&done.out, done.format) else {
+        return;
+    };
+    if done.lost.is_empty() {
+        return;
+    }
+    if reporter.verbose() {
+        for loss in &done.lost {
+            reporter.warning(&format!("{out}: {}", loss.message()));
+        }
+        return;
+    }
+    let codes: Vec<&str> = done.lost.iter().map(ReaderWarning::code).collect();
+    reporter.warning(&format!(
+        "{out}: not all can be said in {format}: {} (-v tells more)",
+        codes.join(", ")
+    ));
+}
+
+/// The format named by --format or by OUT's extension; SWC for a folder.
+fn format(out: &Path, args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<Format> {
+    let name = match &args.format {
+        Some(format) => format.clone(),
+        None if targets::is_folder(out, inputs) => return Ok(Format::Swc),
+        None => out
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned(),
+    };
+    let format = Format::of_extension(&name).filter(|f| Format::WRITTEN.contains(f));
+    if let Some(format) = format {
+        return Ok(format);
+    }
+    let name = if name.is_empty() {
+        format!("{} has no extension", out.display())
+    } else {
+        format!("morphologies cannot be written as '{name}'")
+    };
+    usage(format!("{name}: use {}", written().join(", ")))
+}

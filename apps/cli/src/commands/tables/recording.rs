@@ -1,0 +1,329 @@
+//! `neurotess report`: values of a simulation report, or spikes, as a table.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use neurotess::circuit::{
+    Circuit, NodeRef, RecordingFile, Report, ReportPopulation, Spikes, TimeAxis,
+};
+use serde::Serialize;
+
+use crate::io::circuits;
+use crate::io::output::{is_standard, reserve_standard};
+use crate::io::table::{self, Rows, TableArgs};
+use crate::options::cells::CellArgs;
+use crate::options::time::Time;
+use crate::report::{Failure, Reporter, usage};
+
+/// `neurotess report`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  neurotess report circuit/ --report voltage --nodes 0-9 --time 0:100:0.5 --csv voltage.csv
+  neurotess report circuit/ --report spikes.h5 --csv -")]
+pub(crate) struct ReportArgs {
+    /// A circuit: SONATA, or a scene of your own
+    #[arg(value_name = "CIRCUIT")]
+    circuit: PathBuf,
+    /// A report or spikes: a file, or a name of the circuit's configuration [default: its only one]
+    #[arg(long, value_name = "FILE|NAME")]
+    report: Option<PathBuf>,
+    /// Times (ms): one, or FROM:TO or FROM:TO:STEP, TO excluded [default: all]
+    #[arg(long, value_name = "MS", allow_hyphen_values = true)]
+    time: Option<Time>,
+    /// Rows of a time: each compartment, or the mean of each node's
+    #[arg(long, value_name = "WHAT", default_value = "compartment")]
+    per: Per,
+    #[command(flatten)]
+    table: TableArgs,
+    #[command(flatten)]
+    cells: CellArgs,
+}
+
+/// What has a row at each time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Per {
+    /// Each compartment
+    Compartment,
+    /// The mean over the compartments of each node
+    Node,
+}
+
+/// The JSON document.
+#[derive(Serialize)]
+struct Written {
+    file: String,
+    report: String,
+    out: String,
+    rows: u64,
+    nodes: usize,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    reserve_standard(&args.table.csv, reporter)?;
+    let circuit =
+        circuits::open(&args.circuit, reporter).map_err(|Failure(why)| anyhow::anyhow!(why))?;
+    let selected = args
+        .cells
+        .select(&circuit)
+        .map_err(|Failure(why)| anyhow::anyhow!(why))?;
+    let selected: BTreeSet<NodeRef> = selected.into_iter().collect();
+    let path = path_of(&circuit, args.report.as_deref())?;
+    let (rows, nodes) = match RecordingFile::open(&path)? {
+        RecordingFile::Report(report) => {
+            let chosen = chosen(&report, &circuit, &selected)?;
+            let nodes = chosen.iter().map(|(_, nodes)| nodes.len()).sum();
+            let rows = table::write(&args.table, |rows| values(rows, &chosen, args))?;
+            (rows, nodes)
+        }
+        RecordingFile::Spikes(spikes) => table::write(&args.table, |rows| {
+            firing(rows, &spikes, &circuit, &selected, args.time)
+        })?,
+    };
+    if nodes == 0 {
+        reporter.warning("none of the selected cells is in the report: the table is empty");
+    }
+    if !is_standard(&args.table.csv) {
+        let out = args.table.csv.display();
+        reporter.result(&format!("{out}: {rows} rows of {nodes} nodes"));
+    }
+    reporter.document(&Written {
+        file: circuit.file.clone(),
+        report: path.display().to_string(),
+        out: args.table.csv.display().to_string(),
+        rows,
+        nodes,
+    })
+}
+
+/// The file of a report.
+fn path_of(circuit: &Circuit, wanted: Option<&std::path::Path>) -> anyhow::Result<PathBuf> {
+    let named = |path: &std::path::Path| circuit.reports.get(path.to_str()?).cloned();
+    let names = || {
+        let names: Vec<&str> = circuit.reports.keys().map(String::as_str).collect();
+        match names.is_empty() {
+            true => "the circuit names no report that exists".to_owned(),
+            false => format!("the circuit has {}", names.join(", ")),
+        }
+    };
+    match wanted {
+        Some(wanted) if wanted.exists() => Ok(wanted.to_path_buf()),
+        Some(wanted) => match named(wanted) {
+            Some(path) => Ok(path),
+            None => anyhow::bail!("{}: no such report; {}", wanted.display(), names()),
+        },
+        None => match circuit.reports.values().collect::<Vec<_>>()[..] {
+            [only] => Ok(only.clone()),
+            _ => usage(format!("which report? --report FILE or NAME; {}", names())),
+        },
+    }
+}
+
+/// A population of a report, and the indices of its nodes that are selected.
+type Chosen<'a> = (&'a ReportPopulation, Vec<usize>);
+
+fn chosen<'a>(
+    report: &'a Report,
+    circuit: &Circuit,
+    selected: &BTreeSet<NodeRef>,
+) -> anyhow::Result<Vec<Chosen<'a>>> {
+    let mut all = Vec::new();
+    for population in &report.populations {
+        let nodes = population.nodes_in(circuit)?;
+        let indices = nodes.iter().enumerate();
+        let indices = indices.filter(|(_, node)| selected.contains(node));
+        all.push((population, indices.map(|(index, _)| index).collect()));
+    }
+    Ok(all)
+}
+
+/// Frames of an axis at the times that are asked for.
+fn frames(axis: &TimeAxis, time: Option<Time>) -> Vec<u64> {
+    let every = |from: f64, to: f64| -> Vec<u64> {
+        let margin = 1e-6 * axis.step;
+        let within = |time: f64| time > from - margin && time < to - margin;
+        let frames = 0..axis.frames;
+        frames.filter(|&f| within(axis.time_of(f))).collect()
+    };
+    match time {
+        None => (0..axis.frames).collect(),
+        Some(Time::At(time)) => axis.frame_at(time).into_iter().collect(),
+        Some(Time::Series(from, to, None)) => every(from, to),
+        Some(Time::Series(from, to, Some(step))) => {
+            let count = ((to - from) / step - 1e-6).ceil().max(1.0) as u64;
+            let mut frames: Vec<u64> = (0..count)
+                .map_while(|k| Some(from + k as f64 * step).filter(|&time| time < axis.end))
+                .filter_map(|time| axis.frame_at(time))
+                .collect();
+            frames.dedup();
+            frames
+        }
+    }
+}
+
+/// Writes a report's rows, time by time; returns how many there are.
+fn values(rows: &mut Rows, chosen: &[Chosen<'_>], args: &ReportArgs) -> anyhow::Result<u64> {
+    let per_compartment = args.per == Per::Compartment;
+    let mut heading = vec!["time_ms", "population", "node_id"];
+    if per_compartment {
+        heading.extend(["section", "position"]);
+    }
+    heading.push("value");
+    rows.write_record(&heading)?;
+    let mut count = 0;
+    let mut any = false;
+    for (population, nodes) in chosen {
+        let places = Places::of(population, nodes, per_compartment)?;
+        let frames = frames(&population.time, args.time);
+        any |= !frames.is_empty();
+        for frame in frames {
+            let values = population.values(frame, &places.compartments)?;
+            let time = rounded(population.time.time_of(frame));
+            count += places.write(rows, population, &time, &values)?;
+        }
+    }
+    if let (false, Some((population, _))) = (any, chosen.first()) {
+        let TimeAxis { start, end, .. } = population.time;
+        anyhow::bail!("the report has values from {start} to {end} ms: choose --time within these");
+    }
+    Ok(count)
+}
+
+/// Compartments that are read, and the node of each.
+struct Places {
+    compartments: Vec<u64>,
+    nodes: Vec<NodePlaces>,
+}
+
+/// Compartments of a node.
+struct NodePlaces {
+    id: u64,
+    count: usize,
+    /// Section and place along it of each; empty if only their mean is written.
+    along: Vec<(u64, f32)>,
+}
+
+impl Places {
+    fn of(
+        population: &ReportPopulation,
+        nodes: &[usize],
+        per_compartment: bool,
+    ) -> anyhow::Result<Self> {
+        let mut places = Self {
+            compartments: Vec::new(),
+            nodes: Vec::new(),
+        };
+        for &index in nodes {
+            let range = population.compartment_range(index);
+            let count = (range.end - range.start) as usize;
+            places.compartments.extend(range);
+            let along = match per_compartment {
+                true => population.compartments(index)?,
+                false => Vec::new(),
+            };
+            let along = along.iter().map(|c| (c.section, c.along)).collect();
+            places.nodes.push(NodePlaces {
+                id: population.nodes[index],
+                count,
+                along,
+            });
+        }
+        Ok(places)
+    }
+
+    /// Writes the rows of a time.
+    fn write(
+        &self,
+        rows: &mut Rows,
+        population: &ReportPopulation,
+        time: &str,
+        values: &[f32],
+    ) -> anyhow::Result<u64> {
+        let mut count = 0;
+        let mut rest = values;
+        for NodePlaces {
+            id,
+            count: own,
+            along,
+        } in &self.nodes
+        {
+            let (own, others) = rest.split_at((*own).min(rest.len()));
+            rest = others;
+            let node = id.to_string();
+            if along.is_empty() {
+                let mean = own.iter().map(|&v| f64::from(v)).sum::<f64>() / own.len() as f64;
+                let mean = table::cell(mean);
+                rows.write_record([time, &population.name, &node, &mean])?;
+                count += 1;
+                continue;
+            }
+            for ((section, position), value) in along.iter().zip(own) {
+                let (section, position) = (section.to_string(), position.to_string());
+                let value = table::cell(f64::from(*value));
+                let name = &population.name;
+                rows.write_record([time, name, &node, &section, &position, &value])?;
+                count += 1;
+            }
+        }
+        Ok(count)
+    }
+}
+
+/// Writes spikes in the order of time, by population; returns numbers of rows and of nodes that fire.
+fn firing(
+    rows: &mut Rows,
+    spikes: &Spikes,
+    circuit: &Circuit,
+    selected: &BTreeSet<NodeRef>,
+    time: Option<Time>,
+) -> anyhow::Result<(u64, usize)> {
+    let within = |at: f64| match time {
+        None => true,
+        Some(Time::At(time)) => at == time,
+        Some(Time::Series(from, to, _)) => (from..to).contains(&at),
+    };
+    rows.write_record(["time_ms", "population", "node_id"])?;
+    let mut fired = BTreeSet::new();
+    let mut count = 0;
+    for population in &spikes.populations {
+        let nodes = population.nodes_in(circuit, &spikes.file)?;
+        let spikes = population.times.iter().zip(&population.nodes).zip(nodes);
+        for ((&at, id), node) in spikes {
+            if within(at) && selected.contains(&node) {
+                rows.write_record([&rounded(at), &population.name, &id.to_string()])?;
+                fired.insert(node);
+                count += 1;
+            }
+        }
+    }
+    Ok((count, fired.len()))
+}
+
+/// A time (ms) without the digits that its sum of steps made.
+fn rounded(time: f64) -> String {
+    ((time * 1e9).round() / 1e9).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_those_of_frames() {
+        let axis = TimeAxis {
+            start: 10.0,
+            end: 12.0,
+            step: 0.5,
+            frames: 4,
+        };
+        let found = |text: &str| frames(&axis, Some(text.parse().expect("a time")));
+        assert_eq!(frames(&axis, None), [0, 1, 2, 3]);
+        assert_eq!(found("10.7"), [1]);
+        assert_eq!(found("10.5:11.5"), [1, 2]);
+        assert_eq!(found("0:100:1"), [0, 2]);
+        assert_eq!(found("10:12:0.1"), [0, 1, 2, 3], "each frame once");
+        assert!(found("3").is_empty());
+        assert_eq!(rounded(0.1 + 0.2), "0.3");
+    }
+}

@@ -1,0 +1,154 @@
+//! Static mode: the picture at rest is made once more so that it can be colored anew. From then on
+//! recordings, color maps, ranges, palettes and the highlight of the selection change the fine picture
+//! at once, whatever the scene; and only values that show are read.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use eframe::egui;
+use neurotess::coloring::fractions;
+use neurotess::render::{DeviceError, VertexSource, ViewParams};
+
+use super::cost_model::RestMode;
+use super::rest::rest_source;
+use super::{PictureInputs, RestPhase, Stage};
+use crate::io::frames::FrameValues;
+use crate::model::document::Detail;
+use crate::model::state::{State, StaticFigures};
+use crate::scene::content::{CoverageKey, InstancesKey};
+
+/// What a static picture depends on: all that a picture depends on but what changes only colors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct StaticKey {
+    params: ViewParams,
+    detail: Detail,
+    coverage: CoverageKey,
+    instances: InstancesKey,
+}
+
+impl StaticKey {
+    pub(super) fn new(inputs: &PictureInputs) -> Self {
+        Self {
+            params: inputs.params,
+            detail: inputs.detail,
+            coverage: inputs.states.coverage(),
+            instances: inputs.instances,
+        }
+    }
+}
+
+impl Stage {
+    /// Whether the picture can be colored anew without being drawn anew.
+    pub fn is_static(&self) -> bool {
+        self.progressive.static_picture().is_some()
+    }
+
+    /// Whether these inputs differ in colors only from those of the static picture.
+    pub(super) fn recolors(&self, inputs: &PictureInputs) -> bool {
+        self.is_static() && self.shape == Some(StaticKey::new(inputs))
+    }
+
+    /// Whether the static picture is worked at next, although colors have changed: in turns with drafts.
+    pub(super) fn goes_on(&self, inputs: &PictureInputs) -> bool {
+        let rests = match self.phase {
+            RestPhase::Collects => true,
+            RestPhase::Waits => self.moved.elapsed() >= super::rest::REST,
+            _ => false,
+        };
+        rests && self.drafted && self.shape == Some(StaticKey::new(inputs))
+    }
+
+    /// Makes the next part of the static picture.
+    pub(super) fn collect(
+        &mut self,
+        params: ViewParams,
+        detail: Detail,
+    ) -> Result<(), DeviceError> {
+        self.set_rest_detail(&params, detail);
+        if self.is_static() {
+            // Picking needs what a picture that was drawn before has already.
+            if self.lacks_ids() {
+                self.identify(&params)?;
+            }
+            self.phase = RestPhase::Done;
+            return Ok(());
+        }
+        let steps = self.steps();
+        let Some(source) = rest_source!(self) else {
+            self.phase = RestPhase::Waits;
+            return Ok(());
+        };
+        if self.progressive.static_progress().is_none() {
+            let begun = self
+                .progressive
+                .begin_static(&self.gpu, source, &params, steps)?;
+            if !begun {
+                self.phase = RestPhase::Done;
+            }
+        } else if self.progressive.static_slice(&self.gpu, source)? {
+            self.find_visible();
+        }
+        Ok(())
+    }
+
+    /// Finds out which values of the recording show in the static picture.
+    pub(super) fn find_visible(&mut self) {
+        let recording = self.content.recording.as_ref();
+        let picture = self.progressive.static_picture();
+        self.visible = recording
+            .zip(picture)
+            .map(|((recording, _), picture)| Arc::new(recording.visible(picture.keys())));
+        self.values = None;
+    }
+
+    /// Forgets the static picture.
+    pub(super) fn leave_static(&mut self) {
+        self.progressive.drop_static();
+        if self.visible.take().is_some() {
+            self.values = None;
+        }
+    }
+
+    /// Shows the static picture in the current colors.
+    pub(super) fn recolor(
+        &mut self,
+        state: &State,
+        inputs: PictureInputs,
+        ctx: &egui::Context,
+    ) -> Result<(), DeviceError> {
+        if self.progressive.is_busy(&self.gpu) {
+            ctx.request_repaint_after(Duration::from_millis(3));
+            return Ok(());
+        }
+        let values = match (&self.visible, self.values.as_deref(), &state.playback.facts) {
+            (None, ..) => None,
+            (_, Some(FrameValues::Visible(values)), Some(facts)) => {
+                Some(fractions(values, facts.range))
+            }
+            // They are being read.
+            _ => return Ok(()),
+        };
+        if self.progressive.is_recolored() {
+            self.note_frame(self.progressive.last_ms());
+        }
+        if self.states != Some(inputs.states) {
+            self.set_states(state, inputs.states);
+        }
+        self.progressive.recolor(&self.gpu, values.as_deref())?;
+        self.recolor_due = false;
+        self.drawn = Some(inputs);
+        self.legend.clone_from(&self.content.legend);
+        self.revalued = false;
+        Ok(())
+    }
+
+    /// What the static picture holds and reads.
+    pub(super) fn static_figures(&self) -> Option<StaticFigures> {
+        let picture = self.progressive.static_picture()?;
+        Some(StaticFigures {
+            colors: picture.keys().len(),
+            compartments: self.visible.as_ref().map(|visible| visible.compartments()),
+            bytes: picture.bytes(),
+        })
+    }
+}

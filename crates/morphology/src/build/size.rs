@@ -1,0 +1,71 @@
+//! Whether a cell is too large for a neuron, as files in nanometers or voxels are.
+
+use glam::DVec3;
+
+use super::Node;
+
+/// A side (µm) of the box around a cell that is possible for any radius: 5 cm. Axons that go through a whole
+/// mouse brain stay below 2 cm, those of nanometers without good radii begin at some centimeters.
+const POSSIBLE: f64 = 50_000.0;
+/// A side (µm) that is possible even where neurites are thick. A cell of 5 µm in nanometers is as large.
+const POSSIBLE_IF_THICK: f64 = 5_000.0;
+/// The median radius (µm) of a thick neurite: in nanometers the thinnest ones have more, in micrometers only
+/// giant axons do.
+const THICK: f64 = 20.0;
+
+/// Whether the unit is likely not the micrometer. The limits are chosen by eye, between cells as they are and the
+/// same a thousand times larger; skeletons in voxels of 8 nm are found too.
+pub(super) fn too_large(nodes: &[Node], is_of_soma: impl Fn(u32) -> bool) -> bool {
+    let first = nodes.first().map_or(DVec3::ZERO, |node| node.position);
+    let (min, max) = nodes.iter().fold((first, first), |(min, max), node| {
+        (min.min(node.position), max.max(node.position))
+    });
+    let side = (max - min).max_element();
+    if side <= POSSIBLE_IF_THICK {
+        return false;
+    }
+    if side > POSSIBLE {
+        return true;
+    }
+    let of_neurites = (0_u32..).zip(nodes).filter(|&(i, _)| !is_of_soma(i));
+    let mut radii: Vec<f64> = of_neurites.map(|(_, node)| node.radius).collect();
+    radii.retain(|&radius| radius > 0.0);
+    let middle = radii.len() / 2;
+    middle < radii.len() && *radii.select_nth_unstable_by(middle, f64::total_cmp).1 > THICK
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Morphology, NeuriteKind, Oddity};
+
+    /// Whether an axon of this length and radius is noted.
+    fn noted(length: f64, radius: f64) -> bool {
+        let node = |(i, x): (u32, f64)| Node {
+            id: i64::from(i) + 1,
+            kind: NeuriteKind::AXON,
+            position: DVec3::new(x, 0.0, 0.0),
+            radius,
+            parent: i.checked_sub(1),
+        };
+        let nodes: Vec<Node> = (0_u32..).zip([0.0, length]).map(node).collect();
+        let built = Morphology::from_nodes("axon", Vec::new(), &nodes).expect("built");
+        built
+            .notes
+            .iter()
+            .any(|note| note.oddity == Oddity::TooLarge)
+    }
+
+    #[test]
+    fn nanometers_are_noted_and_large_cells_are_not() {
+        assert!(noted(300_000.0, 150.0), "a cortical cell in nanometers");
+        assert!(noted(20_000.0, 60.0), "a cell of a fly in nanometers");
+        assert!(noted(80_000.0, 1.0), "in nanometers, without good radii");
+        assert!(noted(61_811.0, 32.0), "in voxels of 8 nm");
+        assert!(
+            !noted(15_000.0, 0.4),
+            "an axon through the brain of a mouse"
+        );
+        assert!(!noted(1_000.0, 250.0), "a stretch of a giant axon");
+    }
+}

@@ -1,0 +1,173 @@
+//! A tracing taken apart into the nodes that a file would have, and put together again.
+
+use super::EditError;
+use crate::{Attachment, BuildError, Morphology, NeuriteKind, Node, Point, SectionId, Soma};
+
+/// The nodes of a tracing: the samples of its somata, then its points in depth-first order.
+pub(super) struct Nodes {
+    pub(super) nodes: Vec<Node>,
+    /// So many of them, the first, belong to somata. Parents of the others stand before their children.
+    pub(super) somata: usize,
+    /// Whether the somata were traced as outlines.
+    outlined: bool,
+}
+
+/// What an edit makes of nodes.
+pub(super) struct Edits {
+    pub(super) nodes: Vec<Node>,
+    /// How far the tracing has moved (µm), where its nodes do not tell because others have taken their places.
+    pub(super) largest_move: Option<f64>,
+    /// Samples or pieces that the edit could not mend.
+    pub(super) left: usize,
+    /// Whether samples get new numbers.
+    pub(super) renumbered: bool,
+}
+
+impl Edits {
+    /// Edited nodes, each in the place of the one it was.
+    pub(super) fn in_place(nodes: Vec<Node>) -> Self {
+        Self {
+            nodes,
+            largest_move: None,
+            left: 0,
+            renumbered: false,
+        }
+    }
+}
+
+impl Nodes {
+    pub(super) fn of(morphology: &Morphology) -> Self {
+        let mut nodes = Vec::new();
+        let mut first_of_soma = Vec::with_capacity(morphology.somata.len());
+        for soma in &morphology.somata {
+            let first = nodes.len() as u32;
+            first_of_soma.push(first);
+            nodes.extend(soma.samples.iter().map(|sample| Node {
+                id: sample.id,
+                kind: NeuriteKind::SOMA,
+                position: morphology.origin + sample.position.as_dvec3(),
+                radius: f64::from(sample.radius),
+                parent: sample.parent.map(|p| first + p),
+            }));
+        }
+        let somata = nodes.len();
+        nodes.reserve(morphology.points.len());
+        for section in &morphology.sections {
+            let mut parent = match section.attachment {
+                Attachment::Free => None,
+                Attachment::Soma { soma, sample } => Some(first_of_soma[soma as usize] + sample),
+                Attachment::Section(id) => {
+                    Some(somata as u32 + morphology.sections[id.index()].end - 1)
+                }
+            };
+            for point in section.range() {
+                let next = nodes.len() as u32;
+                nodes.push(Node {
+                    id: morphology.sample_ids[point],
+                    kind: section.kind,
+                    position: global(morphology, &morphology.points[point]),
+                    radius: f64::from(morphology.points[point].radius),
+                    parent: parent.replace(next),
+                });
+            }
+        }
+        let as_samples = |soma: &Soma| Soma::from_samples(soma.samples.clone()) == *soma;
+        Self {
+            nodes,
+            somata,
+            outlined: !morphology.somata.iter().all(as_samples),
+        }
+    }
+
+    /// The tracing of edited nodes.
+    pub(super) fn rebuilt(
+        &self,
+        morphology: &Morphology,
+        edits: &Edits,
+    ) -> Result<Morphology, BuildError> {
+        let (name, header) = (morphology.name.clone(), morphology.header.clone());
+        let built = match self.outlined {
+            true => Morphology::from_outlined_nodes(name, header, &edits.nodes),
+            false => Morphology::from_nodes(name, header, &edits.nodes),
+        };
+        let mut rebuilt = built?.morphology;
+        if edits.renumbered {
+            number_anew(&mut rebuilt);
+        }
+        Ok(rebuilt)
+    }
+
+    /// The node of a point.
+    pub(super) fn of_point(&self, point: usize) -> usize {
+        self.somata + point
+    }
+
+    /// The nodes of a section, and before them the one that it branches from, unless that is a soma's.
+    pub(super) fn of_section(&self, morphology: &Morphology, id: SectionId) -> Vec<usize> {
+        let section = &morphology.sections[id.index()];
+        let from = section
+            .parent()
+            .map(|p| morphology.sections[p.index()].end as usize - 1);
+        let points = from.into_iter().chain(section.range());
+        points.map(|point| self.of_point(point)).collect()
+    }
+
+    /// The node with a number.
+    pub(super) fn find(&self, sample: i64) -> Result<usize, EditError> {
+        let mut found = (0..self.nodes.len()).filter(|&i| self.nodes[i].id == sample);
+        match (found.next(), found.next()) {
+            (Some(node), None) => Ok(node),
+            (Some(_), Some(_)) => Err(EditError::RepeatedSample { sample }),
+            (None, _) => {
+                let ids = || self.nodes.iter().map(|node| node.id);
+                Err(EditError::NoSample {
+                    sample,
+                    least: ids().min().unwrap_or(0),
+                    most: ids().max().unwrap_or(0),
+                })
+            }
+        }
+    }
+
+    /// Number of the tree of each node, from 0 on in the order of the roots, and how many trees there are.
+    pub(super) fn trees(&self) -> (Vec<u32>, usize) {
+        const UNKNOWN: u32 = u32::MAX;
+        let mut tree = vec![UNKNOWN; self.nodes.len()];
+        let mut count = 0;
+        let mut way = Vec::new();
+        for node in 0..self.nodes.len() {
+            // Samples of a soma may stand before their parents.
+            let mut at = node;
+            while tree[at] == UNKNOWN {
+                way.push(at);
+                match self.nodes[at].parent {
+                    Some(parent) => at = parent as usize,
+                    None => {
+                        tree[at] = count;
+                        count += 1;
+                    }
+                }
+            }
+            let found = tree[at];
+            for step in way.drain(..) {
+                tree[step] = found;
+            }
+        }
+        (tree, count as usize)
+    }
+}
+
+/// A point in the file's coordinates (µm).
+pub(super) fn global(morphology: &Morphology, point: &Point) -> glam::DVec3 {
+    morphology.origin + point.position.as_dvec3()
+}
+
+/// Numbers all samples from 1 on in the order in which files have them.
+fn number_anew(morphology: &mut Morphology) {
+    let somata = morphology.somata.iter_mut();
+    let of_somata = somata.flat_map(|soma| soma.samples.iter_mut().map(|sample| &mut sample.id));
+    let ids = of_somata.chain(morphology.sample_ids.iter_mut());
+    for (id, number) in ids.zip(1..) {
+        *id = number;
+    }
+}
