@@ -1,7 +1,5 @@
 //! `neurotess bench`, in small.
 
-use std::fs;
-
 use crate::gpu;
 use crate::work::Work;
 
@@ -38,7 +36,7 @@ fn refinement_gives_tables_json_and_a_plot() {
             .as_array()
             .is_some_and(|ratios| ratios.len() >= 5)
     );
-    let svg = fs::read_to_string(work.path("figures/refinement.svg")).expect("a plot");
+    let svg = work.text("figures/refinement.svg");
     assert!(svg.contains("3 neurons") && svg.contains("adaptive"));
     assert_eq!(work.names("figures"), ["refinement.json", "refinement.svg"]);
     work.run(&format!("{SMALL} -o figures")).exits(1);

@@ -1,7 +1,5 @@
 //! `neurotess convert`
 
-use std::fs;
-
 use crate::work::{BROKEN, SMALL, Work};
 
 #[neurotess_testing::test]
@@ -13,7 +11,7 @@ fn swc_becomes_equal_swc() {
         .exits(0)
         .json();
     assert_eq!(json[0]["out"], "copy.swc");
-    let rows = |name: &str| fs::read_to_string(work.path(name)).expect("there");
+    let rows = |name: &str| work.text(name);
     assert_eq!(rows("copy.swc"), SMALL);
     work.run("convert cell.swc -o copy.swc").exits(1);
     work.run("convert cell.swc -o copy.swc --force").exits(0);

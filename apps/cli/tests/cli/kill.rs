@@ -35,7 +35,7 @@ fn send(signal: &str, child: &Child) {
 #[neurotess_testing::test]
 fn interrupted_runs_leave_nothing_and_exit_with_130() {
     let work = Work::new();
-    work.file("cell.swc", &long_cell(3000));
+    work.file("cell.swc", long_cell(3000));
     for signal in ["-INT", "-TERM"] {
         let mut child = start(&work, "mesh cell.swc -o out/cell.obj --level 64");
         wait_for_a_file(&work, "out");
@@ -50,7 +50,7 @@ fn interrupted_runs_leave_nothing_and_exit_with_130() {
 #[neurotess_testing::test]
 fn an_interrupted_run_says_so_in_its_document() {
     let work = Work::new();
-    work.file("cell.swc", &long_cell(3000));
+    work.file("cell.swc", long_cell(3000));
     let mut command = work.command("mesh cell.swc -o out/cell.obj --level 64 --json");
     command.stdout(Stdio::piped()).stderr(Stdio::null());
     let child = command.spawn().expect("it starts");
@@ -72,7 +72,7 @@ fn killed_and_started_again_gives_the_same_files() {
         } else {
             SMALL.to_owned()
         };
-        work.file(&format!("cells/{i}.swc"), &text);
+        work.file(&format!("cells/{i}.swc"), text);
     }
     work.run("mesh cells -o whole --level 8").exits(0);
     // At several times: while the first files are written, and a little later.
@@ -91,7 +91,7 @@ fn killed_and_started_again_gives_the_same_files() {
         .exits(0);
     assert_eq!(work.names("whole"), work.names("again"));
     // Whenever it ends, no output lacks its line.
-    let log = std::fs::read_to_string(work.path("log.jsonl")).expect("a log");
+    let log = work.text("log.jsonl");
     for name in work.names("again") {
         assert!(log.contains(&format!("\"again/{name}\"")), "{name}");
     }

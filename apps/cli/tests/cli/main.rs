@@ -19,6 +19,7 @@ mod tables;
 mod values;
 mod view;
 mod view_keys;
+#[path = "../common/work.rs"]
 mod work;
 
 /// The need of tests that draw.

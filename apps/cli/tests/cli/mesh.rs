@@ -187,7 +187,7 @@ fn a_broken_cell_does_not_stop_the_others() {
     assert_eq!(work.names("out"), ["a.ply", "c.ply"]);
     let json = run.json();
     assert!(json[1]["error"].is_string() && json[2]["closed"] == true);
-    let log = fs::read_to_string(work.path("log.jsonl")).expect("a log");
+    let log = work.text("log.jsonl");
     let lines: Vec<Value> = log
         .lines()
         .map(|l| serde_json::from_str(l).expect("JSON"))
@@ -257,7 +257,7 @@ fn resume_does_only_what_is_missing() {
 #[neurotess_testing::test]
 fn threads_do_not_change_the_files() {
     let work = Work::new();
-    work.file("cell.swc", &crate::work::long_cell(300));
+    work.file("cell.swc", crate::work::long_cell(300));
     work.run("mesh cell.swc -o one.ply --threads 1").exits(0);
     work.run("mesh cell.swc -o three.ply --threads 3").exits(0);
     let read = |name: &str| fs::read(work.path(name)).expect("there");

@@ -130,7 +130,7 @@ fn every_option_of_the_contract_draws() {
 fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
     let drawn = |arguments: &str| {
         let (work, _) = drawn(&format!("--stats stats.json {arguments}"));
-        let stats = fs::read_to_string(work.path("stats.json")).expect("stats");
+        let stats = work.text("stats.json");
         let stats: Value = serde_json::from_str(&stats).expect("JSON");
         (Picture::read(&work, "cell.png").pixels, stats)
     };
@@ -165,7 +165,7 @@ fn transparent_pictures_have_alpha() {
 #[neurotess_testing::test(needs(gpu))]
 fn stats_have_the_keys_of_the_contract() {
     let (work, run) = drawn("--stats stats.json --json");
-    let text = fs::read_to_string(work.path("stats.json")).expect("stats");
+    let text = work.text("stats.json");
     let stats: Value = serde_json::from_str(&text).expect("JSON");
     for key in [
         "neurons",
@@ -219,7 +219,7 @@ fn several_cells_are_in_one_picture_and_a_broken_one_is_reported() {
     work.file("cells/a.swc", SMALL);
     work.file("cells/b.swc", BROKEN);
     let moved = SMALL.replace("1 1 0 0 0 5 -1", "1 1 90 0 0 5 -1");
-    work.file("cells/c.swc", &moved);
+    work.file("cells/c.swc", moved);
     let run = work
         .run("render cells -o all.png --size 90x60 --color-by neuron --json")
         .exits(1);
@@ -376,7 +376,7 @@ fn circuits_are_drawn_cell_by_cell_at_their_positions() {
     let run = work
         .run("render circuit -o c.png --force --lod exploration --budget 400 --stats s.json")
         .exits(0);
-    let stats = fs::read_to_string(work.path("s.json")).expect("stats");
+    let stats = work.text("s.json");
     let stats: Value = serde_json::from_str(&stats).expect("JSON");
     let number = |key: &str| stats["exploration"][key].as_u64().expect("a number");
     assert!(number("wanted") > 400 && number("left_out") > 0);

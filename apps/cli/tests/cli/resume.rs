@@ -44,7 +44,7 @@ fn outputs_of_other_options_are_made_again() {
     );
 
     // An older file in the place of an input is seen, too.
-    let other = work.file("other.swc", &SMALL.replace(" 5 -1", " 6 -1"));
+    let other = work.file("other.swc", SMALL.replace(" 5 -1", " 6 -1"));
     let past = std::time::SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1_000_000_000);
     let file = fs::File::options()
         .append(true)
@@ -88,7 +88,7 @@ fn what_nothing_is_known_of_stays_and_that_is_said() {
 fn several_runs_share_a_folder() {
     let work = Work::new();
     for i in 0..8 {
-        work.file(&format!("cells/{i}.swc"), &long_cell(100 + i));
+        work.file(&format!("cells/{i}.swc"), long_cell(100 + i));
     }
     let start = || {
         let mut command =
@@ -124,7 +124,7 @@ fn a_log_that_lacks_lines_gets_them() {
     work.file("cells/a.swc", SMALL);
     work.file("cells/b.swc", SMALL);
     let log = || {
-        let text = fs::read_to_string(work.path("log.jsonl")).expect("a log");
+        let text = work.text("log.jsonl");
         let lines = text
             .lines()
             .map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
@@ -132,7 +132,7 @@ fn a_log_that_lacks_lines_gets_them() {
     };
     work.run("mesh cells -o out --level 1 --log log.jsonl")
         .exits(0);
-    let text = fs::read_to_string(work.path("log.jsonl")).expect("a log");
+    let text = work.text("log.jsonl");
     let b: String = text.lines().filter(|l| l.contains("b.ply")).collect();
     fs::write(work.path("log.jsonl"), b + "\n").expect("written");
     work.run("mesh cells -o out --level 1 --log log.jsonl --resume")

@@ -52,7 +52,7 @@ fn nodes_are_written_with_place_and_attributes() {
         .exits(0)
         .json();
     assert_eq!(json["nodes"], 3);
-    let text = std::fs::read_to_string(work.path("n.tsv")).expect("written");
+    let text = work.text("n.tsv");
     assert_eq!(text.lines().count(), 4);
     assert!(
         text.starts_with("population\tnode_id\tmorphology\t"),

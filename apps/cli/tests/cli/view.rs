@@ -114,7 +114,7 @@ fn a_lost_device_ends_the_window_with_an_error_and_a_session() {
     assert_eq!(status.code(), Some(1), "{said}");
     assert!(said.contains("device was lost"), "{said}");
     assert!(said.contains("your session is in"), "{said}");
-    let rescued = fs::read_to_string(work.path("config/rescued.neurotess")).expect("rescued");
+    let rescued = work.text("config/rescued.neurotess");
     assert!(rescued.contains("cell.swc") && rescued.contains("position = 0.5"));
 }
 

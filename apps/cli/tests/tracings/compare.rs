@@ -1,6 +1,7 @@
 //! `neurotess diff`
 
-use crate::{SMALL, Work, sample};
+use crate::sample;
+use crate::work::{SMALL, Work};
 
 #[neurotess_testing::test]
 fn the_same_cell_is_the_same_in_other_numbers() {

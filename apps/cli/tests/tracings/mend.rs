@@ -1,6 +1,7 @@
 //! `neurotess convert` with edits
 
-use crate::{SMALL, Work, sample};
+use crate::sample;
+use crate::work::{SMALL, Work};
 
 /// Columns of a row: those of the sample with this number.
 fn row(text: &str, sample: i64) -> Vec<f64> {
@@ -55,7 +56,7 @@ fn a_dry_run_says_what_a_real_one_does_and_writes_nothing() {
         .run(&format!("convert cell.swc --dry-run {edits} --json"))
         .exits(0)
         .json();
-    assert_eq!(work.names(), ["cell.swc"]);
+    assert_eq!(work.names("."), ["cell.swc"]);
     assert_eq!(dry[0]["dry_run"], true);
     assert!(dry[0]["out"].is_null());
     let told = work
@@ -71,13 +72,13 @@ fn a_dry_run_says_what_a_real_one_does_and_writes_nothing() {
         "{}",
         told.stdout()
     );
-    assert_eq!(work.names(), ["cell.swc"]);
+    assert_eq!(work.names("."), ["cell.swc"]);
     let real = work
         .run(&format!("convert cell.swc -o out.swc {edits} --json"))
         .exits(0)
         .json();
     assert_eq!(real[0]["edits"], dry[0]["edits"]);
-    assert_eq!(work.names(), ["cell.swc", "out.swc"]);
+    assert_eq!(work.names("."), ["cell.swc", "out.swc"]);
 }
 
 #[neurotess_testing::test]
@@ -238,5 +239,5 @@ fn wrong_values_are_wrong_usage() {
         assert!(!run.stderr().is_empty(), "{wrong}");
     }
     work.run("convert cell.swc").exits(2);
-    assert_eq!(work.names(), ["cell.swc"]);
+    assert_eq!(work.names("."), ["cell.swc"]);
 }

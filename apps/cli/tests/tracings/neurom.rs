@@ -6,7 +6,8 @@ use std::process::Command;
 use neurotess_testing::python_with;
 use serde_json::Value;
 
-use crate::{Work, sample};
+use crate::sample;
+use crate::work::Work;
 
 /// Distance of spheres (µm).
 const STEP: f64 = 25.0;

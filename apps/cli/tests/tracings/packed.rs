@@ -5,7 +5,8 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use crate::{SMALL, Work, sample};
+use crate::sample;
+use crate::work::{SMALL, Work};
 
 fn packed(content: &[u8]) -> Vec<u8> {
     let mut packing = GzEncoder::new(Vec::new(), Compression::default());
@@ -46,7 +47,7 @@ fn broken_packages_are_errors() {
         "{}",
         run.stderr()
     );
-    assert_eq!(work.names(), ["cut.swc.gz"]);
+    assert_eq!(work.names("."), ["cut.swc.gz"]);
     work.file("bad.swc.gz", packed(b"1 1 0 0 0 5 -1\n2 2 0 9 0 1\n"));
     let run = work.run("info bad.swc.gz").exits(1);
     assert!(

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{SMALL, Work};
+use crate::work::{SMALL, Work};
 
 /// The blocks of the page that begin with a command: the command, and what it says.
 fn shown() -> Vec<(String, String)> {

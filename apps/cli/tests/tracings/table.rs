@@ -1,6 +1,6 @@
 //! `neurotess info --table`
 
-use crate::{SMALL, Work};
+use crate::work::{SMALL, Work};
 
 /// The column of a name, row by row.
 fn column(text: &str, name: &str, separator: char) -> Vec<String> {
@@ -98,7 +98,7 @@ fn tables_are_replaced_only_with_force_and_failures_are_left_out() {
         "{}",
         run.stderr()
     );
-    assert_eq!(work.names(), ["all.csv", "cells"]);
+    assert_eq!(work.names("."), ["all.csv", "cells"]);
     for wrong in [
         "--table a.xlsx",
         "--per cell",

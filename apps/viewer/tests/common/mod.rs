@@ -155,7 +155,8 @@ pub(crate) fn snapshot(window: &mut Window, name: &str) {
     image_snapshot_options(&image, name, &options);
 }
 
-/// Where the window shows times that it has measured: the soma's, and below their heading those of drawing.
+/// Where the window shows what depends on the machine's pace: the soma's time, below their heading the times of
+/// drawing, and the memory of images, among which is a draft only if there was time to draw one.
 fn changing(window: &Window) -> Vec<Rect> {
     let mut masks = Vec::new();
     let heading = window.query_all_by_label("Drawing times").next();
@@ -167,12 +168,12 @@ fn changing(window: &Window) -> Vec<Rect> {
             Pos2::new(SIZE.x, SIZE.y - 36.0),
         ));
     }
-    if let Some(name) = window.query_all_by_label("computed in").next() {
-        let row = name.rect();
-        masks.push(Rect::from_min_max(
-            row.right_top(),
-            Pos2::new(SIZE.x, row.bottom()),
-        ));
+    for name in ["computed in", "GPU memory, images"] {
+        let rows = window.query_all_by_label(name).map(|label| label.rect());
+        masks.extend(rows.map(|row| {
+            let end = Pos2::new(SIZE.x, row.bottom());
+            Rect::from_min_max(row.right_top(), end)
+        }));
     }
     masks
 }

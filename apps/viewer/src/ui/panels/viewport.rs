@@ -245,7 +245,8 @@ fn ink(state: &State) -> Color32 {
 fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     let look = &screen.state.document.look;
     if look.legend {
-        legend(screen.stage.legend().clone(), screen, rect, ui);
+        let told = screen.stage.legend().clone();
+        legend(told.with_least_width(look.least_width), screen, rect, ui);
     }
     if look.scale_bar {
         scale_bar(screen.state, rect, ui);

@@ -36,11 +36,16 @@ impl Work {
     }
 
     /// Writes a file, making its folders.
-    pub(crate) fn file(&self, name: &str, text: &str) -> PathBuf {
+    pub(crate) fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.path(name);
         fs::create_dir_all(path.parent().expect("a parent")).expect("folders");
-        fs::write(&path, text).expect("written");
+        fs::write(&path, content).expect("written");
         path
+    }
+
+    /// The text of a file.
+    pub(crate) fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).expect("there")
     }
 
     /// The command in this folder, with arguments separated by blanks.
