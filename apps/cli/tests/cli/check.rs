@@ -31,7 +31,7 @@ fn open_meshes_are_found_and_broken_files_fail() {
     let work = Work::new();
     work.file(
         "m/a.off",
-        &TETRAHEDRON
+        TETRAHEDRON
             .replace("4 4 0", "4 3 0")
             .replace("3 2 0 3\n", ""),
     );
