@@ -98,7 +98,7 @@ fn tables_are_replaced_only_with_force_and_failures_are_left_out() {
         "{}",
         run.stderr()
     );
-    assert_eq!(work.names("."), ["all.csv", "cells"]);
+    assert_eq!(work.names("."), ["all.csv", "a.swc", "b.swc", "broken.swc"]);
     for wrong in [
         "--table a.xlsx",
         "--per cell",
