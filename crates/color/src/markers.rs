@@ -229,7 +229,10 @@ fn by_name(markers: Vec<Marker>, names: Vec<String>) -> MarkerSet {
     }
 }
 
-/// Colors by a number of each marker, between the least and the greatest.
+/// Share of the numbers beyond each end of the scale: a few far ones leave the others' colors apart.
+const BEYOND: f64 = 0.02;
+
+/// Colors by a number of each marker.
 fn by_number(
     mut markers: Vec<Marker>,
     values: &[f64],
@@ -237,25 +240,31 @@ fn by_number(
     scheme: &ColorScheme,
 ) -> MarkerSet {
     let finite = values.iter().copied().filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::MAX, f64::MIN), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let mut sorted: Vec<f64> = finite.collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let at = |share: f64| {
+        let place = (share * sorted.len().saturating_sub(1) as f64).round() as usize;
+        sorted.get(place).copied().unwrap_or_default()
+    };
+    let (low, high) = (at(BEYOND), at(1.0 - BEYOND));
+    let more = sorted.last().is_some_and(|&last| last > high);
     let steps = scheme.scale.len().max(1);
     let nothing = steps as u32;
     for (marker, &value) in markers.iter_mut().zip(values) {
         let share = (value - low) / (high - low).max(f64::MIN_POSITIVE);
-        let step = (share * (steps - 1) as f64).round() as u32;
+        let step = (share.clamp(0.0, 1.0) * (steps - 1) as f64).round() as u32;
         marker.color_key = category(if share.is_finite() { step } else { nothing });
     }
     let mut colors = scheme.scale.clone();
     colors.resize(steps, NOTHING);
     colors.push(NOTHING);
-    let range = match low <= high {
-        true => [low as f32, high.max(low + low.abs().max(1.0) * 1e-3) as f32],
-        false => [0.0, 1.0],
+    // A legend needs two ends.
+    let range = match high > low {
+        true => [low as f32, high as f32],
+        false => [low as f32, low as f32 + 1.0],
     };
     MarkerSet {
-        legend: Legend::bar(name, "", scheme.scale.clone(), range, false),
+        legend: Legend::bar(name, "", scheme.scale.clone(), range, more),
         markers,
         colors,
         left_out: 0,
@@ -310,5 +319,79 @@ impl Coloring {
             marker.color_key += first as u32;
         }
         self.legend = self.legend.clone().with_below(set.legend.clone());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess_render::color::{ColorMap, Palette};
+
+    use super::*;
+
+    fn scheme() -> ColorScheme {
+        ColorScheme {
+            palette: Palette::NeuroM,
+            background: None,
+            scale: ColorMap::Viridis.scale(),
+            range: None,
+        }
+    }
+
+    fn table(values: &[f64]) -> PointTable {
+        PointTable {
+            positions: values.iter().map(|&x| DVec3::X * x).collect(),
+            columns: vec![("w".into(), values.to_vec())],
+        }
+    }
+
+    #[test]
+    fn numbers_are_colored_from_end_to_end_and_missing_ones_gray() {
+        let mut values: Vec<f64> = (0..100).map(f64::from).collect();
+        values.extend([1e9, f64::NAN]);
+        let set = points("p.csv", &table(&values), Some("w"), &scheme()).expect("markers");
+        let color = |index: usize| {
+            let key = set.markers[index].color_key & !CATEGORY_BIT;
+            set.colors[key as usize]
+        };
+        let scale = ColorMap::Viridis.scale();
+        assert_eq!(color(0), scale[0]);
+        assert_eq!(color(99), scale[scale.len() - 1]);
+        assert_eq!(color(100), color(99), "far beyond the others");
+        assert_eq!(color(101), NOTHING);
+        let middle = color(50)[1];
+        assert!(scale[100][1] < middle && middle < scale[160][1]);
+    }
+
+    #[test]
+    fn colors_of_markers_follow_those_that_cells_use() {
+        let mut set = points("p.csv", &table(&[1.0, 2.0]), None, &scheme()).expect("markers");
+        // Its cells use a category beyond the end of the table.
+        let mut coloring = Coloring {
+            color_keys: vec![vec![category(0), category(4)]],
+            table: neurotess_render::color::ColorTable {
+                categories: vec![[1; 3], [2; 3]],
+                ..Default::default()
+            },
+            legend: Legend::swatches("", []),
+        };
+        coloring.add_markers(&mut set);
+        let categories = &coloring.table.categories;
+        assert_eq!(categories[..5], [[1; 3], [2; 3], [2; 3], [2; 3], [2; 3]]);
+        assert_eq!(categories.len(), 6);
+        assert!(
+            set.markers
+                .iter()
+                .all(|marker| marker.color_key == category(5))
+        );
+        assert_eq!(categories[5], set.colors[0]);
+    }
+
+    #[test]
+    fn a_column_that_is_not_there_is_named_beside_those_that_are() {
+        let missing = points("p.csv", &table(&[1.0]), Some("size"), &scheme());
+        let said = missing.expect_err("none").to_string();
+        assert_eq!(said, "p.csv: has no number 'size': it has w");
+        let set = points("p.csv", &table(&[3.0, 3.0]), Some("w"), &scheme()).expect("markers");
+        assert_eq!(set.bounds(), Some((DVec3::X * 3.0, 0.0)));
     }
 }

@@ -9,7 +9,7 @@ use super::circuit_instances::CircuitInstances;
 use crate::report::{Reporter, count, usage};
 
 /// Least diameter (pixels) of a marker.
-const LEAST: f64 = 2.0;
+const LEAST: f64 = 3.0;
 /// Share of exploration's budget that markers may take beside it.
 const SHARE_OF_BUDGET: f64 = 0.2;
 
