@@ -24,7 +24,8 @@ struct MarkerFrame {
 }
 
 @group(0) @binding(0) var<storage, read> markers: array<StoredMarker>;
-// Corners of the shapes, one after the other: unit vectors, and for squares 1 in the last component.
+// Corners of the shapes, one after the other: vectors in the world, with 1 in the last component along the
+// view's axes, with 2 the same for something flat.
 @group(0) @binding(1) var<storage, read> shapes: array<vec4<f32>>;
 @group(0) @binding(2) var<uniform> marker_frame: MarkerFrame;
 
@@ -34,14 +35,12 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let depth = max(-dot(center, marker_frame.backward), marker_frame.near);
     let radius = max(marker_frame.radius, marker_frame.least * depth);
     let corner = shapes[vertex_index];
-    let square = corner.w > 0.0;
-    let flat_side = marker_frame.right * corner.x + marker_frame.up * corner.y;
-    let offset = select(corner.xyz, flat_side, square);
-    // Squares are as light as what faces the viewer. They stand in front, like the spheres' front.
-    let normal = select(corner.xyz, marker_frame.backward, square);
-    let forward = select(vec3(0.0), marker_frame.backward, square);
+    let axes = mat3x3(marker_frame.right, marker_frame.up, marker_frame.backward);
+    let offset = select(corner.xyz, axes * corner.xyz, corner.w > 0.0);
+    // What is flat is as light as what faces the viewer.
+    let normal = select(offset, marker_frame.backward, corner.w > 1.0);
     return SurfaceVertex(
-        center + (offset + forward) * radius,
+        center + offset * radius,
         normal,
         center,
         0.0,

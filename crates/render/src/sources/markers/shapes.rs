@@ -1,37 +1,58 @@
-//! The triangles that markers are drawn with: a square, and spheres of ever more triangles.
+//! The triangles that markers are drawn with: a square and a dome, which face the viewer, and spheres of ever
+//! more triangles.
 
+use std::f32::consts::TAU;
 use std::ops::Range;
 
 use glam::Vec3;
 
-/// Corners of all shapes, three to a triangle: unit vectors, and 1 in the last component for squares.
+/// Corners of all shapes, three to a triangle, and in the last component what they are relative to.
 pub(super) struct Shapes {
     pub(super) corners: Vec<[f32; 4]>,
     /// By shape, the simplest first: its range of the corners.
     pub(super) ranges: Vec<Range<u32>>,
 }
 
-/// Radius (sub-pixels) from which on a marker has the shape of this index. With 20, 80, 320 and 1,280
-/// triangles a sphere's outline stays within half a sub-pixel of a circle up to about the next radius.
-const FROM: [f32; 5] = [0.0, 1.5, 4.0, 16.0, 64.0];
+/// Radius (sub-pixels) from which on a marker has the shape of this index. With 8, 80, 320 and 1,280 triangles
+/// a sphere's outline stays within half a sub-pixel of a circle up to the next radius.
+const FROM: [f32; 5] = [0.0, 2.0, 6.0, 16.0, 64.0];
+/// Last component of a corner of a sphere: a unit vector in the world.
+const IN_WORLD: f32 = 0.0;
+/// Of a corner of a dome: a unit vector along the view's right, up and backward.
+const IN_VIEW: f32 = 1.0;
+/// Of a corner of a square: the same, but its normal is backward.
+const FLAT: f32 = 2.0;
+/// Triangles of a dome.
+const SIDES: usize = 8;
 
 impl Shapes {
     pub(super) fn new() -> Self {
         let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-        let corners = [0, 1, 2, 0, 2, 3].map(|k: usize| [square[k][0], square[k][1], 0.0, 1.0]);
-        let mut shapes = Self {
-            corners: corners.to_vec(),
-            ranges: vec![0..corners.len() as u32],
+        let square = [0, 1, 2, 0, 2, 3].map(|k: usize| [square[k][0], square[k][1], 1.0, FLAT]);
+        let rim = |k: usize| {
+            let (y, x) = (TAU * k as f32 / SIDES as f32).sin_cos();
+            [x, y, 0.0, IN_VIEW]
         };
+        let dome = (0..SIDES).flat_map(|k| [[0.0, 0.0, 1.0, IN_VIEW], rim(k), rim(k + 1)]);
+        let mut shapes = Self {
+            corners: Vec::new(),
+            ranges: Vec::new(),
+        };
+        shapes.push(square);
+        shapes.push(dome);
         let mut triangles = icosahedron();
-        for _ in 1..FROM.len() {
-            let first = shapes.corners.len() as u32;
-            let corners = triangles.iter().flatten();
-            shapes.corners.extend(corners.map(|c| [c.x, c.y, c.z, 0.0]));
-            shapes.ranges.push(first..shapes.corners.len() as u32);
+        while shapes.ranges.len() < FROM.len() {
             triangles = triangles.into_iter().flat_map(quartered).collect();
+            let corners = triangles.iter().flatten();
+            shapes.push(corners.map(|c| [c.x, c.y, c.z, IN_WORLD]));
         }
         shapes
+    }
+
+    fn push(&mut self, corners: impl IntoIterator<Item = [f32; 4]>) {
+        let first = self.corners.len() as u32;
+        self.corners.extend(corners);
+        self.ranges.push(first..self.corners.len() as u32);
     }
 
     /// The shape of a marker of this radius (sub-pixels).
@@ -88,8 +109,8 @@ mod tests {
     fn spheres_are_closed_and_face_outwards() {
         let shapes = Shapes::new();
         let counts: Vec<usize> = (0..FROM.len()).map(|s| shapes.triangles(s)).collect();
-        assert_eq!(counts, [2, 20, 80, 320, 1280]);
-        for range in &shapes.ranges[1..] {
+        assert_eq!(counts, [2, 8, 80, 320, 1280]);
+        for range in &shapes.ranges[2..] {
             let corners = &shapes.corners[range.start as usize..range.end as usize];
             let volume: f32 = corners
                 .chunks(3)
@@ -98,13 +119,13 @@ mod tests {
                     a.dot(b.cross(c)) / 6.0
                 })
                 .sum();
-            assert!((2.5..4.19).contains(&volume), "{volume}");
+            assert!((3.5..4.19).contains(&volume), "{volume}");
         }
     }
 
     #[test]
     fn larger_markers_have_finer_shapes() {
-        let shapes: Vec<usize> = [0.3, 2.0, 4.0, 20.0, 1e4].map(Shapes::of_radius).to_vec();
+        let shapes: Vec<usize> = [0.3, 2.0, 6.0, 20.0, 1e4].map(Shapes::of_radius).to_vec();
         assert_eq!(shapes, [0, 1, 2, 3, 4]);
     }
 }
