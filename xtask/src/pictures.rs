@@ -23,6 +23,11 @@ const PICTURES: &[(&str, &str)] = &[
         "samples/pyramidal.swc --size 400x300 --eye 30,20,70 --target 0,0,0 --wireframe --level 2 --no-legend",
     ),
     (
+        "synapses",
+        "target/pictures/circuit --nodes 0 --synapses --marker-color-by conductance --size 480x360 --samples 16 \
+         --lod adaptive",
+    ),
+    (
         "order",
         "samples/motor.swc --size 480x480 --color-by order --samples 16",
     ),
@@ -40,6 +45,12 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
         return Ok(());
     }
     steps.step("build", crate::demo::build)?;
+    steps.step("circuit", || {
+        let made =
+            "synth circuit -o target/pictures/circuit --neurons 20 --morphologies 2 --synapses 600";
+        steps::run(&mut neurotess(&format!("{made} --reported 1 --force -q"))?)?;
+        Ok("in target/pictures".into())
+    })?;
     let mut bytes = 0;
     for (name, arguments) in PICTURES {
         steps.step("picture", || {
