@@ -12,7 +12,7 @@ const PICTURES: &[(&str, &str)] = &[
     ("types", "samples/pyramidal.swc --size 480x640 --scale-bar"),
     (
         "depth",
-        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar",
+        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar --marker-size 1.8",
     ),
     (
         "soma",
@@ -24,8 +24,8 @@ const PICTURES: &[(&str, &str)] = &[
     ),
     (
         "synapses",
-        "target/pictures/circuit --nodes 0 --synapses --marker-color-by conductance --size 480x360 --samples 16 \
-         --lod adaptive",
+        "target/pictures/circuit --nodes 0 --synapses --marker-color-by conductance --size 480x360 \
+         --eye=-57,1010,200 --target=-57,990,-37 --scale-bar --marker-size 1.8",
     ),
     (
         "order",
