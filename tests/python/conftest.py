@@ -21,7 +21,7 @@ def circuit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A circuit of 12 cells with spikes and voltages, grown by the package's own command."""
     folder = tmp_path_factory.mktemp("circuit") / "small"
     command = [sys.executable, "-m", "neurotess", "synth", "circuit", "-o", str(folder)]
-    command += ["--neurons", "12", "--morphologies", "3", "--points", "60", "--quiet"]
+    command += ["--neurons", "12", "--morphologies", "3", "--points", "60", "--synapses", "9", "--quiet"]
     subprocess.run(command, check=True)
     return folder
 

@@ -126,3 +126,27 @@ def test_circuits_that_are_none_are_read_errors(tmp_path: Path) -> None:
 
 def test_circuits_are_pickled(circuit: nt.Circuit) -> None:
     assert len(pickle.loads(pickle.dumps(circuit))) == len(circuit)
+
+
+def test_synapses_are_a_table_and_drawn(
+    circuit: nt.Circuit, can_draw: bool, tmp_path: Path
+) -> None:
+    [edges] = circuit.edges.name
+    synapses = circuit.synapses(edges, numbers=["delay"])
+    assert list(synapses.columns) == ["source", "target", "x", "y", "z", "delay"]
+    assert len(synapses) == 12 * 9
+    assert (synapses.groupby("target").size() == 9).all()
+    assert (synapses.source != synapses.target).all() and (synapses.delay > 0.5).all()
+    efferent = circuit.synapses(edges, side="efferent")
+    assert list(efferent.columns) == ["source", "target"]
+    with pytest.raises(ValueError, match="side"):
+        circuit.synapses(edges, side="both")  # type: ignore[arg-type]
+    with pytest.raises(nt.NeurotessError, match="no_such"):
+        circuit.synapses(edges, numbers=["no_such"])
+    options = {"size": (80, 60), "samples": 1, "legend": False, "nodes": [3]}
+    plain, marked = (nt.render(circuit, synapses=shown, **options) for shown in (False, True))
+    assert (np.asarray(plain) != np.asarray(marked)).any()
+    table = tmp_path / "points.csv"
+    synapses[synapses.target == 3].to_csv(table, index=False)
+    colored = nt.render(circuit, points=table, marker_color_by="delay", **options)
+    assert (np.asarray(plain) != np.asarray(colored)).any()

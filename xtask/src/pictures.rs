@@ -12,7 +12,7 @@ const PICTURES: &[(&str, &str)] = &[
     ("types", "samples/pyramidal.swc --size 480x640 --scale-bar"),
     (
         "depth",
-        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar",
+        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar --marker-size 1.8",
     ),
     (
         "soma",
@@ -21,6 +21,11 @@ const PICTURES: &[(&str, &str)] = &[
     (
         "wireframe",
         "samples/pyramidal.swc --size 400x300 --eye 30,20,70 --target 0,0,0 --wireframe --level 2 --no-legend",
+    ),
+    (
+        "synapses",
+        "target/pictures/circuit --nodes 0 --synapses --marker-color-by conductance --size 480x360 \
+         --eye=-57,1010,200 --target=-57,990,-37 --scale-bar --marker-size 1.8",
     ),
     (
         "order",
@@ -40,6 +45,12 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
         return Ok(());
     }
     steps.step("build", crate::demo::build)?;
+    steps.step("circuit", || {
+        let made =
+            "synth circuit -o target/pictures/circuit --neurons 20 --morphologies 2 --synapses 600";
+        steps::run(&mut neurotess(&format!("{made} --reported 1 --force -q"))?)?;
+        Ok("in target/pictures".into())
+    })?;
     let mut bytes = 0;
     for (name, arguments) in PICTURES {
         steps.step("picture", || {

@@ -36,8 +36,18 @@ pub struct Synapses {
     pub positions: Vec<DVec3>,
 }
 
-/// Columns of places, the best first: on the membrane, on the axis.
-const PLACES: [[&str; 3]; 4] = [
+/// The side of a synapse that is meant: where it sits on its target, or on its source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SynapseSide {
+    /// On the target, which it is an input of.
+    #[default]
+    Afferent,
+    /// On the source, which it is an output of.
+    Efferent,
+}
+
+/// Columns of places on targets, the best first: on the membrane, on the axis.
+const AFFERENT: [[&str; 3]; 3] = [
     [
         "afferent_surface_x",
         "afferent_surface_y",
@@ -49,10 +59,19 @@ const PLACES: [[&str; 3]; 4] = [
         "afferent_center_z",
     ],
     ["pos_x", "pos_y", "pos_z"],
+];
+
+/// Columns of places on sources.
+const EFFERENT: [[&str; 3]; 2] = [
     [
         "efferent_surface_x",
         "efferent_surface_y",
         "efferent_surface_z",
+    ],
+    [
+        "efferent_center_x",
+        "efferent_center_y",
+        "efferent_center_z",
     ],
 ];
 
@@ -94,45 +113,97 @@ fn edge_rows(store: &Store, path: &str) -> Result<u64, CircuitError> {
 }
 
 impl Edges {
-    /// Reads both ends and the place of each synapse. Needs 40 bytes for each.
+    /// Reads both ends and the place of each synapse: on its target, or else on its source. Needs 40 bytes
+    /// for each.
     ///
     /// # Errors
     /// What is wrong with the file.
     pub fn synapses(&self) -> Result<Synapses, CircuitError> {
+        self.read(&[&AFFERENT[..], &EFFERENT[..1]].concat())
+    }
+
+    /// The same with the places on one side. `positions` is empty if the file does not have them.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn synapses_on(&self, side: SynapseSide) -> Result<Synapses, CircuitError> {
+        self.read(match side {
+            SynapseSide::Afferent => &AFFERENT,
+            SynapseSide::Efferent => &EFFERENT,
+        })
+    }
+
+    /// Names of the numbers that the file has of each synapse, such as `delay` or `conductance`.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn properties(&self) -> Result<Vec<String>, CircuitError> {
+        let store = Store::open(&self.file)?;
+        let mut names = store.datasets(&self.group());
+        let is_place = |name: &String| {
+            let columns = AFFERENT.iter().chain(&EFFERENT).flatten();
+            columns.into_iter().any(|column| name == column)
+        };
+        names.retain(|name| !is_place(name));
+        names.sort_unstable();
+        Ok(names)
+    }
+
+    /// One number of each synapse, in the order of [`Edges::synapses`].
+    ///
+    /// # Errors
+    /// There is none of this name; what is wrong with the file.
+    pub fn property(&self, name: &str) -> Result<Vec<f64>, CircuitError> {
+        let store = Store::open(&self.file)?;
+        let key = format!("{}/{name}", self.group());
+        let values = store.reals(&key)?;
+        self.check_rows(&store, &key, values.len())?;
+        Ok(values)
+    }
+
+    fn read(&self, places: &[[&str; 3]]) -> Result<Synapses, CircuitError> {
         let store = Store::open(&self.file)?;
         let path = format!("edges/{}", self.name);
-        let sources = store.naturals(&format!("{path}/source_node_id"))?;
-        let targets = store.naturals(&format!("{path}/target_node_id"))?;
-        let group = format!("{path}/0");
+        let ends = ["source", "target"].map(|end| {
+            let key = format!("{path}/{end}_node_id");
+            let ids = store.naturals(&key)?;
+            self.check_rows(&store, &key, ids.len())?;
+            Ok(ids)
+        });
+        let [sources, targets] = ends;
+        let group = self.group();
         let full =
             |columns: &&[&str; 3]| columns.iter().all(|c| store.has(&format!("{group}/{c}")));
         let mut positions = Vec::new();
-        if let Some(columns) = PLACES.iter().find(full) {
-            let [x, y, z] = columns.map(|column| store.reals(&format!("{group}/{column}")));
-            let axes = [x?, y?, z?];
-            for (axis, name) in axes.iter().zip(columns) {
-                if axis.len() != targets.len() {
-                    let expected = format!("[{}], one row per edge", targets.len());
-                    let found = vec![axis.len() as u64];
-                    let key = format!("{group}/{name}");
-                    return Err(store.fault(&key, Fault::Shape { found, expected }));
-                }
-            }
-            let place = |row: usize| DVec3::new(axes[0][row], axes[1][row], axes[2][row]);
-            positions = (0..targets.len()).map(place).collect();
-        }
-        if sources.len() != targets.len() {
-            let (found, expected) = (
-                vec![sources.len() as u64],
-                format!("[{}], as many as targets", targets.len()),
-            );
-            let key = format!("{path}/source_node_id");
-            return Err(store.fault(&key, Fault::Shape { found, expected }));
+        if let Some(columns) = places.iter().find(full) {
+            let axes = columns.map(|column| {
+                let key = format!("{group}/{column}");
+                let axis = store.reals(&key)?;
+                self.check_rows(&store, &key, axis.len())?;
+                Ok(axis)
+            });
+            let [x, y, z] = axes;
+            let (x, y, z) = (x?, y?, z?);
+            let place = |((x, y), z): ((&f64, &f64), &f64)| DVec3::new(*x, *y, *z);
+            positions = x.iter().zip(&y).zip(&z).map(place).collect();
         }
         Ok(Synapses {
-            sources,
-            targets,
+            sources: sources?,
+            targets: targets?,
             positions,
         })
+    }
+
+    fn group(&self) -> String {
+        format!("edges/{}/0", self.name)
+    }
+
+    fn check_rows(&self, store: &Store, key: &str, rows: usize) -> Result<(), CircuitError> {
+        if rows as u64 == self.count {
+            return Ok(());
+        }
+        let expected = format!("[{}], one row per edge", self.count);
+        let found = vec![rows as u64];
+        Err(store.fault(key, Fault::Shape { found, expected }))
     }
 }

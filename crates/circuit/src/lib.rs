@@ -64,22 +64,25 @@ mod node_sets;
 mod nsol;
 mod open;
 mod placed;
+mod points;
 mod population;
 mod report;
 mod scene;
 mod select;
 mod sonata;
+mod table;
 mod template;
 mod transform;
 mod warning;
 pub mod write;
 
-pub use edges::{Edges, Synapses};
+pub use edges::{Edges, SynapseSide, Synapses};
 pub use error::{CircuitError, Fault};
 pub use groups::{Groups, natural};
 pub use model::{Circuit, Instance};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;
+pub use points::PointTable;
 pub use population::{Attribute, NodeRef, Population};
 pub use report::{
     Compartment, Location, RecordingFile, Report, ReportKind, ReportPopulation, SectionOrder,

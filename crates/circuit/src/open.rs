@@ -6,7 +6,7 @@ use std::path::Path;
 
 use neurotess_formats::regular;
 
-use crate::{Circuit, CircuitError, nsol, placed, scene, sonata};
+use crate::{Circuit, CircuitError, nsol, placed, scene, sonata, table};
 
 impl Circuit {
     /// Opens a circuit: a SONATA configuration (the circuit's or the simulation's), the folder that
@@ -24,7 +24,7 @@ impl Circuit {
         if scene::is_named_so(path) {
             return scene::open(path);
         }
-        if placed::is_named_so(path) {
+        if table::is_named_so(path) {
             return placed::open(path);
         }
         if has_extension(path, "xml") {
@@ -41,7 +41,7 @@ pub fn is_circuit(path: &Path) -> bool {
     if path.is_dir() {
         return sonata::find(path).is_ok();
     }
-    if scene::is_named_so(path) || placed::is_named_so(path) {
+    if scene::is_named_so(path) || table::is_named_so(path) {
         return true;
     }
     if has_extension(path, "xml") {

@@ -19,21 +19,8 @@ use neurotess_formats::read_regular;
 
 use crate::listed::{self, Cell};
 use crate::sonata::{folder_of, orientation};
+use crate::table;
 use crate::{Attribute, Circuit, CircuitError, Fault};
-
-/// Whether a file is named like a table.
-pub(crate) fn is_named_so(path: &Path) -> bool {
-    delimiter(path).is_some()
-}
-
-fn delimiter(path: &Path) -> Option<u8> {
-    let extension = path.extension()?.to_string_lossy().to_ascii_lowercase();
-    match &*extension {
-        "csv" => Some(b','),
-        "tsv" => Some(b'\t'),
-        _ => None,
-    }
-}
 
 /// Opens a table. What is wrong with one row does not keep the others from showing.
 pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
@@ -43,19 +30,14 @@ pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
 
 fn read(path: &Path, bytes: &[u8]) -> Result<Circuit, CircuitError> {
     let file = path.display().to_string();
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter(path).unwrap_or(b','))
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(bytes);
-    let headers = reader.headers().map_err(|e| broken(&file, &e))?;
+    let mut reader = table::reader(path, bytes);
+    let headers = reader.headers().map_err(|e| table::broken(&file, &e))?;
     let columns = Columns::new(&file, headers)?;
     let mut cells = Vec::new();
     let mut failures = Vec::new();
     for record in reader.records() {
         let cell = record
-            .map_err(|e| broken(&file, &e))
+            .map_err(|e| table::broken(&file, &e))
             .and_then(|record| columns.cell(&file, &record, cells.len() as u64, folder_of(path)));
         match cell {
             Ok(cell) => cells.push(cell),
@@ -73,23 +55,6 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Circuit, CircuitError> {
         }
     }
     Ok(circuit)
-}
-
-/// What the library says of a row.
-fn broken(file: &str, error: &csv::Error) -> CircuitError {
-    let line = error.position().map_or(1, csv::Position::line);
-    let fault = match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => Fault::Fields {
-            found: *len as usize,
-            expected: *expected_len as usize,
-        },
-        _ => Fault::Scene {
-            reason: error.to_string(),
-        },
-    };
-    CircuitError::at_line(file, line, "", fault)
 }
 
 /// Where the columns are that mean something.

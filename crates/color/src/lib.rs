@@ -14,6 +14,8 @@ mod compartments;
 mod cut;
 #[cfg(feature = "circuit")]
 mod film;
+#[cfg(feature = "circuit")]
+mod markers;
 mod path_distance;
 #[cfg(feature = "circuit")]
 mod recording;
@@ -30,6 +32,8 @@ pub use by_tracing::{ColorBy, coloring};
 pub use cut::{cuts, with_middles};
 #[cfg(feature = "circuit")]
 pub use film::{Film, FilmError};
+#[cfg(feature = "circuit")]
+pub use markers::{MarkerError, MarkerSet, SynapseOptions, points, synapses};
 pub use path_distance::path_distances;
 #[cfg(feature = "circuit")]
 pub use recording::{DECAY, Recording, RecordingError};

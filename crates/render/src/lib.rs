@@ -104,6 +104,7 @@ pub use sources::adaptive::settings::{AdaptiveSettings, CullView};
 pub use sources::budgeted::{
     DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET, Proxy,
 };
+pub use sources::markers::{Marker, MarkerSettings, Markers, WithMarkers};
 pub use sources::prerefined::{Place, Prerefined, PrerefinedSurface, Resident};
 pub use sources::{SourceKey, VertexSource};
 pub use view::camera::{Camera, CameraError};

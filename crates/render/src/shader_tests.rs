@@ -25,6 +25,7 @@ use crate::sources::budgeted::layout::{
     Chunk, Eye, GpuInstance, MOST_SWAY, Shape, Sums, VisibleChunk,
 };
 use crate::sources::budgeted::passes::{Arguments, VisibleCluster, select_shader};
+use crate::sources::markers::{self, MarkerFrame, StoredMarker};
 use crate::sources::prerefined::{self, Placement, StoredVertex};
 
 #[test]
@@ -242,6 +243,35 @@ fn window_shaders_are_valid_in_every_language_and_have_our_structs() {
         Present,
         [size, width, spare, selected, hovered]
     );
+}
+
+#[test]
+fn marker_shaders_are_valid_in_every_language_and_have_our_structs() {
+    let source = markers::vertex_shader();
+    for samples in [1, 4] {
+        let key = PipelineKey {
+            samples,
+            valued: samples > 1,
+            ..PipelineKey::default()
+        };
+        let (module, _) = testing::check(&shade_shader(&source, key));
+        assert_layout!(&module, "StoredMarker", StoredMarker, [x, y, z, color_key]);
+        assert_layout!(
+            &module,
+            "MarkerFrame",
+            MarkerFrame,
+            [
+                relative_from_block,
+                radius,
+                right,
+                near,
+                up,
+                least,
+                backward,
+                first
+            ]
+        );
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ impl VertexSource for Broken {
     fn key(&self) -> SourceKey {
         SourceKey {
             name: "broken",
-            variant: 0,
+            ..SourceKey::default()
         }
     }
 
@@ -41,7 +41,7 @@ impl VertexSource for Broken {
         }])
     }
 
-    fn layout(&self) -> &wgpu::BindGroupLayout {
+    fn layout(&self, _shader: usize) -> &wgpu::BindGroupLayout {
         &self.0
     }
 

@@ -1,6 +1,7 @@
 //! Options that several commands share.
 
 pub(crate) mod cells;
+pub(crate) mod markers;
 pub(crate) mod numbers;
 pub(crate) mod out;
 pub(crate) mod rings;

@@ -10,6 +10,7 @@ mod help;
 mod info;
 mod inputs;
 mod kill;
+mod markers;
 mod mesh;
 mod render;
 mod resume;

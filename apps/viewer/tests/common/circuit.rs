@@ -30,7 +30,7 @@ pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, 
         swc::write(&grow(&cell.options), file).expect("written");
     }
     write::nodes(std::slice::from_ref(&made.population), create("nodes.h5")).expect("written");
-    fs::write(folder.join(CIRCUIT), circuit_config().to_string()).expect("written");
+    fs::write(folder.join(CIRCUIT), circuit_config(false).to_string()).expect("written");
     write::spikes(std::slice::from_ref(&made.spikes), create("spikes.h5")).expect("written");
     let of_node = |node: &u64| {
         let names = &made.population.attributes["morphology"];

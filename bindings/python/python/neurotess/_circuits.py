@@ -15,7 +15,7 @@ from ._pictures import DrawnCircuit, Image, render
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from typing import Any
+    from typing import Any, Literal
 
     import numpy as np
     import pandas as pd
@@ -155,14 +155,26 @@ class Circuit(DrawnCircuit):
         names = ["name", "source", "target", "count"]
         return pandas.DataFrame(self._circuit.edges, columns=names)
 
-    def synapses(self, edges: str) -> pd.DataFrame:
+    def synapses(
+        self,
+        edges: str,
+        *,
+        side: Literal["afferent", "efferent"] | None = None,
+        numbers: Iterable[str] = (),
+    ) -> pd.DataFrame:
         """A table of a population of edges: ``source``, ``target`` (node ids), and ``x``, ``y``, ``z`` (µm) if
-        the file has places; needs pandas."""
+        the file has places; needs pandas.
+
+        `side`: on the targets (afferent) or on the sources (efferent), by default whichever the file has.
+        `numbers`: further columns of the file, such as ``"delay"``.
+        """
         pandas = needed("pandas", "circuit")
-        columns = self._circuit.synapses(edges)
+        names = list(numbers)
+        columns = self._circuit.synapses(edges, side, names)
         told = {name: columns[name].astype("int64") for name in ("source", "target")}
         if len(columns["position"]) == len(told["source"]):
             told |= {axis: columns["position"][:, i] for i, axis in enumerate("xyz")}
+        told |= {name: columns[name] for name in names}
         return pandas.DataFrame(told)
 
     # Cells

@@ -133,6 +133,11 @@ def render(
     fov: float | None = None,
     wireframe: bool = False,
     least_width: float | None = None,
+    synapses: bool | str | Sequence[str] = False,
+    synapse_side: Literal["afferent", "efferent"] | None = None,
+    points: str | os.PathLike[str] | None = None,
+    marker_color_by: str | None = None,
+    marker_size: float | None = None,
     light: str | Sequence[float] | None = None,
     ao: float | None = None,
     lod: Literal["adaptive", "homogeneous", "prerefined", "exploration", "static"] | None = None,
@@ -165,6 +170,10 @@ def render(
     Look: `wireframe`, `least_width` (pixels, of neurites), `light` (``"soft"``, ``"flat"`` or a direction), `ao`
     (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
 
+    Synapses of a circuit's cells: `synapses` (True, or names of `Circuit.edges`), `synapse_side`; or the `points` of
+    a CSV file with columns x, y and z (µm). `marker_color_by` is a number that each has; `marker_size` the diameter
+    (µm).
+
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
     `sample` and `sample_seed`.
 
@@ -192,6 +201,11 @@ def render(
         "fov": fov,
         "wireframe": wireframe,
         "least_width": least_width,
+        "synapses": synapses,
+        "synapse_side": synapse_side,
+        "points": points,
+        "marker_color_by": marker_color_by,
+        "marker_size": marker_size,
         "light": light,
         "ao": ao,
         "lod": lod,

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use neurotess::circuit::{self as circuits, Attribute, CircuitError, NodeRef, Selection};
+use neurotess::circuit::{
+    self as circuits, Attribute, CircuitError, NodeRef, Selection, SynapseSide,
+};
 use neurotess::circuit::{Instance, soma_center};
 use neurotess::mesh::Placed;
 use neurotess_cli::embed::{CellMesh, MeshRecipe};
@@ -85,19 +87,47 @@ impl Circuit {
             .collect()
     }
 
-    /// Ids of sources and targets, and positions (none where the file has none), of a population of edges.
-    fn synapses<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyDict>> {
+    /// Ids of sources and targets, positions (none where the file has none) and further numbers of a population
+    /// of edges.
+    fn synapses<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        side: Option<&str>,
+        numbers: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let side = match side {
+            None => None,
+            Some("afferent") => Some(SynapseSide::Afferent),
+            Some("efferent") => Some(SynapseSide::Efferent),
+            Some(other) => {
+                let wrong = format!("side: {other:?} is neither 'afferent' nor 'efferent'");
+                return Err(PyValueError::new_err(wrong));
+            }
+        };
         let found = self.circuit.edges.iter().find(|edges| edges.name == name);
         let Some(edges) = found.cloned() else {
             return Err(PyValueError::new_err(format!("no edges {name:?}")));
         };
-        let read = released(py, None, move || edges.synapses())?;
-        let synapses = read.map_err(|e| unreadable(py, &e))?;
+        let wanted = numbers.clone();
+        let read = released(py, None, move || {
+            let synapses = match side {
+                Some(side) => edges.synapses_on(side)?,
+                None => edges.synapses()?,
+            };
+            let numbers = wanted.iter().map(|name| edges.property(name));
+            Ok((synapses, numbers.collect::<Result<Vec<_>, _>>()?))
+        })?;
+        let read: Result<_, CircuitError> = read;
+        let (synapses, values) = read.map_err(|e| unreadable(py, &e))?;
         let columns = PyDict::new(py);
         columns.set_item("source", arrays::column(py, synapses.sources)?)?;
         columns.set_item("target", arrays::column(py, synapses.targets)?)?;
         let positions = synapses.positions.iter().map(DVec3::to_array).collect();
         columns.set_item("position", arrays::rows(py, positions)?)?;
+        for (name, values) in numbers.iter().zip(values) {
+            columns.set_item(name, arrays::column(py, values)?)?;
+        }
         Ok(columns)
     }
 

@@ -1,5 +1,6 @@
 //! Writing SONATA files: nodes, spikes and reports, each whole in memory before it is written.
 
+mod edges;
 mod report;
 
 use std::io::{self, Write};
@@ -7,6 +8,7 @@ use std::io::{self, Write};
 use hdf5_pure::{AttrValue, FileBuilder, FinishedGroup, GroupBuilder};
 
 use crate::{Attribute, Population, SpikePopulation};
+pub use edges::edges;
 pub use report::{ReportLayout, report};
 
 /// Writes a file of nodes: ids 0, 1, …; one group; texts as numbers with their library. Rotations are

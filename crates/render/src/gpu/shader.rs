@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 35] = [
+pub(crate) const FILES: [WgslFile; 38] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources/adaptive", "placed.wgsl"),
@@ -36,6 +36,9 @@ pub(crate) const FILES: [WgslFile; 35] = [
     file!("sources/adaptive", "surface_id.wgsl"),
     file!("sources/adaptive", "vertex_keys.wgsl"),
     file!("sources/prerefined", "prerefined.wgsl"),
+    file!("sources/markers", "markers.wgsl"),
+    file!("sources/markers", "marker_id.wgsl"),
+    file!("sources/markers", "marker_keys.wgsl"),
     file!("sources/budgeted", "budgeted.wgsl"),
     file!("sources/budgeted", "select.wgsl"),
     file!("sources/budgeted", "visible_chunks.wgsl"),

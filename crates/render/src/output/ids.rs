@@ -63,15 +63,16 @@ impl Identifier {
         renderer: &TileRenderer,
         source: &dyn VertexSource,
     ) -> Option<Self> {
-        let id = source.id_shader()?;
+        let ids = (0..source.shaders()).map(|shader| source.id_shader(shader));
+        let ids: Vec<WgslFile> = ids.collect::<Option<_>>()?;
         let device = &gpu.device;
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("ids"),
-            bind_group_layouts: &[Some(source.layout()), Some(&renderer.shader.layout)],
-            immediate_size: 0,
-        });
         let pipeline = |shader: usize| {
-            let module = gpu.shader_module(&ids_shader(&source.shader(shader), id));
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("ids"),
+                bind_group_layouts: &[Some(source.layout(shader)), Some(&renderer.shader.layout)],
+                immediate_size: 0,
+            });
+            let module = gpu.shader_module(&ids_shader(&source.shader(shader), ids[shader]));
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("ids"),
                 layout: Some(&layout),

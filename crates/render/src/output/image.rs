@@ -77,6 +77,15 @@ impl Image {
         }
     }
 
+    /// This image with another below it, `gap` rows apart, on a transparent image that holds both.
+    pub(crate) fn above(&self, below: &Self, gap: u32) -> Self {
+        let height = self.height + gap + below.height;
+        let mut both = Self::new(self.width.max(below.width), height);
+        both.lay(0, 0, self);
+        both.lay(0, i64::from(self.height + gap), below);
+        both
+    }
+
     fn index(&self, x: u32, y: u32) -> usize {
         4 * (y as usize * self.width as usize + x as usize)
     }

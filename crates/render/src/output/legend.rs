@@ -11,6 +11,7 @@ pub struct Legend {
     note: String,
     widths: String,
     kind: Kind,
+    below: Option<Box<Legend>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +34,7 @@ impl Legend {
             title: title.to_owned(),
             note: String::new(),
             widths: String::new(),
+            below: None,
             kind: Kind::Swatches(entries.into_iter().collect()),
         }
     }
@@ -48,6 +50,7 @@ impl Legend {
             title,
             note: String::new(),
             widths: String::new(),
+            below: None,
             kind: Kind::Bar { scale, range, more },
         }
     }
@@ -75,8 +78,23 @@ impl Legend {
         self
     }
 
+    /// Has another legend below it, as of markers.
+    #[must_use]
+    pub fn with_below(mut self, below: Self) -> Self {
+        self.below = Some(Box::new(below));
+        self
+    }
+
     /// Draws it on a transparent image, with lines of this height (pixels).
     pub fn draw(&self, line: f32, ink: Rgb) -> Image {
+        let own = self.draw_own(line, ink);
+        match &self.below {
+            Some(below) => own.above(&below.draw(line, ink), (0.5 * line) as u32),
+            None => own,
+        }
+    }
+
+    fn draw_own(&self, line: f32, ink: Rgb) -> Image {
         let text = Text::new(line);
         let title = if self.title.is_empty() {
             0.0

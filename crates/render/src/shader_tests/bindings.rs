@@ -18,6 +18,7 @@ use crate::sources::adaptive::layouts::{clusters_entries, drawing_entries, writt
 use crate::sources::adaptive::passes::{ENTRIES, modules};
 use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::budgeted;
+use crate::sources::markers;
 use crate::sources::prerefined;
 
 type Groups = Vec<Vec<BindGroupLayoutEntry>>;
@@ -128,7 +129,12 @@ fn pictures_bind_what_their_shaders_have() {
         Some(["visible_chunks_id.wgsl", "visible_chunk_keys.wgsl"]),
     );
     let prerefined = (prerefined::vertex_shader(true), prerefined::entries(), None);
-    for (source, entries, more) in adaptive.chain([budgeted, prerefined]) {
+    let markers = (
+        markers::vertex_shader(),
+        markers::entries(),
+        Some(["marker_id.wgsl", "marker_keys.wgsl"]),
+    );
+    for (source, entries, more) in adaptive.chain([budgeted, prerefined, markers]) {
         let groups = vec![entries, shade::entries()];
         for samples in [1, 4] {
             let key = PipelineKey {
@@ -205,6 +211,8 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "surface_id",
         "vertex_keys",
         "prerefined",
+        "marker_id",
+        "marker_keys",
         "select",
         "visible_chunks",
         "visible_chunks_id",

@@ -62,10 +62,11 @@ impl KeyedShader {
         key: PipelineKey,
         layout: &wgpu::BindGroupLayout,
     ) -> Option<Self> {
-        let keys = source.key_shader()?;
+        let keys = (0..source.shaders()).map(|shader| source.key_shader(shader));
+        let keys: Vec<WgslFile> = keys.collect::<Option<_>>()?;
         let pass = DrawPass {
             label: "keyed",
-            shader: &|shader| keyed_shader(&source.shader(shader), keys, key),
+            shader: &|shader| keyed_shader(&source.shader(shader), keys[shader], key),
             entry_points: ["vertex_keyed", "fragment_keyed"],
             formats: [FORMAT; 3],
         };

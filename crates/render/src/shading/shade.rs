@@ -262,11 +262,6 @@ impl DrawPass<'_> {
     ) -> Vec<wgpu::RenderPipeline> {
         let PipelineKey { samples, cut, .. } = key;
         let device = &gpu.device;
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(self.label),
-            bind_group_layouts: &[Some(source.layout()), Some(layout)],
-            immediate_size: 0,
-        });
         let target = |format: wgpu::TextureFormat| {
             Some(wgpu::ColorTargetState {
                 format,
@@ -275,6 +270,11 @@ impl DrawPass<'_> {
             })
         };
         let pipeline = |shader: usize| {
+            let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(self.label),
+                bind_group_layouts: &[Some(source.layout(shader)), Some(layout)],
+                immediate_size: 0,
+            });
             let module = gpu.shader_module(&(self.shader)(shader));
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(self.label),

@@ -21,6 +21,7 @@
 
 pub(crate) mod adaptive;
 pub(crate) mod budgeted;
+pub(crate) mod markers;
 pub(crate) mod pick;
 pub(crate) mod prerefined;
 
@@ -37,6 +38,8 @@ pub struct SourceKey {
     pub name: &'static str,
     /// Number of the variant, for a source that has several.
     pub variant: u32,
+    /// Whether markers are drawn beside it, by one more shader.
+    pub markers: bool,
 }
 
 /// Makes vertices on the GPU, and selects how many.
@@ -52,17 +55,17 @@ pub trait VertexSource {
     /// WGSL of one of its shaders: defines `surface_vertex` and bind group 0.
     fn shader(&self, shader: usize) -> ShaderParts;
 
-    /// WGSL that is added to [`VertexSource::shader`] for picking: defines
+    /// WGSL that is added to one of its shaders for picking: defines
     /// `surface_id(vertex_index: u32, instance_index: u32) -> vec2<u32>`. The first component is
     /// less than 8 if a frame can have several rounds. None if the source does not support picking.
-    fn id_shader(&self) -> Option<WgslFile> {
+    fn id_shader(&self, _shader: usize) -> Option<WgslFile> {
         None
     }
 
-    /// WGSL that is added to [`VertexSource::shader`] for pictures that are colored anew: defines
+    /// WGSL that is added to one of its shaders for pictures that are colored anew: defines
     /// `surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys`, see
     /// surface_keys.wgsl. None if the source does not support them.
-    fn key_shader(&self) -> Option<WgslFile> {
+    fn key_shader(&self, _shader: usize) -> Option<WgslFile> {
         None
     }
 
@@ -74,8 +77,8 @@ pub trait VertexSource {
         self.prepare(gpu, frame)
     }
 
-    /// Layout of bind group 0.
-    fn layout(&self) -> &wgpu::BindGroupLayout;
+    /// Layout of bind group 0 of one of its shaders.
+    fn layout(&self, shader: usize) -> &wgpu::BindGroupLayout;
 
     /// Whether anything may show in a frame: tiles in which nothing does are not drawn.
     fn shows(&self, _frame: &Frame) -> bool {

@@ -10,8 +10,19 @@ pub const CIRCUIT: &str = "circuit_config.json";
 /// Name of the simulation's configuration.
 pub const SIMULATION: &str = "simulation_config.json";
 
-/// The circuit's configuration. Files: `nodes.h5`, `node_sets.json`, `morphologies/*.swc`.
-pub fn circuit_config() -> Value {
+/// Name of the population of edges.
+pub const EDGES: &str = "cortex__cortex__chemical";
+
+/// The circuit's configuration. Files: `nodes.h5`, `node_sets.json`, `morphologies/*.swc`, and with edges
+/// `edges.h5`.
+pub fn circuit_config(edges: bool) -> Value {
+    let edges = match edges {
+        true => json!([{
+            "edges_file": "$BASE_DIR/edges.h5",
+            "populations": {EDGES: {"type": "chemical"}},
+        }]),
+        false => json!([]),
+    };
     json!({
         "version": 2,
         "manifest": {"$BASE_DIR": "."},
@@ -27,7 +38,7 @@ pub fn circuit_config() -> Value {
                     },
                 },
             }],
-            "edges": [],
+            "edges": edges,
         },
     })
 }

@@ -9,6 +9,7 @@
 //! many as asked for. Equal options give equal circuits on every machine.
 
 mod configs;
+mod synapses;
 mod voltage;
 
 use std::collections::BTreeMap;
@@ -18,7 +19,8 @@ use neurotess_circuit::{Attribute, Population, SpikePopulation};
 
 use crate::random::Random;
 use crate::{Kind, Options};
-pub use configs::{CIRCUIT, SIMULATION, circuit_config, node_sets, simulation_config};
+pub use configs::{CIRCUIT, EDGES, SIMULATION, circuit_config, node_sets, simulation_config};
+pub use synapses::{SyntheticSynapses, synapses};
 pub use voltage::{DURATION, STEP, voltages};
 
 /// Name of the population.

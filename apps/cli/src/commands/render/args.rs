@@ -10,6 +10,7 @@ use neurotess::render::color::{ColorMap, Palette};
 use super::times::{MOST, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};
 use crate::options::cells::CellArgs;
+use crate::options::markers::MarkerArgs;
 use crate::options::rings::RingArgs;
 use crate::options::size::Size;
 use crate::options::soma::SomaArg;
@@ -28,6 +29,7 @@ use crate::report::usage;
   neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
   neurotess render circuit/ -o all.png --lod exploration --budget 1000000
   neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30
+  neurotess render circuit/ -o inputs.png --nodes 7 --synapses --marker-color-by conductance
   neurotess render circuit/ -o film.png --report voltage.h5 --time 0:100:0.5")]
 pub(crate) struct RenderArgs {
     /// Morphology files, folders (searched recursively) or globs, all in one picture; or one
@@ -219,6 +221,8 @@ pub(crate) struct RenderArgs {
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) markers: MarkerArgs,
     #[command(flatten)]
     pub(crate) cells: CellArgs,
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ColorScheme, Coloring, DECAY, Film, FilmError, Recording, by_attribute,
+    self, Cell, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, Recording, by_attribute,
 };
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -13,6 +13,7 @@ use neurotess::render::{Gpu, Image, StaticPicture};
 use super::args::{ColorBy, RenderArgs};
 use super::cells::MeshedCell;
 use super::circuit_instances::CircuitInstances;
+use super::markers;
 use super::times::{self, time_text};
 use crate::report::Reporter;
 
@@ -20,6 +21,8 @@ use crate::report::Reporter;
 pub(crate) struct PictureColors {
     /// Coloring of the first picture.
     pub(crate) coloring: Coloring,
+    /// Synapses or points beside the cells.
+    pub(crate) markers: Option<MarkerSet>,
     /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
     /// Least width (pixels) of neurites, which the legend tells; 0: none.
@@ -125,23 +128,32 @@ pub(crate) fn of_pictures(
             mesh: &cell.mesh,
         })
         .collect();
-    if let (Some(report), Some(instances)) = (&args.report, instances) {
-        let nodes = instances.with_cells(of_cells);
-        let recording =
-            Recording::open(report, &instances.circuit, &cells, &nodes).map_err(whole)?;
-        return over_time(recording, args, &scheme, reporter);
-    }
-    let coloring = match instances {
-        Some(instances) => of_circuit(&cells, instances, args, &scheme)?,
-        None => None,
+    let mut colored = match (&args.report, instances) {
+        (Some(report), Some(instances)) => {
+            let nodes = instances.with_cells(of_cells);
+            let recording =
+                Recording::open(report, &instances.circuit, &cells, &nodes).map_err(whole)?;
+            over_time(recording, args, &scheme, reporter)?
+        }
+        _ => {
+            let coloring = match instances {
+                Some(instances) => of_circuit(&cells, instances, args, &scheme)?,
+                None => None,
+            };
+            let by = by(args.color_by.unwrap_or(ColorBy::Type));
+            PictureColors {
+                coloring: coloring.unwrap_or_else(|| coloring::coloring(&cells, by, &scheme)),
+                markers: None,
+                series: None,
+                least_width: args.least_width(),
+            }
+        }
     };
-    let by = by(args.color_by.unwrap_or(ColorBy::Type));
-    let by_tracing = || coloring::coloring(&cells, by, &scheme);
-    Ok(PictureColors {
-        coloring: coloring.unwrap_or_else(by_tracing),
-        series: None,
-        least_width: args.least_width(),
-    })
+    colored.markers = markers::read(args, instances, &scheme, reporter)?;
+    if let Some(markers) = &mut colored.markers {
+        colored.coloring.add_markers(markers);
+    }
+    Ok(colored)
 }
 
 /// Colors of whole cells of a circuit, if the options ask for them.
@@ -200,6 +212,7 @@ fn over_time(
     });
     let mut colored = PictureColors {
         coloring,
+        markers: None,
         series,
         least_width: args.least_width(),
     };

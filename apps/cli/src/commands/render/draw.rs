@@ -105,7 +105,7 @@ pub(super) fn draw(
             renderer
                 .render(
                     gpu,
-                    source.as_vertex_source(),
+                    &mut source.as_vertex_source(),
                     &Viewpoint {
                         camera: *camera,
                         near,

@@ -48,7 +48,8 @@ impl FixedFilm {
             near: camera.near(spheres),
         };
         let (table, _) = colored.picture(0)?;
-        let made = renderer.render_static(gpu, source.as_vertex_source(), &view, &table, options);
+        let made =
+            renderer.render_static(gpu, &mut source.as_vertex_source(), &view, &table, options);
         let picture = match made {
             Ok(picture) => picture,
             Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::Parser;
 use glam::{DVec2, DVec3};
+use neurotess::coloring::MarkerSet;
 use neurotess::morphology::{Morphology, SectionId, shape};
 use neurotess::render::overlay::Overlay;
 use neurotess::render::{
@@ -137,11 +138,12 @@ impl Drawing {
             anyhow::bail!("there is no cell to draw");
         }
         let shown: Vec<&MeshedCell> = cells.iter().collect();
-        let spheres = bounds::spheres(&shown, &placements);
-        let cameras = cameras::cameras(&args, &spheres)?;
         let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
         let colored =
             coloring::of_pictures(&shown, instances.as_ref(), &of_cells, &args, reporter)?;
+        let mut spheres = bounds::spheres(&shown, &placements);
+        spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
+        let cameras = cameras::cameras(&args, &spheres)?;
         let (overlay, cameras) = draw::overlay(&args, &colored, cameras, &spheres);
         if overlay.legend_left_out {
             reporter.warning("the legend is left out: it needs a larger --size, or --no-legend");
@@ -266,9 +268,9 @@ impl Drawing {
         };
         let near = camera.near(&self.spheres);
         let view = Viewpoint { camera, near };
-        let source = self.source.as_vertex_source();
+        let mut source = self.source.as_vertex_source();
         self.renderer
-            .render(gpu, source, &view, &table, options, take)
+            .render(gpu, &mut source, &view, &table, options, take)
             .map_err(|e| failed(e.to_string()))?;
         Ok(whole)
     }

@@ -15,6 +15,7 @@ mod draw;
 mod film;
 mod in_memory;
 mod job;
+mod markers;
 mod scene;
 mod session;
 mod stats;
@@ -23,6 +24,7 @@ mod values;
 mod vertex_source;
 
 use anyhow::Context;
+use neurotess::coloring::MarkerSet;
 use neurotess::render::Gpu;
 
 use crate::io::output;
@@ -65,7 +67,10 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     if placements.is_empty() {
         return reporter.document(&stats::Document::new(&entries, &[], None));
     }
-    let spheres = bounds::spheres(&cells, &placements);
+    let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
+    let colored = coloring::of_pictures(&cells, instances.as_ref(), &of_cells, args, reporter)?;
+    let mut spheres = bounds::spheres(&cells, &placements);
+    spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
     let cameras = cameras::cameras(args, &spheres)?;
     stages.end(Stage::Frame);
     let gpu = Gpu::open(args.adapter.as_deref())?;
@@ -73,8 +78,6 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     if gpu.adapter.software {
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
     }
-    let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
-    let colored = coloring::of_pictures(&cells, instances.as_ref(), &of_cells, args, reporter)?;
     let (overlay, cameras) = draw::overlay(args, &colored, cameras, &spheres);
     let job = RenderJob {
         args,

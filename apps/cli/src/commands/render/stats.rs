@@ -32,6 +32,9 @@ pub(crate) struct Stats {
     seconds: Stages,
     #[serde(skip_serializing_if = "Option::is_none")]
     exploration: Option<BudgetStats>,
+    /// Synapses and points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    markers: Option<MarkerStats>,
     /// Of a film whose pictures are one picture, colored anew.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) film: Option<FilmStats>,
@@ -98,6 +101,14 @@ struct BudgetStats {
     neurons_in_picture: u64,
 }
 
+/// Synapses and points of the scene, and how many of them the picture draws: they are left out where they lie
+/// outside it, or are more than its pixels or the budget can show.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct MarkerStats {
+    drawn: usize,
+    all: usize,
+}
+
 /// Milliseconds.
 #[derive(Clone, Debug, Default, Serialize)]
 struct FrameTime {
@@ -136,6 +147,7 @@ impl Stats {
             left_out: stats.requested - stats.triangles.min(stats.requested),
             neurons_in_picture: stats.instances,
         });
+        self.markers = made.markers.map(|[drawn, all]| MarkerStats { drawn, all });
         self.gpu_bytes.insert("targets", cost.target_bytes);
         self.frame_ms = FrameTime {
             cpu: cost.cpu_ms,

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
-    ExplorationStats, Frame, Gpu, Instance, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource,
+    ExplorationStats, Frame, Gpu, Instance, Markers, PictureOptions, Placement, Prerefined,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource, WithMarkers,
 };
 use rayon::prelude::*;
 
@@ -14,10 +14,17 @@ use super::args::{LodMode, RenderArgs};
 use super::bounds::covering;
 use super::cells::MeshedCell;
 use super::job::RenderJob;
+use super::markers;
 use crate::report::usage;
 
-/// A vertex source for pictures.
-pub(crate) enum PictureSource {
+/// A vertex source for pictures, and markers beside it.
+pub(crate) struct PictureSource {
+    cells: CellSource,
+    markers: Option<Markers>,
+}
+
+/// A vertex source for cells.
+enum CellSource {
     /// Refined beforehand, in memory.
     Prerefined(Box<Prerefined>),
     /// Refined as it is drawn.
@@ -37,6 +44,8 @@ pub(crate) struct SourceStats {
     pub(crate) bytes: BTreeMap<&'static str, u64>,
     pub(crate) bytes_per_point: f64,
     pub(crate) exploration: Option<ExplorationStats>,
+    /// Synapses and points that are drawn, and all.
+    pub(crate) markers: Option<[usize; 2]>,
 }
 
 /// The mode that follows from the options.
@@ -68,12 +77,51 @@ pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
 }
 
 impl PictureSource {
-    /// Uploads the cells.
+    /// Uploads cells and markers.
     pub(crate) fn new(
         gpu: &Gpu,
         options: &PictureOptions,
         job: &RenderJob<'_>,
     ) -> anyhow::Result<Self> {
+        let cells = CellSource::new(gpu, options, job)?;
+        let budget = match &cells {
+            CellSource::Budgeted(_) => Some(job.args.budget.unwrap_or(DEFAULT_BUDGET)),
+            _ => None,
+        };
+        let set = job.colored.markers.as_ref();
+        let markers = set.map(|set| markers::upload(gpu, job.args, options, set, budget));
+        Ok(Self {
+            cells,
+            markers: markers.transpose()?,
+        })
+    }
+
+    /// The source as the renderer takes it.
+    pub(crate) fn as_vertex_source(&mut self) -> WithMarkers<'_> {
+        WithMarkers::new(self.cells.as_vertex_source(), self.markers.as_mut())
+    }
+
+    /// What it draws in a whole picture.
+    pub(crate) fn stats(
+        &mut self,
+        gpu: &Gpu,
+        camera: &Camera,
+        near: f64,
+        options: &PictureOptions,
+    ) -> anyhow::Result<SourceStats> {
+        let mut stats = self.cells.stats(gpu, camera, near, options)?;
+        if let Some(markers) = &mut self.markers {
+            let frame = whole(gpu, camera, near, options);
+            let drawn = markers.shown(&frame);
+            stats.markers = Some([drawn, markers.len()]);
+            stats.bytes.insert("markers", markers.bytes());
+        }
+        Ok(stats)
+    }
+}
+
+impl CellSource {
+    fn new(gpu: &Gpu, options: &PictureOptions, job: &RenderJob<'_>) -> anyhow::Result<Self> {
         let RenderJob {
             args,
             cells,
@@ -114,8 +162,7 @@ impl PictureSource {
         Ok(Self::Adaptive(Box::new(source)))
     }
 
-    /// The source as the renderer takes it.
-    pub(crate) fn as_vertex_source(&mut self) -> &mut dyn VertexSource {
+    fn as_vertex_source(&mut self) -> &mut dyn VertexSource {
         match self {
             Self::Prerefined(source) => source.as_mut(),
             Self::Adaptive(source) => source.as_mut(),
@@ -123,8 +170,7 @@ impl PictureSource {
         }
     }
 
-    /// What it draws in a whole picture.
-    pub(crate) fn stats(
+    fn stats(
         &mut self,
         gpu: &Gpu,
         camera: &Camera,
@@ -146,7 +192,7 @@ impl PictureSource {
                     levels: levels.map(|(level, &sides)| (level, sides)).collect(),
                     bytes: source.bytes().into_iter().collect(),
                     bytes_per_point: source.bytes_per_point(),
-                    exploration: None,
+                    ..SourceStats::default()
                 })
             }
             Self::Budgeted(source) => {
@@ -176,7 +222,7 @@ fn budgeted(
     gpu: &Gpu,
     options: &PictureOptions,
     job: &RenderJob<'_>,
-) -> anyhow::Result<PictureSource> {
+) -> anyhow::Result<CellSource> {
     let RenderJob {
         args,
         cells,
@@ -197,13 +243,13 @@ fn budgeted(
         ..Instance::new(ids[cell])
     });
     source.set_instances(gpu, instances.collect())?;
-    Ok(PictureSource::Budgeted(Box::new(source)))
+    Ok(CellSource::Budgeted(Box::new(source)))
 }
 
 /// Level if none is given.
 const DEFAULT_LEVEL: u32 = 4;
 
-fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<PictureSource> {
+fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<CellSource> {
     let RenderJob {
         args,
         cells,
@@ -229,7 +275,7 @@ fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<PictureSource> {
     let levels = |cell: usize| levels(args, cells[cell], cameras, spheres);
     let options = RefineOptions::default();
     let source = Prerefined::new(gpu, &surfaces, levels, &options, args.wireframe)?;
-    Ok(PictureSource::Prerefined(Box::new(source)))
+    Ok(CellSource::Prerefined(Box::new(source)))
 }
 
 /// Levels of a cell: that of --level, or by the error in pixels; if there are several cameras, by
@@ -276,6 +322,6 @@ fn resident(source: &Prerefined) -> SourceStats {
             .collect(),
         bytes: bytes.into_iter().collect(),
         bytes_per_point: sum as f64 / resident.points.max(1) as f64,
-        exploration: None,
+        ..SourceStats::default()
     }
 }

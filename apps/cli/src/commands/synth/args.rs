@@ -53,6 +53,10 @@ pub(crate) struct SynthArgs {
     #[arg(long, default_value_t = 100, value_name = "N", help_heading = "Circuit",
           value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) reported: u32,
+    /// Synapses onto each cell of the circuit
+    #[arg(long, default_value_t = 0, value_name = "N", help_heading = "Circuit",
+          value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    pub(crate) synapses: u32,
 }
 
 /// What `neurotess synth` makes.

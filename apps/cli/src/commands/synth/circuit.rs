@@ -9,8 +9,9 @@ use neurotess::circuit::write::{self, ReportLayout};
 use neurotess::formats::Format;
 use neurotess::synth;
 use neurotess::synth::circuit::{
-    CIRCUIT, CircuitMorphology, CircuitOptions, DURATION, POPULATION, SIMULATION, STEP,
-    SyntheticCircuit, circuit, circuit_config, node_sets, simulation_config, voltages,
+    CIRCUIT, CircuitMorphology, CircuitOptions, DURATION, EDGES, POPULATION, SIMULATION, STEP,
+    SyntheticCircuit, SyntheticSynapses, circuit, circuit_config, node_sets, simulation_config,
+    synapses, voltages,
 };
 use serde::Serialize;
 use serde_json::Value;
@@ -28,6 +29,7 @@ struct Made {
     n_neurons: usize,
     n_morphologies: usize,
     n_spikes: usize,
+    n_synapses: usize,
     n_elements: u64,
     seed: u64,
     seconds: f64,
@@ -63,7 +65,12 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if !grow_all(&made, folder, force, reporter)? {
         return Ok(());
     }
-    let n_elements = match write_all(&made, folder, force) {
+    let synapses = (args.synapses > 0).then(|| {
+        let cells = made.morphologies.iter();
+        let grown: Vec<_> = cells.map(|cell| synth::grow(&cell.options)).collect();
+        synapses(&made, &grown, args.synapses as usize, args.seed)
+    });
+    let n_elements = match write_all(&made, synapses.as_ref(), folder, force) {
         Ok(elements) => elements,
         Err(e) => {
             reporter.failure(&Failure(e.to_string()));
@@ -75,6 +82,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
         n_neurons: made.population.len(),
         n_morphologies: made.morphologies.len(),
         n_spikes: made.spikes.times.len(),
+        n_synapses: synapses.map_or(0, |made| made.synapses.targets.len()),
         n_elements,
         seed: args.seed,
         seconds: clock.elapsed().as_secs_f64(),
@@ -125,7 +133,12 @@ fn grow_all(
 }
 
 /// Writes everything else. Returns the number of compartments in the report.
-fn write_all(made: &SyntheticCircuit, folder: &Path, force: bool) -> Result<u64, OutputError> {
+fn write_all(
+    made: &SyntheticCircuit,
+    synapses: Option<&SyntheticSynapses>,
+    folder: &Path,
+    force: bool,
+) -> Result<u64, OutputError> {
     let put = |name: &str, write: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
         let path = folder.join(name);
         let mut output = Output::create(&path, existing(force))?;
@@ -153,7 +166,17 @@ fn write_all(made: &SyntheticCircuit, folder: &Path, force: bool) -> Result<u64,
         "node_sets.json",
         &node_sets(&made.population, &made.reported),
     )?;
-    json(CIRCUIT, &circuit_config())?;
+    if let Some(made) = synapses {
+        let properties = [
+            ("delay", made.delays.clone()),
+            ("conductance", made.conductances.clone()),
+        ];
+        put("edges.h5", &|writer| {
+            let ends = [POPULATION; 2];
+            write::edges(EDGES, ends, &made.synapses, &properties, writer)
+        })?;
+    }
+    json(CIRCUIT, &circuit_config(synapses.is_some()))?;
     json(SIMULATION, &simulation_config())?;
     Ok(layout.sections.iter().map(|s| s.len() as u64).sum())
 }

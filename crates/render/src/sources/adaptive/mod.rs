@@ -189,7 +189,7 @@ impl VertexSource for Adaptive {
     fn key(&self) -> SourceKey {
         SourceKey {
             name: "adaptive",
-            variant: 0,
+            ..SourceKey::default()
         }
     }
 
@@ -197,11 +197,11 @@ impl VertexSource for Adaptive {
         Refiner::vertex_shader(shader)
     }
 
-    fn id_shader(&self) -> Option<WgslFile> {
+    fn id_shader(&self, _shader: usize) -> Option<WgslFile> {
         Some(shader::file("surface_id.wgsl"))
     }
 
-    fn layout(&self) -> &wgpu::BindGroupLayout {
+    fn layout(&self, _shader: usize) -> &wgpu::BindGroupLayout {
         self.refiner.layout()
     }
 
@@ -209,7 +209,7 @@ impl VertexSource for Adaptive {
         self.prepare_lists(gpu, frame, false)
     }
 
-    fn key_shader(&self) -> Option<WgslFile> {
+    fn key_shader(&self, _shader: usize) -> Option<WgslFile> {
         Some(shader::file("vertex_keys.wgsl"))
     }
 

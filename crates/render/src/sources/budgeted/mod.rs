@@ -228,7 +228,7 @@ impl VertexSource for Exploration {
     fn key(&self) -> SourceKey {
         SourceKey {
             name: "budgeted",
-            variant: 0,
+            ..SourceKey::default()
         }
     }
 
@@ -236,15 +236,15 @@ impl VertexSource for Exploration {
         vertex_shader()
     }
 
-    fn id_shader(&self) -> Option<WgslFile> {
+    fn id_shader(&self, _shader: usize) -> Option<WgslFile> {
         Some(shader::file("visible_chunks_id.wgsl"))
     }
 
-    fn key_shader(&self) -> Option<WgslFile> {
+    fn key_shader(&self, _shader: usize) -> Option<WgslFile> {
         Some(shader::file("visible_chunk_keys.wgsl"))
     }
 
-    fn layout(&self) -> &wgpu::BindGroupLayout {
+    fn layout(&self, _shader: usize) -> &wgpu::BindGroupLayout {
         &self.passes.drawing
     }
 

@@ -318,6 +318,7 @@ impl VertexSource for Prerefined {
         SourceKey {
             name: "prerefined",
             variant: self.barycentric.into(),
+            ..SourceKey::default()
         }
     }
 
@@ -325,7 +326,7 @@ impl VertexSource for Prerefined {
         vertex_shader(self.barycentric)
     }
 
-    fn layout(&self) -> &wgpu::BindGroupLayout {
+    fn layout(&self, _shader: usize) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 

@@ -1,0 +1,87 @@
+//! Synapses and points of a picture.
+
+use neurotess::circuit::PointTable;
+use neurotess::coloring::{self, ColorScheme, MarkerSet, SynapseOptions};
+use neurotess::render::{Gpu, MarkerSettings, Markers, PictureOptions};
+
+use super::args::RenderArgs;
+use super::circuit_instances::CircuitInstances;
+use crate::report::{Reporter, count, usage};
+
+/// Least diameter (pixels) of a marker.
+const LEAST: f64 = 3.0;
+/// Share of exploration's budget that markers may take beside it.
+const SHARE_OF_BUDGET: f64 = 0.2;
+
+/// Reads what the options ask for.
+///
+/// # Errors
+/// Wrong usage; files that are invalid, or do not have what is asked for.
+pub(super) fn read(
+    args: &RenderArgs,
+    instances: Option<&CircuitInstances>,
+    scheme: &ColorScheme,
+    reporter: &Reporter,
+) -> anyhow::Result<Option<MarkerSet>> {
+    let asked = &args.markers;
+    if !asked.any() {
+        let alone = asked.marker_color_by.is_some() || asked.marker_size.is_some();
+        return match alone {
+            true => usage("--marker-color-by and --marker-size are for --synapses or --points"),
+            false => Ok(None),
+        };
+    }
+    // The message only: with its source, it would be printed twice.
+    let whole = |e: &dyn std::fmt::Display| anyhow::anyhow!("{e}");
+    let property = asked.marker_color_by.as_deref();
+    if let Some(file) = &asked.points {
+        let table = PointTable::read(file).map_err(|e| whole(&e))?;
+        let name = file.display().to_string();
+        let set = coloring::points(&name, &table, property, scheme).map_err(|e| whole(&e))?;
+        reporter.note(&count(set.markers.len(), "point"));
+        return Ok(Some(set));
+    }
+    let Some(instances) = instances else {
+        return usage("--synapses needs a circuit, whose edges say where they are");
+    };
+    let options = SynapseOptions {
+        populations: asked.populations(),
+        side: asked.synapse_side.into(),
+        property: property.map(str::to_owned),
+    };
+    let drawn: Vec<_> = instances.instances.iter().map(|i| i.node).collect();
+    let set = coloring::synapses(&instances.circuit, &drawn, &options, scheme);
+    let set = set.map_err(|e| whole(&e))?;
+    let shown = set.markers.len();
+    reporter.note(&format!(
+        "{} of the cells that are drawn, {} of others",
+        count(shown, "synapse"),
+        set.left_out
+    ));
+    if shown == 0 {
+        reporter.warning("no synapse belongs to a cell that is drawn");
+    }
+    Ok(Some(set))
+}
+
+/// Uploads markers.
+///
+/// # Errors
+/// They do not fit the device.
+pub(super) fn upload(
+    gpu: &Gpu,
+    args: &RenderArgs,
+    options: &PictureOptions,
+    set: &MarkerSet,
+    budget: Option<u32>,
+) -> anyhow::Result<Markers> {
+    let usual = MarkerSettings::default();
+    let settings = MarkerSettings {
+        radius: 0.5 * args.markers.marker_size.unwrap_or(2.0 * usual.radius),
+        least: 0.5 * LEAST * f64::from(options.sub_pixels(gpu)),
+        most_triangles: budget.map_or(usual.most_triangles, |budget| {
+            (SHARE_OF_BUDGET * f64::from(budget)) as usize
+        }),
+    };
+    Ok(Markers::new(gpu, &set.markers, settings)?)
+}

@@ -1,0 +1,102 @@
+//! Synapses of circuits and points of tables in pictures.
+
+use crate::gpu;
+use crate::work::{SMALL, Work};
+
+const POINTS: &str = "x,y,z,weight\n0,20,0,0.5\n0,-20,0,1.5\n9,12,4,\n";
+
+/// A circuit of cells with synapses.
+fn circuit() -> Work {
+    let work = Work::new();
+    work.run(
+        "synth circuit -o c --neurons 12 --morphologies 3 --points 80 --reported 4 --synapses 9",
+    )
+    .exits(0);
+    work
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn synapses_of_the_cells_that_are_drawn_are_shown() {
+    let work = circuit();
+    let draw = |options: &str| {
+        let run = work.run(&format!(
+            "render c -o {options} --size 160x120 --samples 1 --no-legend --json"
+        ));
+        run.exits(0)
+    };
+    let none = draw("none.png").json();
+    assert!(none["markers"].is_null(), "{none}");
+    let all = draw("all.png --synapses").json();
+    assert_eq!(all["markers"]["all"], 12 * 9, "{all}");
+    let some = draw("some.png --synapses --nodes 3,5 --marker-color-by conductance");
+    assert_eq!(some.json()["markers"]["all"], 2 * 9);
+    assert!(
+        some.stderr()
+            .contains("18 synapses of the cells that are drawn, 90 of others"),
+        "{}",
+        some.stderr()
+    );
+    let named = draw("named.png --synapses=cortex__cortex__chemical").json();
+    assert_eq!(named["markers"]["all"], 12 * 9);
+    let pictures = ["none", "all", "some"]
+        .map(|name| work.files(".")[&work.path(&format!("{name}.png"))].clone());
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn points_of_a_table_are_shown_with_any_input() {
+    let work = Work::new();
+    work.file("a.swc", SMALL);
+    work.file("points.csv", POINTS);
+    let options = "--size 160x120 --samples 1 --json";
+    for (name, more) in [
+        ("plain", ""),
+        ("weights", "--marker-color-by weight --marker-size 3"),
+        ("explored", "--lod exploration"),
+    ] {
+        let run = work.run(&format!(
+            "render a.swc -o {name}.png --points points.csv {more} {options}"
+        ));
+        let run = run.exits(0);
+        assert_eq!(run.json()["markers"]["drawn"], 3, "{name}");
+    }
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn what_cannot_be_shown_says_why() {
+    let work = circuit();
+    work.file("a.swc", SMALL);
+    work.file("points.csv", POINTS);
+    work.file("broken.csv", "x,y,z\n1,2,3\n1,2,up\n");
+    for (options, code, said) in [
+        ("a.swc --synapses", 2, "--synapses needs a circuit"),
+        ("a.swc --marker-size 2", 2, "--synapses or --points"),
+        ("a.swc --points none.csv", 1, "none.csv"),
+        ("a.swc --points broken.csv", 1, "broken.csv:3"),
+        (
+            "a.swc --points points.csv --marker-color-by size",
+            1,
+            "has no number 'size': it has weight",
+        ),
+        (
+            "c --synapses=gap",
+            1,
+            "has no edges 'gap': it has cortex__cortex__chemical",
+        ),
+        (
+            "c --synapses --synapse-side efferent",
+            1,
+            "efferent_surface_x",
+        ),
+        (
+            "c --synapses --marker-color-by size",
+            1,
+            "it has conductance, delay",
+        ),
+    ] {
+        let run = work.run(&format!("render {options} -o x.png --size 64x48"));
+        let run = run.exits(code);
+        assert!(run.stderr().contains(said), "{options}: {}", run.stderr());
+        assert!(!work.path("x.png").exists(), "{options}");
+    }
+}

@@ -1,0 +1,370 @@
+//! Markers: spheres that are no part of a membrane, such as synapses, drawn beside any vertex source.
+//!
+//! [`WithMarkers`] is a source with one more shader. Markers are culled by chunks (chunks.rs); each chunk's
+//! size in the picture selects a shape for its markers (shapes.rs), and how many of them are drawn. Markers
+//! keep a least size, so that they can be seen from afar, and their cost is bounded by the pixels that they
+//! cover and by a budget, not by their number.
+
+mod chunks;
+mod shapes;
+mod with_markers;
+
+use std::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use neurotess_refine::wgsl::ShaderParts;
+
+use self::chunks::{CHUNK, Chunk};
+use self::shapes::Shapes;
+pub use self::with_markers::WithMarkers;
+use super::pick::PickId;
+use crate::gpu::buffers::{group_layout, storage, uniform, upload};
+use crate::gpu::device::Gpu;
+use crate::gpu::error::DeviceError;
+use crate::gpu::shader;
+use crate::view::frame::{Frame, Tile};
+use crate::view::frustum::shows;
+
+/// Alignment of dynamic offsets into a uniform buffer that every device supports.
+const STRIDE: u64 = 256;
+/// Markers of a block, which one binding holds: 64 MiB.
+const BLOCK: usize = 2048 * CHUNK;
+/// Set in the first number of a marker's picking id.
+const MARKER_BIT: u32 = 1 << 31;
+/// Instance of markers: beyond all instances, so they have neither values nor a state.
+const NO_INSTANCE: u32 = u32::MAX - 1;
+/// Most markers of a chunk for each sub-pixel that its bounding sphere covers: further ones could hardly
+/// show.
+const MOST_PER_SUB_PIXEL: f32 = 4.0;
+
+/// Where a marker is, and its color.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Marker {
+    /// Its center (µm).
+    pub position: DVec3,
+    /// What its color is looked up by: see [`ColorTable`](crate::color::ColorTable). Best a category, since
+    /// it belongs to no instance that has values.
+    pub color_key: u32,
+}
+
+/// How markers are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerSettings {
+    /// Radius (µm).
+    pub radius: f64,
+    /// Least radius (sub-pixels).
+    pub least: f64,
+    /// Most triangles of a frame; markers that are too many are left out evenly.
+    pub most_triangles: usize,
+}
+
+impl Default for MarkerSettings {
+    fn default() -> Self {
+        Self {
+            radius: 0.5,
+            least: 1.0,
+            most_triangles: 20_000_000,
+        }
+    }
+}
+
+/// Twin of `StoredMarker` in `markers.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct StoredMarker {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) z: f32,
+    pub(crate) color_key: u32,
+}
+
+/// Twin of `MarkerFrame` in `markers.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct MarkerFrame {
+    pub(crate) relative_from_block: [f32; 3],
+    pub(crate) radius: f32,
+    pub(crate) right: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) up: [f32; 3],
+    pub(crate) least: f32,
+    pub(crate) backward: [f32; 3],
+    pub(crate) first: u32,
+}
+
+/// Markers whose positions are stored relative to one origin, in one buffer.
+struct Block {
+    first: u32,
+    origin: DVec3,
+    group: wgpu::BindGroup,
+}
+
+/// A run of markers that are drawn alike.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Run {
+    block: usize,
+    shape: usize,
+    /// Indices within the block.
+    markers: Range<u32>,
+}
+
+/// Markers on the device.
+pub struct Markers {
+    layout: wgpu::BindGroupLayout,
+    shapes: Shapes,
+    frames: wgpu::Buffer,
+    blocks: Vec<Block>,
+    chunks: Vec<Chunk>,
+    /// Index of each stored marker among those that the caller gave.
+    order: Vec<u32>,
+    settings: MarkerSettings,
+    runs: Vec<Run>,
+}
+
+impl Markers {
+    /// Uploads markers.
+    ///
+    /// # Errors
+    /// They do not fit the device.
+    pub fn new(
+        gpu: &Gpu,
+        markers: &[Marker],
+        settings: MarkerSettings,
+    ) -> Result<Self, DeviceError> {
+        let positions: Vec<DVec3> = markers.iter().map(|marker| marker.position).collect();
+        let order = chunks::ordered(&positions);
+        let chunks = chunks::chunks(&positions, &order);
+        let layout = group_layout(&gpu.device, "markers", &entries());
+        let shapes = Shapes::new();
+        let corners = upload(gpu, "shapes", wgpu::BufferUsages::STORAGE, &shapes.corners);
+        let blocks = order.len().div_ceil(BLOCK).max(1) as u64;
+        let frames = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frames of markers"),
+            size: STRIDE * blocks,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut made = Self {
+            layout,
+            shapes,
+            frames,
+            blocks: Vec::new(),
+            chunks,
+            order,
+            settings,
+            runs: Vec::new(),
+        };
+        for (part, first) in made.order.chunks(BLOCK).zip((0_u32..).step_by(BLOCK)) {
+            let origin = made.chunks[first as usize / CHUNK].center;
+            let stored = part.iter().map(|&index| {
+                let Marker {
+                    position,
+                    color_key,
+                } = markers[index as usize];
+                let [x, y, z] = (position - origin).as_vec3().to_array();
+                StoredMarker { x, y, z, color_key }
+            });
+            let stored: Vec<StoredMarker> = stored.collect();
+            let stored = upload(gpu, "markers", wgpu::BufferUsages::STORAGE, &stored);
+            made.blocks.push(Block {
+                first,
+                origin,
+                group: group(gpu, &made.layout, [&stored, &corners], &made.frames),
+            });
+        }
+        gpu.check()?;
+        Ok(made)
+    }
+
+    /// Number of markers.
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// How they are drawn.
+    pub fn settings(&self) -> MarkerSettings {
+        self.settings
+    }
+
+    /// Changes how they are drawn.
+    pub fn set_settings(&mut self, settings: MarkerSettings) {
+        self.settings = settings;
+    }
+
+    /// Number of markers that a frame draws.
+    pub fn shown(&mut self, frame: &Frame) -> usize {
+        self.select(frame);
+        self.runs.iter().map(|run| run.markers.len()).sum()
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        (size_of::<StoredMarker>() * self.order.len()) as u64
+    }
+
+    /// Index of the marker that an id means; none if it means none.
+    pub fn picked(&self, [first, second]: PickId) -> Option<usize> {
+        let is_marker = first & MARKER_BIT != 0;
+        let index = self.order.get(second as usize).filter(|_| is_marker)?;
+        Some(*index as usize)
+    }
+
+    /// Selects what a frame draws: for the whole picture, whatever the tile, so that tiles fit together.
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) {
+        self.select(frame);
+        let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
+        for (index, block) in self.blocks.iter().enumerate() {
+            let uniforms = MarkerFrame {
+                relative_from_block: (block.origin - frame.camera.eye()).as_vec3().to_array(),
+                radius: self.settings.radius as f32,
+                right,
+                near: frame.near as f32,
+                up,
+                least: (self.settings.least * frame.slope()) as f32,
+                backward,
+                first: block.first,
+            };
+            let bytes = bytemuck::bytes_of(&uniforms);
+            gpu.queue
+                .write_buffer(&self.frames, STRIDE * index as u64, bytes);
+        }
+    }
+
+    /// Whether any may show in a frame.
+    fn shows(&self, frame: &Frame) -> bool {
+        let (planes, eye) = (frame.frustum(), frame.camera.eye());
+        let reach = |chunk: &Chunk| {
+            let center = chunk.relative(eye);
+            let least = self.settings.least * frame.slope() * f64::from(center.length());
+            (chunk.reach + self.settings.radius.max(least)) as f32
+        };
+        let mut chunks = self.chunks.iter();
+        chunks.any(|chunk| shows(&planes, chunk.relative(eye), reach(chunk)))
+    }
+
+    fn select(&mut self, frame: &Frame) {
+        let whole = Frame {
+            tile: Tile {
+                x: 0,
+                y: 0,
+                width: frame.size[0],
+                height: frame.size[1],
+            },
+            ..*frame
+        };
+        // What lies just outside the picture occludes what is inside.
+        let margin = 0.1 * f64::from(frame.size[1]) * frame.slope();
+        let (planes, tile_planes) = (whole.frustum(), frame.frustum());
+        let (eye, slope) = (frame.camera.eye(), frame.slope());
+        let seen = |chunk: &Chunk, planes: &[glam::Vec4; 5]| {
+            let center = chunk.relative(eye);
+            let reach = chunk.reach + self.settings.radius;
+            let around = (f64::from(center.length()) + reach) * margin;
+            shows(planes, center, (reach + around) as f32)
+        };
+        let wanted: Vec<(Chunk, usize, u32)> = self
+            .chunks
+            .iter()
+            .filter(|chunk| seen(chunk, &planes))
+            .map(|chunk| {
+                let depth = frame.camera.depth(chunk.center);
+                let nearest = (depth - chunk.reach).max(frame.near);
+                let radius = (self.settings.radius / (slope * nearest)).max(self.settings.least);
+                (
+                    *chunk,
+                    Shapes::of_radius(radius as f32),
+                    fitting(chunk, slope * depth.max(frame.near)),
+                )
+            })
+            .collect();
+        let triangles = |(_, shape, count): &(Chunk, usize, u32)| {
+            self.shapes.triangles(*shape) as f64 * f64::from(*count)
+        };
+        let all: f64 = wanted.iter().map(triangles).sum();
+        let share = (self.settings.most_triangles as f64 / all.max(1.0)).min(1.0);
+        let mut runs: Vec<Run> = Vec::new();
+        for (chunk, shape, count) in wanted.iter().filter(|(c, ..)| seen(c, &tile_planes)) {
+            let count = (share * f64::from(*count)).ceil() as u32;
+            let block = chunk.first as usize / BLOCK;
+            let first = chunk.first - self.blocks[block].first;
+            match runs.last_mut() {
+                Some(run) if (run.block, run.shape, run.markers.end) == (block, *shape, first) => {
+                    run.markers.end = first + count;
+                }
+                _ => runs.push(Run {
+                    block,
+                    shape: *shape,
+                    markers: first..first + count,
+                }),
+            }
+        }
+        self.runs = runs;
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        for run in &self.runs {
+            let offset = STRIDE as u32 * run.block as u32;
+            pass.set_bind_group(0, &self.blocks[run.block].group, &[offset]);
+            pass.draw(self.shapes.ranges[run.shape].clone(), run.markers.clone());
+        }
+    }
+}
+
+/// How many of a chunk's markers are drawn, by the sub-pixels that it covers. `sub_pixel`: size (µm) of one
+/// at its depth.
+fn fitting(chunk: &Chunk, sub_pixel: f64) -> u32 {
+    let radius = (chunk.reach / sub_pixel) as f32 + 1.0;
+    let covered = std::f32::consts::PI * radius * radius;
+    chunk
+        .count
+        .min((MOST_PER_SUB_PIXEL * covered).ceil() as u32)
+}
+
+/// Defines `surface_vertex`.
+pub(crate) fn vertex_shader() -> ShaderParts {
+    let mut parts = ShaderParts::new(&[shader::file("markers.wgsl")]);
+    parts.constants.u32("NO_INSTANCE", NO_INSTANCE);
+    parts.constants.u32("MARKER_BIT", MARKER_BIT);
+    parts
+}
+
+/// Group 0: markers, corners of shapes, and the frame.
+pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let vertex = wgpu::ShaderStages::VERTEX;
+    vec![
+        storage(0, vertex, true),
+        storage(1, vertex, true),
+        uniform(2, vertex, true),
+    ]
+}
+
+fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    [markers, corners]: [&wgpu::Buffer; 2],
+    frames: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("markers"),
+        layout,
+        entries: &[
+            entry(0, markers.as_entire_binding()),
+            entry(1, corners.as_entire_binding()),
+            entry(
+                2,
+                wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                    buffer: frames,
+                    offset: 0,
+                    size: wgpu::BufferSize::new(size_of::<MarkerFrame>() as u64),
+                }),
+            ),
+        ],
+    })
+}

@@ -1,0 +1,213 @@
+//! Markers beside the cells of a scene: drawn, colored, thinned out, picked, and in static pictures.
+mod adapter;
+mod pictured;
+mod renderer;
+
+use std::convert::Infallible;
+
+use adapter::{device, gpu};
+use glam::DVec3;
+use neurotess_mesh::CoarseMesh;
+use neurotess_render::color::{ColorTable, category};
+use neurotess_render::{
+    Camera, Frame, Gpu, Image, KeyColors, Look, Marker, MarkerSettings, Markers, PictureOptions,
+    Placement, StillRenderer, VertexSource, Viewpoint, WithMarkers,
+};
+use pictured::{CELL, by_type, camera, mesh};
+use renderer::source;
+
+const SIZE: [u32; 2] = [320, 240];
+
+/// The table of a cell's types with two more categories, and the key of the first.
+fn table(mesh: &CoarseMesh) -> (ColorTable, u32) {
+    let (_, mut table) = by_type(mesh);
+    let first = category(table.categories.len() as u32);
+    table.categories.extend([[255, 0, 255], [0, 255, 0]]);
+    (table, first)
+}
+
+fn options() -> PictureOptions {
+    PictureOptions {
+        size: SIZE,
+        look: Look {
+            light: neurotess_render::Light::Flat,
+            ..Look::default()
+        },
+        occlusion: neurotess_render::Occlusion::Off,
+        ..PictureOptions::default()
+    }
+}
+
+fn drawn(gpu: &Gpu, source: &mut dyn VertexSource, view: &Viewpoint, table: &ColorTable) -> Image {
+    let mut whole = Image::new(SIZE[0], 0);
+    StillRenderer::new()
+        .render(gpu, source, view, table, &options(), |_, band| {
+            whole.height += band.height;
+            whole.pixels.extend(band.pixels);
+            Ok::<(), Infallible>(())
+        })
+        .expect("drawn");
+    whole
+}
+
+fn pixels_of(image: &Image, color: [u8; 3]) -> usize {
+    let pixels = image.pixels.chunks(4);
+    pixels.filter(|pixel| pixel[..3] == color).count()
+}
+
+fn viewpoint(mesh: &CoarseMesh) -> Viewpoint {
+    Viewpoint {
+        camera: camera(mesh, SIZE),
+        near: 0.1,
+    }
+}
+
+/// Markers in front of a view's middle, in a row, of two colors in turn.
+fn row(view: &Viewpoint, key: u32, count: u32) -> Vec<Marker> {
+    let [right, _, backward] = view.camera.axes();
+    let near = view.camera.target() + 0.3 * view.camera.depth(view.camera.target()) * backward;
+    let marker = |i: u32| Marker {
+        position: near + (f64::from(i) - 0.5 * f64::from(count)) * 4.0 * right,
+        color_key: key + i % 2,
+    };
+    (0..count).map(marker).collect()
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn markers_are_drawn_in_their_colors_and_leave_the_cells_as_they_are() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let (table, key) = table(&mesh);
+    let view = viewpoint(&mesh);
+    let mut cells = source(&gpu, &mesh, &[Placement::default()]);
+    let without = drawn(&gpu, &mut cells, &view, &table);
+    let empty = drawn(&gpu, &mut WithMarkers::new(&mut cells, None), &view, &table);
+    assert_eq!(without, empty);
+    let radius = 6.0
+        * view.camera.pixel_slope(f64::from(SIZE[1]))
+        * 0.7
+        * view.camera.depth(view.camera.target());
+    let settings = MarkerSettings {
+        radius,
+        ..MarkerSettings::default()
+    };
+    let mut markers = Markers::new(&gpu, &row(&view, key, 4), settings).expect("uploaded");
+    let with = drawn(
+        &gpu,
+        &mut WithMarkers::new(&mut cells, Some(&mut markers)),
+        &view,
+        &table,
+    );
+    // Discs of six pixels' radius, whose edges are mixed with what is behind.
+    for color in [[255, 0, 255], [0, 255, 0]] {
+        let found = pixels_of(&with, color);
+        assert!((2 * 80..2 * 125).contains(&found), "{found} pixels");
+    }
+    let changed = without.pixels.chunks(4).zip(with.pixels.chunks(4));
+    let changed = changed.filter(|(a, b)| a != b).count();
+    assert!(changed < 4 * 160, "{changed} pixels");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let (_, key) = table(&mesh);
+    let view = viewpoint(&mesh);
+    let [right, up, _] = view.camera.axes();
+    let slope = view.camera.pixel_slope(f64::from(SIZE[1]));
+    let pixel = slope * view.camera.depth(view.camera.target());
+    // 100,000 within 60 by 60 pixels.
+    let all: Vec<Marker> = (0..100_000_u32)
+        .map(|i| {
+            let [x, y] = [i % 316, i / 316].map(|n| (f64::from(n) / 316.0 - 0.5) * 60.0 * pixel);
+            Marker {
+                position: view.camera.target() + x * right + y * up,
+                color_key: key,
+            }
+        })
+        .collect();
+    let settings = MarkerSettings {
+        radius: 1e-6,
+        least: 1.0,
+        ..MarkerSettings::default()
+    };
+    let mut markers = Markers::new(&gpu, &all, settings).expect("uploaded");
+    let frame = Frame::whole(view.camera, view.near, SIZE);
+    let shown = markers.shown(&frame);
+    // Some for each of 3,600 pixels, whatever their number.
+    assert!((3_600..90_000).contains(&shown), "{shown}");
+    markers.set_settings(MarkerSettings {
+        most_triangles: 2_000,
+        ..settings
+    });
+    let shown = markers.shown(&frame);
+    assert!((1_000..1_100).contains(&shown), "{shown}");
+    // They cover the square evenly.
+    let (table, _) = table(&mesh);
+    let mut cells = source(&gpu, &mesh, &[]);
+    let image = drawn(
+        &gpu,
+        &mut WithMarkers::new(&mut cells, Some(&mut markers)),
+        &view,
+        &table,
+    );
+    let mut quarters = [0; 4];
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            if image.at(x, y) != [255; 4] {
+                let [right, low] = [x >= SIZE[0] / 2, y >= SIZE[1] / 2].map(usize::from);
+                quarters[right + 2 * low] += 1;
+            }
+        }
+    }
+    let covered: usize = quarters.iter().sum();
+    assert!((1_500..3_600).contains(&covered), "{covered} pixels");
+    let even = |part: &usize| (15 * covered..35 * covered).contains(&(100 * part));
+    assert!(quarters.iter().all(even), "{quarters:?}");
+    let away = Frame::whole(
+        Camera::new(
+            view.camera.eye(),
+            view.camera.eye() + view.camera.axes()[2],
+            DVec3::Y,
+            0.5,
+        )
+        .expect("a camera"),
+        view.near,
+        SIZE,
+    );
+    assert_eq!(markers.shown(&away), 0);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn static_pictures_have_markers_too() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let (mut table, key) = table(&mesh);
+    let view = viewpoint(&mesh);
+    let settings = MarkerSettings {
+        radius: 3.0,
+        ..MarkerSettings::default()
+    };
+    let mut cells = source(&gpu, &mesh, &[Placement::default()]);
+    let mut markers = Markers::new(&gpu, &row(&view, key, 4), settings).expect("uploaded");
+    let mut both = WithMarkers::new(&mut cells, Some(&mut markers));
+    let picture = StillRenderer::new()
+        .render_static(&gpu, &mut both, &view, &table, &options())
+        .expect("a static picture");
+    let last = table.categories.len() - 1;
+    table.categories[last] = [0, 0, 255];
+    let colors = KeyColors {
+        table: &table,
+        states: &[],
+        values: None,
+    };
+    picture.recolor(&gpu, &colors).expect("recolored");
+    let found = picture.image(&gpu).expect("read");
+    let expected = drawn(&gpu, &mut both, &view, &table);
+    let pixels = expected.pixels.iter().zip(&found.pixels);
+    let worst = pixels.map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(worst <= Some(2), "{worst:?} of 255");
+    assert!(pixels_of(&found, [0, 0, 255]) > 20);
+}
+neurotess_testing::main!();
