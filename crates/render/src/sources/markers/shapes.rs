@@ -67,7 +67,7 @@ impl Shapes {
 }
 
 fn quartered([a, b, c]: [Vec3; 3]) -> [[Vec3; 3]; 4] {
-    let half = |p: Vec3, q: Vec3| (p + q).normalize();
+    let half = |p: Vec3, q: Vec3| (p + q).normalize_or(Vec3::Y);
     let (ab, bc, ca) = (half(a, b), half(b, c), half(c, a));
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
@@ -93,7 +93,7 @@ fn icosahedron() -> Vec<[Vec3; 3]> {
                 if near(p, q) && near(q, r) && near(r, p) {
                     let outwards = (q - p).cross(r - p).dot(p) > 0.0;
                     let turned = if outwards { [p, q, r] } else { [p, r, q] };
-                    triangles.push(turned.map(Vec3::normalize));
+                    triangles.push(turned.map(|p| p.normalize_or(Vec3::Y)));
                 }
             }
         }
