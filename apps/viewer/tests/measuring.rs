@@ -97,11 +97,18 @@ fn two_clicks_are_a_distance_with_its_path() {
     window.step();
     settle(&mut window);
     assert!(state(&mut window).document.dimensions.is_empty());
-    // Escape leaves the tool; the next one clears the selection, as always.
-    window.key_press(Key::Escape);
-    window.step();
-    settle(&mut window);
-    assert!(state(&mut window).measuring.is_none());
+    // Escape forgets the first place, then leaves the tool; the next one clears the selection.
+    run(&mut window, Edit::SelectAll);
+    click_at(&mut window, from);
+    let tools = [(); 3].map(|()| {
+        let tool = state(&mut window).measuring;
+        window.key_press(Key::Escape);
+        window.step();
+        settle(&mut window);
+        tool.map(|tool| tool.first.is_some())
+    });
+    assert_eq!(tools, [Some(true), Some(false), None]);
+    assert_eq!(state(&mut window).document.selected().count(), 0);
 }
 
 #[neurotess_testing::test(needs(gpu))]

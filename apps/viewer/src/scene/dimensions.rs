@@ -153,7 +153,7 @@ impl Sight<'_> {
         let [dash, gap] = DASH.map(|length| length * self.line);
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let count = ((length + gap) / (dash + gap)).ceil();
-        if count > MOST_DASHES || count < 2.0 {
+        if !(2.0..=MOST_DASHES).contains(&count) {
             return vec![line(vec![a, b], THIN)];
         }
         let dash_at = |i: u32| {

@@ -283,14 +283,19 @@ mod tests {
 
     #[test]
     fn no_keys_are_used_twice() {
-        let menus = listed(&Toggles::default());
-        let keys: Vec<_> = menus
-            .iter()
-            .flat_map(|(_, items)| items)
-            .filter_map(|i| i.keys)
-            .collect();
-        for (i, a) in keys.iter().enumerate() {
-            assert!(!keys[..i].contains(a), "{a:?}");
+        for measuring in [false, true] {
+            let menus = listed(&Toggles {
+                measuring,
+                ..Toggles::default()
+            });
+            let keys: Vec<_> = menus
+                .iter()
+                .flat_map(|(_, items)| items)
+                .filter_map(|i| i.keys)
+                .collect();
+            for (i, a) in keys.iter().enumerate() {
+                assert!(!keys[..i].contains(a), "{a:?}");
+            }
         }
     }
 }

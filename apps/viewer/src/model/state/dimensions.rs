@@ -102,11 +102,8 @@ impl State {
         });
     }
 
-    /// Says what an edit has added, for the status bar.
-    pub(super) fn say_kept(&mut self, edit: &Edit) {
-        if !matches!(edit, Edit::AddDimension(_)) {
-            return;
-        }
+    /// After a dimension was added: the next click begins another one. Says what was kept.
+    pub(super) fn end_measure(&mut self) {
         if let Some(tool) = &mut self.measuring {
             tool.first = None;
         }

@@ -308,11 +308,14 @@ impl State {
     fn edit(&mut self, edit: Edit) {
         let before = self.document.clone();
         let (name, joins) = (edit.name(), edit.joins());
-        edit.clone().apply(&mut self.document);
+        let measures = matches!(edit, Edit::AddDimension(_));
+        edit.apply(&mut self.document);
         if self.document != before {
             self.history.keep(name, before, joins);
             self.remember();
-            self.say_kept(&edit);
+            if measures {
+                self.end_measure();
+            }
         }
         self.forget_what_is_gone();
     }
