@@ -205,3 +205,37 @@ def test_synthetic_cells_are_the_same_for_a_seed() -> None:
     assert nt.synth("granule", seed=8, points=80) != nt.synth("granule", seed=7, points=80)
     with pytest.raises(ValueError, match="glia"):
         nt.synth("glia")
+
+
+def test_paths_go_along_the_tracing(cell: nt.Morphology) -> None:
+    steps = np.linalg.norm(cell.points[[1, 3, 4, 5]] - cell.points[[0, 2, 3, 3]], axis=1)
+    axon, trunk, left, right = steps
+    assert cell.path_length(4, 5) == pytest.approx(left + right)
+    assert cell.path_length(2, -1) == pytest.approx(trunk + right)
+    # Through the soma's center, which is 9 µm from both neurites.
+    assert cell.path_length(1, 4) == pytest.approx(axon + 9 + 9 + trunk + left)
+    from_soma = cell.path_distances()
+    assert from_soma == pytest.approx([9, 9 + axon, 9, 9 + trunk, 9 + trunk + left, 9 + trunk + right])
+    each = [[cell.path_length(a, b) for b in range(6)] for a in range(6)]
+    assert np.allclose(each, [cell.path_distances(a) for a in range(6)])
+    with pytest.raises(IndexError):
+        cell.path_length(0, 6)
+
+
+def test_trees_that_do_not_meet_have_no_path() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        free = nt.read(b"1 3 0 0 0 1 -1\n2 3 0 9 0 1 1\n3 3 5 0 0 1 -1\n4 3 5 9 0 1 3\n")
+    assert free.path_distances(0).tolist() == [0, 9, np.inf, np.inf]
+    assert free.path_length(1, 2) == np.inf
+    with pytest.raises(ValueError, match="no soma"):
+        free.path_distances()
+
+
+def test_forks_have_angles(cell: nt.Morphology) -> None:
+    trunk = cell.sections[1]
+    a, b = (child.points[0] - trunk.points[-1] for child in trunk.children)
+    angle = np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b))
+    assert trunk.local_bifurcation_angle == pytest.approx(angle)
+    assert trunk.remote_bifurcation_angle == pytest.approx(angle)
+    assert cell.sections[0].local_bifurcation_angle is None

@@ -17,7 +17,9 @@ mod scene;
 mod ui;
 
 pub use model::command::Command;
-pub use model::{command, document, playback, save, session, settings, sources, state, view};
+pub use model::{
+    command, document, measuring, playback, save, session, settings, sources, state, view,
+};
 pub use scene::headless::{SessionPicture, draw_session};
 pub use scene::stage::Stage;
 pub use ui::app::{CommandListener, Viewer};

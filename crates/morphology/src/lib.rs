@@ -15,7 +15,7 @@
 //!
 //! Readers and generators hand over flat **nodes** and get the arrays from
 //! [`Morphology::from_nodes`]. [`Measures::of`] measures a cell, the functions of [`shape`] its sections, [`sholl`]
-//! its reach and [`barcode`](mod@barcode) its branching; [`edit`] mends tracings and [`Difference`] compares two.
+//! its reach and [`barcode`](mod@barcode) its branching, [`paths`] what lies between two of its locations; [`edit`] mends tracings and [`Difference`] compares two.
 //!
 //! ```
 //! use glam::DVec3;
@@ -47,6 +47,7 @@ mod frustum;
 mod kind;
 mod measures;
 mod model;
+pub mod paths;
 pub mod shape;
 pub mod sholl;
 pub mod smoothing;

@@ -150,6 +150,26 @@ pub fn contractions(morphology: &Morphology) -> Vec<Option<f64>> {
     ids(morphology).map(contraction).collect()
 }
 
+/// The sections that branch from the end of a section.
+pub fn children(morphology: &Morphology, parent: SectionId) -> Vec<SectionId> {
+    let hangs = |id: &SectionId| morphology.sections[id.index()].parent() == Some(parent);
+    ids(morphology).filter(hangs).collect()
+}
+
+/// Angle (radians, in [0, π]) between two sections that branch from the same point, measured to the
+/// points `reach` µm along them (or to their ends); `None` where a section has no direction. With
+/// [`LOCAL`] and [`REMOTE`] it is NeuroM's local and remote bifurcation angle.
+pub fn angle_between(morphology: &Morphology, [a, b]: [SectionId; 2], reach: f64) -> Option<f64> {
+    let direction = |id| leaving(morphology, id, reach);
+    Some(angle(direction(a)?, direction(b)?))
+}
+
+/// Reach of an angle that is measured to the first points that are elsewhere than the fork.
+pub const LOCAL: f64 = f64::MIN_POSITIVE;
+
+/// Reach of an angle that is measured to the ends of sections.
+pub const REMOTE: f64 = f64::INFINITY;
+
 /// Angle (radians, in [0, π]) between the two children of a section, measured to the points
 /// `reach` µm along them (or to their ends); `None` where there are not two.
 pub fn fork_angles(morphology: &Morphology, reach: f64) -> Vec<Option<f64>> {
@@ -161,15 +181,19 @@ pub fn fork_angles(morphology: &Morphology, reach: f64) -> Vec<Option<f64>> {
             directions[parent.index()].push(direction);
         }
     }
-    let angle = |children: &Vec<DVec3>| match children[..] {
-        [a, b] => Some(a.dot(b).clamp(-1.0, 1.0).acos()),
+    let pair = |children: &Vec<DVec3>| match children[..] {
+        [a, b] => Some(angle(a, b)),
         _ => None,
     };
-    directions.iter().map(angle).collect()
+    directions.iter().map(pair).collect()
 }
 
-/// Direction from the branch point to the point `reach` µm along the section.
-fn leaving(morphology: &Morphology, id: SectionId, reach: f64) -> Option<DVec3> {
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.dot(b).clamp(-1.0, 1.0).acos()
+}
+
+/// Unit direction from the branch point to the point `reach` µm along the section.
+pub fn leaving(morphology: &Morphology, id: SectionId, reach: f64) -> Option<DVec3> {
     let from = branch_point(morphology, id)?.position.as_dvec3();
     let mut length = 0.0;
     let mut to = from;

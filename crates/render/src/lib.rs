@@ -51,8 +51,9 @@ pub mod outline {
     pub use crate::shading::present::{HOVERED, Outlines, PICKED, SELECTED};
 }
 
-/// Drawn over a picture: legends and scale bars.
+/// Drawn over a picture: legends, scale bars, and lines with labels.
 pub mod overlay {
+    pub use crate::output::annotation::{Annotation, AnnotationLine, Annotations};
     pub use crate::output::legend::{Legend, nice_length, scale_bar};
     pub use crate::output::overlay::{Overlay, OverlayOptions};
 }

@@ -7,6 +7,8 @@ pub mod document;
 pub(crate) mod film;
 pub(crate) mod history;
 pub(crate) mod ids;
+pub mod measuring;
+pub(crate) mod numbers;
 pub mod playback;
 pub(crate) mod revision;
 pub mod save;

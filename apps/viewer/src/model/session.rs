@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{Detail, Look, Neuron, PlacementEntry, SomaEdit};
+use crate::model::document::{Detail, Dimension, Look, Neuron, PlacementEntry, SomaEdit};
 use crate::model::ids::{CircuitId, CircuitNode, SourceId};
 use crate::model::playback::Pace;
 use crate::model::state::State;
@@ -76,6 +76,9 @@ pub struct Session {
     /// Neurons.
     #[serde(default)]
     pub neuron: Vec<NeuronEntry>,
+    /// Dimensions on the picture; they name neurons by their index in the list, from 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dimension: Vec<Dimension>,
 }
 
 /// A circuit.
@@ -209,6 +212,7 @@ impl Session {
             circuit: circuit.collect(),
             file: file.collect(),
             neuron: neuron.collect(),
+            dimension: document.dimensions.to_vec(),
         }
     }
 
@@ -249,6 +253,14 @@ impl Session {
             )));
         }
         Ok(session)
+    }
+
+    /// The dimensions whose neurons could be opened. `opened`: by neuron of the session, its index
+    /// in the document.
+    pub(crate) fn dimensions(&self, opened: &[Option<usize>]) -> Vec<Dimension> {
+        let index = |neuron: usize| opened.get(neuron).copied().flatten();
+        let dimensions = self.dimension.iter();
+        dimensions.filter_map(|d| d.renumbered(index)).collect()
     }
 
     /// The node of a neuron, if its circuit is open.

@@ -16,6 +16,7 @@ use crate::model::settings::Settings;
 use crate::model::state::State;
 use crate::scene::colors::ColorRequest;
 use crate::scene::content::{self, SceneContent};
+use crate::scene::dimensions;
 use crate::scene::pictures::{StillScene, pictures};
 use crate::scene::templates;
 
@@ -67,15 +68,19 @@ pub fn draw_session(
     state.document.grid = session.grid;
     state.document.report = session.report.clone();
     state.playback.pace = session.playback;
+    let mut opened = Vec::new();
     for entry in &session.neuron {
-        if let Some(id) = ids.get(entry.file).copied().flatten() {
+        let id = ids.get(entry.file).copied().flatten();
+        opened.push(id.map(|id| {
             let node = session.node_of(entry, &state.circuits);
             state.document.neurons.push(Neuron {
                 node,
                 ..entry.neuron(id)
             });
-        }
+            state.document.neurons.len() - 1
+        }));
     }
+    *state.document.dimensions = session.dimensions(&opened);
     drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
     let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
@@ -107,5 +112,6 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
         look: state.document.look.clone(),
         states: content::states(&state.document),
         spheres: state.spheres(),
+        figures: dimensions::figures(state),
     }
 }

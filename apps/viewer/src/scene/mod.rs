@@ -2,9 +2,11 @@
 
 mod colors;
 pub(crate) mod content;
+pub(crate) mod dimensions;
 mod explorer;
 mod film;
 pub(crate) mod headless;
+pub(crate) mod locate;
 pub(crate) mod picks;
 pub(crate) mod pictures;
 pub(crate) mod stage;

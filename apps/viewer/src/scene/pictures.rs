@@ -84,7 +84,9 @@ pub(crate) fn pictures(
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
         let to = BufWriter::new(output.file().try_clone().map_err(broken)?);
         let mut png = PngWriter::new(to, options.size, options.transparent).map_err(broken)?;
+        let annotations = still_scene.annotations(&camera, options);
         let mut lay = |top: u32, mut band: Image| {
+            annotations.lay_on(top, &mut band);
             overlay.lay_on(top, &mut band);
             png.write(&band)
         };

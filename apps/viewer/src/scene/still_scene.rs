@@ -3,15 +3,17 @@
 use std::sync::Arc;
 
 use neurotess::render::color::ColorTable;
-use neurotess::render::overlay::{Legend, Overlay, OverlayOptions};
+use neurotess::render::overlay::{Annotations, Legend, Overlay, OverlayOptions};
 use neurotess::render::{BoundingSphere, Camera, Gpu};
 
 use crate::model::document::Look;
 use crate::model::film::FilmFrame;
+use crate::model::measuring::Figure;
 use crate::model::playback::said;
 use crate::model::save::PictureFile;
 use crate::scene::colors::color_scheme;
 use crate::scene::content::SceneContent;
+use crate::scene::dimensions::annotations;
 
 /// All that pictures are drawn from, for another thread.
 pub(crate) struct StillScene {
@@ -22,6 +24,8 @@ pub(crate) struct StillScene {
     pub(crate) look: Look,
     pub(crate) states: Vec<u32>,
     pub(crate) spheres: Arc<Vec<BoundingSphere>>,
+    /// Dimensions that show.
+    pub(crate) figures: Vec<Figure>,
 }
 
 impl StillScene {
@@ -60,6 +64,16 @@ impl StillScene {
         let all = self.content.recording.as_ref().map(|(_, all)| *all);
         let chosen = color_scheme(&self.look).range;
         chosen.or(all).unwrap_or([0.0, 1.0])
+    }
+
+    /// Dimensions, as the camera of a picture sees them.
+    pub(super) fn annotations(&self, camera: &Camera, options: &PictureFile) -> Annotations {
+        let line = f64::from(Annotations::line_height(options.size));
+        let size = options.size.map(f64::from);
+        let annotations = annotations(&self.figures, camera, size, line);
+        let background = (!options.transparent).then_some(self.look.background);
+        let annotations = annotations.into_iter().flatten().collect();
+        Annotations::new(annotations, options.size, background)
     }
 
     /// Legend and scale bar, in the same corners for all pictures.

@@ -152,6 +152,23 @@ class Section:
         """Length (µm) of the way from the neurite's first point to the section's end."""
         return float(self._of("path_length"))
 
+    @property
+    def local_bifurcation_angle(self) -> float | None:
+        """Angle (radians) at its end between its two branches, to their first points that are elsewhere.
+
+        None where there are not two. The same as NeuroM's.
+        """
+        return self._angle("local_angle")
+
+    @property
+    def remote_bifurcation_angle(self) -> float | None:
+        """Angle (radians) at its end between its two branches, to their ends; none where there are not two."""
+        return self._angle("remote_angle")
+
+    def _angle(self, column: str) -> float | None:
+        angle = float(self._of(column))
+        return None if angle != angle else angle
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Section) and (self._cell, self.id) == (other._cell, other.id)
 
@@ -323,6 +340,32 @@ class Morphology:
                     children[parent].append(child)
             self._child_ids = children
         return self._child_ids
+
+    def path_length(self, start: int | None, end: int | None) -> float:
+        """Length (µm) of the path along the tracing between two points, given by their indices.
+
+        None is the soma's center. Between two neurites, the path goes through it, straight from the first
+        point of the one and to the first point of the other. Infinite between trees that do not meet.
+
+        >>> import neurotess as nt
+        >>> cell = nt.read(b"1 1 0 0 0 5 -1\\n2 3 0 9 0 1 1\\n3 3 0 30 0 1 2\\n4 2 -8 0 0 1 1\\n")
+        >>> cell.path_length(0, 1), cell.path_length(None, 1), cell.path_length(1, 2)
+        (21.0, 30.0, 38.0)
+        """
+        return self._cell.path_length(self._point(start), self._point(end))
+
+    def path_distances(self, start: int | None = None) -> NDArray[np.float64]:
+        """Length (µm) of the path from one point to every point, (n,), as `path_length` has it.
+
+        >>> import neurotess as nt
+        >>> cell = nt.read(b"1 1 0 0 0 5 -1\\n2 3 0 9 0 1 1\\n3 3 0 30 0 1 2\\n4 2 -8 0 0 1 1\\n")
+        >>> cell.path_distances(), cell.path_distances(1)
+        (array([ 9., 30.,  8.]), array([21.,  0., 38.]))
+        """
+        return self._cell.path_distances(self._point(start))
+
+    def _point(self, index: int | None) -> int | None:
+        return None if index is None else range(len(self))[index]
 
     def measures(self) -> dict[str, Any]:
         """Counts, lengths, areas and volumes, under the names of ``neurotess info --json``.

@@ -1,6 +1,7 @@
 //! A traced cell.
 
 mod columns;
+mod paths;
 mod state;
 mod table;
 
@@ -221,6 +222,14 @@ impl Cell {
             "path_length",
             arrays::column(py, shape::path_lengths(cell))?,
         )?;
+        for (name, reach) in [
+            ("local_angle", shape::LOCAL),
+            ("remote_angle", shape::REMOTE),
+        ] {
+            let angles = shape::fork_angles(cell, reach).into_iter();
+            let angles = angles.map(|angle| angle.unwrap_or(f64::NAN)).collect();
+            sections.set_item(name, arrays::column::<f64>(py, angles)?)?;
+        }
         Ok(sections)
     }
 
@@ -244,6 +253,15 @@ impl Cell {
             Ok(told)
         };
         self.morphology.somata.iter().map(one).collect()
+    }
+
+    fn path_length(&self, py: Python<'_>, start: Option<u32>, end: Option<u32>) -> PyResult<f64> {
+        py.detach(|| paths::length(&self.morphology, [start, end]))
+    }
+
+    fn path_distances(&self, py: Python<'_>, start: Option<u32>) -> PyResult<Py<PyArray1<f64>>> {
+        let distances = py.detach(|| paths::distances(&self.morphology, start))?;
+        arrays::column(py, distances)
     }
 
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -45,6 +45,12 @@ pub struct OverlayOptions {
 /// Height of a line, as a share of the picture's.
 const LINE: f32 = 0.023;
 
+/// Height (pixels) of a line of text in a picture of this size.
+pub(crate) fn line_height(size: [u32; 2]) -> f32 {
+    let [width, height] = size.map(|n| n as f32);
+    (LINE * height.min(width)).max(9.0)
+}
+
 impl Overlay {
     /// Selects the corners that cover least of the scene, for all cameras together.
     pub fn new(
@@ -55,7 +61,7 @@ impl Overlay {
     ) -> Self {
         let mut overlay = Self::default();
         let [width, height] = size.map(|n| n as f32);
-        let line = (LINE * height.min(width)).max(9.0);
+        let line = line_height(size);
         let ink = ink(options.background);
         let seen = Seen::new(size, cameras, spheres);
         let mut kept = Kept {
@@ -154,7 +160,7 @@ fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Ima
 }
 
 /// Color of text: black on a light or transparent background, white on a dark one.
-fn ink(background: Option<Rgb>) -> Rgb {
+pub(crate) fn ink(background: Option<Rgb>) -> Rgb {
     if background.is_some_and(is_dark) {
         [240; 3]
     } else {

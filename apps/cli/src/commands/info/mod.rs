@@ -1,5 +1,6 @@
 //! `neurotess info`: describes morphologies; circuits.rs describes circuits.
 
+mod between;
 mod circuits;
 mod rows;
 mod table;
@@ -21,6 +22,7 @@ use crate::io::morphologies::{MORPHOLOGIES, ReaderWarning, read_morphology};
 use crate::io::output;
 use crate::options::numbers::positive;
 use crate::report::{Entry, Failure, Reporter, count, usage};
+use between::{Between, End};
 use rows::{Per, Row};
 use table::Target;
 
@@ -47,6 +49,11 @@ pub(crate) struct InfoArgs {
     /// Sholl analysis: crossings of spheres STEP (µm) apart around the soma
     #[arg(long, value_name = "STEP", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) sholl: Option<f64>,
+    /// Distance, path, forks and diameters between two samples, by their numbers in the file, or from or to the
+    /// soma; may be given several times
+    #[arg(long, num_args = 2, value_names = ["A", "B"], allow_negative_numbers = true,
+          conflicts_with = "table")]
+    pub(crate) between: Vec<End>,
     /// Replace a table that exists
     #[arg(long)]
     pub(crate) force: bool,
@@ -65,6 +72,8 @@ struct Info {
     /// As in the table, if that or --per is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     rows: Option<Vec<Row>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    between: Vec<Between>,
 }
 
 /// Crossings of spheres around the soma.
@@ -78,6 +87,9 @@ struct Sholl {
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let (circuits, others) = partition(&args.inputs);
+    if !args.between.is_empty() && !circuits.is_empty() {
+        return usage("--between is of tracings, not of circuits: give morphology files");
+    }
     if let Some(table) = &args.table {
         if !circuits.is_empty() {
             return usage("--table is of tracings, not of circuits: give morphology files");
@@ -152,7 +164,9 @@ fn measure(input: &Input, args: &InfoArgs, options: ReadOptions) -> Result<Info,
     let wants_rows = args.table.is_some() || args.per.is_some();
     let rows = wants_rows.then(|| rows::rows(&read.morphology, args.rows_per(), args.sholl));
     let rows = rows.transpose().map_err(failed)?;
+    let between = between::between(&file, &read.morphology, &args.between)?;
     Ok(Info {
+        between,
         format: read.format,
         measures: Measures::of(&read.morphology),
         warnings: read.warnings.into_iter().map(ReaderWarning::from).collect(),

@@ -139,9 +139,8 @@ impl<'m> Numbers<'m> {
             strahler_orders: shape::strahler_orders(morphology),
             path_distances: shape::path_lengths(morphology),
             radial_distances: shape::end_distances(morphology, center),
-            // To the first point that is elsewhere, and to the end.
-            local_angles: shape::fork_angles(morphology, f64::MIN_POSITIVE),
-            remote_angles: shape::fork_angles(morphology, f64::INFINITY),
+            local_angles: shape::fork_angles(morphology, shape::LOCAL),
+            remote_angles: shape::fork_angles(morphology, shape::REMOTE),
             asymmetries: shape::partition_asymmetries(morphology),
         }
     }

@@ -59,7 +59,19 @@ pub(super) fn table(info: &Info) -> String {
         line("crossings", spheres);
     }
     line("warnings", info.warnings.len().to_string());
+    lines.extend(between(info));
     lines.join("\n")
+}
+
+/// What lies between the samples that were asked for.
+fn between(info: &Info) -> impl Iterator<Item = String> {
+    info.between.iter().flat_map(|between| {
+        let lines = between.lines().into_iter().enumerate();
+        lines.map(|(i, line)| {
+            let name = if i == 0 { "between" } else { "" };
+            format!("  {name:<10} {line}")
+        })
+    })
 }
 
 pub(super) fn header() -> String {
@@ -77,10 +89,10 @@ pub(super) fn header() -> String {
     )
 }
 
-/// A line for one of several cells.
+/// A line for one of several cells, and below it what lies between its samples.
 pub(super) fn row(info: &Info) -> String {
     let m = &info.measures;
-    format!(
+    let row = format!(
         "{:>9} {:>8} {:>8} {:>6} {:>6} {:>11.1} {:>11.1}  {:<11} {:>8}  {}",
         m.n_points,
         m.n_sections,
@@ -92,5 +104,9 @@ pub(super) fn row(info: &Info) -> String {
         m.soma.kind,
         info.warnings.len(),
         info.file
-    )
+    );
+    std::iter::once(row)
+        .chain(between(info))
+        .collect::<Vec<_>>()
+        .join("\n")
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::model::document::{Detail, Document, Look, SomaEdit, SourceId};
+use crate::model::document::{Detail, Dimension, Document, Look, SomaEdit, SourceId};
 
 /// A change of the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +40,12 @@ pub enum Edit {
     SetGrid(bool),
     /// Shows the values of a report or of spikes, or none.
     SetReport(Option<PathBuf>),
+    /// Keeps a dimension on the picture.
+    AddDimension(Dimension),
+    /// Removes a dimension, by its index.
+    RemoveDimension(usize),
+    /// Removes all dimensions.
+    ClearDimensions,
 }
 
 impl Edit {
@@ -57,6 +63,8 @@ impl Edit {
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
             Self::SetReport(_) => "Report",
+            Self::AddDimension(_) => "Dimension",
+            Self::RemoveDimension(_) | Self::ClearDimensions => "Remove dimension",
         }
     }
 
@@ -101,7 +109,7 @@ impl Edit {
                 true => (hidden, n.selected && !hidden),
                 false => (n.hidden, n.selected),
             }),
-            Self::Remove => neurons.retain(|n| !n.selected),
+            Self::Remove => document.remove_selected(),
             Self::SetSoma(sources, edit) => {
                 for source in sources {
                     // Each cell keeps its own rings.
@@ -127,6 +135,12 @@ impl Edit {
             Self::SetDetail(detail) => document.detail = detail,
             Self::SetGrid(grid) => document.grid = grid,
             Self::SetReport(report) => document.set_report(report),
+            Self::AddDimension(dimension) => document.dimensions.push(dimension),
+            Self::RemoveDimension(which) if which < document.dimensions.len() => {
+                document.dimensions.remove(which);
+            }
+            Self::RemoveDimension(_) => {}
+            Self::ClearDimensions => document.dimensions.clear(),
         }
     }
 }

@@ -77,7 +77,8 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 item("Select all", Some((CTRL, Key::A)), Edit::SelectAll.into()),
                 item(
                     "Select none",
-                    Some((PLAIN, Key::Escape)),
+                    // While measuring, Escape leaves that.
+                    (!now.measuring).then_some((PLAIN, Key::Escape)),
                     Edit::SelectNone.into(),
                 ),
                 item(
@@ -90,7 +91,31 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Some((PLAIN, Key::Delete)),
                     Edit::Remove.into(),
                 ),
-            ],
+                item(
+                    choose(
+                        now.measuring,
+                        "Measure: distance, path length, diameter, angle (ruler)",
+                        "Stop measuring",
+                    ),
+                    Some((PLAIN, Key::M)),
+                    Command::SetMeasuring(!now.measuring),
+                ),
+                item(
+                    "Copy all dimensions",
+                    Some((CTRL_SHIFT, Key::C)),
+                    Command::CopyDimensions(None),
+                ),
+                item("Remove all dimensions", None, Edit::ClearDimensions.into()),
+            ]
+            .into_iter()
+            .chain(now.measuring.then(|| {
+                item(
+                    "Forget the first place, or stop measuring",
+                    Some((PLAIN, Key::Escape)),
+                    Command::LeaveMeasuring,
+                )
+            }))
+            .collect(),
         ),
         (
             "View",
@@ -248,6 +273,8 @@ pub struct Toggles {
     pub dark: bool,
     /// Whether a recording is playing.
     pub playing: bool,
+    /// Whether clicks measure.
+    pub measuring: bool,
 }
 
 #[cfg(test)]
@@ -256,14 +283,19 @@ mod tests {
 
     #[test]
     fn no_keys_are_used_twice() {
-        let menus = listed(&Toggles::default());
-        let keys: Vec<_> = menus
-            .iter()
-            .flat_map(|(_, items)| items)
-            .filter_map(|i| i.keys)
-            .collect();
-        for (i, a) in keys.iter().enumerate() {
-            assert!(!keys[..i].contains(a), "{a:?}");
+        for measuring in [false, true] {
+            let menus = listed(&Toggles {
+                measuring,
+                ..Toggles::default()
+            });
+            let keys: Vec<_> = menus
+                .iter()
+                .flat_map(|(_, items)| items)
+                .filter_map(|i| i.keys)
+                .collect();
+            for (i, a) in keys.iter().enumerate() {
+                assert!(!keys[..i].contains(a), "{a:?}");
+            }
         }
     }
 }

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
+use crate::model::document::Anchor;
 use crate::model::playback::Pace;
 use crate::model::save::{FilmOptions, MeshOptions, PictureFile};
 use crate::model::view::View;
@@ -103,6 +104,15 @@ pub enum Command {
     /// Keeps the levels of the current view while the camera moves.
     SetFrozen(bool),
 
+    /// Begins or ends measuring.
+    SetMeasuring(bool),
+    /// Sets the first end of a distance.
+    MeasureFrom(Anchor),
+    /// Forgets the first end of a distance; if there is none, ends measuring.
+    LeaveMeasuring,
+    /// Copies the numbers of a dimension, or a table of all.
+    CopyDimensions(Option<usize>),
+
     /// Shows a panel.
     Show(Tab),
     /// Shows or hides the list of keys.
@@ -146,6 +156,9 @@ impl fmt::Debug for Command {
             Self::Go(value) => with("Go", value),
             Self::SetYDown(value) => with("SetYDown", value),
             Self::SetFrozen(value) => with("SetFrozen", value),
+            Self::SetMeasuring(value) => with("SetMeasuring", value),
+            Self::MeasureFrom(value) => with("MeasureFrom", value),
+            Self::CopyDimensions(value) => with("CopyDimensions", value),
             Self::Show(value) => with("Show", value),
             Self::SetDark(value) => with("SetDark", value),
             Self::SaveMeshes(value) => with("SaveMeshes", value),
@@ -158,6 +171,7 @@ impl fmt::Debug for Command {
             Self::Undo => f.write_str("Undo"),
             Self::Redo => f.write_str("Redo"),
             Self::TogglePlay => f.write_str("TogglePlay"),
+            Self::LeaveMeasuring => f.write_str("LeaveMeasuring"),
             Self::Home => f.write_str("Home"),
             Self::Focus => f.write_str("Focus"),
             Self::ToggleKeys => f.write_str("ToggleKeys"),

@@ -1,6 +1,7 @@
 //! The document, which is saved and whose edits can be undone: the neurons that are shown, and how.
 
 mod detail;
+mod dimension;
 mod look;
 mod neurons;
 mod placement;
@@ -15,6 +16,7 @@ use crate::model::revision::Tracked;
 
 pub use crate::model::ids::{CircuitNode, SourceId};
 pub use detail::{Detail, LodKind, RestChoice};
+pub use dimension::{Anchor, Dimension};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
@@ -35,6 +37,8 @@ pub struct Document {
     pub grid: bool,
     /// The recording whose values can be shown.
     pub report: Option<PathBuf>,
+    /// What was measured and is kept on the picture.
+    pub dimensions: Tracked<Vec<Dimension>>,
 }
 
 /// A neuron: a tracing with a placement.
@@ -95,6 +99,23 @@ impl Document {
             (None, _) => {}
         }
         self.report = report;
+    }
+
+    /// Removes the selected neurons, and dimensions that refer to them.
+    pub(crate) fn remove_selected(&mut self) {
+        let mut kept = 0;
+        let number = |neuron: &Neuron| {
+            kept += usize::from(!neuron.selected);
+            (!neuron.selected).then(|| kept - 1)
+        };
+        let numbers: Vec<Option<usize>> = self.neurons.iter().map(number).collect();
+        self.neurons.retain(|neuron| !neuron.selected);
+        if self.dimensions.is_empty() || kept == numbers.len() {
+            return;
+        }
+        let number = |neuron: usize| numbers.get(neuron).copied().flatten();
+        let dimensions = self.dimensions.iter();
+        *self.dimensions = dimensions.filter_map(|d| d.renumbered(number)).collect();
     }
 
     /// Indices of the selected neurons.

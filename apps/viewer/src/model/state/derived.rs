@@ -8,6 +8,7 @@ use neurotess::render::{BoundingSphere, Placement};
 
 use super::State;
 use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
+use crate::model::measuring::Figure;
 use crate::model::revision::{Memo, Revision};
 use crate::model::sources::extent;
 use crate::model::totals::{self, Totals};
@@ -40,7 +41,11 @@ pub(super) struct Derived {
     found: Memo<(Revision, String), Vec<usize>>,
     totals: Memo<(NeuronRevisions, Revision), Totals>,
     kinds: Memo<Revision, BTreeSet<i32>>,
+    pub(super) figures: Memo<FiguresKey, Vec<Option<Figure>>>,
 }
+
+/// Revisions that figures of dimensions depend on: of the dimensions, placements and tracings.
+type FiguresKey = (Revision, PlacementsKey, Revision);
 
 impl State {
     /// Placements of all neurons, in the order of the list.

@@ -2,6 +2,8 @@
 
 mod counters;
 mod derived;
+mod dimension_table;
+mod dimensions;
 
 use std::path::PathBuf;
 
@@ -11,6 +13,7 @@ use crate::model::circuits::Circuits;
 use crate::model::command::{Command, Edit, FilePurpose, Tab, Toggles};
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
+use crate::model::measuring::Measuring;
 use crate::model::playback::Playback;
 use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
@@ -76,6 +79,10 @@ pub struct State {
     pub touched: Option<(SourceId, u32)>,
     /// The part that was clicked last.
     pub picked: Option<Picked>,
+    /// The tool that measures, while it is on.
+    pub measuring: Option<Measuring>,
+    /// The dimension whose line in the list is under the cursor.
+    pub pointed_dimension: Option<usize>,
     /// Problems, in the order in which they occurred.
     pub problems: Vec<Problem>,
     /// What was done last, for the status bar.
@@ -140,6 +147,8 @@ pub enum Effect {
     Cancel,
     /// Move the camera to a view.
     Go(View),
+    /// Put a text on the clipboard.
+    Copy(String),
     /// Quit.
     Quit,
 }
@@ -164,6 +173,8 @@ impl State {
             hovered: None,
             touched: None,
             picked: None,
+            measuring: None,
+            pointed_dimension: None,
             problems: Vec::new(),
             status: String::new(),
             tab: Tab::default(),
@@ -191,6 +202,7 @@ impl State {
             frozen: self.frozen.is_some(),
             dark: self.settings.dark,
             playing: self.playback.playing,
+            measuring: self.measuring.is_some(),
         }
     }
 
@@ -263,6 +275,20 @@ impl State {
                 self.settings.dark = dark;
             }
             Command::TogglePanels => self.panels = !self.panels,
+            Command::SetMeasuring(on) => {
+                self.measuring = on.then(Measuring::default);
+                if on {
+                    self.tab = Tab::Inspect;
+                }
+            }
+            Command::MeasureFrom(anchor) => {
+                self.measuring = Some(Measuring {
+                    first: Some(anchor),
+                    ..self.measuring.unwrap_or_default()
+                });
+            }
+            Command::LeaveMeasuring => self.leave_measuring(),
+            Command::CopyDimensions(which) => self.copy_dimensions(which),
             Command::AddKeyView => {
                 self.key_views.push(self.view);
                 self.status = format!("Key view {} kept (Save, Film)", self.key_views.len());
@@ -282,10 +308,14 @@ impl State {
     fn edit(&mut self, edit: Edit) {
         let before = self.document.clone();
         let (name, joins) = (edit.name(), edit.joins());
+        let measures = matches!(edit, Edit::AddDimension(_));
         edit.apply(&mut self.document);
         if self.document != before {
             self.history.keep(name, before, joins);
             self.remember();
+            if measures {
+                self.end_measure();
+            }
         }
         self.forget_what_is_gone();
     }
@@ -329,6 +359,7 @@ impl State {
         let there = |p: &Picked| p.neuron < neurons;
         self.hovered = self.hovered.filter(there);
         self.picked = self.picked.filter(there);
+        self.forget_lost_ends();
     }
 
     /// The source of a neuron.

@@ -184,15 +184,22 @@ impl Viewer {
         };
         match &loading.session {
             Some(session) => {
+                let mut opened = Vec::new();
                 for entry in &session.neuron {
                     let id = loading.ids.get(entry.file).copied().flatten();
-                    if let Some(id) = id {
+                    opened.push(id.map(|id| {
                         let node = session.node_of(entry, &self.state.circuits);
                         self.open(Neuron {
                             node,
                             ..entry.neuron(id)
                         });
-                    }
+                        self.state.document.neurons.len() - 1
+                    }));
+                }
+                let dimensions = session.dimensions(&opened);
+                if !dimensions.is_empty() {
+                    self.state.history.opened_dimensions(&dimensions);
+                    self.state.document.dimensions.extend(dimensions);
                 }
             }
             None => {

@@ -40,6 +40,8 @@ pub struct Viewer {
     /// The error that ends the program: the device is lost.
     pub fatal: Option<String>,
     quits: bool,
+    /// A text for the clipboard.
+    copied: Option<String>,
     theme: Option<(bool, u32)>,
     remembered: Settings,
     /// How the somata of files that are opened first are generated.
@@ -82,6 +84,7 @@ impl Viewer {
             files: None,
             fatal: None,
             quits: false,
+            copied: None,
             theme: None,
             remembered: settings,
             soma: SomaEdit::default(),
@@ -215,6 +218,7 @@ impl Viewer {
             }
             Effect::Go(view) => self.motion.fly(&mut self.state, view),
             Effect::Quit => self.quits = true,
+            Effect::Copy(text) => self.copied = Some(text),
             Effect::Save(request) => self.save(request),
         }
     }
@@ -224,6 +228,9 @@ impl Viewer {
         for effect in std::mem::take(&mut self.state.effects) {
             self.effect(effect);
             ctx.request_repaint();
+        }
+        if let Some(text) = self.copied.take() {
+            ctx.copy_text(text);
         }
     }
 

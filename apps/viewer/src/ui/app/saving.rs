@@ -11,6 +11,7 @@ use crate::model::save::{FilmOptions, SaveRequest};
 use crate::model::session::{self, Session};
 use crate::model::settings;
 use crate::scene::content;
+use crate::scene::dimensions;
 use crate::scene::pictures::{StillScene, pictures};
 
 impl Viewer {
@@ -138,6 +139,7 @@ impl Viewer {
             look: self.state.document.look.clone(),
             states: content::states(&self.state.document),
             spheres: self.state.spheres(),
+            figures: dimensions::figures(&self.state),
         }
     }
 

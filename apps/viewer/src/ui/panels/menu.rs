@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Button, MenuBar};
 
-use crate::model::command::{Command, listed};
+use crate::model::command::{Command, Edit, listed};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
@@ -20,6 +20,9 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                         Command::Undo => undo.is_some(),
                         Command::Redo => redo.is_some(),
                         Command::Reload => state.sources.stale() > 0,
+                        Command::CopyDimensions(_) | Command::Edit(Edit::ClearDimensions) => {
+                            !state.document.dimensions.is_empty()
+                        }
                         _ => true,
                     };
                     let mut button = Button::new(title);

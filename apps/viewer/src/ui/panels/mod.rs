@@ -3,10 +3,13 @@
 mod cells;
 mod detail;
 mod dialogs;
+mod dimension_list;
+mod dimensions;
 mod empty;
 mod inspect;
 mod look;
 mod marks;
+mod measuring;
 mod menu;
 mod number;
 mod rings;
@@ -25,6 +28,7 @@ use neurotess::render::DeviceError;
 
 use crate::io::task::Progress;
 use crate::model::command::{Command, Tab};
+pub(crate) use crate::model::numbers::{grouped, measured};
 use crate::model::state::State;
 use crate::scene::stage::Stage;
 use crate::ui::file_panel::FilePanel;
@@ -48,6 +52,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let ctx = ui.ctx().clone();
     let before = screen.state.hovered.take();
     screen.state.touched = None;
+    screen.state.pointed_dimension = None;
     Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
     let progress = screen.stage.progress();
     Panel::bottom("status").show(ui, |ui| {
@@ -202,51 +207,9 @@ fn plate(ui: &egui::Ui) -> Frame {
         .inner_margin(Margin::same(8))
 }
 
-/// A whole number with thin gaps between thousands.
-pub(crate) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            // A space that breaks no line.
-            text.push('\u{a0}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// A length, area or volume, rounded to significant digits.
-fn measured(value: f64, unit: &str) -> String {
-    let a = value.abs();
-    if a >= 10_000.0 {
-        format!("{} {unit}", grouped(value.round().max(0.0) as u64))
-    } else if a >= 100.0 {
-        format!("{value:.0} {unit}")
-    } else if a >= 10.0 {
-        format!("{value:.1} {unit}")
-    } else {
-        format!("{value:.2} {unit}")
-    }
-}
-
 /// Keys with the signs of the keyboard: `?`, not "Questionmark".
 fn keys_text(ui: &egui::Ui, keys: &egui::KeyboardShortcut) -> String {
     let key = keys.logical_key;
     let text = ui.ctx().format_shortcut(keys);
     text.replace(key.name(), key.symbol_or_name())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_grouped_and_rounded() {
-        assert_eq!(grouped(1_234_567), "1\u{a0}234\u{a0}567");
-        assert_eq!(grouped(12), "12");
-        assert_eq!(measured(3.15159, "µm"), "3.15 µm");
-        assert_eq!(measured(31.5159, "µm"), "31.5 µm");
-        assert_eq!(measured(12345.6, "µm²"), "12\u{a0}346 µm²");
-    }
 }

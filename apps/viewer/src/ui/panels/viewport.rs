@@ -8,7 +8,7 @@ use glam::DVec3;
 use neurotess::render::color::is_dark;
 use neurotess::render::overlay::{Legend, nice_length};
 
-use super::{Screen, marks, plate, tip};
+use super::{Screen, marks, measuring, plate, tip};
 use crate::model::command::{Command, Edit};
 use crate::model::state::{Picked, State};
 
@@ -172,7 +172,12 @@ fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, p
             false => before,
         };
     }
-    if response.double_clicked() {
+    if screen.state.measuring.is_some() {
+        measuring::point(screen.state, seen, response);
+        if response.clicked() {
+            measuring::click(screen.state, response.rect);
+        }
+    } else if response.double_clicked() {
         if let Some(seen) = seen {
             let view = screen.state.view;
             let camera = view.camera();
@@ -218,7 +223,14 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
 }
 
 fn menu(state: &mut State, ui: &mut Ui) {
+    let measures = state.measuring.is_some();
+    let measure = if measures {
+        "Stop measuring"
+    } else {
+        "Measure"
+    };
     for (title, command) in [
+        (measure, Command::SetMeasuring(!measures)),
         ("Zoom to the selection", Command::Focus),
         ("Hide selected", Edit::Hide.into()),
         ("Isolate selected", Edit::Isolate.into()),
@@ -256,6 +268,7 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     }
     let painter = ui.painter().with_clip_rect(rect);
     marks::rings(screen.state, rect, &painter);
+    measuring::show(screen.state, rect, ui);
     if !screen.stage.can_pick() {
         marks::hovered(screen.state, rect, &painter);
     }

@@ -1,0 +1,235 @@
+//! Lines with labels over a picture, such as dimensions.
+
+use crate::output::image::Image;
+use crate::output::overlay::{ink, line_height};
+use crate::output::text::Text;
+use crate::scene::color::Rgb;
+
+/// A line over a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnnotationLine {
+    /// Its corners (pixels from the upper left corner of the picture).
+    pub points: Vec<[f64; 2]>,
+    /// Its width, as a share of the height of a line of text.
+    pub width: f32,
+}
+
+/// Lines, and a label of one or several lines of text.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Annotation {
+    /// Its lines.
+    pub lines: Vec<AnnotationLine>,
+    /// The text.
+    pub label: Vec<String>,
+    /// Middle of the label (pixels from the upper left corner of the picture).
+    pub label_at: [f64; 2],
+}
+
+/// Annotations of a picture, drawn in its ink, with a rim in its background's color, so that they
+/// can be seen on all neurons.
+#[derive(Clone, Debug, Default)]
+pub struct Annotations {
+    annotations: Vec<Annotation>,
+    line: f32,
+    ink: Rgb,
+    /// Color of rims and behind labels; none: transparent.
+    rim: Option<Rgb>,
+}
+
+/// How opaque rims, and what is behind labels, are.
+const RIM: f32 = 0.75;
+/// Width of a rim on each side, as a share of the height of a line of text.
+const RIM_WIDTH: f32 = 0.1;
+
+impl Annotations {
+    /// Annotations of a picture of this size (pixels); `background`: the color behind everything,
+    /// none if that is transparent.
+    pub fn new(annotations: Vec<Annotation>, size: [u32; 2], background: Option<Rgb>) -> Self {
+        Self {
+            annotations,
+            line: line_height(size),
+            ink: ink(background),
+            rim: background,
+        }
+    }
+
+    /// Height (pixels) of a line of text in a picture of this size: that of legends.
+    pub fn line_height(size: [u32; 2]) -> f32 {
+        line_height(size)
+    }
+
+    /// Draws them over a band of the picture, whose first row is `top`.
+    pub fn lay_on(&self, top: u32, band: &mut Image) {
+        let lines = self.annotations.iter().flat_map(|a| &a.lines);
+        for line in lines {
+            let width = (line.width * self.line).max(1.0);
+            if let Some(rim) = self.rim {
+                let wide = width + 2.0 * RIM_WIDTH * self.line;
+                stroke(band, top, &line.points, wide, rim, RIM);
+            }
+            stroke(band, top, &line.points, width, self.ink, 1.0);
+        }
+        // Labels are above all lines.
+        for annotation in self.annotations.iter().filter(|a| !a.label.is_empty()) {
+            let image = self.label(&annotation.label);
+            let corner = |axis: usize, size: u32| {
+                (annotation.label_at[axis] - f64::from(size) / 2.0).round() as i64
+            };
+            let (x, y) = (corner(0, image.width), corner(1, image.height));
+            band.lay(x, y - i64::from(top), &image);
+        }
+    }
+
+    fn label(&self, label: &[String]) -> Image {
+        let (line, text) = (self.line, Text::new(self.line));
+        let widest = label.iter().map(|row| text.width(row)).fold(0.0, f32::max);
+        let (width, height) = (widest + 0.7 * line, (1.2 * label.len() as f32 + 0.3) * line);
+        let mut image = Image::new(width.ceil() as u32, height.ceil() as u32);
+        if let Some(rim) = self.rim {
+            for y in 0..i64::from(image.height) {
+                for x in 0..i64::from(image.width) {
+                    image.blend(x, y, rim, RIM);
+                }
+            }
+        }
+        for (row, number) in label.iter().zip(0_u16..) {
+            let x = (width - text.width(row)) / 2.0;
+            let y = (0.15 + 1.2 * (f32::from(number) + 0.5)) * line;
+            text.draw(&mut image, x, y, row, self.ink);
+        }
+        image
+    }
+}
+
+/// Draws a line. Where its segments meet it is as opaque as elsewhere.
+fn stroke(band: &mut Image, top: u32, points: &[[f64; 2]], width: f32, color: Rgb, opacity: f32) {
+    let reach = f64::from(width) / 2.0 + 1.0;
+    let size = [band.width, band.height].map(f64::from);
+    let points = points.iter().map(|[x, y]| [*x, y - f64::from(top)]);
+    let points: Vec<[f64; 2]> = points.collect();
+    let Some(whole) = points
+        .iter()
+        .try_fold([f64::MAX, f64::MAX, f64::MIN, f64::MIN], |b, p| {
+            let known = p.iter().all(|n| n.is_finite());
+            known.then(|| {
+                [
+                    b[0].min(p[0]),
+                    b[1].min(p[1]),
+                    b[2].max(p[0]),
+                    b[3].max(p[1]),
+                ]
+            })
+        })
+    else {
+        return;
+    };
+    let [left, upper, right, lower] = inside(whole, reach, size);
+    if left >= right || upper >= lower {
+        return;
+    }
+    let row = right - left;
+    let mut covered = vec![0.0_f32; row * (lower - upper)];
+    for ends in points.windows(2) {
+        let [a, b] = [ends[0], ends[1]];
+        let bounds = [
+            a[0].min(b[0]),
+            a[1].min(b[1]),
+            a[0].max(b[0]),
+            a[1].max(b[1]),
+        ];
+        let [x0, y0, x1, y1] = inside(bounds, reach, size);
+        for y in y0..y1 {
+            for x in x0..x1 {
+                let away = distance([x as f64 + 0.5, y as f64 + 0.5], a, b) as f32;
+                let share = (width / 2.0 + 0.5 - away).clamp(0.0, 1.0);
+                let there = &mut covered[(y - upper) * row + x - left];
+                *there = there.max(share);
+            }
+        }
+    }
+    for (i, share) in covered.into_iter().enumerate() {
+        let (x, y) = (left + i % row, upper + i / row);
+        band.blend(x as i64, y as i64, color, share * opacity);
+    }
+}
+
+/// The pixels of an image of this size that are within `reach` of a box: left, top, right, bottom.
+fn inside([left, top, right, bottom]: [f64; 4], reach: f64, size: [f64; 2]) -> [usize; 4] {
+    [
+        (left - reach).clamp(0.0, size[0]) as usize,
+        (top - reach).clamp(0.0, size[1]) as usize,
+        (right + reach).clamp(0.0, size[0]).ceil() as usize,
+        (bottom + reach).clamp(0.0, size[1]).ceil() as usize,
+    ]
+}
+
+/// Distance of a point from a segment.
+fn distance(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (along, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = match square > 0.0 {
+        true => ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    (from[0] - share * along[0]).hypot(from[1] - share * along[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn annotations() -> Annotations {
+        let line = AnnotationLine {
+            points: vec![[10.0, 50.5], [50.0, 50.5], [90.0, 90.0]],
+            width: 0.2,
+        };
+        let annotation = Annotation {
+            lines: vec![line],
+            label: vec!["12 µm".into(), "path".into()],
+            label_at: [50.0, 20.0],
+        };
+        Annotations::new(vec![annotation], [100, 100], Some([255; 3]))
+    }
+
+    #[test]
+    fn lines_are_inked_and_labels_stand_out() {
+        let mut image = Image::new(100, 100);
+        image.pixels.fill(128);
+        annotations().lay_on(0, &mut image);
+        assert_eq!(image.at(30, 50), [20, 20, 20, 255]);
+        assert_eq!(image.at(95, 30)[..3], [128; 3], "away from all");
+        let rim = image.at(30, 48);
+        assert!(rim[0] > 140, "{rim:?}");
+        let dark = |y: u32| (20..80).filter(|&x| image.at(x, y)[0] < 150).count();
+        assert!((14..20).any(|y| dark(y) > 2) && (24..30).any(|y| dark(y) > 2));
+    }
+
+    #[test]
+    fn bands_are_parts_of_the_same_picture() {
+        let all = annotations();
+        let mut whole = Image::new(100, 100);
+        all.lay_on(0, &mut whole);
+        for top in [0, 40, 60] {
+            let mut band = Image::new(100, 40);
+            all.lay_on(top, &mut band);
+            let rows = &whole.pixels[400 * top as usize..][..400 * 40];
+            assert_eq!(band.pixels, rows, "{top}");
+        }
+    }
+
+    #[test]
+    fn what_is_outside_or_no_number_is_left_out() {
+        let line = |points: Vec<[f64; 2]>| Annotation {
+            lines: vec![AnnotationLine { points, width: 0.2 }],
+            ..Annotation::default()
+        };
+        let lines = vec![
+            line(vec![[f64::NAN, 2.0], [3.0, 4.0]]),
+            line(vec![[-500.0, -1e12], [1e15, -20.0]]),
+            line(vec![]),
+        ];
+        let mut image = Image::new(8, 8);
+        Annotations::new(lines, [8, 8], None).lay_on(0, &mut image);
+        assert!(image.pixels.iter().all(|&byte| byte == 0));
+    }
+}
