@@ -27,7 +27,7 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
     slider(ui, &mut look.least_width, 0.0..=8.0, Some(1), |slider| {
-        slider.text("neurites at least (px)")
+        slider.text("least width (px)")
     })
     .tip("Thin neurites are drawn this wide, for figures; 0: as they are");
     heading(ui, "Selection");
