@@ -11,6 +11,7 @@ mod info;
 mod inputs;
 mod kill;
 mod mesh;
+mod palettes;
 mod render;
 mod resume;
 mod streams;

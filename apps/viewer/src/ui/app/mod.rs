@@ -2,6 +2,7 @@
 
 mod loading;
 mod messages;
+mod palettes;
 mod saving;
 
 use std::path::PathBuf;
@@ -216,6 +217,8 @@ impl Viewer {
             Effect::Go(view) => self.motion.fly(&mut self.state, view),
             Effect::Quit => self.quits = true,
             Effect::Save(request) => self.save(request),
+            Effect::OpenPalette(path) => self.open_palette(&path),
+            Effect::SavePalette(path) => self.save_palette(&path),
         }
     }
 
