@@ -91,7 +91,8 @@ fn every_thing_has_a_picker_and_can_be_reset() {
     assert!(state(&mut window).document.look.own_colors.is_empty());
     let palette = Palette::default();
     assert!(shown(&mut window).contains(&("axon".into(), palette.of_type(2))));
-    // A picker opens, and what is dragged in it is one edit.
+    // What is dragged in a picker is one edit.
+    state(&mut window).history.end_joining();
     let edits = state(&mut window).history.names();
     set_look(&mut window, |look| {
         look.own_colors.set_named("axon", [1, 2, 3])

@@ -15,6 +15,10 @@ use crate::scene::stage::Stage;
 pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     let mut look = state.document.look.clone();
     let released = ui.input(|i| i.pointer.any_released());
+    if ui.input(|i| i.pointer.any_pressed()) {
+        // Two clicks are two edits, also if each changes something as it is released.
+        state.history.end_joining();
+    }
     colors(state, &mut look, stage.legend().is_bar(), ui);
     own_colors::show(&mut look, stage.content(), ui);
     heading(ui, "Shown");

@@ -32,7 +32,12 @@ pub(super) fn show(look: &mut Look, content: &SceneContent, ui: &mut Ui) {
             0 => RichText::new("These colors differ for the color-blind, too").weak(),
             _ => RichText::new(closest.to_string()).color(ui.visuals().warn_fg_color),
         };
-        ui.label(note).tip(why);
+        // The rows above may be wider than the panel, which cuts them off.
+        let room = ui.clip_rect().right() - ui.cursor().left() - 6.0;
+        ui.scope(|ui| {
+            ui.set_max_width(room.max(80.0));
+            ui.add(Label::new(note).wrap()).tip(why);
+        });
     }
     let reset = "Gives everything the colors of the palette, also what does not show now";
     if !look.own_colors.is_empty() && ui.button("Reset all colors").tip(reset).clicked() {
