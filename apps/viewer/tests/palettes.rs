@@ -95,10 +95,10 @@ fn every_thing_has_a_picker_and_can_be_reset() {
     state(&mut window).history.end_joining();
     let edits = state(&mut window).history.names();
     set_look(&mut window, |look| {
-        look.own_colors.set_named("axon", [1, 2, 3])
+        look.own_colors.set_named("axon", [1, 2, 3]);
     });
     set_look(&mut window, |look| {
-        look.own_colors.set_named("axon", [4, 5, 6])
+        look.own_colors.set_named("axon", [4, 5, 6]);
     });
     run(&mut window, Command::Undo);
     assert!(state(&mut window).document.look.own_colors.is_empty());
@@ -122,7 +122,7 @@ fn cells_and_kinds_of_a_circuit_have_own_colors() {
     });
     let (population, _) = shown(&mut window).first().expect("a population").clone();
     set_look(&mut window, |look| {
-        look.own_colors.set_named(&population, [9, 8, 7])
+        look.own_colors.set_named(&population, [9, 8, 7]);
     });
     assert_eq!(shown(&mut window), [(population, [9, 8, 7])]);
 }

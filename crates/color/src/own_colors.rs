@@ -216,7 +216,7 @@ impl From<Tables> for OwnColors {
 
 impl From<OwnColors> for Tables {
     fn from(own: OwnColors) -> Self {
-        let named = |(kind, color)| (TypeText(NeuriteKind(kind).name().into()), ColorText(color));
+        let named = |(kind, color)| (TypeText(NeuriteKind(kind).name()), ColorText(color));
         let colored = |(name, color)| (name, ColorText(color));
         Self {
             types: own.types.into_iter().map(named).collect(),
