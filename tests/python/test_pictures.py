@@ -32,6 +32,7 @@ def test_a_picture_is_an_array(cell: nt.Morphology) -> None:
 def test_pictures_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) -> None:
     cell.save(tmp_path / "cell.swc")
     read = nt.read(tmp_path / "cell.swc")
+    (tmp_path / "mine.toml").write_text('[types]\naxon = "#ff8800"\nbasal = "#00aa66"\n')
     for options, words in [
         ({}, []),
         ({"color_by": "radius", "scale_bar": True}, ["--color-by", "radius", "--scale-bar"]),
@@ -45,6 +46,12 @@ def test_pictures_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) 
             ["--eye", "0,20,200", "--target", "0,20,0", "--light=-1,1,1", "--ao", "0"],
         ),
         ({"lod": "exploration", "budget": 500}, ["--lod", "exploration", "--budget", "500"]),
+        ({"palette": "okabe-ito"}, ["--palette", "okabe-ito"]),
+        ({"palette": tmp_path / "mine.toml"}, ["--palette", str(tmp_path / "mine.toml")]),
+        (
+            {"palette": {"base": "okabe-ito", "axon": "#ff8800", "soma": "000", "background": "gray"}},
+            "--palette okabe-ito --set-color axon=#ff8800 --set-color soma=000 --background gray".split(),
+        ),
     ]:
         ours = nt.render(read, size=(200, 150), samples=4, **options)
         out = tmp_path / "theirs.png"
@@ -52,6 +59,23 @@ def test_pictures_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) 
         command += ["-o", str(out), "--size", "200x150", "--samples", "4", "--force", *words]
         subprocess.run(command, check=True)
         assert ours.to_png() == out.read_bytes(), options
+
+
+def test_colors_of_ones_own_are_checked(cell: nt.Morphology, tmp_path: Path) -> None:
+    alike = {"axon": "#d04248", "basal": "#48923e", "soma": "white"}
+    with pytest.warns(nt.NeurotessWarning, match="look alike with deuteranopia"):
+        nt.render(cell, palette=alike, **SMALL)
+    with pytest.warns(nt.NeurotessWarning, match="nothing in the picture is called 'L5'"):
+        nt.render(cell, palette={"L5": "#123456"}, **SMALL)
+    (tmp_path / "bad.toml").write_text("[types]\naxon = 3\n")
+    for palette, message in [
+        ("mine", "palette's file"),
+        (tmp_path / "bad.toml", "bad.toml:2: "),
+        ({"axon": (1, 0, 0)}, "'axon'"),
+        ({"axon": "reddish"}, "RRGGBB"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            nt.render(cell, palette=palette, **SMALL)  # type: ignore[arg-type]
 
 
 def test_several_cells_are_drawn_together(cell: nt.Morphology, samples: Path) -> None:

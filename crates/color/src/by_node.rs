@@ -4,11 +4,13 @@
 use std::collections::BTreeMap;
 
 use neurotess_circuit::{Attribute, Circuit, NodeRef, color, natural};
-use neurotess_render::color::{ColorTable, InstanceValues, Rgb};
+use neurotess_render::color::{InstanceValues, Rgb};
 use neurotess_render::overlay::Legend;
 use thiserror::Error;
 
-use crate::scheme::{Cell, ColorScheme, Coloring, NOTHING};
+use crate::categorical::{Distinct, categorical, first_values, painted};
+use crate::own_colors::{ColorTarget, ColoredThing};
+use crate::scheme::{Cell, ColorScheme, Coloring};
 
 /// A node and its circuit.
 #[derive(Clone, Copy, Debug)]
@@ -128,72 +130,42 @@ pub fn by_attribute(
     Ok(categorical(cells, &own, &names, attribute, scheme))
 }
 
-/// The colors given in a scene; none if no cell has one.
-pub fn given(cells: &[Cell<'_>], neurons: &[Option<Node<'_>>]) -> Option<Coloring> {
-    let mut colors: Vec<Rgb> = Vec::new();
-    let mut names: BTreeMap<String, Rgb> = BTreeMap::new();
+/// The colors given in a scene, or those that were chosen for its groups; none if no cell has one.
+pub fn given(
+    cells: &[Cell<'_>],
+    neurons: &[Option<Node<'_>>],
+    scheme: &ColorScheme,
+) -> Option<Coloring> {
+    let mut colors = Distinct::default();
+    let mut groups: BTreeMap<String, Rgb> = BTreeMap::new();
     let mut own = Vec::new();
     for neuron in neurons {
         let text = |attribute| neuron.and_then(|node| node.text(attribute));
         let rgb = text("color").as_deref().and_then(color);
-        own.push(rgb.map(|rgb| {
-            let known = colors.iter().position(|&other| other == rgb);
-            known.unwrap_or_else(|| {
-                colors.push(rgb);
-                colors.len() - 1
-            })
-        }));
-        if let (Some(rgb), Some(group)) = (rgb, text("group")) {
-            names.entry(group).or_insert(rgb);
+        let group = text("group");
+        let chosen = group
+            .as_ref()
+            .and_then(|group| scheme.own_colors.categories.get(group));
+        let rgb = rgb.map(|rgb| chosen.copied().unwrap_or(rgb));
+        own.push(rgb.map(|rgb| colors.index(rgb)));
+        if let (Some(rgb), Some(group)) = (rgb, group) {
+            groups.entry(group).or_insert(rgb);
         }
     }
-    let swatches = names.into_iter().map(|(name, rgb)| (rgb, name));
-    let legend = Legend::swatches("", swatches);
-    (!colors.is_empty()).then(|| painted(cells, &own, colors, legend))
-}
-
-fn categorical(
-    cells: &[Cell<'_>],
-    own: &[Option<usize>],
-    names: &[String],
-    thing: &str,
-    scheme: &ColorScheme,
-) -> Coloring {
-    let count = names.len().min(scheme.palette.distinct_count()).max(1);
-    let colors: Vec<Rgb> = (0..count).map(|i| scheme.palette.distinct(i)).collect();
-    let legend = if names.len() > count {
-        let title = format!("{} {thing}s, colors repeat", names.len());
-        Legend::swatches(&title, Vec::new())
-    } else {
-        let title = if thing == "neuron" { "" } else { thing };
-        let named = colors.iter().copied().zip(names.iter().cloned());
-        let none = own.contains(&None).then(|| (NOTHING, "none".to_owned()));
-        Legend::swatches(title, named.chain(none))
+    let things = groups.into_iter().map(|(group, color)| ColoredThing {
+        target: ColorTarget::Category(group),
+        color,
+    });
+    let things: Vec<ColoredThing> = things.collect();
+    let entries = things
+        .iter()
+        .map(|thing| (thing.color, thing.target.to_string()));
+    let legend = Legend::swatches("", entries);
+    let colored = Coloring {
+        things,
+        ..painted(cells, &own, colors.colors, legend)
     };
-    let own: Vec<Option<usize>> = own.iter().map(|number| number.map(|n| n % count)).collect();
-    painted(cells, &own, colors, legend)
-}
-
-fn painted(
-    cells: &[Cell<'_>],
-    own: &[Option<usize>],
-    colors: Vec<Rgb>,
-    legend: Legend,
-) -> Coloring {
-    let last = (colors.len().max(2) - 1) as f32;
-    let mut values = InstanceValues::default();
-    for number in own {
-        values.push(&[number.map_or(f32::NAN, |n| n as f32 / last)]);
-    }
-    Coloring {
-        color_keys: first_values(cells),
-        legend,
-        table: ColorTable {
-            scale: colors,
-            categories: vec![NOTHING],
-            values,
-        },
-    }
+    (!colored.table.scale.is_empty()).then_some(colored)
 }
 
 fn on_scale(
@@ -220,15 +192,11 @@ fn on_scale(
     coloring
 }
 
-/// Color keys by which every point has the first value of its neuron.
-pub(super) fn first_values(cells: &[Cell<'_>]) -> Vec<Vec<u32>> {
-    let points = cells.iter().map(|cell| cell.mesh.tracing.len());
-    points.map(|points| vec![0; points]).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::own_colors::OwnColors;
+    use crate::scheme::NOTHING;
     use neurotess_circuit::Population;
     use neurotess_render::color::Palette;
 
@@ -274,6 +242,7 @@ mod tests {
     fn scheme() -> ColorScheme {
         ColorScheme {
             palette: Palette::NeuroM,
+            own_colors: OwnColors::default(),
             background: None,
             scale: vec![[0; 3], [255; 3]],
             range: None,
@@ -339,9 +308,73 @@ mod tests {
         let indices = (0..30).map(|i| if i == 2 { 0 } else { Attribute::NONE });
         let indices = indices.collect();
         let circuit = circuit(vec![("color", Attribute::Text { library, indices })]);
-        let given = given(&[], &neurons(&circuit)).expect("colors");
+        let given = given(&[], &neurons(&circuit), &scheme()).expect("colors");
         assert_eq!(given.table.scale, [[16, 32, 48]]);
         let share = |i| if i == 2 { 0.0 } else { f32::NAN };
         assert_eq!(given.table.values, values((0..31).map(share)));
+    }
+    fn with_own(own: &[(&str, Rgb)]) -> ColorScheme {
+        let mut scheme = scheme();
+        for &(name, color) in own {
+            scheme.own_colors.set_named(name, color);
+        }
+        scheme
+    }
+
+    #[test]
+    fn own_colors_stand_out_of_those_that_repeat() {
+        let names: Vec<String> = (0..30).map(|i| format!("n{i}")).collect();
+        let scheme = with_own(&[("n17", [1, 2, 3])]);
+        let coloring = each(&[], &names, &scheme);
+        assert_eq!(coloring.things.len(), 30);
+        let entries = [([1, 2, 3], "n17".to_owned())];
+        let title = "30 neurons, colors repeat";
+        assert_eq!(coloring.legend, Legend::swatches(title, entries));
+        let count = Palette::NeuroM.distinct_count();
+        assert_eq!(coloring.table.scale.len(), count + 1);
+        let share = |i: usize| if i == 17 { count } else { i % count } as f32 / count as f32;
+        assert_eq!(coloring.table.values, values((0..30).map(share)));
+        // None repeats once all are chosen.
+        let own: Vec<(&str, Rgb)> = names
+            .iter()
+            .zip(0..)
+            .map(|(n, i)| (n.as_str(), [i, 0, 9]))
+            .collect();
+        assert_eq!(
+            each(&[], &names, &with_own(&own)).legend.entries().len(),
+            30
+        );
+    }
+
+    #[test]
+    fn kinds_and_groups_have_own_colors() {
+        let library = vec!["b".to_owned(), "a".to_owned(), "#102030".to_owned()];
+        let column = |of: fn(u32) -> u32| Attribute::Text {
+            library: library.clone(),
+            indices: (0..30).map(of).collect(),
+        };
+        let circuit = circuit(vec![("group", column(|i| i % 2)), ("color", column(|_| 2))]);
+        let scheme = with_own(&[("a", [1, 2, 3]), ("none", [4, 5, 6])]);
+        let kinds = by_attribute(&[], &neurons(&circuit), "group", &scheme).expect("there");
+        let listed = |coloring: &Coloring| -> Vec<(Rgb, String)> {
+            let things = coloring.things.iter();
+            things
+                .map(|thing| (thing.color, thing.target.to_string()))
+                .collect()
+        };
+        let name = |n: &str, rgb| (rgb, n.to_owned());
+        let b = name("b", Palette::NeuroM.distinct(1));
+        assert_eq!(
+            listed(&kinds),
+            [name("a", [1, 2, 3]), b, name("none", [4, 5, 6])]
+        );
+        assert_eq!(kinds.legend.entries(), listed(&kinds));
+        assert_eq!(kinds.table.categories, [[4, 5, 6]]);
+        let given = given(&[], &neurons(&circuit), &scheme).expect("colors");
+        assert_eq!(
+            listed(&given),
+            [name("a", [1, 2, 3]), name("b", [16, 32, 48])]
+        );
+        assert_eq!(given.table.scale, [[16, 32, 48], [1, 2, 3]]);
     }
 }

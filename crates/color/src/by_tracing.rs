@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use neurotess_mesh::{Role, TracingPoint};
 use neurotess_morphology::{Morphology, NeuriteKind, shape};
-use neurotess_render::color::{ColorTable, Rgb, category, fraction};
+use neurotess_render::color::{ColorTable, category, fraction};
 use neurotess_render::overlay::Legend;
 
+use crate::own_colors::ColoredThing;
 use crate::path_distance::path_distances;
 use crate::scheme::{Cell, ColorScheme, Coloring};
 
@@ -93,13 +94,18 @@ fn by_type(cells: &[Cell<'_>], scheme: &ColorScheme) -> Coloring {
         let points = cell.mesh.tracing.iter();
         points.map(|point| category(kinds[&kind(point)])).collect()
     };
-    let categories: Vec<Rgb> = kinds.keys().map(|&kind| scheme.of_type(kind)).collect();
-    let names = kinds
+    let things: Vec<ColoredThing> = kinds
         .keys()
-        .map(|&kind| NeuriteKind(kind).name().replace('_', " "));
+        .map(|&kind| scheme.thing_of_type(kind))
+        .collect();
+    let entries = things
+        .iter()
+        .map(|thing| (thing.color, thing.target.to_string()));
+    let categories = things.iter().map(|thing| thing.color).collect();
     Coloring {
         color_keys: cells.iter().map(color_keys).collect(),
-        legend: Legend::swatches("", categories.iter().copied().zip(names)),
+        legend: Legend::swatches("", entries),
+        things,
         table: ColorTable {
             scale: Vec::new(),
             categories,
@@ -143,10 +149,11 @@ fn categorical(
         color_keys.push(cell.mesh.tracing.iter().map(of_point).collect());
         next += numbers.iter().max().map_or(0, |most| most + 1);
     }
-    let soma = scheme.of_type(1);
+    let soma = scheme.thing_of_type(NeuriteKind::SOMA.0);
     let names: Vec<String> = (1..=next).map(|n| format!("{thing} {n}")).collect();
     let mut coloring = listed(color_keys, &names, thing, scheme);
-    coloring.table.categories.insert(0, soma);
+    coloring.table.categories.insert(0, soma.color);
+    coloring.things.insert(0, soma);
     coloring
 }
 
@@ -157,28 +164,17 @@ fn listed(
     thing: &str,
     scheme: &ColorScheme,
 ) -> Coloring {
-    let categories: Vec<Rgb> = (0..names.len())
-        .map(|i| scheme.palette.distinct(i))
-        .collect();
-    let mut entries: Vec<(Rgb, String)> = categories
-        .iter()
-        .copied()
-        .zip(names.iter().cloned())
-        .collect();
-    let title = if entries.len() > scheme.palette.distinct_count() {
-        entries.clear();
-        format!("{} {thing}s, colors repeat", names.len())
-    } else {
-        String::new()
-    };
+    let things = scheme.distinct(names);
+    let (title, entries) = scheme.listed(&things, "", &format!("{thing}s"));
     Coloring {
         color_keys,
         legend: Legend::swatches(&title, entries),
         table: ColorTable {
             scale: Vec::new(),
-            categories,
+            categories: things.iter().map(|thing| thing.color).collect(),
             ..ColorTable::default()
         },
+        things,
     }
 }
 
@@ -223,9 +219,10 @@ fn continuous(
         ),
         table: ColorTable {
             scale: scheme.scale.clone(),
-            categories: vec![scheme.of_type(1)],
+            categories: vec![scheme.of_type(NeuriteKind::SOMA.0)],
             ..ColorTable::default()
         },
+        things: vec![scheme.thing_of_type(NeuriteKind::SOMA.0)],
     }
 }
 
@@ -248,9 +245,10 @@ mod tests {
     use neurotess_render::color::Palette;
 
     use super::*;
+    use crate::own_colors::{ColorTarget, OwnColors};
 
-    /// A stem far thicker than the rest of a neurite, and where the scale ends.
-    fn legend(by: ColorBy) -> Legend {
+    /// Colors of a stem far thicker than the rest of a neurite.
+    fn colored(by: ColorBy, own_colors: OwnColors) -> Coloring {
         let row = |i: i32| format!("{i} 3 0 {} 0 {} {}\n", 10 * i, 0.5, i - 1);
         let text: String = ["1 1 0 0 0 5 -1\n".into(), "2 3 0 20 0 4 1\n".into()]
             .into_iter()
@@ -266,11 +264,36 @@ mod tests {
         };
         let scheme = ColorScheme {
             palette: Palette::NeuroM,
+            own_colors,
             background: None,
             scale: vec![[0; 3], [255; 3]],
             range: None,
         };
-        coloring(&[cell], by, &scheme).legend
+        coloring(&[cell], by, &scheme)
+    }
+
+    #[test]
+    fn own_colors_are_in_the_table_the_legend_and_the_list() {
+        let mut own = OwnColors::default();
+        own.set_named("basal dendrite", [1, 2, 3]);
+        own.set_named("neurite 1", [4, 5, 6]);
+        own.set_named("soma", [7, 8, 9]);
+        let types = colored(ColorBy::Type, own.clone());
+        assert_eq!(types.table.categories, [[7, 8, 9], [1, 2, 3]]);
+        let legend = [
+            ([7, 8, 9], "soma".into()),
+            ([1, 2, 3], "basal dendrite".into()),
+        ];
+        assert_eq!(types.legend.entries(), legend);
+        assert_eq!(types.things[1].target, ColorTarget::Type(3));
+        let neurites = colored(ColorBy::Neurite, own.clone());
+        assert_eq!(neurites.table.categories, [[7, 8, 9], [4, 5, 6]]);
+        assert_eq!(neurites.legend.entries(), [([4, 5, 6], "neurite 1".into())]);
+        // Somata on a scale of numbers have no entry in the legend.
+        let numbers = colored(ColorBy::PathDistance, own);
+        assert_eq!(numbers.table.categories, [[7, 8, 9]]);
+        assert_eq!(numbers.things[0].target, ColorTarget::Type(1));
+        assert!(numbers.legend.entries().is_empty());
     }
 
     #[test]
@@ -278,6 +301,7 @@ mod tests {
         let scale = vec![[0; 3], [255; 3]];
         let bar = |title, unit, range, above| Legend::bar(title, unit, scale.clone(), range, above);
         let radii = bar("radius", "µm", [0.5, 0.5 + 1.0], true);
+        let legend = |by| colored(by, OwnColors::default()).legend;
         assert_eq!(legend(ColorBy::Radius), radii);
         let orders = bar("branch order", "", [0.0, 1.0], false);
         assert_eq!(legend(ColorBy::BranchOrder), orders);

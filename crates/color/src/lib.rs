@@ -3,11 +3,16 @@
 //! Color keys belong to a cell and are shared by all neurons that show it. What differs between
 //! neurons of one cell is in the table's values: a color for each ([`each`], [`by_attribute`],
 //! [`given`]), or values of a recording ([`Recording`]).
+//!
+//! Colors are those of a named palette, over which one may have [`OwnColors`], also from a [`PaletteFile`].
+//! [`closest`] says whether those of a legend can be told apart.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "circuit")]
 mod by_node;
 mod by_tracing;
+#[cfg(feature = "circuit")]
+mod categorical;
 #[cfg(feature = "circuit")]
 mod compartments;
 #[cfg(feature = "circuit")]
@@ -16,6 +21,8 @@ mod cut;
 mod film;
 #[cfg(feature = "circuit")]
 mod markers;
+mod own_colors;
+mod palette_file;
 mod path_distance;
 #[cfg(feature = "circuit")]
 mod recording;
@@ -24,6 +31,7 @@ mod report_frame;
 mod scheme;
 #[cfg(feature = "circuit")]
 mod visible;
+mod vision;
 
 #[cfg(feature = "circuit")]
 pub use by_node::{NoAttribute, Node, attributes, by_attribute, each, given};
@@ -34,6 +42,8 @@ pub use cut::{cuts, with_middles};
 pub use film::{Film, FilmError};
 #[cfg(feature = "circuit")]
 pub use markers::{MarkerError, MarkerSet, SynapseOptions, points, synapses};
+pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
+pub use palette_file::{PaletteError, PaletteFile};
 pub use path_distance::path_distances;
 #[cfg(feature = "circuit")]
 pub use recording::{DECAY, Recording, RecordingError};
@@ -42,3 +52,4 @@ pub use report_frame::ReportFrame;
 pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};
 #[cfg(feature = "circuit")]
 pub use visible::{VisibleValues, fractions};
+pub use vision::{ClosestColors, LEAST_DIFFERENCE, Vision, closest, difference};

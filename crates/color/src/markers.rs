@@ -11,6 +11,7 @@ use neurotess_render::color::{CATEGORY_BIT, Rgb, category};
 use neurotess_render::overlay::Legend;
 use neurotess_render::{BoundingSphere, Marker};
 
+use crate::own_colors::{ColorTarget, ColoredThing};
 use crate::scheme::{ColorScheme, Coloring, NOTHING};
 
 /// Which synapses are shown, and what their colors tell.
@@ -35,6 +36,8 @@ pub struct MarkerSet {
     pub legend: Legend,
     /// How many were left out, because their cell is not drawn.
     pub left_out: usize,
+    /// What has a color that one may set.
+    things: Vec<ColoredThing>,
     /// Whether they lie on cells that are drawn.
     on_cells: bool,
 }
@@ -131,7 +134,7 @@ pub fn synapses(
         Some(name) => by_number(markers, &values, name, scheme),
         None => {
             let names = chosen.iter().map(|edges| edges.name.clone());
-            by_name(markers, names.collect())
+            by_name(markers, names.collect(), scheme)
         }
     };
     (set.left_out, set.on_cells) = (left_out, true);
@@ -155,7 +158,11 @@ pub fn points(
     let markers: Vec<Marker> = table.positions.iter().map(marker).collect();
     let Some(name) = property else {
         let stem = std::path::Path::new(file).file_stem().unwrap_or_default();
-        return Ok(by_name(markers, vec![stem.to_string_lossy().into_owned()]));
+        return Ok(by_name(
+            markers,
+            vec![stem.to_string_lossy().into_owned()],
+            scheme,
+        ));
     };
     let column = table.columns.iter().find(|(column, _)| column == name);
     let (_, values) = column.ok_or_else(|| MarkerError::NoNumbers {
@@ -216,14 +223,22 @@ fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
     }
 }
 
-/// Color i for the markers of category i.
-fn by_name(markers: Vec<Marker>, names: Vec<String>) -> MarkerSet {
-    let colors: Vec<Rgb> = (0..names.len()).map(color).collect();
+/// Color i for the markers of category i, or the own color of its name.
+fn by_name(markers: Vec<Marker>, names: Vec<String>, scheme: &ColorScheme) -> MarkerSet {
+    let targets = names.iter().cloned().map(ColorTarget::Category);
+    let targets: Vec<ColorTarget> = targets.collect();
+    let own = targets.iter().map(|target| scheme.own_colors.get(target));
+    let own = own.enumerate().map(|(i, own)| own.unwrap_or(color(i)));
+    let colors: Vec<Rgb> = own.collect();
+    let things = targets.into_iter().zip(colors.iter().copied());
+    let things = things.map(|(target, color)| ColoredThing { target, color });
+    let things = things.collect();
     let legend = Legend::swatches("", colors.iter().copied().zip(names));
     MarkerSet {
         markers,
         colors,
         legend,
+        things,
         left_out: 0,
         on_cells: false,
     }
@@ -267,6 +282,7 @@ fn by_number(
         legend: Legend::bar(name, "", scheme.scale.clone(), range, more),
         markers,
         colors,
+        things: Vec::new(),
         left_out: 0,
         on_cells: false,
     }
@@ -318,6 +334,7 @@ impl Coloring {
         for marker in &mut set.markers {
             marker.color_key += first as u32;
         }
+        self.things.extend(set.things.iter().cloned());
         self.legend = self.legend.clone().with_below(set.legend.clone());
     }
 }
@@ -334,6 +351,7 @@ mod tests {
             background: None,
             scale: ColorMap::Viridis.scale(),
             range: None,
+            own_colors: crate::OwnColors::default(),
         }
     }
 
@@ -373,6 +391,7 @@ mod tests {
                 ..Default::default()
             },
             legend: Legend::swatches("", []),
+            things: Vec::new(),
         };
         coloring.add_markers(&mut set);
         let categories = &coloring.table.categories;

@@ -19,7 +19,7 @@ use neurotess_circuit::{
 use neurotess_render::color::category;
 use thiserror::Error;
 
-use crate::by_node::first_values;
+use crate::categorical::first_values;
 use crate::compartments::{matched, on_cell};
 use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
 use crate::scheme::{Cell, ColorScheme, Coloring};

@@ -5,6 +5,8 @@ use neurotess_morphology::{Morphology, NeuriteKind};
 use neurotess_render::color::{ColorTable, Palette, Rgb};
 use neurotess_render::overlay::Legend;
 
+use crate::own_colors::{ColorTarget, ColoredThing, OwnColors};
+
 /// A cell to color.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell<'c> {
@@ -25,6 +27,9 @@ pub struct Coloring {
     pub table: ColorTable,
     /// The legend.
     pub legend: Legend,
+    /// What has a color that can be chosen, in the order of the legend, also where that names none
+    /// because there are too many.
+    pub things: Vec<ColoredThing>,
 }
 
 /// The colors that a coloring uses.
@@ -32,6 +37,8 @@ pub struct Coloring {
 pub struct ColorScheme {
     /// Colors of types and other categories.
     pub palette: Palette,
+    /// Colors that are not the palette's.
+    pub own_colors: OwnColors,
     /// The background, so that somata are not drawn black on black.
     pub background: Option<Rgb>,
     /// Colors of numbers.
@@ -56,6 +63,7 @@ impl ColorScheme {
         Coloring {
             color_keys,
             legend: Legend::bar(title, unit, self.scale.clone(), range, false),
+            things: Vec::new(),
             table: ColorTable {
                 scale: self.scale.clone(),
                 categories: vec![NOTHING],
@@ -65,9 +73,51 @@ impl ColorScheme {
     }
 
     pub(crate) fn of_type(&self, kind: i32) -> Rgb {
+        if let Some(&own) = self.own_colors.types.get(&kind) {
+            return own;
+        }
         match NeuriteKind(kind) {
             NeuriteKind::SOMA => self.palette.of_soma(self.background),
             _ => self.palette.of_type(kind),
         }
+    }
+
+    /// A type with its color.
+    pub(crate) fn thing_of_type(&self, kind: i32) -> ColoredThing {
+        ColoredThing {
+            target: ColorTarget::Type(kind),
+            color: self.of_type(kind),
+        }
+    }
+
+    /// Different colors for things with these names, as far as the palette has them.
+    pub(crate) fn distinct(&self, names: &[String]) -> Vec<ColoredThing> {
+        let thing = |(index, name): (usize, &String)| {
+            let target = ColorTarget::Category(name.clone());
+            let own = self.own_colors.get(&target);
+            ColoredThing {
+                color: own.unwrap_or_else(|| self.palette.distinct(index)),
+                target,
+            }
+        };
+        names.iter().enumerate().map(thing).collect()
+    }
+
+    /// What the legend lists of things that have [`ColorScheme::distinct`] colors, and its title.
+    /// If colors repeat, only those that were chosen mean something.
+    pub(crate) fn listed(
+        &self,
+        things: &[ColoredThing],
+        title: &str,
+        plural: &str,
+    ) -> (String, Vec<(Rgb, String)>) {
+        let is_own = |thing: &&ColoredThing| self.own_colors.get(&thing.target).is_some();
+        let entry = |thing: &ColoredThing| (thing.color, thing.target.to_string());
+        let repeat = things.len() > self.palette.distinct_count();
+        if repeat && !things.iter().all(|thing| is_own(&thing)) {
+            let title = format!("{} {plural}, colors repeat", things.len());
+            return (title, things.iter().filter(is_own).map(entry).collect());
+        }
+        (title.to_owned(), things.iter().map(entry).collect())
     }
 }

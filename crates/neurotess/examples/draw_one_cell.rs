@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
-use neurotess::coloring::{Cell, ColorBy, ColorScheme, coloring};
+use neurotess::coloring::{Cell, ColorBy, ColorScheme, OwnColors, coloring};
 use neurotess::formats::{ReadOptions, read};
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::refine::{LodCriterion, RefineOptions};
@@ -26,6 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let scheme = ColorScheme {
         palette: Palette::NeuroM,
+        own_colors: OwnColors::default(),
         background: Some([255; 3]),
         scale: ColorMap::default().scale(),
         range: None,

@@ -12,6 +12,7 @@ mod inputs;
 mod kill;
 mod markers;
 mod mesh;
+mod palettes;
 mod render;
 mod resume;
 mod streams;

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::coloring::{self, Cell, ColorScheme, Coloring, Node, Recording, RecordingError};
+use neurotess::coloring::{
+    self, Cell, ColorScheme, Coloring, Node, OwnColors, Recording, RecordingError,
+};
 use neurotess::generate::generate;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
 use rayon::prelude::*;
@@ -39,6 +41,7 @@ pub(crate) struct ColorSubject {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColorStyle {
     palette: Palette,
+    own: OwnColors,
     map: ColorMap,
     trim: bool,
     background: Rgb,
@@ -64,6 +67,7 @@ impl ColorInputs {
             },
             style: ColorStyle {
                 palette: look.palette,
+                own: look.own_colors.clone(),
                 map: look.color_map,
                 trim: look.trim_map,
                 background: look.background,
@@ -78,6 +82,7 @@ pub(crate) fn color_scheme(look: &Look) -> ColorScheme {
     let background = Some(look.background);
     ColorScheme {
         palette: look.palette,
+        own_colors: look.own_colors.clone(),
         background,
         scale: match look.trim_map {
             true => look.color_map.scale_before(look.background),

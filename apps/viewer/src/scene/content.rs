@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use neurotess::coloring::{Coloring, Recording};
+use neurotess::coloring::{ClosestColors, Coloring, Recording, closest};
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
 use neurotess::render::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
@@ -41,11 +41,13 @@ pub(crate) struct SceneContent {
     pub(crate) revision: Revision,
     pub(crate) sources: Vec<SceneTemplate>,
     pub(crate) instances: Vec<SceneInstance>,
-    /// Color keys, which are on the device.
+    /// Color keys, which are on the device, and the things that have colors.
     pub(crate) coloring: Arc<Coloring>,
     /// The current colors of the keys.
     pub(crate) table: ColorTable,
     pub(crate) legend: Legend,
+    /// The colors of the legend that are closest to one another.
+    pub(crate) closest: Option<ClosestColors>,
     /// A recording, with the range of all its values.
     pub(crate) recording: Option<(Arc<Recording>, [f32; 2])>,
 }
@@ -67,6 +69,7 @@ impl SceneContent {
             instances,
             table: coloring.table.clone(),
             legend: coloring.legend.clone(),
+            closest: closest(coloring.legend.entries()),
             coloring: Arc::new(coloring),
             recording,
         }
@@ -77,6 +80,7 @@ impl SceneContent {
     /// Takes the colors of other content that has the same meshes and color keys.
     pub(crate) fn recolor(&mut self, other: Self) {
         (self.table, self.legend) = (other.table, other.legend);
+        (self.coloring, self.closest) = (other.coloring, other.closest);
         self.recording = other.recording;
     }
 }

@@ -43,7 +43,10 @@ impl FilePanel {
                 let name = format!("session.{}", session::EXTENSION);
                 folder.join(name).display().to_string()
             }
-            (FilePurpose::Open | FilePurpose::Report, _) => String::new(),
+            (FilePurpose::SavePalette, _) => folder.join("palette.toml").display().to_string(),
+            (FilePurpose::Open | FilePurpose::Report | FilePurpose::OpenPalette, _) => {
+                String::new()
+            }
         };
         let mut panel = Self {
             purpose,
@@ -91,15 +94,17 @@ impl FilePanel {
         let name = path.file_name()?.to_string_lossy().into_owned();
         let data = fs::metadata(path).ok()?;
         let is_folder = data.is_dir();
-        let json = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let is = |extension| {
+            let own = path.extension();
+            own.is_some_and(|e| e.eq_ignore_ascii_case(extension))
+        };
         let wanted = match self.purpose {
             FilePurpose::Open => {
-                is_folder || find::is_readable(path) || session::is_session(path) || json
+                is_folder || find::is_readable(path) || session::is_session(path) || is("json")
             }
             FilePurpose::Report => is_folder || find::is_hdf5(path),
             FilePurpose::SaveSession => is_folder || session::is_session(path),
+            FilePurpose::OpenPalette | FilePurpose::SavePalette => is_folder || is("toml"),
         };
         wanted.then(|| Entry {
             path: path.to_path_buf(),
@@ -116,6 +121,8 @@ impl FilePanel {
             FilePurpose::Open => "Open tracings, folders, circuits or a session",
             FilePurpose::Report => "Open a report or spikes of a simulation",
             FilePurpose::SaveSession => "Save the session",
+            FilePurpose::OpenPalette => "Open a palette",
+            FilePurpose::SavePalette => "Save the palette",
         };
         let mut done = None;
         let mut stays = *open;
@@ -161,10 +168,10 @@ impl FilePanel {
         }
     }
 
-    /// Sets the typed path to the current folder. A session keeps its name.
+    /// Sets the typed path to the current folder. What is saved keeps its name.
     fn type_here(&mut self) {
         match (self.purpose, Path::new(&self.typed).file_name()) {
-            (FilePurpose::SaveSession, Some(name)) => {
+            (purpose, Some(name)) if saves(purpose) => {
                 self.typed = self.folder.join(name).display().to_string();
             }
             _ => self.typed.clear(),
@@ -202,7 +209,8 @@ impl FilePanel {
             let says = match (self.begun.is_empty(), self.purpose) {
                 (false, _) => "No name here begins like that",
                 (true, FilePurpose::SaveSession) => "No folder and no session here yet",
-                (true, FilePurpose::Open | FilePurpose::Report) => {
+                (true, FilePurpose::SavePalette) => "No folder and no palette here yet",
+                (true, FilePurpose::Open | FilePurpose::Report | FilePurpose::OpenPalette) => {
                     "No folder and no file to open here"
                 }
             };
@@ -226,9 +234,7 @@ impl FilePanel {
                             ui.weak(size(entry.size));
                         }
                         if response.double_clicked()
-                            || (response.clicked()
-                                && entry.is_folder
-                                && self.purpose == FilePurpose::SaveSession)
+                            || (response.clicked() && entry.is_folder && saves(self.purpose))
                         {
                             enter = Some(entry.clone());
                         } else if response.clicked() {
@@ -271,9 +277,9 @@ impl FilePanel {
         ui.horizontal(|ui| {
             let many = self.chosen.len();
             let name = match (self.purpose, many) {
-                (FilePurpose::SaveSession, _) => "Save".to_owned(),
-                (FilePurpose::Open, 0 | 1) | (FilePurpose::Report, _) => "Open".to_owned(),
-                (FilePurpose::Open, many) => format!("Open {many}"),
+                (FilePurpose::Open, 2..) => format!("Open {many}"),
+                (purpose, _) if saves(purpose) => "Save".to_owned(),
+                _ => "Open".to_owned(),
             };
             let typed = PathBuf::from(self.typed.trim());
             let enabled = many > 1 || !typed.as_os_str().is_empty();
@@ -284,7 +290,7 @@ impl FilePanel {
                 } else {
                     vec![paths::whole(&typed, &self.folder)]
                 };
-                let saves = self.purpose == FilePurpose::SaveSession;
+                let saves = saves(self.purpose);
                 match paths.iter().find(|p| !saves && !p.exists()) {
                     Some(missing) => self.said = format!("There is no {}", missing.display()),
                     None => *done = Some(self.command(paths)),
@@ -310,8 +316,20 @@ impl FilePanel {
                 };
                 Command::SaveSession(named)
             }
+            FilePurpose::OpenPalette => Command::OpenPalette(paths.pop().unwrap_or_default()),
+            FilePurpose::SavePalette => {
+                let path = paths.pop().unwrap_or_default();
+                Command::SavePalette(match path.extension() {
+                    Some(_) => path,
+                    None => path.with_extension("toml"),
+                })
+            }
         }
     }
+}
+
+fn saves(purpose: FilePurpose) -> bool {
+    matches!(purpose, FilePurpose::SaveSession | FilePurpose::SavePalette)
 }
 
 fn choose(chosen: &mut Vec<PathBuf>, path: &Path, adds: bool) {

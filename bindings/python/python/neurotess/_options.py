@@ -20,8 +20,8 @@ def arguments(options: Mapping[str, Any]) -> list[str]:
             continue
         if value is True:
             words.append(flag)
-        elif name == "ring":
-            words += [f"{flag}={word(neurite)}={word(at)}" for neurite, at in value.items()]
+        elif name in ("ring", "set_color"):
+            words += [f"{flag}={word(of)}={word(to)}" for of, to in value.items()]
         elif isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__"):
             words.append(f"{flag}={word(value)}")
         else:

@@ -106,7 +106,25 @@ def _drawing(what: Any, options: dict[str, Any], adapter: str | None) -> _neurot
         raise RenderError("this build draws no pictures: build it with the feature 'render'")
     quiet_adapters()
     cells, circuit = _sources(what)
-    return _neurotess.Drawing(cells, circuit, _options.arguments(options), adapter)
+    return _neurotess.Drawing(cells, circuit, _options.arguments(_with_colors(options)), adapter)
+
+
+def _with_colors(options: dict[str, Any]) -> dict[str, Any]:
+    """The options with a palette of one's own as those of the command line."""
+    from collections.abc import Mapping
+
+    palette = options.get("palette")
+    if not isinstance(palette, Mapping):
+        return options
+    own = {str(name): color for name, color in palette.items()}
+    for name, color in own.items():
+        if not isinstance(color, str):
+            raise ValueError(f"the color of {name!r} is {color!r}: text is needed, as in '#ff8800'")
+    background = options.get("background") or own.get("background")
+    if options.get("transparent"):
+        background = None
+    colors = {name: color for name, color in own.items() if name not in ("base", "background")}
+    return {**options, "palette": own.get("base"), "background": background, "set_color": colors}
 
 
 def render(
@@ -118,7 +136,7 @@ def render(
     report: str | os.PathLike[str] | None = None,
     time: float | None = None,
     range: tuple[float, float] | None = None,
-    palette: str | None = None,
+    palette: str | os.PathLike[str] | Mapping[str, str] | None = None,
     colormap: str | None = None,
     trim_colormap: bool = False,
     legend: bool = True,
@@ -163,7 +181,9 @@ def render(
     `legend`, `scale_bar` (True, or a length in µm).
 
     Colors: `color_by`; of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
-    `time` (ms); `range`, `palette`, `colormap`, `trim_colormap`.
+    `time` (ms); `range`, `colormap`, `trim_colormap`; `palette`: a name, a file, or colors of your own by the name
+    of a type or of anything else in the legend, as in ``{"axon": "#ff8800", "L5_PC": "#2ca02c"}``, over those of the
+    palette called ``"base"``.
 
     Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees).
 

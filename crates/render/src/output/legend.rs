@@ -55,6 +55,14 @@ impl Legend {
         }
     }
 
+    /// Colors with names; none if it has a scale.
+    pub fn entries(&self) -> &[(Rgb, String)] {
+        match &self.kind {
+            Kind::Swatches(entries) => entries,
+            Kind::Bar { .. } => &[],
+        }
+    }
+
     /// Whether it has a scale of numbers.
     pub fn is_bar(&self) -> bool {
         matches!(self.kind, Kind::Bar { .. })

@@ -359,7 +359,8 @@ const DISTINCT: [Rgb; 10] = [
     [130, 124, 120],
 ];
 
-/// Okabe & Ito, Color universal design, 2008; without black.
+/// Okabe & Ito, Color universal design, 2008; without black, and with a yellow that is a shade darker, for
+/// white backgrounds. A darker one looks like the orange with deuteranopia.
 const OKABE_ITO: [Rgb; 7] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -367,7 +368,7 @@ const OKABE_ITO: [Rgb; 7] = [
     [204, 121, 167],
     [86, 180, 233],
     [230, 159, 0],
-    [200, 188, 50],
+    [220, 208, 60],
 ];
 
 #[cfg(test)]

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use neurotess::coloring::OwnColors;
 use neurotess::render::MOST_BUDGET;
-use neurotess::render::color::{ColorMap, Palette};
+use neurotess::render::color::{ColorMap, Palette, Rgb};
 
+use super::palette::{PaletteArg, PaletteParser, SetColor};
 use super::times::{MOST, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};
 use crate::options::cells::CellArgs;
@@ -25,6 +27,7 @@ use crate::report::usage;
   neurotess render cell.swc -o cell.png --color-by depth --colormap magma --scale-bar
   neurotess render cell.swc -o close.png --eye 0,20,80 --target 0,20,0 --wireframe --level 3
   neurotess render a.swc b.swc -o both.png --color-by neuron --transparent
+  neurotess render cell.swc -o own.png --palette mine.toml --set-color axon=#ff8800
   neurotess render cell.swc -o turn.png --turntable --frames 120
   neurotess render circuit/ -o circuit.png --node-set Layer5 --view iso
   neurotess render circuit/ -o all.png --lod exploration --budget 1000000
@@ -54,14 +57,10 @@ pub(crate) struct RenderArgs {
     #[arg(long, default_value_t = 16, value_name = "N", help_heading = "Picture",
           allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) samples: u32,
-    /// Color behind everything: a name (white, black, gray), RRGGBB or RGB
-    #[arg(
-        long,
-        default_value = "white",
-        value_name = "COLOR",
-        help_heading = "Picture"
-    )]
-    pub(crate) background: RgbArg,
+    /// Color behind everything: a name (white, black, gray), RRGGBB or RGB [default: that of the
+    /// palette's file, or white]
+    #[arg(long, value_name = "COLOR", help_heading = "Picture")]
+    pub(crate) background: Option<RgbArg>,
     /// Leave the background out
     #[arg(long, conflicts_with = "background", help_heading = "Picture")]
     pub(crate) transparent: bool,
@@ -89,15 +88,19 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = range,
           allow_hyphen_values = true, help_heading = "Colors")]
     pub(crate) range: Option<[f32; 2]>,
-    /// Colors of types and of things told apart
+    /// Colors of types and of things told apart: a name, or a file with colors of your own
     #[arg(
         long,
         default_value = "neurom",
-        value_name = "NAME",
-        value_parser = palettes(),
+        value_name = "NAME|FILE",
+        value_parser = PaletteParser,
         help_heading = "Colors"
     )]
-    pub(crate) palette: Palette,
+    pub(crate) palette: PaletteArg,
+    /// Color of a type (axon, basal, custom_7, …) or of anything else in the legend, before that of the
+    /// palette, as in axon=#ff8800; repeatable
+    #[arg(long, value_name = "NAME=COLOR", help_heading = "Colors")]
+    pub(crate) set_color: Vec<SetColor>,
     /// Colors of numbers
     #[arg(
         long,
@@ -228,6 +231,27 @@ pub(crate) struct RenderArgs {
 }
 
 impl RenderArgs {
+    /// The palette of all that has no color of its own.
+    pub(crate) fn base_palette(&self) -> Palette {
+        self.palette.0.base.unwrap_or_default()
+    }
+
+    /// Colors of one's own: those of the file, and over them those of the options.
+    pub(crate) fn own_colors(&self) -> OwnColors {
+        let mut own = self.palette.0.own_colors.clone();
+        for set in &self.set_color {
+            own.set_named(&set.name, set.color);
+        }
+        own
+    }
+
+    /// The background: that of the options, that of the palette, or white; none if it is left out.
+    pub(crate) fn background(&self) -> Option<Rgb> {
+        let option = self.background.map(|color| color.0);
+        let color = option.or(self.palette.0.background);
+        (!self.transparent).then_some(color.unwrap_or([255; 3]))
+    }
+
     /// Least width (pixels) of neurites; 0: as wide as they are.
     pub(crate) fn least_width(&self) -> f32 {
         self.least_width.unwrap_or(0.0) as f32
@@ -266,13 +290,7 @@ impl RenderArgs {
     }
 }
 
-/// Palettes by name; shells complete them.
-fn palettes() -> impl TypedValueParser<Value = Palette> {
-    PossibleValuesParser::new(Palette::ALL.map(Palette::name))
-        .try_map(|name| name.parse::<Palette>())
-}
-
-/// Color maps by name, likewise.
+/// Color maps by name; shells complete them.
 fn color_maps() -> impl TypedValueParser<Value = ColorMap> {
     let names = ColorMap::ALL.map(ColorMap::name);
     PossibleValuesParser::new(names).try_map(|name| name.parse::<ColorMap>())

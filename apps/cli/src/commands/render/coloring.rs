@@ -4,7 +4,8 @@ use std::path::Path;
 
 use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, Recording, by_attribute,
+    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, Recording,
+    by_attribute,
 };
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -13,6 +14,7 @@ use neurotess::render::{Gpu, Image, StaticPicture};
 use super::args::{ColorBy, RenderArgs};
 use super::cells::MeshedCell;
 use super::circuit_instances::CircuitInstances;
+use super::color_check;
 use super::markers;
 use super::times::{self, time_text};
 use crate::report::Reporter;
@@ -27,6 +29,8 @@ pub(crate) struct PictureColors {
     series: Option<RecordedSeries>,
     /// Least width (pixels) of neurites, which the legend tells; 0: none.
     least_width: f32,
+    /// The colors of the legend that are closest to one another.
+    pub(crate) closest: Option<ClosestColors>,
 }
 
 /// A recording, and the time (ms) of each picture.
@@ -108,9 +112,10 @@ pub(crate) fn of_pictures(
     args: &RenderArgs,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
-    let background = (!args.transparent).then_some(args.background.0);
+    let background = args.background();
     let scheme = ColorScheme {
-        palette: args.palette,
+        palette: args.base_palette(),
+        own_colors: args.own_colors(),
         background,
         scale: match background.filter(|_| args.trim_colormap) {
             Some(background) => args.colormap.scale_before(background),
@@ -141,8 +146,11 @@ pub(crate) fn of_pictures(
                 None => None,
             };
             let by = by(args.color_by.unwrap_or(ColorBy::Type));
+            let by_tracing = || coloring::coloring(&cells, by, &scheme);
+            let coloring = coloring.unwrap_or_else(by_tracing);
             PictureColors {
-                coloring: coloring.unwrap_or_else(|| coloring::coloring(&cells, by, &scheme)),
+                closest: None,
+                coloring,
                 markers: None,
                 series: None,
                 least_width: args.least_width(),
@@ -152,6 +160,9 @@ pub(crate) fn of_pictures(
     colored.markers = markers::read(args, instances, &scheme, reporter)?;
     if let Some(markers) = &mut colored.markers {
         colored.coloring.add_markers(markers);
+    }
+    if colored.series.is_none() {
+        colored.closest = color_check::check(&colored.coloring, args, reporter);
     }
     Ok(colored)
 }
@@ -173,7 +184,7 @@ fn of_circuit(
         (None, Some(ColorBy::Neuron)) => {
             Ok(Some(coloring::each(cells, &instances.names(), scheme)))
         }
-        (None, None) => Ok(coloring::given(cells, &neurons)),
+        (None, None) => Ok(coloring::given(cells, &neurons, scheme)),
         (None, Some(_)) => Ok(None),
     }
 }
@@ -205,6 +216,7 @@ fn over_time(
         }
     };
     let coloring = recording.coloring(range, scheme);
+    color_check::check(&coloring, args, reporter);
     let series = Some(RecordedSeries {
         recording,
         times,
@@ -215,6 +227,7 @@ fn over_time(
         markers: None,
         series,
         least_width: args.least_width(),
+        closest: None,
     };
     let (table, legend) = colored.picture(0)?;
     (colored.coloring.table, colored.coloring.legend) = (table, legend);

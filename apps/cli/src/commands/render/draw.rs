@@ -37,7 +37,7 @@ pub(super) fn overlay(
             Fit::Auto => 0.0,
             Fit::Length(length) => length,
         }),
-        background: (!args.transparent).then_some(args.background.0),
+        background: args.background(),
     };
     let mut overlay = Overlay::new(&options, args.size.0, &cameras, spheres);
     let beside = overlay
@@ -136,11 +136,11 @@ pub(super) fn picture_options(args: &RenderArgs) -> PictureOptions {
     PictureOptions {
         size: args.size.0,
         samples: args.samples,
-        background: (!args.transparent).then_some(args.background.0),
+        background: args.background(),
         look: Look {
             light: args.light.0,
             wire: if args.wireframe { WIRE } else { 0.0 },
-            contrast: (!args.transparent).then_some(args.background.0),
+            contrast: args.background(),
             least_width: args.least_width(),
             ..Look::default()
         },

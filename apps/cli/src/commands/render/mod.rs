@@ -10,12 +10,14 @@ mod cameras;
 mod cells;
 mod checks;
 mod circuit_instances;
+mod color_check;
 mod coloring;
 mod draw;
 mod film;
 mod in_memory;
 mod job;
 mod markers;
+mod palette;
 mod scene;
 mod session;
 mod stats;
@@ -93,6 +95,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let mut stats = draw::draw(&gpu, &job, &mut stages, reporter)?;
     stages.end(Stage::Draw);
     stats.took(stages);
+    stats.colors = colored.closest.as_ref().map(Into::into);
     if let Some(path) = &args.stats {
         let mut output = output::begin(path, args.force)?;
         serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;

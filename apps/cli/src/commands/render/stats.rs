@@ -8,6 +8,7 @@ use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
 
 use super::cells::MeshedCell;
+use super::color_check::ColorStats;
 use super::film::FilmStats;
 use super::vertex_source::SourceStats;
 use crate::report::{Entry, Failed};
@@ -38,6 +39,9 @@ pub(crate) struct Stats {
     /// Of a film whose pictures are one picture, colored anew.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) film: Option<FilmStats>,
+    /// Of a legend of several colors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) colors: Option<ColorStats>,
 }
 
 /// Seconds since the command began, stage by stage.

@@ -55,6 +55,16 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::AskFiles(FilePurpose::SaveSession),
                 ),
                 item(
+                    "Open palette…",
+                    None,
+                    Command::AskFiles(FilePurpose::OpenPalette),
+                ),
+                item(
+                    "Save palette…",
+                    None,
+                    Command::AskFiles(FilePurpose::SavePalette),
+                ),
+                item(
                     "Save mesh, picture or film…",
                     Some((CTRL, Key::E)),
                     Command::Show(Tab::Save),

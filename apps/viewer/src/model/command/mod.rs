@@ -54,6 +54,10 @@ pub enum FilePurpose {
     Report,
     /// Saving a session.
     SaveSession,
+    /// Opening a palette.
+    OpenPalette,
+    /// Saving a palette.
+    SavePalette,
 }
 
 /// A command: an edit of the document, or a request to the window.
@@ -72,6 +76,10 @@ pub enum Command {
     Reload,
     /// Writes a session.
     SaveSession(PathBuf),
+    /// Takes the colors of a palette's file.
+    OpenPalette(PathBuf),
+    /// Writes the palette, with the colors that were chosen.
+    SavePalette(PathBuf),
     /// Cancels reading or saving.
     Cancel,
     /// Quits the program.
@@ -149,6 +157,8 @@ impl fmt::Debug for Command {
             Self::Open(value) => with("Open", value),
             Self::OpenSample(value) => with("OpenSample", value),
             Self::SaveSession(value) => with("SaveSession", value),
+            Self::OpenPalette(value) => with("OpenPalette", value),
+            Self::SavePalette(value) => with("SavePalette", value),
             Self::Seek(value) => with("Seek", value),
             Self::StepTime(value) => with("StepTime", value),
             Self::SetPace(value) => with("SetPace", value),

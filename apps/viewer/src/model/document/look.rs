@@ -1,6 +1,6 @@
 //! Colors, light, and which parts of cells are shown.
 
-use neurotess::coloring;
+use neurotess::coloring::{self, OwnColors};
 use neurotess::render::Light;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
 use serde::{Deserialize, Serialize};
@@ -58,6 +58,9 @@ pub struct Look {
     pub least_width: f32,
     /// Which parts of cells are drawn.
     pub parts: VisibleParts,
+    /// Colors that are not the palette's.
+    #[serde(skip_serializing_if = "OwnColors::is_empty")]
+    pub own_colors: OwnColors,
     /// A plane that cuts a part of the scene away.
     pub cut: Option<Cut>,
 }
@@ -214,8 +217,17 @@ impl Default for Look {
             ghost_opacity: 0.25,
             least_width: 0.0,
             parts: VisibleParts::All,
+            own_colors: OwnColors::default(),
             cut: None,
         }
+    }
+}
+
+impl Look {
+    /// Color of a type of SWC.
+    pub(crate) fn type_color(&self, kind: i32) -> Rgb {
+        let own = self.own_colors.types.get(&kind).copied();
+        own.unwrap_or_else(|| self.palette.of_type(kind))
     }
 }
 
@@ -256,5 +268,30 @@ mod tests {
         assert_eq!(look.color_by, ColorBy::PathDistance);
         assert!(look.wireframe && look.highlight_selected && look.ghost_others);
         assert_eq!(look.ghost_opacity, 0.5);
+        assert!(look.own_colors.is_empty());
+    }
+
+    #[test]
+    fn own_colors_are_kept_as_people_write_them() {
+        let mut look = Look {
+            light: Lighting::From {
+                right: 1.0,
+                up: 2.0,
+            },
+            cut: Some(Cut {
+                axis: 1,
+                place: 0.5,
+                flipped: true,
+            }),
+            ..Look::default()
+        };
+        look.own_colors.set_named("axon", [255, 136, 0]);
+        look.own_colors.set_named("L5 µ", [1, 2, 3]);
+        let text = toml::to_string_pretty(&look).expect("written");
+        assert!(
+            text.contains("[own_colors.types]\naxon = \"#ff8800\""),
+            "{text}"
+        );
+        assert_eq!(toml::from_str(&text), Ok(look));
     }
 }

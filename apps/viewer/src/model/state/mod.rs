@@ -143,6 +143,10 @@ pub enum Effect {
     Reload,
     /// Write files.
     Save(SaveRequest),
+    /// Take the colors of a palette's file.
+    OpenPalette(PathBuf),
+    /// Write the palette.
+    SavePalette(PathBuf),
     /// Cancel running tasks.
     Cancel,
     /// Move the camera to a view.
@@ -298,6 +302,8 @@ impl State {
                     self.key_views.remove(which);
                 }
             }
+            Command::OpenPalette(path) => self.effects.push(Effect::OpenPalette(path)),
+            Command::SavePalette(path) => self.effects.push(Effect::SavePalette(path)),
             Command::SaveSession(path) => self.save(SaveRequest::Session(path)),
             Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(options)),
             Command::SavePicture(options) => self.save(SaveRequest::Picture(options)),

@@ -2,6 +2,7 @@
 
 mod loading;
 mod messages;
+mod palettes;
 mod saving;
 
 use std::path::PathBuf;
@@ -220,6 +221,8 @@ impl Viewer {
             Effect::Quit => self.quits = true,
             Effect::Copy(text) => self.copied = Some(text),
             Effect::Save(request) => self.save(request),
+            Effect::OpenPalette(path) => self.open_palette(&path),
+            Effect::SavePalette(path) => self.save_palette(&path),
         }
     }
 

@@ -46,7 +46,13 @@ fn files(
             FilePanel::new(purpose, &state.settings.folder, session)
         });
     let mut open = true;
-    state.requests.extend(shown.show(ctx, &mut open));
+    match shown.show(ctx, &mut open) {
+        Some(Command::SavePalette(path)) if path.exists() => {
+            let save = Command::SavePalette(path.clone());
+            return Dialog::Replace(path, Box::new(save));
+        }
+        command => state.requests.extend(command),
+    }
     if !open {
         return Dialog::Nothing;
     }

@@ -2,19 +2,25 @@
 
 use eframe::egui::{self, ComboBox, Ui};
 use neurotess::render::color::{ColorMap, Palette};
-use neurotess::render::overlay::Legend;
 
 use super::heading;
 use super::number::{field, slider};
+use super::own_colors;
 use super::tip::Tip;
 use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
+use crate::scene::stage::Stage;
 
-pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
+pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     let mut look = state.document.look.clone();
     let released = ui.input(|i| i.pointer.any_released());
-    colors(state, &mut look, legend, ui);
+    if ui.input(|i| i.pointer.any_pressed()) {
+        // Two clicks are two edits, also if each changes something as it is released.
+        state.history.end_joining();
+    }
+    colors(state, &mut look, stage.legend().is_bar(), ui);
+    own_colors::show(&mut look, stage.content(), ui);
     heading(ui, "Shown");
     ui.horizontal_wrapped(|ui| {
         ui.selectable_value(&mut look.parts, VisibleParts::All, "All");
@@ -65,7 +71,8 @@ pub(super) fn show(state: &mut State, legend: &Legend, ui: &mut Ui) {
     }
 }
 
-fn colors(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
+/// `bar`: whether the legend is a scale of numbers.
+fn colors(state: &mut State, look: &mut Look, bar: bool, ui: &mut Ui) {
     heading(ui, "Colors");
     egui::Grid::new("colors").num_columns(2).show(ui, |ui| {
         ui.label("color by");
@@ -91,7 +98,7 @@ fn colors(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
             _ => {}
         }
         // Numbers of an attribute are on a scale if there are many.
-        let scaled = look.color_by == ColorBy::Attribute && legend.is_bar();
+        let scaled = look.color_by == ColorBy::Attribute && bar;
         if look.color_by.is_number() || scaled {
             range(state, look, ui);
             ui.label("color map");
@@ -118,6 +125,20 @@ fn colors(state: &mut State, look: &mut Look, legend: &Legend, ui: &mut Ui) {
                         ui.selectable_value(&mut look.palette, palette, palette.name());
                     }
                 });
+            ui.end_row();
+            ui.label("");
+            ui.horizontal(|ui| {
+                let tip = "A palette's file holds the colors that you choose below, for the window, \
+                           neurotess render and Python";
+                for (name, purpose) in [
+                    ("Open…", FilePurpose::OpenPalette),
+                    ("Save…", FilePurpose::SavePalette),
+                ] {
+                    if ui.button(name).tip(tip).clicked() {
+                        state.requests.push(Command::AskFiles(purpose));
+                    }
+                }
+            });
         }
         ui.end_row();
         ui.label("background");

@@ -12,6 +12,7 @@ mod marks;
 mod measuring;
 mod menu;
 mod number;
+mod own_colors;
 mod rings;
 mod save;
 mod soma;
@@ -119,7 +120,7 @@ fn side(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
         match state.tab {
             Tab::Inspect => inspect::show(state, ui),
             Tab::Soma => soma::show(state, ui),
-            Tab::Look => look::show(state, screen.stage.legend(), ui),
+            Tab::Look => look::show(state, screen.stage, ui),
             Tab::Detail => detail::show(state, ui),
             Tab::Save => save::show(state, ui),
         }

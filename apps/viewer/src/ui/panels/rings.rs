@@ -51,7 +51,7 @@ pub(super) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
 
 fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
     let requested = state.document.soma(id).rings;
-    let palette = state.document.look.palette;
+    let look = &state.document.look;
     let mut rows: Vec<Row> = Vec::new();
     for ring in &source.generated.rings {
         // A neurite that forks inside the soma has several rings, which are moved together.
@@ -63,7 +63,7 @@ fn rows(state: &State, id: SourceId, source: &Source) -> Vec<Row> {
             .iter()
             .position(|s| s.neurite == ring.neurite);
         let Some(root) = root else { continue };
-        let [r, g, b] = palette.of_type(source.morphology.sections[root].kind.0);
+        let [r, g, b] = look.type_color(source.morphology.sections[root].kind.0);
         let kind = cells::kind_name(&source.morphology, root);
         rows.push(Row {
             neurite: ring.neurite,

@@ -1,0 +1,77 @@
+//! Whether colors can be told apart, and whether those that were set are in the picture.
+
+use neurotess::coloring::{ClosestColors, ColorTarget, ColoredThing, Coloring, closest, kinds};
+use neurotess::render::color::Palette;
+use serde::Serialize;
+
+use super::args::RenderArgs;
+use crate::report::Reporter;
+
+/// The two colors of the legend that are closest to one another, for `--stats`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ColorStats {
+    closest: [String; 2],
+    vision: &'static str,
+    /// How far they are apart (OKLab).
+    difference: f32,
+    /// Pairs that look alike.
+    alike: usize,
+}
+
+impl From<&ClosestColors> for ColorStats {
+    fn from(colors: &ClosestColors) -> Self {
+        Self {
+            closest: colors.names.clone(),
+            vision: colors.vision.name(),
+            difference: colors.difference,
+            alike: colors.alike,
+        }
+    }
+}
+
+/// Warns of colors that look alike, and of colors for things that are not in the picture. Returns
+/// the closest colors.
+pub(super) fn check(
+    coloring: &Coloring,
+    args: &RenderArgs,
+    reporter: &Reporter,
+) -> Option<ClosestColors> {
+    for set in &args.set_color {
+        if !is_there(&set.name, &coloring.things) {
+            reporter.warning(&absent(&set.name, &coloring.things));
+        }
+    }
+    let closest = closest(coloring.legend.entries());
+    if let Some(colors) = closest.as_ref().filter(|colors| colors.alike > 0) {
+        let instead = match args.base_palette() {
+            Palette::OkabeIto => "",
+            _ => ", or --palette okabe-ito",
+        };
+        reporter.warning(&format!("{colors}: choose others by --set-color{instead}"));
+    }
+    closest
+}
+
+fn is_there(name: &str, things: &[ColoredThing]) -> bool {
+    let kinds = kinds(name).unwrap_or_default();
+    things.iter().any(|thing| match &thing.target {
+        ColorTarget::Type(kind) => kinds.contains(kind),
+        ColorTarget::Category(category) => category == name,
+    })
+}
+
+/// Most names that a warning lists.
+const MOST_NAMES: usize = 8;
+
+fn absent(name: &str, things: &[ColoredThing]) -> String {
+    let names = things.iter().take(MOST_NAMES);
+    let mut names: Vec<String> = names.map(|thing| thing.target.to_string()).collect();
+    if things.len() > names.len() {
+        names.push("…".into());
+    }
+    let there = match names.is_empty() {
+        true => "colors are those of numbers".to_owned(),
+        false => format!("there are {}", names.join(", ")),
+    };
+    format!("--set-color: nothing in the picture is called '{name}': {there}")
+}
