@@ -1,6 +1,7 @@
 //! Options that several commands share.
 
 pub(crate) mod cells;
+#[cfg(feature = "render")]
 pub(crate) mod markers;
 pub(crate) mod numbers;
 pub(crate) mod out;
