@@ -107,9 +107,11 @@ def test_no_option_of_the_command_is_missing() -> None:
     files = {"out", "force", "format", "unit", "table", "shard", "resume", "log", "strict", "help"}
     common = {"json", "quiet", "verbose", "no_progress", "color"}
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
+    # In Python a palette may be a dictionary of colors.
+    drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color"}
     for command, function, other in [
         ("mesh", nt.mesh, files | circuit),
-        ("render", nt.render, {"out", "force", "help", "stats", "strict", "turntable", "frames", "threads"}),
+        ("render", nt.render, drawing),
     ]:
         words = [sys.executable, "-m", "neurotess", command, "--help"]
         text = subprocess.run(words, check=True, capture_output=True, text=True).stdout
