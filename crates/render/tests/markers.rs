@@ -134,14 +134,15 @@ fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
     };
     let mut markers = Markers::new(&gpu, &all, settings).expect("uploaded");
     let frame = Frame::whole(view.camera, view.near, SIZE);
-    let shown = markers.shown(&frame);
+    let [shown, in_view] = markers.shown(&frame);
+    assert_eq!(in_view, 100_000);
     // Some for each of 3,600 pixels, whatever their number.
     assert!((3_600..90_000).contains(&shown), "{shown}");
     markers.set_settings(MarkerSettings {
         most_triangles: 2_000,
         ..settings
     });
-    let shown = markers.shown(&frame);
+    let [shown, _] = markers.shown(&frame);
     assert!((1_000..1_100).contains(&shown), "{shown}");
     // They cover the square evenly.
     let (table, _) = table(&mesh);
@@ -176,7 +177,7 @@ fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
         view.near,
         SIZE,
     );
-    assert_eq!(markers.shown(&away), 0);
+    assert_eq!(markers.shown(&away), [0, 0]);
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -210,4 +211,51 @@ fn static_pictures_have_markers_too() {
     assert!(worst <= Some(2), "{worst:?} of 255");
     assert!(pixels_of(&found, [0, 0, 255]) > 20);
 }
+
+#[neurotess_testing::test(needs(gpu))]
+fn markers_are_picked_and_what_is_beside_them_as_before() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let (_, key) = table(&mesh);
+    let view = renderer::view(&mesh);
+    let viewpoint = Viewpoint {
+        camera: view.camera,
+        near: 0.1,
+    };
+    let mut cells = source(&gpu, &mesh, &[Placement::default()]);
+    let all = row(&viewpoint, key, 4);
+    let settings = MarkerSettings {
+        radius: 1.5,
+        ..MarkerSettings::default()
+    };
+    let mut markers = Markers::new(&gpu, &all, settings).expect("uploaded");
+    let mut drawer = renderer::renderer(&gpu, &mesh);
+    let view = neurotess_render::ViewParams { near: 0.1, ..view };
+    let before = renderer::picks(&gpu, &mut drawer, &mut cells, &view);
+    let mut both = WithMarkers::new(&mut cells, Some(&mut markers));
+    drawer.identify(&gpu, &mut both, &view).expect("drawn");
+    gpu.wait().expect("done");
+    let (size, ids) = drawer.ids().expect("no fault").expect("arrived");
+    let resolver = cells.resolver();
+    for (index, marker) in all.iter().enumerate() {
+        let at = view
+            .camera
+            .pixel_of(marker.position, size)
+            .expect("in front");
+        let [x, y] = at.map(|n| n as usize);
+        let id = ids[y * size[0] as usize + x];
+        assert_eq!(markers.picked(id), Some(index));
+        assert_eq!(resolver.resolve(id), None, "it is no cell");
+    }
+    // Where no marker is, the cell is what it was.
+    let beside = ids.iter().zip(&before);
+    let beside = beside.filter(|(id, _)| markers.picked(**id).is_none());
+    let mut found = 0;
+    for (&id, before) in beside {
+        assert_eq!(resolver.resolve(id), *before);
+        found += usize::from(before.is_some());
+    }
+    assert!(found > 100, "{found} pixels");
+}
+
 neurotess_testing::main!();

@@ -79,19 +79,19 @@ fn half_size(label: &[String]) -> [f64; 2] {
 
 /// A dimension in a picture; none if it is behind the eye.
 fn annotation(figure: &Figure, camera: &Camera, size: [f64; 2], line: f64) -> Option<Annotation> {
-    let sight = Sight { camera, size, line };
+    let projection = Projection { camera, size, line };
     let (lines, beside) = match &figure.shape {
-        FigureShape::Distance { ends, path } => sight.distance(*ends, path)?,
+        FigureShape::Distance { ends, path } => projection.distance(*ends, path)?,
         FigureShape::Diameter {
             center,
             along,
             radius,
-        } => sight.diameter(*center, *along, *radius)?,
+        } => projection.diameter(*center, *along, *radius)?,
         FigureShape::Angle {
             center,
             branches,
             radius,
-        } => sight.angle(*center, branches, *radius)?,
+        } => projection.angle(*center, branches, *radius)?,
     };
     Some(Annotation {
         lines,
@@ -101,7 +101,7 @@ fn annotation(figure: &Figure, camera: &Camera, size: [f64; 2], line: f64) -> Op
 }
 
 /// A camera and the picture that it makes.
-struct Sight<'a> {
+struct Projection<'a> {
     camera: &'a Camera,
     size: [f64; 2],
     line: f64,
@@ -115,7 +115,7 @@ struct Beside {
 
 type Lines = (Vec<AnnotationLine>, Beside);
 
-impl Sight<'_> {
+impl Projection<'_> {
     /// Where a point is in the picture; none if it is behind the eye.
     fn at(&self, point: DVec3) -> Option<[f64; 2]> {
         let [right, up, _] = self.camera.axes();

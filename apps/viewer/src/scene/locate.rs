@@ -13,7 +13,7 @@ use crate::scene::picks::CursorHit;
 /// passes behind itself, both parts are at the ray.
 const PATCH: f64 = 0.25;
 
-/// The ray of sight through a pixel, in the world (µm).
+/// The ray from the eye through a pixel, in the world (µm).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray {
     pub(crate) eye: DVec3,
@@ -77,11 +77,11 @@ fn nearest(morphology: &Morphology, section: u32, ray: Ray, place: DVec3) -> Opt
 
 /// Share of the way from `a` to `b` where the segment is nearest to a ray.
 fn nearest_fraction(a: DVec3, b: DVec3, ray: Ray) -> f64 {
-    let Some(sight) = (ray.through - ray.eye).try_normalize() else {
+    let Some(direction) = (ray.through - ray.eye).try_normalize() else {
         return 1.0;
     };
     // Seen along the ray, it is the point of a segment that is nearest to a point.
-    let flat = |v: DVec3| v - sight * v.dot(sight);
+    let flat = |v: DVec3| v - direction * v.dot(direction);
     let (link, from) = (flat(b - a), flat(ray.eye - a));
     match link.length_squared() {
         square if square > 1e-18 => (from.dot(link) / square).clamp(0.0, 1.0),
@@ -90,9 +90,9 @@ fn nearest_fraction(a: DVec3, b: DVec3, ray: Ray) -> f64 {
 }
 
 fn distance(point: DVec3, ray: Ray) -> f64 {
-    let sight = (ray.through - ray.eye).try_normalize().unwrap_or_default();
+    let direction = (ray.through - ray.eye).try_normalize().unwrap_or_default();
     let from = point - ray.eye;
-    (from - sight * from.dot(sight)).length()
+    (from - direction * from.dot(direction)).length()
 }
 
 #[cfg(test)]

@@ -14,36 +14,30 @@ use neurotess_viewer::view::View;
 
 use crate::common::{SIZE, Window, gpu, rest, run, settle, state, viewer, with_samples};
 
+/// After some frames it asks for no more.
+fn assert_idle(window: &mut Window) {
+    window.run_steps(40);
+    let output = window
+        .output()
+        .viewport_output
+        .values()
+        .next()
+        .expect("a window");
+    assert!(
+        output.repaint_delay > Duration::from_secs(1),
+        "{:?}",
+        output.repaint_delay
+    );
+}
+
 #[neurotess_testing::test(needs(gpu))]
 fn nothing_is_drawn_when_nothing_changes() {
     let mut window = with_samples(&[Kind::Star]);
     rest(&mut window);
-    window.run_steps(40);
-    let output = window
-        .output()
-        .viewport_output
-        .values()
-        .next()
-        .expect("a window");
-    assert!(
-        output.repaint_delay > Duration::from_secs(1),
-        "{:?}",
-        output.repaint_delay
-    );
+    assert_idle(&mut window);
     run(&mut window, Command::Look(Side::Top));
     rest(&mut window);
-    window.run_steps(40);
-    let output = window
-        .output()
-        .viewport_output
-        .values()
-        .next()
-        .expect("a window");
-    assert!(
-        output.repaint_delay > Duration::from_secs(1),
-        "{:?}",
-        output.repaint_delay
-    );
+    assert_idle(&mut window);
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -15,6 +15,9 @@ pub(crate) fn make(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages)
     })
 }
 
+/// Alignment of dynamic offsets into a uniform buffer that every device supports.
+pub(crate) const UNIFORM_STRIDE: u64 = 256;
+
 /// A binding of a storage buffer.
 pub(crate) fn storage(
     binding: u32,

@@ -122,8 +122,8 @@ pub(super) fn draw(
         }
         stats.add(&cost, counted.clone());
         stats.film = film.as_ref().map(FixedFilm::stats);
-        if let Some(lowered) = stats.lowered() {
-            reporter.warning(&lowered);
+        for left_out in stats.lowered().into_iter().chain(stats.thinned()) {
+            reporter.warning(&left_out);
         }
         progress.done();
     }

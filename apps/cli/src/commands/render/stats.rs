@@ -110,6 +110,7 @@ struct BudgetStats {
 #[derive(Clone, Copy, Debug, Serialize)]
 struct MarkerStats {
     drawn: usize,
+    in_view: usize,
     all: usize,
 }
 
@@ -151,7 +152,11 @@ impl Stats {
             left_out: stats.requested - stats.triangles.min(stats.requested),
             neurons_in_picture: stats.instances,
         });
-        self.markers = made.markers.map(|[drawn, all]| MarkerStats { drawn, all });
+        self.markers = made.markers.map(|[drawn, in_view, all]| MarkerStats {
+            drawn,
+            in_view,
+            all,
+        });
         self.gpu_bytes.insert("targets", cost.target_bytes);
         self.frame_ms = FrameTime {
             cpu: cost.cpu_ms,
@@ -170,6 +175,15 @@ impl Stats {
         Some(format!(
             "the budget of {budget} triangles: {left_out} of {wanted} are left out, those that show \
              least; --budget allows more"
+        ))
+    }
+
+    /// A message about synapses and points that are in view and left out.
+    pub(crate) fn thinned(&self) -> Option<String> {
+        let MarkerStats { drawn, in_view, .. } = self.markers.filter(|m| m.drawn < m.in_view)?;
+        Some(format!(
+            "{drawn} of {in_view} synapses and points are drawn, evenly chosen: more would lie on one another, or \
+             exceed their share of the budget"
         ))
     }
 

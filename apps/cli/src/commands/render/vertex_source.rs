@@ -44,8 +44,8 @@ pub(crate) struct SourceStats {
     pub(crate) bytes: BTreeMap<&'static str, u64>,
     pub(crate) bytes_per_point: f64,
     pub(crate) exploration: Option<ExplorationStats>,
-    /// Synapses and points that are drawn, and all.
-    pub(crate) markers: Option<[usize; 2]>,
+    /// Synapses and points that are drawn, those in view, and all.
+    pub(crate) markers: Option<[usize; 3]>,
 }
 
 /// The mode that follows from the options.
@@ -112,8 +112,8 @@ impl PictureSource {
         let mut stats = self.cells.stats(gpu, camera, near, options)?;
         if let Some(markers) = &mut self.markers {
             let frame = whole(gpu, camera, near, options);
-            let drawn = markers.shown(&frame);
-            stats.markers = Some([drawn, markers.len()]);
+            let [drawn, in_view] = markers.shown(&frame);
+            stats.markers = Some([drawn, in_view, markers.len()]);
             stats.bytes.insert("markers", markers.bytes());
         }
         Ok(stats)

@@ -20,7 +20,7 @@ const NEAR: f64 = 9.0;
 /// Finds what the cursor is at.
 pub(super) fn point(state: &mut State, seen: Option<CursorHit>, response: &Response) {
     let under = response.hover_pos().zip(seen).and_then(|(at, seen)| {
-        let (ray, pixel) = sight(state, &seen, at, response.rect);
+        let (ray, pixel) = ray_at(state, &seen, at, response.rect);
         pointed(state, &seen, ray, NEAR * pixel)
     });
     if let Some(tool) = &mut state.measuring {
@@ -31,8 +31,8 @@ pub(super) fn point(state: &mut State, seen: Option<CursorHit>, response: &Respo
     }
 }
 
-/// The ray of sight at the cursor, and the size (µm) of a point of the window at what was hit.
-fn sight(state: &State, seen: &CursorHit, at: Pos2, rect: Rect) -> (Ray, f64) {
+/// The ray from the eye through the cursor, and the size (µm) of a point of the window at what was hit.
+fn ray_at(state: &State, seen: &CursorHit, at: Pos2, rect: Rect) -> (Ray, f64) {
     let camera = state.view.camera();
     let offset = at - rect.min;
     let pixel = [f64::from(offset.x), f64::from(offset.y)];

@@ -19,15 +19,13 @@ use self::chunks::{CHUNK, Chunk};
 use self::shapes::Shapes;
 pub use self::with_markers::WithMarkers;
 use super::pick::PickId;
-use crate::gpu::buffers::{group_layout, storage, uniform, upload};
+use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, storage, uniform, upload};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::shader;
 use crate::view::frame::{Frame, Tile};
 use crate::view::frustum::shows;
 
-/// Alignment of dynamic offsets into a uniform buffer that every device supports.
-const STRIDE: u64 = 256;
 /// Markers of a block, which one binding holds: 64 MiB.
 const BLOCK: usize = 2048 * CHUNK;
 /// Set in the first number of a marker's picking id.
@@ -120,6 +118,8 @@ pub struct Markers {
     order: Vec<u32>,
     settings: MarkerSettings,
     runs: Vec<Run>,
+    /// Number of markers of the chunks that are in view.
+    in_view: usize,
 }
 
 impl Markers {
@@ -141,7 +141,7 @@ impl Markers {
         let blocks = order.len().div_ceil(BLOCK).max(1) as u64;
         let frames = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frames of markers"),
-            size: STRIDE * blocks,
+            size: UNIFORM_STRIDE * blocks,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -154,6 +154,7 @@ impl Markers {
             order,
             settings,
             runs: Vec::new(),
+            in_view: 0,
         };
         for (part, first) in made.order.chunks(BLOCK).zip((0_u32..).step_by(BLOCK)) {
             let origin = made.chunks[first as usize / CHUNK].center;
@@ -197,10 +198,12 @@ impl Markers {
         self.settings = settings;
     }
 
-    /// Number of markers that a frame draws.
-    pub fn shown(&mut self, frame: &Frame) -> usize {
+    /// Number of markers that a frame draws, and of those in view: more than that if pixels or the budget do not
+    /// suffice for all.
+    pub fn shown(&mut self, frame: &Frame) -> [usize; 2] {
         self.select(frame);
-        self.runs.iter().map(|run| run.markers.len()).sum()
+        let drawn = self.runs.iter().map(|run| run.markers.len()).sum();
+        [drawn, self.in_view]
     }
 
     /// Bytes on the device.
@@ -232,7 +235,7 @@ impl Markers {
             };
             let bytes = bytemuck::bytes_of(&uniforms);
             gpu.queue
-                .write_buffer(&self.frames, STRIDE * index as u64, bytes);
+                .write_buffer(&self.frames, UNIFORM_STRIDE * index as u64, bytes);
         }
     }
 
@@ -289,7 +292,9 @@ impl Markers {
         let all: f64 = wanted.iter().map(triangles).sum();
         let share = (self.settings.most_triangles as f64 / all.max(1.0)).min(1.0);
         let mut runs: Vec<Run> = Vec::new();
+        let mut in_view = 0;
         for (chunk, shape, count) in wanted.iter().filter(|(c, ..)| seen(c, &tile_planes)) {
+            in_view += chunk.count as usize;
             let count = (share * f64::from(*count)).ceil() as u32;
             let block = chunk.first as usize / BLOCK;
             let first = chunk.first - self.blocks[block].first;
@@ -304,12 +309,12 @@ impl Markers {
                 }),
             }
         }
-        self.runs = runs;
+        (self.runs, self.in_view) = (runs, in_view);
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for run in &self.runs {
-            let offset = STRIDE as u32 * run.block as u32;
+            let offset = UNIFORM_STRIDE as u32 * run.block as u32;
             pass.set_bind_group(0, &self.blocks[run.block].group, &[offset]);
             pass.draw(self.shapes.ranges[run.shape].clone(), run.markers.clone());
         }

@@ -14,7 +14,7 @@ use neurotess_mesh::{CoarseMesh, Role, SampleId, SurfaceMesh, SurfaceVertex};
 use neurotess_refine::wgsl::ShaderParts;
 use neurotess_refine::{Lod, RefineOptions, Refinement};
 
-use crate::gpu::buffers::{group_layout, storage, uniform};
+use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::shader;
@@ -28,8 +28,6 @@ use crate::view::frustum::shows;
 const RUN: usize = 4096;
 /// Triangles in a chunk: 128 runs, at most 36 MiB of vertices if no two triangles shared any.
 const CHUNK: usize = 128 * RUN;
-/// Alignment of dynamic offsets into a uniform buffer that every device supports.
-const STRIDE: u64 = 256;
 
 /// A coarse mesh with a color key for each tracing point, which
 /// [`ColorTable`](crate::color::ColorTable) looks colors up by.
@@ -168,7 +166,7 @@ impl Prerefined {
         let placements = buffer(
             gpu,
             "placements",
-            STRIDE * places.len().max(1) as u64,
+            UNIFORM_STRIDE * places.len().max(1) as u64,
             wgpu::BufferUsages::UNIFORM,
         )?;
         let mut made = Self {
@@ -344,7 +342,7 @@ impl VertexSource for Prerefined {
             };
             let bytes = bytemuck::bytes_of(&placement);
             gpu.queue
-                .write_buffer(&self.placements, STRIDE * index as u64, bytes);
+                .write_buffer(&self.placements, UNIFORM_STRIDE * index as u64, bytes);
         }
         let planes = frame.frustum();
         for chunk in &mut self.chunks {
@@ -380,7 +378,7 @@ impl VertexSource for Prerefined {
                 pass.set_index_buffer(chunk.corners.slice(..), wgpu::IndexFormat::Uint32);
             }
             for (place, shown) in &chunk.shown {
-                pass.set_bind_group(0, &chunk.group, &[STRIDE as u32 * place]);
+                pass.set_bind_group(0, &chunk.group, &[UNIFORM_STRIDE as u32 * place]);
                 if self.barycentric {
                     pass.draw(shown.clone(), 0..1);
                 } else {
