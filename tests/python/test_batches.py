@@ -100,19 +100,41 @@ def test_one_cell_is_shared_by_threads() -> None:
     assert len({value for value in found if value is not None}) == 1 and len(found) == 8
 
 
+#: What takes much longer than the tests wait, as `work(cell)`.
+LONG_WORK = {
+    "mesh": "nt.mesh(cell, level=2)",
+    "separate": "nt.mesh(cell, crossings='separate', level=1)",
+    "merge": "nt.mesh(cell, crossings='merge', level=16, types='axon,dendrite')",
+    "mesh_many": "list(nt.mesh_many([cell] * 50, threads=2, level=4))",
+    "render": "nt.render(cell, size=(8000, 8000), samples=64)",
+}
+
+
 @pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
-def test_interrupts_do_not_wait_for_the_work() -> None:
-    code = """
-        import signal, neurotess as nt
+@pytest.mark.parametrize("work", LONG_WORK)
+def test_interrupts_stop_the_work(work: str, request: pytest.FixtureRequest) -> None:
+    if work == "render":
+        request.getfixturevalue("can_draw")
+    code = f"""
+        import os, signal, time, neurotess as nt
         # Where the tests run in the background, it is ignored.
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        cell = nt.synth("purkinje", points=100_000)
+        cell = nt.synth("purkinje", points={3000 if work == "render" else 100_000})
+        def used():
+            # Of all threads.
+            return time.process_time()
         try:
             print("begin", flush=True)
-            nt.mesh(cell, level=2)
+            {LONG_WORK[work]}
         except KeyboardInterrupt:
-            import os
             print("interrupted", flush=True)
+            start = used()
+            while True:
+                before = used()
+                time.sleep(0.5)
+                if used() - before < 0.1:
+                    break
+            print(used() - start, flush=True)
             os._exit(0)
         print("done", flush=True)
     """
@@ -120,9 +142,25 @@ def test_interrupts_do_not_wait_for_the_work() -> None:
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "begin\n"
-        time.sleep(0.3)
+        time.sleep(1.0)
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == "interrupted\n"
+        # Seconds of the processor until everything was quiet; all of the work would take a minute and more.
+        assert float(process.stdout.readline()) < 5
+
+
+def test_results_that_nobody_wants_are_not_made() -> None:
+    cell = nt.synth("purkinje", points=60_000)
+    results = nt.mesh_many([nt.synth("granule", points=50), *[cell] * 8], threads=2, level=1)
+    assert next(results).ok
+    results.close()  # type: ignore[attr-defined]
+    start = time.process_time()
+    while True:
+        before = time.process_time()
+        time.sleep(0.5)
+        if time.process_time() - before < 0.1:
+            break
+    assert time.process_time() - start < 5
 
 
 def test_processes_share_cells() -> None:

@@ -58,7 +58,7 @@ def test_everything_is_documented(name: str) -> None:
         assert bare == []
 
 
-@pytest.mark.parametrize("module", ["_morphology", "_meshes", "_circuits", "_pictures", "plot", "dask"])
+@pytest.mark.parametrize("module", ["_morphology", "_edits", "_meshes", "_circuits", "_pictures", "plot", "dask"])
 def test_examples_of_the_documentation_hold(module: str) -> None:
     failed, _ = doctest.testmod(importlib.import_module(f"neurotess.{module}"))
     assert failed == 0
@@ -77,6 +77,18 @@ def test_examples_run(example: Path, tmp_path: Path, can_draw: bool) -> None:
     )
     assert ran.returncode == 0, ran.stderr
     assert any(tmp_path.iterdir())
+
+
+def test_the_reference_is_made_without_a_warning(tmp_path: Path) -> None:
+    for package in ("pdoc", "jupyter_rfb", "matplotlib", "dask"):
+        pytest.importorskip(package)
+    modules = ["neurotess", "neurotess._view", "neurotess.plot", "neurotess.dask"]
+    made = python("-W", "error", "-m", "pdoc", "-o", str(tmp_path), *modules)
+    assert made.returncode == 0 and "arning" not in made.stderr, made.stderr
+    page = (tmp_path / "neurotess.html").read_text()
+    missing = [name for name in nt.__all__ if f'id="{name}"' not in page]
+    assert missing == []
+    assert "Plots" in (tmp_path / "neurotess/plot.html").read_text()
 
 
 def test_types_hold() -> None:

@@ -204,6 +204,8 @@ mod tests {
             name: name.into(),
             version: "0.1.0".into(),
             license: "MIT".into(),
+            repository: String::new(),
+            manifest: std::path::PathBuf::new(),
             ours: true,
             dependencies: dependencies.iter().map(|&name| name.into()).collect(),
         }

@@ -23,6 +23,7 @@ mod setup;
 mod soak;
 mod steps;
 mod tests;
+mod third_party;
 mod wheel;
 
 use std::process::ExitCode;
@@ -35,7 +36,8 @@ const USAGE: &str = "cargo xtask COMMAND
   features  check each feature of the library and the command line alone
   package   pack every crate as for a registry
   python    the Python package's tests alone
-  wheel     the Python package as a wheel in out/wheel, and a trial of it in a fresh environment
+  wheel     the Python package as a wheel in out/wheel, with all licenses, and a trial of it in a fresh
+            environment; with --from-source also `pip install bindings/python/` (builds all again)
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
@@ -53,7 +55,9 @@ fn main() -> ExitCode {
         Some("features") => packages::features().map(|said| println!("{said}")),
         Some("package") => packages::package().map(|said| println!("{said}")),
         Some("python") => extension::run_alone(),
-        Some("wheel") => wheel::run_all(),
+        Some("wheel") => {
+            wheel::run_all(std::env::args().nth(2).as_deref() == Some("--from-source"))
+        }
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
         Some("architecture") => architecture(),

@@ -1,6 +1,7 @@
 //! Our packages and all they depend on, as Cargo knows them.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use serde_json::Value;
@@ -14,6 +15,10 @@ pub(crate) struct Package {
     pub(crate) version: String,
     /// SPDX expression, empty if there is none.
     pub(crate) license: String,
+    /// Where its sources are, empty if it does not say.
+    pub(crate) repository: String,
+    /// Its `Cargo.toml`.
+    pub(crate) manifest: PathBuf,
     /// Whether it is a member of the workspace.
     pub(crate) ours: bool,
     /// Direct dependencies by name that are not for its tests alone.
@@ -46,6 +51,8 @@ fn packages(value: &Value) -> Option<Vec<Package>> {
             name: text("name"),
             version: text("version"),
             license: text("license"),
+            repository: text("repository"),
+            manifest: text("manifest_path").into(),
             ours: members.contains(&text("id")),
             dependencies,
         };

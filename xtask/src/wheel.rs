@@ -10,6 +10,10 @@ use anyhow::{Context, bail};
 
 use crate::python::{self, WHEEL};
 use crate::steps::{Steps, output, root, run};
+use crate::third_party;
+
+/// The file of others' licenses, beside ours, which maturin puts into the wheel with them.
+const LICENSES: &str = "bindings/python/LICENSE-THIRD-PARTY.txt";
 
 /// The largest wheel (bytes) that is fetched without a thought.
 const MOST_BYTES: u64 = 20 << 20;
@@ -27,17 +31,26 @@ try:
     drawn = nt.render(nt.synth('granule', points=100), size=(64, 48), legend=False)
 except nt.RenderError as error:
     drawn = error
+import importlib.metadata
+files = [str(file) for file in importlib.metadata.files('neurotess')]
+licenses = [file for file in files if 'licenses/' in file]
+assert len([file for file in licenses if file.endswith(('-MIT', '-APACHE', '-THIRD-PARTY.txt'))]) == 3, licenses
 print(f'import in {1e3 * took:.1f} ms; {mesh}; picture: {drawn}')
 ";
 
-/// Runs the command.
-pub(crate) fn run_all() -> anyhow::Result<()> {
+/// Runs the command; with `from_source` it also installs the package as users with Rust do.
+pub(crate) fn run_all(from_source: bool) -> anyhow::Result<()> {
     let mut steps = Steps::default();
     let folder = root().join("out/wheel");
     steps.step("setup", || python::set_up(&WHEEL))?;
     let Some(python) = python::interpreter(&WHEEL) else {
         bail!("wheels are made by Python 3.10 or newer with maturin, which could not be installed");
     };
+    steps.step("licenses", || {
+        let licenses = third_party::collect()?;
+        fs::write(root().join(LICENSES), &licenses.text).context(LICENSES)?;
+        Ok(format!("of {} packages, in {LICENSES}", licenses.count))
+    })?;
     let mut wheel = PathBuf::new();
     steps.step("wheel", || {
         wheel = build(&python, &folder)?;
@@ -54,7 +67,13 @@ pub(crate) fn run_all() -> anyhow::Result<()> {
             bytes as f64 / 1e6
         ))
     })?;
-    steps.step("trial", || trial(&python, &wheel, &folder))?;
+    steps.step("trial", || trial(&python, &wheel, &folder.join("venv")))?;
+    if from_source {
+        let sources = root().join("bindings/python");
+        steps.step("from source", || {
+            trial(&python, &sources, &folder.join("venv-from-source"))
+        })?;
+    }
     steps.summary();
     Ok(())
 }
@@ -87,13 +106,13 @@ fn build(python: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     wheel.context("maturin made no wheel")
 }
 
-/// Installs the wheel into a fresh environment and uses it, where no other program is.
-fn trial(python: &Path, wheel: &Path, folder: &Path) -> anyhow::Result<String> {
-    let own = python::make(python, &folder.join("venv"))?;
-    run(python::pip_install(&own).arg(wheel))?;
+/// Installs a wheel, or sources, into a fresh environment and uses the package, where no other program is.
+fn trial(python: &Path, package: &Path, venv: &Path) -> anyhow::Result<String> {
+    let own = python::make(python, venv)?;
+    run(python::pip_install(&own).arg(package))?;
     let programs = own.parent().context("an interpreter's folder")?;
     let mut used = Command::new(&own);
-    used.args(["-c", TRIAL]).current_dir(folder).env_clear();
+    used.args(["-c", TRIAL]).current_dir(venv).env_clear();
     let said = output(&mut used)?;
     let version = output(
         Command::new(programs.join("neurotess"))

@@ -1,6 +1,7 @@
 //! For programs that hold cells in memory, like the Python package: what the commands do, with their options
 //! and checks, without files and messages.
 
+pub use crate::commands::convert::EditRecipe;
 pub use crate::commands::mesh::{CellMesh, MeshRecipe, MeshReport};
 #[cfg(feature = "render")]
 pub use crate::commands::render::{DrawError, Drawing, DrawingInput, Picked};

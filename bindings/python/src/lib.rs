@@ -33,12 +33,15 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CAN_RENDER", cfg!(feature = "render"))?;
     module.add_class::<cell::Cell>()?;
+    module.add_class::<cell::Edits>()?;
     module.add_class::<surface::Recipe>()?;
+    module.add_class::<work::Stop>()?;
     module.add_class::<surface::Surface>()?;
     module.add_class::<circuit::Circuit>()?;
     module.add_class::<circuit::Mesher>()?;
     module.add_class::<circuit::Report>()?;
     #[cfg(feature = "render")]
     picture::add_to(module)?;
+    module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
     module.add_function(wrap_pyfunction!(command::main, module)?)
 }

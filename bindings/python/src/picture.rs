@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
@@ -19,7 +20,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::cell::Cell;
 use crate::errors;
 use crate::errors::bug;
-use crate::work::released;
+use crate::work::{Stop, released, stoppable};
 
 /// Adds what draws to the module.
 pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -71,14 +72,14 @@ impl Drawing {
         adapter: Option<String>,
     ) -> PyResult<Self> {
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
-        let made = released(py, None, move || {
+        let made = stoppable(py, None, &Stop::default(), move |stopped| {
             let gpu = device(adapter)?;
             let named: Vec<_> = cells.iter().map(|c| (c.name.as_str(), &**c)).collect();
             let input = match &circuit {
                 Some(path) => DrawingInput::Circuit(path),
                 None => DrawingInput::Cells(&named),
             };
-            let (drawing, messages) = embed::Drawing::new(&gpu, input, options)?;
+            let (drawing, messages) = embed::Drawing::new(&gpu, input, options, stopped)?;
             Ok((gpu, drawing, messages))
         })?;
         let (gpu, drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
@@ -91,7 +92,9 @@ impl Drawing {
 
     /// Draws one of the pictures that the options ask for.
     fn draw(&self, py: Python<'_>, picture: usize) -> PyResult<Py<PyArray3<u8>>> {
-        self.with(py, move |gpu, drawing| drawing.draw(gpu, picture))
+        self.with(py, move |gpu, drawing, stopped| {
+            drawing.draw(gpu, picture, stopped)
+        })
     }
 
     /// Draws from anywhere, with the colors of one of the pictures.
@@ -104,8 +107,8 @@ impl Drawing {
         samples: u32,
     ) -> PyResult<Py<PyArray3<u8>>> {
         let camera = camera(view)?;
-        self.with(py, move |gpu, drawing| {
-            drawing.draw_from(gpu, picture, camera, (size, samples))
+        self.with(py, move |gpu, drawing, stopped| {
+            drawing.draw_from(gpu, picture, camera, (size, samples), stopped)
         })
     }
 
@@ -164,16 +167,19 @@ impl Drawing {
 }
 
 impl Drawing {
-    /// Draws without the interpreter's lock; one picture at a time.
+    /// Draws without the interpreter's lock; one picture at a time, which Ctrl-C stops.
     fn with(
         &self,
         py: Python<'_>,
-        draw: impl FnOnce(&Gpu, &mut embed::Drawing) -> Result<Image, DrawError> + Send + 'static,
+        draw: impl FnOnce(&Gpu, &mut embed::Drawing, &Arc<AtomicBool>) -> Result<Image, DrawError>
+        + Send
+        + 'static,
     ) -> PyResult<Py<PyArray3<u8>>> {
         let shared = Arc::clone(&self.shared);
-        let drawn = released(py, None, move || {
+        let drawn = stoppable(py, None, &Stop::default(), move |stopped| {
             let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
-            shared.as_mut().map(|(gpu, drawing)| draw(gpu, drawing))
+            let drawing = shared.as_mut();
+            drawing.map(|(gpu, drawing)| draw(gpu, drawing, stopped))
         })?;
         let image = drawn.ok_or_else(closed)?.map_err(|e| undrawn(py, &e))?;
         let shape = (image.height as usize, image.width as usize, 4);

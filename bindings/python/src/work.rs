@@ -1,9 +1,10 @@
-//! Work without the interpreter's lock, which Ctrl-C does not have to wait for.
+//! Work without the interpreter's lock, which Ctrl-C does not have to wait for, and stops.
 
 use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use pyo3::prelude::*;
@@ -16,7 +17,32 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Stack (bytes) of threads: large, for debug builds.
 const STACK: usize = 8 << 20;
 
-/// Does some work on another thread, or on as many threads as given, without the interpreter's lock.
+/// Asks work to stop: `set` by any thread, for all the work that it was given to.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+#[derive(Clone, Default)]
+pub(crate) struct Stop(pub(crate) Arc<AtomicBool>);
+
+#[pymethods]
+impl Stop {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// Asks to stop. What is stopped ends soon, with an error.
+    fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Stop {
+    /// The one that was given, or a new one.
+    pub(crate) fn of(given: Option<&Self>) -> Self {
+        given.cloned().unwrap_or_default()
+    }
+}
+
+/// Does some short work on another thread, or on as many threads as given, without the interpreter's lock.
 ///
 /// # Errors
 /// `KeyboardInterrupt` where Ctrl-C was pressed: the work is left to itself then, and what it gives is
@@ -26,6 +52,21 @@ pub(crate) fn released<T: Send + 'static>(
     threads: Option<usize>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
+    stoppable(py, threads, &Stop::default(), |_| work())
+}
+
+/// The same for long work, which ends soon after `stop` is set: by Ctrl-C, or by whoever else has it.
+///
+/// # Errors
+/// As [`released`].
+pub(crate) fn stoppable<T: Send + 'static>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    stop: &Stop,
+    work: impl FnOnce(&Arc<AtomicBool>) -> T + Send + 'static,
+) -> PyResult<T> {
+    let stopped = Arc::clone(&stop.0);
+    let work = move || work(&stopped);
     let (sender, receiver) = mpsc::sync_channel(1);
     let guarded = move || {
         let done = panic::catch_unwind(AssertUnwindSafe(work));
@@ -53,7 +94,7 @@ pub(crate) fn released<T: Send + 'static>(
         });
         match waited {
             Ok(done) => return done.map_err(|payload| bug(text(&*payload))),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| stop.set())?,
             Err(RecvTimeoutError::Disconnected) => return Err(bug("a thread is gone")),
         }
     }

@@ -82,7 +82,7 @@ pub use groups::{Groups, natural};
 pub use model::{Circuit, Instance};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;
-pub use points::PointTable;
+pub use points::{PointTable, is_point_table};
 pub use population::{Attribute, NodeRef, Population};
 pub use report::{
     Compartment, Location, RecordingFile, Report, ReportKind, ReportPopulation, SectionOrder,

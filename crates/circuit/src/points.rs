@@ -7,12 +7,17 @@
 //!
 //! `x`, `y` and `z` (µm) are needed. All other columns whose cells are numbers, or empty, are values.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use glam::DVec3;
-use neurotess_formats::read_regular;
+use neurotess_formats::{read_regular, regular};
 
 use crate::{CircuitError, Fault, table};
+
+/// Bytes of a file within which the names of its columns are.
+const HEAD: u64 = 64 * 1024;
 
 /// Points of a CSV or TSV file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,6 +98,25 @@ impl PointTable {
     }
 }
 
+/// Whether a file is a table of points by its name and its columns: it has `x`, `y` and `z`, but no `file` as a table
+/// of cells has.
+pub fn is_point_table(path: impl AsRef<Path>) -> bool {
+    let path = path.as_ref();
+    let mut begin = Vec::new();
+    let read = regular(path).and_then(|()| File::open(path));
+    let read = read.and_then(|file| file.take(HEAD).read_to_end(&mut begin));
+    table::is_named_so(path) && read.is_ok() && has_columns(path, &begin)
+}
+
+fn has_columns(path: &Path, begin: &[u8]) -> bool {
+    let mut reader = table::reader(path, begin);
+    let Ok(headers) = reader.headers() else {
+        return false;
+    };
+    let has = |name: &str| headers.iter().any(|head| head.eq_ignore_ascii_case(name));
+    ["x", "y", "z"].into_iter().all(has) && !has("file")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,5 +149,14 @@ mod tests {
             "{wrong}"
         );
         assert!(said("x,y,z\n").contains("rows"));
+    }
+
+    #[test]
+    fn tables_of_cells_are_none_of_points() {
+        let is = |text: &str| has_columns(Path::new("a.csv"), text.as_bytes());
+        assert!(is("# mine\nX,y,z,weight\n1,2,3,4\n"));
+        assert!(!is("file,x,y,z\na.swc,1,2,3\n"));
+        assert!(!is("x,y\n1,2\n") && !is(""));
+        assert!(!is_point_table("no such file.csv"));
     }
 }

@@ -41,7 +41,10 @@ pub use cut::{cuts, with_middles};
 #[cfg(feature = "circuit")]
 pub use film::{Film, FilmError};
 #[cfg(feature = "circuit")]
-pub use markers::{MarkerError, MarkerSet, SynapseOptions, points, synapses};
+pub use markers::{
+    EdgeSynapses, MarkerError, MarkerRow, MarkerSet, ShownCells, SynapseFacts, SynapseOptions,
+    points, synapse_markers, synapses,
+};
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
 pub use palette_file::{PaletteError, PaletteFile};
 pub use path_distance::path_distances;

@@ -44,6 +44,9 @@ pub enum GenerateError {
         /// The file's own number of the sample.
         sample: i64,
     },
+    /// Another thread asked to stop: [`generate_stoppable`](crate::generate_stoppable).
+    #[error("stopped")]
+    Stopped,
 }
 
 /// Largest coordinate or radius (µm): a kilometer a thousand times over. Products of three still have

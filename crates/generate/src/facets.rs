@@ -71,6 +71,10 @@ impl Facet {
     /// Whether an edge of `other` passes through; a vertex that both have is on the plane.
     fn is_passed_by(&self, other: &Self) -> bool {
         let mut heights = other.points.map(|p| self.height(p));
+        // Most lie on one side. That common vertices count as on the plane would not change it.
+        if heights.iter().all(|&h| h > 0.0) || heights.iter().all(|&h| h < 0.0) {
+            return false;
+        }
         for (height, corner) in heights.iter_mut().zip(other.corners) {
             if self.corners.contains(&corner) {
                 *height = 0.0;

@@ -18,6 +18,7 @@ use crate::inset::{self, ForkChoice};
 use crate::judge::faults;
 use crate::neighborhood::Neighborhood;
 use crate::skeleton::Skeleton;
+use crate::stop::Stop;
 use crate::warning::Warnings;
 use crate::{bends, crowd, fit, fork, uncross};
 
@@ -30,14 +31,15 @@ pub(crate) fn mesh(
     somata: &Somata<'_>,
     may_join: &MayJoin<'_>,
     warnings: &mut Warnings,
+    stop: Stop<'_>,
 ) -> CoarseMesh {
     let mut trials = ForkTrials::new(skeleton);
     let made = Made::new(skeleton, trials.choices(), Some(somata), may_join);
     let first = trials.choices().to_vec();
-    judge(&mut trials, &made, &|fork| fork);
+    judge(&mut trials, &made, &|fork| fork, stop);
     loop {
         let open = trials.open();
-        if open.is_empty() {
+        if open.is_empty() || stop.asked() {
             break;
         }
         let near = Neighborhood::new(skeleton, &open);
@@ -49,9 +51,9 @@ pub(crate) fn mesh(
             .collect();
         let may_join = |from: u32, to: u32| may_join(old(from), old(to));
         let made = Made::new(&near.skeleton, &choices, None, &may_join);
-        judge(&mut trials, &made, &old);
+        judge(&mut trials, &made, &old, stop);
     }
-    let made = if trials.choices() == first {
+    let made = if trials.choices() == first || stop.asked() {
         made
     } else {
         Made::new(skeleton, trials.choices(), Some(somata), may_join)
@@ -63,7 +65,7 @@ pub(crate) fn mesh(
         .iter()
         .filter(|(fork, _)| !trials.is_sound(*fork));
     let faulty: Vec<u32> = faulty.flat_map(|(_, range)| range.clone()).collect();
-    for ring in fit::draw_in_rings(&mut mesh, &faulty) {
+    for ring in fit::draw_in_rings(&mut mesh, &faulty, stop) {
         warnings.add(
             "drawn_in",
             Some(i64::from(mesh.tracing[ring as usize].sample.0)),
@@ -114,7 +116,7 @@ impl Made {
 }
 
 /// Judges the forks that are not settled. `old`: a node of the skeleton by that of the mesh's.
-fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32) {
+fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: Stop<'_>) {
     for &fork in &made.refused {
         trials.refuse(old(fork));
     }
@@ -131,7 +133,10 @@ fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32) {
     let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
     let judged: Vec<(u32, usize)> = near
         .par_iter()
-        .map(|(fork, patches)| (*fork, faults(&made.mesh, patches)))
+        .map(|(fork, patches)| match stop.asked() {
+            true => (*fork, 0),
+            false => (*fork, faults(&made.mesh, patches)),
+        })
         .collect();
     trials.advance(&judged.into_iter().collect());
 }

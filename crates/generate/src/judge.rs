@@ -2,6 +2,7 @@
 //!
 //! A judgement of one choice beside another, thousands of times a cell.
 
+use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, SurfaceMesh};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 
@@ -27,13 +28,24 @@ pub(crate) fn faults(mesh: &CoarseMesh, patches: &[u32]) -> usize {
 
 /// Pairs of facets that cross; those with a common edge are the folds' concern.
 fn crossings(facets: &mut [Facet]) -> usize {
-    facets.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
+    let axis = longest_axis(facets);
+    facets.sort_by(|a, b| a.low[axis].total_cmp(&b.low[axis]));
     let mut count = 0;
     for (i, a) in facets.iter().enumerate() {
-        let near = facets[i + 1..].iter().take_while(|b| b.low.x <= a.high.x);
+        let after = facets[i + 1..].iter();
+        let near = after.take_while(|b| b.low[axis] <= a.high[axis]);
         count += near.filter(|b| a.crosses(b)).count();
     }
     count
+}
+
+/// The axis along which the facets spread most: the fewest pairs overlap there.
+fn longest_axis(facets: &[Facet]) -> usize {
+    let low = facets.iter().fold(Vec3::INFINITY, |low, f| low.min(f.low));
+    let high = facets
+        .iter()
+        .fold(Vec3::NEG_INFINITY, |high, f| high.max(f.high));
+    (high - low).max_position()
 }
 
 /// Edges between facets that are folded over.

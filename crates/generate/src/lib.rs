@@ -26,6 +26,7 @@ mod smooth;
 mod soma;
 mod somata;
 mod stems;
+mod stop;
 mod thin;
 mod trials;
 mod uncross;
@@ -37,6 +38,8 @@ pub use separate::{SeparatedPlace, Separation};
 pub use smooth::Smoothing;
 pub use warning::Warning;
 
+use std::sync::atomic::AtomicBool;
+
 use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Vertex};
 use neurotess_morphology::{Morphology, Soma};
@@ -44,6 +47,7 @@ use neurotess_morphology::{Morphology, Soma};
 use assemble::Somata;
 use rings::RingRequests;
 use skeleton::Skeleton;
+use stop::Stop;
 use warning::Warnings;
 
 /// A coarse mesh and what there is to say about it.
@@ -117,6 +121,20 @@ pub fn generate_timed(
     options: &GenerateOptions,
     clock: impl Fn() -> f64,
 ) -> Result<Generated, GenerateError> {
+    generate_stoppable(morphology, options, clock, &AtomicBool::new(false))
+}
+
+/// [`generate_timed`], which ends soon after another thread sets `stopped`.
+///
+/// # Errors
+/// As [`generate`], and [`GenerateError::Stopped`].
+pub fn generate_stoppable(
+    morphology: &Morphology,
+    options: &GenerateOptions,
+    clock: impl Fn() -> f64,
+    stopped: &AtomicBool,
+) -> Result<Generated, GenerateError> {
+    let stop = Stop(stopped);
     let mut warnings = Warnings::default();
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
     prepare::mend_radii(&mut skeleton, &mut warnings);
@@ -126,6 +144,7 @@ pub fn generate_timed(
     prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
+    stop.check()?;
     let start = clock();
     let requests = RingRequests::new(morphology, options);
     let built = somata::build(
@@ -134,8 +153,10 @@ pub fn generate_timed(
         &requests,
         options,
         &mut warnings,
+        stop,
     );
     let soma_seconds = clock() - start;
+    stop.check()?;
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
     thin::merge_close_forks(&mut skeleton, &mut warnings);
@@ -149,8 +170,10 @@ pub fn generate_timed(
             &soma_spheres,
             &first_samples(morphology),
             &mut warnings,
+            stop,
         )),
     };
+    stop.check()?;
     let may_join = |from: u32, to: u32| {
         let separated = separated.as_ref();
         separated.is_none_or(|separated| separated.clearance.allows(from, to))
@@ -160,7 +183,8 @@ pub fn generate_timed(
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
-    let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut warnings);
+    let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut warnings, stop);
+    stop.check()?;
     mesh.origin = morphology.origin;
     let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
     if let Some(vertex) = mesh.vertices.iter().find(lost) {

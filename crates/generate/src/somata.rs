@@ -10,6 +10,7 @@ use crate::rings::{self, PlacedRing, RingRequests};
 use crate::skeleton::{Root, Skeleton, SkeletonNode};
 use crate::soma::insertion_quads::Insertion;
 use crate::soma::{self, SomaRequest, SomaSurface};
+use crate::stop::Stop;
 use crate::trials::Trial;
 use crate::warning::Warnings;
 use crate::{FirstRing, GenerateOptions, SomaMethod, SomaReport};
@@ -105,6 +106,7 @@ pub(crate) fn build(
     requests: &RingRequests<'_>,
     options: &GenerateOptions,
     warnings: &mut Warnings,
+    stop: Stop<'_>,
 ) -> Built {
     let farthest: Vec<f64> = soma_spheres
         .iter()
@@ -144,7 +146,7 @@ pub(crate) fn build(
                 again = true;
             }
         }
-        if again {
+        if again && !stop.asked() {
             continue;
         }
         (somata.iter().flatten()).for_each(|soma| warn(&soma.surface, &mut trial_warnings));

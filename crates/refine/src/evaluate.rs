@@ -255,18 +255,50 @@ pub(crate) struct PatchShape {
 /// at y = 0 and 1, sides 1 and 3 along y at x = 1 and 0.
 pub(crate) const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
 
+/// Points of a patch with the same y.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchRow<'s> {
+    shape: &'s PatchShape,
+    options: &'s RefineOptions,
+    y: f32,
+    /// Of a tube: the center line at y, which the whole row has.
+    center: Jet,
+}
+
+impl PatchRow<'_> {
+    /// A point inside with its normal, x ∈ (0, 1).
+    pub(crate) fn point(&self, x: f32) -> (Vec3, Vec3) {
+        let Self { shape, options, .. } = self;
+        match shape.kind {
+            PatchKind::Lateral => shape.lateral(&self.center, x, self.y),
+            PatchKind::Soma => shape.coons(x, self.y),
+            PatchKind::Loft => shape.loft(options.path, x, self.y),
+            PatchKind::Cap => shape.cap(options.caps, x, self.y),
+        }
+    }
+}
+
 impl PatchShape {
-    /// A point inside with its normal, x and y ∈ (0, 1).
-    pub(crate) fn interior(&self, options: &RefineOptions, x: f32, y: f32) -> (Vec3, Vec3) {
-        match self.kind {
-            PatchKind::Lateral => self.lateral(options.path, x, y),
-            PatchKind::Soma => self.coons(x, y),
-            PatchKind::Loft => self.loft(options.path, x, y),
-            PatchKind::Cap => self.cap(options.caps, x, y),
+    /// The points inside at this y ∈ (0, 1).
+    pub(crate) fn row<'s>(&'s self, options: &'s RefineOptions, y: f32) -> PatchRow<'s> {
+        let [a, .., d] = &self.corners;
+        PatchRow {
+            shape: self,
+            options,
+            y,
+            center: match self.kind {
+                PatchKind::Lateral => center_line(a, d, options.path, y),
+                PatchKind::Soma | PatchKind::Loft | PatchKind::Cap => Jet::default(),
+            },
         }
     }
 
-    fn lateral(&self, path: Path, x: f32, y: f32) -> (Vec3, Vec3) {
+    /// A point inside with its normal, x and y ∈ (0, 1).
+    pub(crate) fn interior(&self, options: &RefineOptions, x: f32, y: f32) -> (Vec3, Vec3) {
+        self.row(options, y).point(x)
+    }
+
+    fn lateral(&self, center: &Jet, x: f32, y: f32) -> (Vec3, Vec3) {
         let [a, b, c, d] = &self.corners;
         let blend = |f: fn(&Corner) -> Vec3| {
             let (near, far) = (mix(f(a), f(b), x), mix(f(d), f(c), x));
@@ -275,7 +307,6 @@ impl PatchShape {
         };
         let (offset, offset_x, offset_y) = blend(|k| k.offset);
         let (radial, radial_x, radial_y) = blend(|k| k.radial);
-        let center = center_line(a, d, path, y);
         let around = over_length(offset, offset_x, radial, radial_x);
         let along = over_length(offset, offset_y, radial, radial_y);
         let normal = around

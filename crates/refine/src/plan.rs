@@ -126,21 +126,27 @@ impl Plan {
         edge.first + place - 1
     }
 
-    /// Appends the faces of a patch.
+    /// Appends the faces of a patch. `rows`: room for the numbers of its vertices, to be used again.
     pub(crate) fn faces(
         &self,
         mesh: &CoarseMesh,
         options: &RefineOptions,
         patch: usize,
+        rows: &mut Vec<u32>,
         out: &mut Faces,
     ) {
         let corners = mesh.patches[patch].corners;
         let grid = self.grid(mesh, options, patch);
         let fans = mesh.patches[patch].kind != PatchKind::Lateral;
-        let at = |i: u32, j: u32| self.vertex(corners, patch, &grid, i, j);
-        for j in 0..grid.ny {
-            for i in 0..grid.nx {
-                let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        // Up to four cells share a vertex: its number is found once.
+        rows.clear();
+        for j in 0..=grid.ny {
+            rows.extend((0..=grid.nx).map(|i| self.vertex(corners, patch, &grid, i, j)));
+        }
+        let width = grid.nx as usize + 1;
+        for (j, (row, next)) in (0..).zip(rows.chunks(width).zip(rows[width..].chunks(width))) {
+            for (i, (near, far)) in (0..).zip(row.windows(2).zip(next.windows(2))) {
+                let quad = [near[0], near[1], far[1], far[0]];
                 // Diagonals run towards the patch's corners on round patches, and are parallel on
                 // others.
                 let falling = fans && ((2 * i < grid.nx) != (2 * j < grid.ny));

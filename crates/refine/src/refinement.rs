@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Faces, PatchKind, Role, Surface, SurfaceVertex, TracingPoint};
+use neurotess_mesh::{
+    CoarseMesh, Faces, Patch, PatchKind, Role, Surface, SurfaceVertex, TracingPoint,
+};
 use rayon::prelude::*;
 
-use crate::evaluate::{Corner, EdgeKind, PatchShape, SIDES, edge, edge_normal};
+use crate::evaluate::{Corner, EdgeKind, PatchRow, PatchShape, SIDES, edge, edge_normal};
 use crate::plan::{Edge, Grid, Plan};
 use crate::{Lod, RefineOptions};
 
@@ -76,7 +78,8 @@ impl<'m> Refinement<'m> {
         let index = self.plan.vertex(corners, patch, &grid, i, j);
         if let Some(inner) = index.checked_sub(self.plan.patch_first[patch]) {
             let (x, y) = (inner % (grid.nx - 1) + 1, inner / (grid.nx - 1) + 1);
-            return self.inner_vertex(patch, &self.shape(patch), &grid, x, y);
+            let inner = InnerVertices::new(self, patch);
+            return inner.vertex(&inner.row(y), [x, y]);
         }
         let on_edge = |&e: &u32| {
             let edge = &self.plan.edges[e as usize];
@@ -106,8 +109,13 @@ impl<'m> Refinement<'m> {
                 let mut faces = Faces::default();
                 let mut sum = (0.0, 0.0);
                 let mut positions = Vec::new();
+                let mut rows = Vec::new();
                 for patch in block * BLOCK..end {
-                    self.measure_patch(patch, center, &mut faces, &mut positions, &mut sum);
+                    faces.triangles.clear();
+                    faces.quads.clear();
+                    let plan = &self.plan;
+                    plan.faces(self.mesh, &self.options, patch, &mut rows, &mut faces);
+                    self.measure_patch(patch, center, &faces, &mut positions, &mut sum);
                 }
                 sum
             })
@@ -119,7 +127,7 @@ impl<'m> Refinement<'m> {
         &self,
         patch: usize,
         center: Vec3,
-        faces: &mut Faces,
+        faces: &Faces,
         positions: &mut Vec<(u32, DVec3)>,
         sum: &mut (f64, f64),
     ) {
@@ -150,9 +158,6 @@ impl<'m> Refinement<'m> {
             let found = positions.binary_search_by_key(&index, |&(i, _)| i);
             positions[found.expect("all vertices of the patch are listed")].1
         };
-        faces.triangles.clear();
-        faces.quads.clear();
-        self.plan.faces(self.mesh, &self.options, patch, faces);
         let halves = faces
             .quads
             .iter()
@@ -191,13 +196,23 @@ impl<'m> Refinement<'m> {
 
     /// Inner vertex k of an edge, 0 < k < level.
     fn edge_vertex(&self, plan: &Edge, k: u32) -> SurfaceVertex {
-        let (a, b) = (
-            Corner::new(self.mesh, plan.from),
-            Corner::new(self.mesh, plan.to),
-        );
+        self.vertex_between(plan, &self.ends(plan), k)
+    }
+
+    /// The inner vertices of an edge.
+    fn edge_vertices(&self, plan: &Edge) -> impl Iterator<Item = SurfaceVertex> {
+        let ends = self.ends(plan);
+        (1..u32::from(plan.level)).map(move |k| self.vertex_between(plan, &ends, k))
+    }
+
+    fn ends(&self, plan: &Edge) -> [Corner; 2] {
+        [plan.from, plan.to].map(|v| Corner::new(self.mesh, v))
+    }
+
+    fn vertex_between(&self, plan: &Edge, [a, b]: &[Corner; 2], k: u32) -> SurfaceVertex {
         let t = k as f32 / f32::from(plan.level);
-        let jet = edge(plan.kind, &a, &b, self.options.path, t);
-        let normal = edge_normal(&a, &b, jet.derivative, t);
+        let jet = edge(plan.kind, a, b, self.options.path, t);
+        let normal = edge_normal(a, b, jet.derivative, t);
         let (ta, tb) = (self.tracing(plan.from), self.tracing(plan.to));
         let radius = ta.radius * (1.0 - t) + tb.radius * t;
         let nearest = if t < 0.5 { ta } else { tb };
@@ -214,34 +229,59 @@ impl<'m> Refinement<'m> {
         if grid.nx < 2 || grid.ny < 2 {
             return;
         }
-        let shape = self.shape(patch);
+        let inner = InnerVertices::new(self, patch);
         for j in 1..grid.ny {
-            for i in 1..grid.nx {
-                out.push(self.inner_vertex(patch, &shape, &grid, i, j));
-            }
+            let row = inner.row(j);
+            out.extend((1..grid.nx).map(|i| inner.vertex(&row, [i, j])));
+        }
+    }
+}
+
+/// What the inner vertices of a patch have in common.
+struct InnerVertices<'r> {
+    shape: PatchShape,
+    grid: Grid,
+    options: &'r RefineOptions,
+    /// By corner.
+    tracing: [&'r TracingPoint; 4],
+    /// That of the soma, which all vertices of its patches show.
+    soma: Option<&'r TracingPoint>,
+}
+
+impl<'r> InnerVertices<'r> {
+    fn new(refinement: &'r Refinement<'_>, patch: usize) -> Self {
+        let Patch { corners, kind } = refinement.mesh.patches[patch];
+        let tracing = corners.map(|v| refinement.tracing(v));
+        let of_soma = |t: &&TracingPoint| kind == PatchKind::Soma && t.role == Role::Soma;
+        Self {
+            shape: refinement.shape(patch),
+            grid: refinement
+                .plan
+                .grid(refinement.mesh, &refinement.options, patch),
+            options: &refinement.options,
+            tracing,
+            soma: tracing.into_iter().find(of_soma),
         }
     }
 
-    fn inner_vertex(
-        &self,
-        patch: usize,
-        shape: &PatchShape,
-        grid: &Grid,
-        i: u32,
-        j: u32,
-    ) -> SurfaceVertex {
-        let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
-        let (position, normal) = shape.interior(&self.options, x, y);
-        let tracing = self.mesh.patches[patch].corners.map(|v| self.tracing(v));
-        let of_soma = self.mesh.patches[patch].kind == PatchKind::Soma;
-        let soma = tracing
-            .into_iter()
-            .find(|t| of_soma && t.role == Role::Soma);
-        let nearest = tracing[usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5))];
-        let radii = tracing.map(|t| t.radius);
+    /// Points of row j of the grid.
+    fn row(&self, j: u32) -> PatchRow<'_> {
+        self.shape.row(self.options, j as f32 / self.grid.ny as f32)
+    }
+
+    /// The vertex at column i of row j.
+    fn vertex(&self, row: &PatchRow<'_>, [i, j]: [u32; 2]) -> SurfaceVertex {
+        let (x, y) = (
+            i as f32 / self.grid.nx as f32,
+            j as f32 / self.grid.ny as f32,
+        );
+        let (position, normal) = row.point(x);
+        let nearest = usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5));
+        let radii = self.tracing.map(|t| t.radius);
         let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)
             + (radii[3] * (1.0 - x) + radii[2] * x) * y;
-        attributed(position, normal, soma.unwrap_or(nearest), radius)
+        let tracing = self.soma.unwrap_or(self.tracing[nearest]);
+        attributed(position, normal, tracing, radius)
     }
 }
 
@@ -311,7 +351,7 @@ impl Surface for Refinement<'_> {
             out.extend(range(block, corners).map(|v| self.coarse_vertex(v)));
         } else if block < corner_blocks + edge_blocks {
             for edge in &self.plan.edges[range(block - corner_blocks, edges)] {
-                out.extend((1..u32::from(edge.level)).map(|k| self.edge_vertex(edge, k)));
+                out.extend(self.edge_vertices(edge));
             }
         } else {
             for patch in range(block - corner_blocks - edge_blocks, self.mesh.patches.len()) {
@@ -326,8 +366,10 @@ impl Surface for Refinement<'_> {
 
     fn faces(&self, block: usize, out: &mut Faces) {
         let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
+        let mut rows = Vec::new();
         for patch in block * BLOCK..end {
-            self.plan.faces(self.mesh, &self.options, patch, out);
+            let plan = &self.plan;
+            plan.faces(self.mesh, &self.options, patch, &mut rows, out);
         }
     }
 }

@@ -22,9 +22,9 @@ use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed};
 use crate::sources::adaptive::work::CoarsePoint;
 use crate::sources::budgeted;
 use crate::sources::budgeted::layout::{
-    Chunk, Eye, GpuInstance, MOST_SWAY, Shape, Sums, VisibleChunk,
+    Chunk, Extent, Eye, GpuInstance, MOST_SWAY, Shape, Sums, VisibleChunk,
 };
-use crate::sources::budgeted::passes::{Arguments, VisibleCluster, select_shader};
+use crate::sources::budgeted::passes::{Arguments, Measured, VisibleCluster, select_shader};
 use crate::sources::markers::{self, MarkerFrame, StoredMarker};
 use crate::sources::prerefined::{self, Placement, StoredVertex};
 
@@ -151,6 +151,7 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
             let key = PipelineKey {
                 samples,
                 valued: samples > 1,
+                edged: barycentric,
                 ..PipelineKey::default()
             };
             let source = prerefined::vertex_shader(barycentric);
@@ -252,6 +253,7 @@ fn marker_shaders_are_valid_in_every_language_and_have_our_structs() {
         let key = PipelineKey {
             samples,
             valued: samples > 1,
+            edged: samples > 1,
             ..PipelineKey::default()
         };
         let (module, _) = testing::check(&shade_shader(&source, key));
@@ -298,7 +300,7 @@ fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
         &select,
         "Shape",
         Shape,
-        [center, reach, first_chunk, chunks, pad]
+        [center, reach, first_chunk, chunks, somata, soma_radius]
     );
     assert_layout!(
         &select,
@@ -311,13 +313,16 @@ fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
         "Sums",
         Sums,
         [
-            clusters,
+            chunks,
             visible,
             threshold,
             quads,
             visible_chunks,
             wanted,
             instances,
+            floor,
+            rounds,
+            open,
             pad
         ]
     );
@@ -331,15 +336,29 @@ fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
         &select,
         "VisibleCluster",
         VisibleCluster,
-        [cluster, quads, visible_chunks]
+        [
+            cluster,
+            first_instance,
+            last_instance,
+            quads,
+            visible_chunks
+        ]
     );
-    assert_layout!(&select, "Arguments", Arguments, [clusters, visible, draws]);
+    assert_layout!(&select, "Extent", Extent, [first, chunks]);
+    assert_layout!(&select, "Measured", Measured, [instance, best]);
+    assert_layout!(
+        &select,
+        "Arguments",
+        Arguments,
+        [clusters, visible, draws, again]
+    );
     for samples in [1, 4] {
         testing::check(&shade_shader(
             &budgeted::passes::vertex_shader(),
             PipelineKey {
                 samples,
                 valued: samples > 1,
+                edged: samples > 1,
                 ..PipelineKey::default()
             },
         ));

@@ -136,6 +136,64 @@ fn what_is_drawn_is_what_is_worth_most() {
     assert!(off * 2000 < compared, "{off} of {compared}");
 }
 
+#[neurotess_testing::test(needs(gpu))]
+fn the_frame_before_changes_nothing_but_the_cost() {
+    let gpu = device();
+    let mut random = Random(17);
+    let proxies: Vec<Proxy> = (0..3).map(|i| Proxy::new(&cell(i, 60), &[])).collect();
+    let instances = scattered(&mut random, 400, proxies.len(), 1500.0);
+    let all: usize = instances
+        .iter()
+        .map(|i| proxies[i.template.0 as usize].spheres().len())
+        .sum();
+    let mut source = explored(&gpu, &proxies, instances);
+    let mut measured = 0;
+    for budget in [200, 3000, 30_000, 200, MOST_BUDGET, 3000] {
+        source.set_budget(budget);
+        for _ in 0..5 {
+            // Far jumps: the least worth of the frame before is too high or too low a guess.
+            let frame = frame(any_camera(&mut random, 1500.0), 400, 300);
+            source.prepare(&gpu, &frame).expect("prepared");
+            let shown = source.shown(&gpu).expect("read back");
+            let again = source.shown(&gpu).expect("read back");
+            assert!(shown == again, "the second time it is a good guess");
+            // Statistics measure everything.
+            let stats = source.stats(&gpu).expect("counted");
+            let triangles: u64 = shown.iter().map(|s| 2 * u64::from(s.quads)).sum();
+            assert_eq!(stats.triangles, triangles, "budget {budget}");
+            assert_eq!(stats.visible_chunks, shown.len() as u64);
+            assert!(!stats.at_least);
+            if budget == 200 {
+                measured += source.measured(&gpu).expect("counted");
+            }
+        }
+    }
+    // Measured: a tenth, most of it where only a few cells are in view.
+    note!(
+        "{} of {all} chunks measured for 200 triangles",
+        measured / 10
+    );
+    assert!(measured / 10 < all as u64 / 4, "{}", measured / 10);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn somata_below_a_pixel_spend_the_budget() {
+    let gpu = device();
+    let mut random = Random(23);
+    let proxies = [Proxy::new(&cell(3, 20), &[])];
+    let instances = scattered(&mut random, 30_000, 1, 40_000.0);
+    let mut source = explored(&gpu, &proxies, instances);
+    for budget in [1000, 10_000] {
+        source.set_budget(budget);
+        let camera = Camera::new(DVec3::Z * 60_000.0, DVec3::ZERO, DVec3::Y, 1.0);
+        let frame = frame(camera.expect("a camera"), 200, 200);
+        source.prepare(&gpu, &frame).expect("prepared");
+        let stats = source.stats(&gpu).expect("counted");
+        assert!(stats.requested > 2 * u64::from(budget), "{stats:?}");
+        assert!(100 * stats.triangles > 95 * u64::from(budget), "{stats:?}");
+    }
+}
+
 /// How many steps make these quads.
 fn drawn_steps(steps: &[LodRequest], quads: u32) -> Option<usize> {
     let mut sum = 0;

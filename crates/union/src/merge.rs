@@ -1,5 +1,7 @@
 //! The recipe: find, cut, mend, check, and once more.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use neurotess_mesh::{
     SurfaceMesh, Topology, measure, search_self_intersections, self_intersections,
     self_intersections_of, topology,
@@ -34,9 +36,27 @@ pub struct Union {
 /// If the surface is not closed and oriented, is not finite, or crosses itself more often than a search
 /// counts; and if the arrangement fails.
 pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionError> {
+    union_stoppable(mesh, options, &AtomicBool::new(false))
+}
+
+/// [`union`], which ends soon after another thread sets `stopped`: between its searches and cuts.
+///
+/// # Errors
+/// As [`union`], and [`UnionError::Stopped`].
+pub fn union_stoppable(
+    mesh: &SurfaceMesh,
+    options: &UnionOptions,
+    stopped: &AtomicBool,
+) -> Result<Union, UnionError> {
+    let check = || match stopped.load(Ordering::Relaxed) {
+        true => Err(UnionError::Stopped),
+        false => Ok(()),
+    };
+    check()?;
     let mut work = Work::new(mesh)?;
     let mut report = before(&work)?;
     let mut pairs = first_pairs(&work)?;
+    check()?;
     report.pairs_before = pairs.len();
     report.places = places(&work, &pairs);
     report.dropped = drop_hidden(&mut work, &pairs);
@@ -47,6 +67,7 @@ pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionE
     let mut needles = options.needles;
     while !pairs.is_empty() && report.rounds < options.rounds {
         report.rounds += 1;
+        check()?;
         if report.rounds > EXACT_ROUNDS {
             let times = f64::from(report.rounds - EXACT_ROUNDS);
             report.parted += touch::press_all(&mut work, &pairs, times);
@@ -57,6 +78,7 @@ pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionE
         }
         let faces = touch::faces(&work, &pairs);
         cut(&mut work, &pairs)?;
+        check()?;
         let last = report.rounds == options.rounds;
         mend(&mut work, if last { 0.0 } else { needles }, &mut report);
         // What is finer stays: collapsing may be what made the new crossings.

@@ -46,4 +46,7 @@ pub enum UnionError {
     /// The faces near crossings could not be arranged.
     #[error("the faces that cross could not be cut: {0}")]
     Failed(String),
+    /// Another thread asked to stop: [`union_stoppable`](crate::union_stoppable).
+    #[error("stopped")]
+    Stopped,
 }

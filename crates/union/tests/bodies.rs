@@ -2,9 +2,11 @@
 
 mod shapes;
 
+use std::sync::atomic::AtomicBool;
+
 use glam::Vec3;
 use neurotess_mesh::{SurfaceMesh, SurfaceVertex};
-use neurotess_union::{Kin, UnionError, UnionOptions, Why, union};
+use neurotess_union::{Kin, UnionError, UnionOptions, Why, union, union_stoppable};
 use shapes::{BARE, assert_near, brick, inverted, merged, straight, together, tube};
 
 fn default() -> UnionOptions {
@@ -29,6 +31,16 @@ fn two_crossing_tubes_become_one_body_without_a_handle() {
     assert!(report.volume < before && report.volume > 0.85 * before);
     assert!(union.report.pairs_before > 20);
     assert!(union.mesh.faces.quads.is_empty());
+}
+
+#[test]
+fn another_thread_can_stop_it() {
+    let made = |stopped| {
+        let stopped = AtomicBool::new(stopped);
+        union_stoppable(&crossing_tubes(), &default(), &stopped)
+    };
+    assert_eq!(made(true), Err(UnionError::Stopped));
+    assert_eq!(made(false), union(&crossing_tubes(), &default()));
 }
 
 #[test]

@@ -5,12 +5,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use neurotess_viewer::CommandListener;
-use neurotess_viewer::document::SomaEdit;
+use neurotess_viewer::document::{MarkerOptions, SomaEdit};
 
 use crate::io::inputs::Inputs;
 use crate::io::morphologies::MORPHOLOGIES;
+use crate::options::markers::MarkerArgs;
 use crate::options::rings::RingArgs;
-use crate::report::Reporter;
+use crate::report::{Reporter, usage};
 
 /// `neurotess view`
 #[derive(Args, Debug)]
@@ -20,6 +21,7 @@ use crate::report::Reporter;
   neurotess view cells/ other.asc
   neurotess view circuit/circuit_config.json
   neurotess view circuit/ --report circuit/reports/voltage.h5
+  neurotess view circuit/ --synapses --marker-color-by conductance
   neurotess view yesterday.neurotess")]
 pub(crate) struct ViewArgs {
     /// Morphology files, folders (searched recursively), globs, circuits, or a session that the
@@ -31,6 +33,8 @@ pub(crate) struct ViewArgs {
     /// Values of a simulation of the circuit: a SONATA report, or a file of spikes
     #[arg(long, value_name = "FILE", requires = "inputs")]
     pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) markers: MarkerArgs,
     /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -58,6 +62,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
             ..SomaEdit::default()
         },
         report: args.report.clone(),
+        markers: markers(&args.markers)?,
         adapter: args.adapter.clone(),
     };
     let listener = reporter
@@ -65,6 +70,26 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         .then(|| Box::new(tell) as CommandListener);
     neurotess_viewer::run(options, listener)?;
     Ok(())
+}
+
+/// What the window shows of synapses and points.
+fn markers(asked: &MarkerArgs) -> anyhow::Result<MarkerOptions> {
+    let options = asked.marker_color_by.is_some() || asked.marker_size.is_some();
+    if options && !asked.any() {
+        return usage("--marker-color-by and --marker-size are for --synapses or --points");
+    }
+    let usual = MarkerOptions::default();
+    let by = asked.marker_color_by.clone();
+    Ok(MarkerOptions {
+        synapses: asked.synapses.is_some(),
+        edges: asked.populations(),
+        side: asked.synapse_side.into(),
+        property: by.clone().filter(|_| asked.synapses.is_some()),
+        column: by.filter(|_| asked.points.is_some()),
+        points: asked.points.clone(),
+        size: asked.marker_size.map_or(usual.size, |size| size as f32),
+        ..usual
+    })
 }
 
 /// `--verbose`: every command that runs, on standard error.

@@ -1,5 +1,7 @@
 //! The same work for every input, on all cores.
 
+use std::sync::atomic::Ordering;
+
 use super::inputs::{Input, Inputs};
 use super::workers;
 use crate::report::{Entry, Failed, Failure, Progress, Reporter, bug};
@@ -15,7 +17,10 @@ pub(crate) fn each<T: Send>(
     let progress = Progress::new(reporter, inputs.files.len(), "files");
     let order: Vec<usize> = (0..inputs.files.len()).collect();
     let results = workers::run(&inputs.files, &order, reporter.threads(), |input| {
-        let result = work(input);
+        let result = match reporter.stopped().load(Ordering::Relaxed) {
+            true => Err(Failure("stopped".into())),
+            false => work(input),
+        };
         progress.done();
         result
     })?;

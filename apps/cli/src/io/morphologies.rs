@@ -42,7 +42,7 @@ impl ReaderWarning {
 }
 
 /// The code of a cell whose unit is likely not the micrometer.
-const OF_UNIT: &str = "too_large";
+pub(crate) const OF_UNIT: &str = "too_large";
 
 impl From<formats::Warning> for ReaderWarning {
     fn from(warning: formats::Warning) -> Self {

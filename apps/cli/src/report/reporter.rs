@@ -35,6 +35,8 @@ pub(crate) struct Reporter {
     different: AtomicBool,
     /// What is told, where it is not printed.
     recorded: Option<Mutex<Vec<String>>>,
+    /// Set by another thread that asks to stop.
+    stopped: Arc<AtomicBool>,
 }
 
 impl Reporter {
@@ -55,6 +57,7 @@ impl Reporter {
             broken: AtomicBool::new(false),
             different: AtomicBool::new(false),
             recorded: None,
+            stopped: Arc::default(),
         };
         if let Some(threads) = common.threads.filter(|&n| n > most_threads()) {
             let most = most_threads();
@@ -65,15 +68,16 @@ impl Reporter {
         reporter
     }
 
-    /// A reporter that prints nothing: warnings and errors are kept.
+    /// A reporter that prints nothing: warnings and errors are kept. Work for it ends soon after `stopped` is set.
     #[cfg(feature = "render")]
-    pub(crate) fn recording(common: Common) -> Self {
+    pub(crate) fn recording(common: Common, stopped: &Arc<AtomicBool>) -> Self {
         let quiet = Self::new(Common {
             quiet: true,
             ..common
         });
         Self {
             recorded: Some(Mutex::default()),
+            stopped: Arc::clone(stopped),
             ..quiet
         }
     }
@@ -85,6 +89,11 @@ impl Reporter {
         recorded.map_or_else(Vec::new, |kept| {
             std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner))
         })
+    }
+
+    /// Set by another thread that asks to stop.
+    pub(crate) fn stopped(&self) -> &AtomicBool {
+        &self.stopped
     }
 
     /// Reserves standard output for a file.

@@ -62,6 +62,28 @@ fn points_of_a_table_are_shown_with_any_input() {
     }
 }
 
+#[neurotess_testing::test]
+fn the_window_takes_the_same_options() {
+    let work = Work::new();
+    let help = work.run("view --help").exits(0).stdout();
+    for option in [
+        "--synapses",
+        "--synapse-side",
+        "--points",
+        "--marker-color-by",
+        "--marker-size",
+    ] {
+        assert!(help.contains(option), "{option}: {help}");
+    }
+    let run = work.run("view --marker-size 2");
+    let run = run.exits(2);
+    assert!(
+        run.stderr().contains("--synapses or --points"),
+        "{}",
+        run.stderr()
+    );
+}
+
 #[neurotess_testing::test(needs(gpu))]
 fn what_cannot_be_shown_says_why() {
     let work = circuit();

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use neurotess::circuit::{Circuit, is_circuit, is_recording, soma_center};
+use neurotess::circuit::{Circuit, is_circuit, is_point_table, is_recording, soma_center};
 use neurotess::formats;
 use neurotess::render::Placement;
 use walkdir::WalkDir;
@@ -63,6 +63,8 @@ pub(crate) struct Found {
     pub(crate) circuits: Vec<Opened>,
     /// Reports and spikes.
     pub(crate) reports: Vec<PathBuf>,
+    /// Tables of points.
+    pub(crate) points: Vec<PathBuf>,
     /// Cells of circuits. Files that belong to no cell are shown where they were traced.
     pub(crate) cells: Vec<CircuitCell>,
     /// Paths that could not be searched or opened: file and reason.
@@ -81,6 +83,8 @@ pub(crate) fn find(request: &OpenRequest) -> Found {
     for path in &request.paths {
         if is_sample(path) {
             found.files.push(path.clone());
+        } else if is_point_table(path) {
+            found.points.push(path.clone());
         } else if is_circuit(path) {
             find_circuit(path, &mut found);
         } else if path.is_dir() {

@@ -8,13 +8,17 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
+use neurotess::circuit::Circuit;
 use neurotess::generate::{Generated, generate_timed};
 use neurotess::morphology::Morphology;
 
 use crate::io::find::{self, Found, OpenRequest};
 use crate::io::load;
+use crate::io::markers;
 use crate::io::task::{Progress, Task, caught};
 use crate::model::document::{SomaEdit, SourceId};
+use crate::model::ids::CircuitId;
+use crate::model::markers::{MarkerContent, MarkerSource};
 use crate::model::sources::{Source, Stale};
 
 /// A result of background work.
@@ -30,6 +34,8 @@ pub(crate) enum Message {
     Reloaded(SourceId, Box<Result<Source, String>>),
     /// A cell that was meshed again with another soma.
     Soma(SourceId, SomaEdit, Box<Result<Generated, String>>),
+    /// Synapses or points that were read.
+    Markers(MarkerSource, Box<Result<MarkerContent, String>>),
     /// Files that were changed or removed, or are as they were read.
     Files(Vec<(SourceId, Option<Stale>)>),
     /// Files are no longer watched, for this reason.
@@ -51,6 +57,7 @@ pub(crate) struct Worker {
     saving: Option<Task<String>>,
     reloading: Vec<(SourceId, Task<Source>)>,
     remeshing: Option<(SourceId, SomaEdit, Task<Generated>)>,
+    marking: Option<(MarkerSource, Task<MarkerContent>)>,
     watching: Option<Task<()>>,
     watched: Arc<Mutex<Vec<Watched>>>,
 }
@@ -67,6 +74,7 @@ impl Worker {
             saving: None,
             reloading: Vec::new(),
             remeshing: None,
+            marking: None,
             watching: None,
             watched: Arc::default(),
         }
@@ -103,12 +111,19 @@ impl Worker {
         {
             messages.push(Message::Soma(id, edit, Box::new(result)));
         }
+        let read = self.marking.as_ref().and_then(|(_, task)| task.take());
+        if let Some(result) = read
+            && let Some((source, _)) = self.marking.take()
+        {
+            messages.push(Message::Markers(source, Box::new(result)));
+        }
         messages
     }
 
     /// Whether a task is running whose result will come.
     pub(crate) fn is_busy(&self) -> bool {
-        self.loading.is_some() || self.saving.is_some() || self.remeshing.is_some()
+        let reads = self.loading.is_some() || self.marking.is_some();
+        reads || self.saving.is_some() || self.remeshing.is_some()
     }
 
     /// Whether files are being written.
@@ -116,11 +131,12 @@ impl Worker {
         self.saving.is_some()
     }
 
-    /// Progress of reading and of saving.
-    pub(crate) fn progress(&self) -> [Option<Progress>; 2] {
+    /// Progress of reading, of saving, and of reading synapses or points.
+    pub(crate) fn progress(&self) -> [Option<Progress>; 3] {
         let reading = self.loading.as_ref().map(Task::progress);
         let saving = self.saving.as_ref().map(Task::progress);
-        [reading.cloned(), saving.cloned()]
+        let marking = self.marking.as_ref().map(|(_, task)| task.progress());
+        [reading, saving, marking].map(Option::<&Progress>::cloned)
     }
 
     fn start<T: Send + 'static>(
@@ -211,6 +227,36 @@ impl Worker {
             generate_timed(&morphology, &options, seconds).map_err(|e| e.to_string())
         });
         self.remeshing = Some((id, edit, task));
+    }
+
+    /// Whether synapses or points are being read.
+    pub(crate) fn reads_markers(&self) -> bool {
+        self.marking.is_some()
+    }
+
+    /// Reads synapses of circuits, or points.
+    pub(crate) fn read_markers(
+        &mut self,
+        source: MarkerSource,
+        circuits: Vec<(CircuitId, Arc<Circuit>)>,
+    ) {
+        let what = match &source {
+            MarkerSource::Synapses(_) => "reading synapses",
+            MarkerSource::Points(_) => "reading points",
+        };
+        let of = source.clone();
+        let task = self.start(Progress::new(what, "populations", 0), move |progress| {
+            markers::read(&of, &circuits, progress)
+        });
+        self.marking = Some((source, task));
+    }
+
+    /// Stops reading synapses or points at once; a file that is just being read is read to its end, and
+    /// its content dropped. Returns what was being read.
+    pub(crate) fn stop_markers(&mut self) -> Option<MarkerSource> {
+        let (source, task) = self.marking.take()?;
+        task.progress().cancel();
+        Some(source)
     }
 
     /// Starts saving; `work` reports its progress, and stops if it was canceled.

@@ -32,6 +32,13 @@ impl Circuits {
         self.0.get(id.0 as usize).map(|(_, circuit)| &**circuit)
     }
 
+    /// A circuit, for another thread.
+    pub(crate) fn shared(&self, id: CircuitId) -> Option<Arc<Circuit>> {
+        self.0
+            .get(id.0 as usize)
+            .map(|(_, circuit)| Arc::clone(circuit))
+    }
+
     /// All circuits with their ids.
     pub fn iter(&self) -> impl Iterator<Item = (CircuitId, &Circuit)> {
         let circuits = self.0.iter().map(|(_, circuit)| &**circuit);

@@ -7,6 +7,7 @@ pub mod document;
 pub(crate) mod film;
 pub(crate) mod history;
 pub(crate) mod ids;
+pub mod markers;
 pub mod measuring;
 pub(crate) mod numbers;
 pub mod playback;

@@ -14,6 +14,12 @@ pub(crate) fn grouped(number: u64) -> String {
     text
 }
 
+/// A number with six significant digits.
+pub(crate) fn significant(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
 /// A length, area or volume, rounded to significant digits.
 pub(crate) fn measured(value: f64, unit: &str) -> String {
     let a = value.abs();

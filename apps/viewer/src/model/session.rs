@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{Detail, Dimension, Look, Neuron, PlacementEntry, SomaEdit};
+use crate::model::document::{
+    Detail, Dimension, Look, MarkerOptions, Neuron, PlacementEntry, SomaEdit,
+};
 use crate::model::ids::{CircuitId, CircuitNode, SourceId};
 use crate::model::playback::Pace;
 use crate::model::state::State;
@@ -64,6 +66,9 @@ pub struct Session {
     /// The recording whose values can be shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<PathBuf>,
+    /// Synapses and points beside the cells.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub markers: MarkerOptions,
     /// Its time and speed.
     #[serde(default)]
     pub playback: Pace,
@@ -146,6 +151,10 @@ impl NeuronEntry {
     }
 }
 
+fn is_default(markers: &MarkerOptions) -> bool {
+    *markers == MarkerOptions::default()
+}
+
 fn is_false(value: &bool) -> bool {
     !value
 }
@@ -208,6 +217,14 @@ impl Session {
             detail: document.detail,
             key_view: state.key_views.clone(),
             report: document.report.as_ref().map(|file| relative(file, folder)),
+            markers: MarkerOptions {
+                points: document
+                    .markers
+                    .points
+                    .as_ref()
+                    .map(|file| relative(file, folder)),
+                ..document.markers.clone()
+            },
             playback: state.playback.pace,
             circuit: circuit.collect(),
             file: file.collect(),
@@ -239,7 +256,8 @@ impl Session {
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = session.file.iter_mut().map(|entry| &mut entry.path);
         let circuits = session.circuit.iter_mut().map(|entry| &mut entry.path);
-        for path in files.chain(circuits).chain(&mut session.report) {
+        let shown = session.report.iter_mut().chain(&mut session.markers.points);
+        for path in files.chain(circuits).chain(shown) {
             if path.is_relative() && !path.to_string_lossy().starts_with("sample:") {
                 *path = folder.join(&*path);
             }

@@ -46,6 +46,8 @@ pub(crate) struct SceneContent {
     /// The current colors of the keys.
     pub(crate) table: ColorTable,
     pub(crate) legend: Legend,
+    /// Number of categories that the cells' color keys have.
+    pub(crate) categories: usize,
     /// The colors of the legend that are closest to one another.
     pub(crate) closest: Option<ClosestColors>,
     /// A recording, with the range of all its values.
@@ -69,6 +71,7 @@ impl SceneContent {
             instances,
             table: coloring.table.clone(),
             legend: coloring.legend.clone(),
+            categories: coloring.categories(),
             closest: closest(coloring.legend.entries()),
             coloring: Arc::new(coloring),
             recording,
@@ -80,6 +83,7 @@ impl SceneContent {
     /// Takes the colors of other content that has the same meshes and color keys.
     pub(crate) fn recolor(&mut self, other: Self) {
         (self.table, self.legend) = (other.table, other.legend);
+        self.categories = other.categories;
         (self.coloring, self.closest) = (other.coloring, other.closest);
         self.recording = other.recording;
     }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use neurotess::render::Gpu;
 
 use crate::io::find::{self, OpenRequest};
-use crate::io::load;
 use crate::io::task::Progress;
+use crate::io::{self, load};
 use crate::model::document::Neuron;
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
@@ -17,6 +17,7 @@ use crate::model::state::State;
 use crate::scene::colors::ColorRequest;
 use crate::scene::content::{self, SceneContent};
 use crate::scene::dimensions;
+use crate::scene::markers::MarkerRequest;
 use crate::scene::pictures::{StillScene, pictures};
 use crate::scene::templates;
 
@@ -67,6 +68,7 @@ pub fn draw_session(
     state.document.look = session.look.clone();
     state.document.grid = session.grid;
     state.document.report = session.report.clone();
+    state.document.markers = session.markers.clone();
     state.playback.pace = session.playback;
     let mut opened = Vec::new();
     for entry in &session.neuron {
@@ -82,6 +84,7 @@ pub fn draw_session(
     }
     *state.document.dimensions = session.dimensions(&opened);
     drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
+    read_markers(&mut state, &mut drawn);
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
     let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
     let film_frame = FilmFrame {
@@ -97,6 +100,23 @@ pub fn draw_session(
     Ok(drawn)
 }
 
+/// Reads synapses and points of a session.
+fn read_markers(state: &mut State, drawn: &mut SessionPicture) {
+    while let Some(source) = state.markers_due() {
+        let shared = |id| Some((id, state.circuits.shared(id)?));
+        let circuits = state.circuits_shown();
+        let circuits: Vec<_> = circuits.into_iter().filter_map(shared).collect();
+        let progress = Progress::new("reading", "populations", 0);
+        let content = io::markers::read(&source, &circuits, &progress);
+        state.set_markers(source, content);
+    }
+    let problems = std::mem::take(&mut state.problems);
+    let failures = problems
+        .into_iter()
+        .map(|problem| (problem.what, problem.why));
+    drawn.failures.extend(failures);
+}
+
 fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> StillScene {
     let sources = templates::templates(state);
     let request = ColorRequest::new(state, &sources);
@@ -104,11 +124,19 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
     let mut colored = request.colors(&sources);
     drawn.failures.extend(colored.problem.take());
     let instances = content::instances(state, &sources);
-    let content = SceneContent::new(sources, instances, colored);
+    let mut content = SceneContent::new(sources, instances, colored);
+    let markers = MarkerRequest::new(state, &content).map(|request| request.markers());
+    let (markers, problem) = markers.unzip();
+    drawn.failures.extend(problem.flatten());
+    if let Some(markers) = &markers {
+        markers.add_to(&mut content);
+    }
     StillScene {
         gpu,
         shared: false,
         content,
+        markers: markers.map(Arc::new),
+        radius: state.document.markers.radius(),
         look: state.document.look.clone(),
         states: content::states(&state.document),
         spheres: state.spheres(),

@@ -24,7 +24,8 @@ pub(crate) struct Ray {
 /// The location under the cursor: on the center line of the section, or the center of the soma that
 /// was hit. `reach` (µm): how far from a fork the cursor is still near it.
 pub(crate) fn pointed(state: &State, hit: &CursorHit, ray: Ray, reach: f64) -> Option<Pointed> {
-    let neuron = hit.picked.neuron;
+    let picked = hit.picked()?;
+    let neuron = picked.neuron;
     let source = state.source_of(neuron)?;
     let placement = *state.placements().get(neuron)?;
     let morphology = &source.morphology;
@@ -35,7 +36,7 @@ pub(crate) fn pointed(state: &State, hit: &CursorHit, ray: Ray, reach: f64) -> O
         through: inverse(ray.through),
     };
     let place = inverse(hit.place);
-    let location = match hit.picked.part {
+    let location = match picked.part {
         CellPart::Section(section) => nearest(morphology, section, ray, place)?,
         CellPart::Soma => nearest_soma(morphology, place)?,
         CellPart::Neurite(_) => return None,

@@ -7,6 +7,7 @@ mod explorer;
 mod film;
 pub(crate) mod headless;
 pub(crate) mod locate;
+mod markers;
 pub(crate) mod picks;
 pub(crate) mod pictures;
 pub(crate) mod stage;

@@ -9,6 +9,7 @@ use neurotess::render::outline::{HOVERED, PICKED, SELECTED};
 use neurotess::render::pick::{PickHit, PickId, PickTarget};
 
 use crate::model::document::Document;
+use crate::model::markers::MarkerRef;
 use crate::model::sources::SectionFacts;
 use crate::model::state::{CellPart, Picked};
 
@@ -18,10 +19,37 @@ const REACH: i64 = 4;
 /// What is under the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorHit {
-    /// The part of a neuron.
-    pub picked: Picked,
-    /// The center of the patch (µm, in the world).
+    /// What it is.
+    pub target: HitTarget,
+    /// The center of the patch or marker (µm, in the world).
     pub place: DVec3,
+}
+
+/// What was hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HitTarget {
+    /// A part of a neuron.
+    Cell(Picked),
+    /// A synapse or point.
+    Marker(MarkerRef),
+}
+
+impl CursorHit {
+    /// The part of a neuron, if it is one.
+    pub fn picked(&self) -> Option<Picked> {
+        match self.target {
+            HitTarget::Cell(picked) => Some(picked),
+            HitTarget::Marker(_) => None,
+        }
+    }
+
+    /// The synapse or point, if it is one.
+    pub fn marker(&self) -> Option<MarkerRef> {
+        match self.target {
+            HitTarget::Cell(_) => None,
+            HitTarget::Marker(marker) => Some(marker),
+        }
+    }
 }
 
 /// What is at each pixel.
@@ -88,20 +116,29 @@ impl Picks {
     }
 
     /// Mask of outlines, with bits by pixel: selected neurons, the part under the cursor, and the
-    /// part that was clicked.
+    /// part that was clicked; `markers`: the synapse or point under the cursor, and the one that was
+    /// clicked.
     pub(crate) fn mask(
         &self,
         document: &Document,
-        hovered: Option<Picked>,
-        picked: Option<Picked>,
+        [hovered, picked]: [Option<Picked>; 2],
+        markers: [Option<MarkerRef>; 2],
         sections: impl Fn(usize, u32) -> Option<SectionFacts>,
     ) -> Vec<u8> {
-        let within = |part: Option<Picked>, seen: &CursorHit| {
-            part.is_some_and(|part| covers(part, seen.picked, &sections))
+        let within = |part: Option<Picked>, seen: Picked| {
+            part.is_some_and(|part| covers(part, seen, &sections))
         };
         let mut bits = vec![0];
-        bits.extend(self.seen.iter().map(|seen| {
-            let neuron = document.neurons.get(seen.picked.neuron);
+        bits.extend(self.seen.iter().map(|hit| {
+            let seen = match hit.target {
+                HitTarget::Cell(seen) => seen,
+                HitTarget::Marker(marker) => {
+                    let is = |other| other == Some(marker);
+                    let hovered = if is(markers[0]) { HOVERED } else { 0 };
+                    return hovered | if is(markers[1]) { SELECTED | PICKED } else { 0 };
+                }
+            };
+            let neuron = document.neurons.get(seen.neuron);
             let selected = if neuron.is_some_and(|n| n.selected) {
                 SELECTED
             } else {
@@ -112,10 +149,41 @@ impl Picks {
             let picked = selected != 0 && within(picked, seen);
             selected | hovered | if picked { PICKED } else { 0 }
         }));
+        self.join_markers(&mut bits);
         self.index
             .iter()
             .map(|&i| bits.get(i as usize).copied().unwrap_or(0))
             .collect()
+    }
+
+    /// Gives markers the bits of the parts of cells that they touch: they lie on these, and outlines go
+    /// around both. `bits`: by index, as [`Picks::index`] has them.
+    fn join_markers(&self, bits: &mut [u8]) {
+        let is_marker = |index: u32| {
+            let seen = index.checked_sub(1).and_then(|i| self.seen.get(i as usize));
+            seen.is_some_and(|seen| seen.marker().is_some())
+        };
+        let width = self.size[0] as usize;
+        let of_cells = bits.to_vec();
+        if of_cells.iter().all(|&bits| bits == 0) {
+            return;
+        }
+        for (at, &index) in self.index.iter().enumerate() {
+            if !is_marker(index) {
+                continue;
+            }
+            let around = [
+                at.wrapping_sub(1),
+                at + 1,
+                at.wrapping_sub(width),
+                at + width,
+            ];
+            for beside in around.into_iter().filter_map(|at| self.index.get(at)) {
+                if *beside != index && !is_marker(*beside) {
+                    bits[index as usize] |= of_cells[*beside as usize];
+                }
+            }
+        }
     }
 }
 
@@ -165,10 +233,10 @@ pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Op
             .map_or(CellPart::Soma, |index| CellPart::Section(index as u32)),
     };
     Some(CursorHit {
-        picked: Picked {
+        target: HitTarget::Cell(Picked {
             neuron: hit.instance as usize,
             part,
-        },
+        }),
         place: placement.world_from_cell(mesh.origin + middle),
     })
 }
@@ -188,7 +256,7 @@ mod tests {
                 CellPart::Soma
             };
             Some(CursorHit {
-                picked: Picked { neuron: 0, part },
+                target: HitTarget::Cell(Picked { neuron: 0, part }),
                 place: DVec3::ZERO,
             })
         })
@@ -197,7 +265,7 @@ mod tests {
     #[test]
     fn the_exact_pixel_wins_then_the_nearest() {
         let picks = picks();
-        let part = |x| picks.at(x, 0.5).map(|s| s.picked.part);
+        let part = |x| picks.at(x, 0.5).and_then(|s| s.picked()).map(|p| p.part);
         assert_eq!(part(3.9), Some(CellPart::Section(2)));
         assert_eq!(part(4.1), Some(CellPart::Soma));
         assert_eq!(part(1.0), Some(CellPart::Section(2)));
@@ -218,15 +286,51 @@ mod tests {
             })
         };
         let hovered = |part| Some(Picked { neuron: 0, part });
-        let mask = picks().mask(&document, hovered(CellPart::Neurite(1)), None, facts);
+        let mask = picks().mask(
+            &document,
+            [hovered(CellPart::Neurite(1)), None],
+            [None; 2],
+            facts,
+        );
         assert_eq!(mask, [0, 0, 0, 3, 1, 1, 0, 0, 0, 0]);
-        let mask = picks().mask(&document, hovered(CellPart::Soma), None, facts);
+        let mask = picks().mask(&document, [hovered(CellPart::Soma), None], [None; 2], facts);
         assert_eq!(mask, [0, 0, 0, 1, 3, 3, 0, 0, 0, 0]);
         // The clicked part keeps its outline while the neuron is selected.
-        let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
+        let mask = picks().mask(&document, [None, hovered(CellPart::Soma)], [None; 2], facts);
         assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
         document.neurons.set_states(|_, _| (false, false));
-        let mask = picks().mask(&document, None, hovered(CellPart::Soma), facts);
+        let mask = picks().mask(&document, [None, hovered(CellPart::Soma)], [None; 2], facts);
         assert_eq!(mask, [0; 10]);
+    }
+
+    #[test]
+    fn markers_are_within_the_outline_of_what_they_lie_on() {
+        use crate::model::markers::MarkerRef::Point;
+        // Five pixels in a row: a soma with a marker on it, another marker beside, nothing.
+        let ids = [9, 7, 9, 8, 0].map(|id| [id, id]);
+        let picks = Picks::new([5, 1], &ids, |[id, _]| {
+            let soma = Picked {
+                neuron: 0,
+                part: CellPart::Soma,
+            };
+            Some(CursorHit {
+                target: match id {
+                    9 => HitTarget::Cell(soma),
+                    id => HitTarget::Marker(Point(u64::from(id))),
+                },
+                place: DVec3::ZERO,
+            })
+        });
+        let mut document = Document::default();
+        document.neurons.push(Neuron::new(SourceId(0), "n".into()));
+        let mask =
+            |document: &Document, markers| picks.mask(document, [None; 2], markers, |_, _| None);
+        assert_eq!(
+            mask(&document, [Some(Point(7)), Some(Point(8))]),
+            [0, 2, 0, 5, 0]
+        );
+        document.neurons.set_states(|_, _| (false, true));
+        assert_eq!(mask(&document, [None; 2]), [1, 1, 1, 1, 0]);
+        assert_eq!(mask(&document, [None, Some(Point(7))]), [1, 5, 1, 1, 0]);
     }
 }

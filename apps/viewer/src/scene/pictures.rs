@@ -9,8 +9,8 @@ use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
 use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    AdaptiveSettings, Gpu, Image, Occlusion, PictureError, PictureOptions, PngWriter, StaticError,
-    StillRenderer, Viewpoint, Watch,
+    AdaptiveSettings, Gpu, Image, MarkerSettings, Markers, Occlusion, PictureError, PictureOptions,
+    PngWriter, StaticError, StillRenderer, Viewpoint, Watch, WithMarkers,
 };
 
 use crate::io::save::existing;
@@ -19,6 +19,7 @@ use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
 use crate::scene::content;
 use crate::scene::film;
+use crate::scene::markers::settings;
 
 pub(crate) use crate::scene::still_scene::StillScene;
 
@@ -49,6 +50,7 @@ pub(crate) fn pictures(
     let picture = picture_options(still_scene, options);
     let mut adaptive = content::adaptive(gpu, &still_scene.content, picture.sub_pixels(gpu))
         .map_err(|e| e.to_string())?;
+    let mut markers = markers(still_scene, gpu, picture.sub_pixels(gpu))?;
     adaptive.set_settings(AdaptiveSettings {
         lod: LodCriterion::PixelError(0.25),
         wireframe: picture.look.wire > 0.0,
@@ -96,7 +98,8 @@ pub(crate) fn pictures(
         };
         let mut drawn = Ok(());
         if number == 0 && film::is_static(still_scene, film_frames, options) {
-            match renderer.render_static(gpu, &mut adaptive, &view, &table, &picture) {
+            let mut source = WithMarkers::new(&mut adaptive, markers.as_mut());
+            match renderer.render_static(gpu, &mut source, &view, &table, &picture) {
                 Ok(picture) => film = film::film(still_scene, picture),
                 Err(StaticError::Wireframe | StaticError::Source) => {}
                 Err(StaticError::Stopped) => drawn = Err(PictureError::Stopped),
@@ -110,14 +113,15 @@ pub(crate) fn pictures(
         if let Some(image) = recolored {
             drawn = lay(0, image).map_err(PictureError::Sink);
         } else if drawn.is_ok() {
-            let whole = renderer.render(gpu, &mut adaptive, &view, &table, &picture, lay);
+            let mut source = WithMarkers::new(&mut adaptive, markers.as_mut());
+            let whole = renderer.render(gpu, &mut source, &view, &table, &picture, lay);
             drawn = whole.map(|_| ());
         }
         match drawn {
             Ok(()) => {}
             Err(PictureError::Stopped) => {
                 // Dropping the device waits for its current tile: done on another thread.
-                std::thread::spawn(move || drop((renderer, adaptive, own)));
+                std::thread::spawn(move || drop((renderer, adaptive, markers, own)));
                 return Err(stopped());
             }
             Err(e) => return Err(e.to_string()),
@@ -126,6 +130,24 @@ pub(crate) fn pictures(
         output.finish().map_err(|e| e.to_string())?;
     }
     Ok(files)
+}
+
+/// Synapses and points on the device, as `neurotess render` draws them.
+fn markers(
+    still_scene: &StillScene,
+    gpu: &Gpu,
+    sub_pixels: u32,
+) -> Result<Option<Markers>, String> {
+    let Some(markers) = &still_scene.markers else {
+        return Ok(None);
+    };
+    let mut markers = markers.upload(gpu).map_err(|e| e.to_string())?;
+    let radius = still_scene.radius;
+    let most = MarkerSettings::default().most_triangles;
+    if let Some(markers) = &mut markers {
+        markers.set_settings(settings(radius, f64::from(sub_pixels), None, most));
+    }
+    Ok(markers)
 }
 
 /// The device for pictures: in software rendering another one than the window's, since the window

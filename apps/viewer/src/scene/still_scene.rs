@@ -14,6 +14,7 @@ use crate::model::save::PictureFile;
 use crate::scene::colors::color_scheme;
 use crate::scene::content::SceneContent;
 use crate::scene::dimensions::annotations;
+use crate::scene::markers::SceneMarkers;
 
 /// All that pictures are drawn from, for another thread.
 pub(crate) struct StillScene {
@@ -24,6 +25,10 @@ pub(crate) struct StillScene {
     pub(crate) look: Look,
     pub(crate) states: Vec<u32>,
     pub(crate) spheres: Arc<Vec<BoundingSphere>>,
+    /// Synapses and points; the content has their colors and legend, too.
+    pub(crate) markers: Option<Arc<SceneMarkers>>,
+    /// Their radius (µm).
+    pub(crate) radius: f64,
     /// Dimensions that show.
     pub(crate) figures: Vec<Figure>,
 }

@@ -44,9 +44,13 @@ impl FilePanel {
                 folder.join(name).display().to_string()
             }
             (FilePurpose::SavePalette, _) => folder.join("palette.toml").display().to_string(),
-            (FilePurpose::Open | FilePurpose::Report | FilePurpose::OpenPalette, _) => {
-                String::new()
-            }
+            (
+                FilePurpose::Open
+                | FilePurpose::Report
+                | FilePurpose::Points
+                | FilePurpose::OpenPalette,
+                _,
+            ) => String::new(),
         };
         let mut panel = Self {
             purpose,
@@ -103,6 +107,7 @@ impl FilePanel {
                 is_folder || find::is_readable(path) || session::is_session(path) || is("json")
             }
             FilePurpose::Report => is_folder || find::is_hdf5(path),
+            FilePurpose::Points => is_folder || is("csv") || is("tsv"),
             FilePurpose::SaveSession => is_folder || session::is_session(path),
             FilePurpose::OpenPalette | FilePurpose::SavePalette => is_folder || is("toml"),
         };
@@ -120,6 +125,9 @@ impl FilePanel {
         let title = match self.purpose {
             FilePurpose::Open => "Open tracings, folders, circuits or a session",
             FilePurpose::Report => "Open a report or spikes of a simulation",
+            FilePurpose::Points => {
+                "Open a table of points: CSV or TSV with columns x, y and z (µm)"
+            }
             FilePurpose::SaveSession => "Save the session",
             FilePurpose::OpenPalette => "Open a palette",
             FilePurpose::SavePalette => "Save the palette",
@@ -210,9 +218,7 @@ impl FilePanel {
                 (false, _) => "No name here begins like that",
                 (true, FilePurpose::SaveSession) => "No folder and no session here yet",
                 (true, FilePurpose::SavePalette) => "No folder and no palette here yet",
-                (true, FilePurpose::Open | FilePurpose::Report | FilePurpose::OpenPalette) => {
-                    "No folder and no file to open here"
-                }
+                (true, _) => "No folder and no file to open here",
             };
             ui.allocate_ui([ui.available_width(), height].into(), |ui| {
                 ui.centered_and_justified(|ui| ui.weak(says));
@@ -307,6 +313,7 @@ impl FilePanel {
         match self.purpose {
             FilePurpose::Open => Command::Open(paths),
             FilePurpose::Report => Edit::SetReport(paths.pop()).into(),
+            FilePurpose::Points => Command::OpenPoints(paths.pop().unwrap_or_default()),
             FilePurpose::SaveSession => {
                 let path = paths.pop().unwrap_or_default();
                 let named = if session::is_session(&path) {

@@ -12,7 +12,7 @@ use neurotess::render::adapter::{device_descriptor, select_adapter};
 use thiserror::Error;
 
 use crate::model::command::{Command, Edit};
-use crate::model::document::SomaEdit;
+use crate::model::document::{MarkerOptions, SomaEdit};
 use crate::model::settings::Settings;
 use crate::ui::app::{CommandListener, Viewer, lost};
 
@@ -25,6 +25,8 @@ pub struct Options {
     pub soma: SomaEdit,
     /// A report or spikes to show on them.
     pub report: Option<PathBuf>,
+    /// Synapses and points to show beside them; those of a session are its own.
+    pub markers: MarkerOptions,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
 }
@@ -174,6 +176,11 @@ impl Window {
         }
         if options.report.is_some() {
             viewer.state.run(Edit::SetReport(options.report));
+        }
+        if options.markers != MarkerOptions::default() {
+            viewer
+                .state
+                .run(Edit::SetMarkers(Box::new(options.markers)));
         }
         Ok(Self {
             viewer,

@@ -7,7 +7,7 @@ use neurotess::circuit::TimeAxis;
 use neurotess::circuit::write::{self, ReportLayout};
 use neurotess::formats::swc;
 use neurotess::synth::circuit::{
-    CIRCUIT, CircuitOptions, POPULATION, circuit, circuit_config, voltages,
+    CIRCUIT, CircuitOptions, EDGES, POPULATION, circuit, circuit_config, synapses, voltages,
 };
 use neurotess::synth::grow;
 use neurotess_viewer::Command;
@@ -101,4 +101,40 @@ pub(crate) fn with_circuit() -> (Window, tempfile::TempDir) {
     let count = state(&mut window).document.neurons.len();
     assert_eq!(count, 9, "{:?}", state(&mut window).problems);
     (window, folder)
+}
+
+/// Writes the circuit of [`write_circuit`] with `per_cell` synapses onto each cell, and a second population of
+/// edges, `gaps`, of the first of these onto each.
+pub(crate) fn write_with_synapses(
+    folder: &Path,
+    neurons: usize,
+    morphologies: usize,
+    per_cell: usize,
+) {
+    write_circuit(folder, neurons, morphologies, neurons);
+    let made = circuit(&CircuitOptions {
+        neurons,
+        morphologies,
+        seed: 3,
+        points: Some(120),
+        reported: neurons,
+    });
+    let grown: Vec<_> = made.morphologies.iter().map(|m| grow(&m.options)).collect();
+    let all = synapses(&made, &grown, per_cell, 5);
+    let first = synapses(&made, &grown, 1, 6);
+    let create = |name: &str| File::create(folder.join(name)).expect("a file");
+    let properties = [
+        ("conductance", all.conductances.clone()),
+        ("delay", all.delays.clone()),
+    ];
+    let ends = [POPULATION; 2];
+    write::edges(EDGES, ends, &all.synapses, &properties, create("edges.h5")).expect("written");
+    let delays = [("delay", first.delays.clone())];
+    write::edges("gaps", ends, &first.synapses, &delays, create("gaps.h5")).expect("written");
+    let config = circuit_config(true).to_string();
+    let gaps =
+        "[{\"edges_file\":\"$BASE_DIR/gaps.h5\",\"populations\":{\"gaps\":{\"type\":\"gap\"}}},";
+    let (before, after) = config.split_once("\"edges\":[").expect("a list of edges");
+    let config = format!("{before}\"edges\":{gaps}{after}");
+    fs::write(folder.join(CIRCUIT), config).expect("written");
 }

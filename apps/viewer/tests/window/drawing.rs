@@ -215,6 +215,6 @@ fn seen_parts(window: &mut Window) -> std::collections::HashSet<(usize, CellPart
     let stage = &viewer(window).stage;
     let pixels = (0..700).flat_map(|y| (0..900).map(move |x| (x as f32, y as f32)));
     let seen = pixels.filter_map(|(x, y)| stage.hit_at(x, y));
-    seen.map(|seen| (seen.picked.neuron, seen.picked.part))
-        .collect()
+    let parts = seen.filter_map(|seen| seen.picked());
+    parts.map(|picked| (picked.neuron, picked.part)).collect()
 }

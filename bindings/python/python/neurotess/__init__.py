@@ -8,11 +8,12 @@
     nt.render(cell).save("cell.png")
 
 Lengths are micrometers (µm), times milliseconds. Arrays are NumPy's, read-only, and shared, not copied. Heavy work
-leaves the interpreter to other threads, and Ctrl-C ends the wait for it.
+leaves the interpreter to other threads, and Ctrl-C stops it.
 
 | to | use |
 | --- | --- |
 | read a tracing, or make one | `read`, `synth`, `Morphology.from_table`, `Morphology.from_navis`, … |
+| mend it, or compare two | `edit`, `diff` |
 | mesh it | `mesh`, `mesh_many`, `Mesh` |
 | judge a mesh | `Mesh.check`, `check`, `read_mesh` |
 | draw it | `render`, `film`, `Image`, `View` |
@@ -35,6 +36,7 @@ from ._errors import (
     RenderError,
 )
 from ._morphology import Morphology, Neurite, Notice, Section, Soma, read, synth
+from ._edits import diff, edit
 from ._meshes import Mesh, MeshResult, check, mesh, mesh_many, read_mesh
 from ._circuits import Circuit, Report
 from ._pictures import Image, film, render
@@ -65,6 +67,8 @@ __all__ = [
     "Soma",
     "__version__",
     "check",
+    "diff",
+    "edit",
     "film",
     "mesh",
     "mesh_many",

@@ -16,18 +16,24 @@ class ReadError(NeurotessError):
     ``OSError``.
     """
 
-    file: str
-    """The file as it was named."""
-    line: int | None
-    """The line, from 1 on, if the fault is in one."""
-    message: str
-    """What is wrong, and what to do."""
-
     def __init__(self, file: str, line: int | None, message: str) -> None:
         super().__init__(file, line, message)
-        self.file = file
-        self.line = line
-        self.message = message
+        self._told = file, line, message
+
+    @property
+    def file(self) -> str:
+        """The file as it was named."""
+        return self._told[0]
+
+    @property
+    def line(self) -> int | None:
+        """The line, from 1 on, if the fault is in one."""
+        return self._told[1]
+
+    @property
+    def message(self) -> str:
+        """What is wrong, and what to do."""
+        return self._told[2]
 
     def __str__(self) -> str:
         place = self.file if self.line is None else f"{self.file}:{self.line}"

@@ -316,8 +316,10 @@ def mesh(
     return _mesh(recipe, cell, threads)
 
 
-def _mesh(recipe: _neurotess.Recipe, cell: Morphology, threads: int | None) -> Mesh:
-    surface, report = recipe.mesh(cell._cell, threads)
+def _mesh(
+    recipe: _neurotess.Recipe, cell: Morphology, threads: int | None, stop: _neurotess.Stop | None = None
+) -> Mesh:
+    surface, report = recipe.mesh(cell._cell, threads, stop)
     return _of(surface, report, cell.warnings, cell.name)
 
 
@@ -386,7 +388,8 @@ def mesh_many(
 
     Gives a `MeshResult` for each cell, in their order. An error is a value: one bad file never ends the batch.
     Not more than two cells a thread are in memory, beside the one that you hold. Wrong options raise
-    ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only.
+    ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only. Ctrl-C, and ``close()`` of the iterator,
+    stop the work.
 
     >>> import neurotess as nt
     >>> cells = [nt.synth("granule", seed=seed, points=100) for seed in range(3)]
@@ -409,11 +412,13 @@ def _cores() -> int:
 def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -> Iterator[MeshResult]:
     from concurrent.futures import ThreadPoolExecutor
 
+    stop = _neurotess.Stop()
+
     def one(cell: Source) -> MeshResult:
         try:
             read = cell if isinstance(cell, Morphology) else Morphology(_read(cell, None, None, False))
             # A cell has one thread: all are busy with others.
-            return MeshResult(cell, _mesh(recipe, read, 1), None)
+            return MeshResult(cell, _mesh(recipe, read, 1, stop), None)
         except Exception as error:
             return MeshResult(cell, None, error)
 
@@ -427,4 +432,6 @@ def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -
         while waiting:
             yield waiting.popleft().result()
     finally:
+        # After an interrupt, or where nobody wants the other results, what has begun stops.
+        stop.set()
         pool.shutdown(wait=False, cancel_futures=True)

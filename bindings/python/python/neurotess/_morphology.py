@@ -239,10 +239,14 @@ class Morphology:
     ((200, 3), np.True_)
     """
 
-    def __init__(self, cell: _neurotess.Cell) -> None:
+    edits: tuple[dict[str, Any], ...]
+    """What each edit of `edit` changed, under the names of ``neurotess convert --json``; empty for other cells."""
+
+    def __init__(self, cell: _neurotess.Cell, edits: tuple[dict[str, Any], ...] = ()) -> None:
         if not isinstance(cell, _neurotess.Cell):
             raise TypeError("use neurotess.read, neurotess.synth or Morphology.from_table")
         self._cell = cell
+        self.edits = edits
         self._columns: dict[str, NDArray[Any]] | None = None
         self._child_ids: list[list[int]] | None = None
 
@@ -468,8 +472,8 @@ class Morphology:
     def __hash__(self) -> int:
         return hash((self.name, len(self)))
 
-    def __reduce__(self) -> tuple[type[Morphology], tuple[_neurotess.Cell]]:
-        return type(self), (self._cell,)
+    def __reduce__(self) -> tuple[type[Morphology], tuple[object, ...]]:
+        return type(self), (self._cell, self.edits)
 
     def __repr__(self) -> str:
         neurites = len(self.neurites)
@@ -502,10 +506,13 @@ def read(
     return _with_warnings(_read(source, format, name, strict))
 
 
-def _read(source: Any, format: str | None, name: str | None, strict: bool) -> _neurotess.Cell:
+def _read(
+    source: Any, format: str | None, name: str | None, strict: bool, *, bad_radii: bool = False
+) -> _neurotess.Cell:
+    """Reads a cell; with `bad_radii`, radii that are no numbers are 0."""
     if isinstance(source, (str, os.PathLike)):
         if format is None:
-            return _neurotess.Cell.read(source, strict)
+            return _neurotess.Cell.read(source, strict, bad_radii)
         with open(source, "rb") as file:
             return _read(file, format, name or os.fspath(source), strict)
     if hasattr(source, "read"):
@@ -522,10 +529,15 @@ def _read(source: Any, format: str | None, name: str | None, strict: bool) -> _n
 
 def _with_warnings(cell: _neurotess.Cell) -> Morphology:
     """The cell; its warnings are given at the caller's caller."""
+    _warn(cell, 4)
+    return Morphology(cell)
+
+
+def _warn(cell: _neurotess.Cell, stacklevel: int = 3) -> None:
+    """Gives a reader's warnings at the caller's caller."""
     for code, message, line, _ in cell.warnings:
         place = cell.name if line is None else f"{cell.name}:{line}"
-        warnings.warn(ReadWarning(f"{place}: {message} ({code})"), stacklevel=3)
-    return Morphology(cell)
+        warnings.warn(ReadWarning(f"{place}: {message} ({code})"), stacklevel=stacklevel)
 
 
 def synth(kind: str, *, seed: int = 1, points: int | None = None) -> Morphology:

@@ -10,12 +10,15 @@ __all__ = [
     "__version__",
     "CAN_RENDER",
     "Cell",
+    "Edits",
     "Recipe",
+    "Stop",
     "Surface",
     "Circuit",
     "Mesher",
     "Report",
     "Drawing",
+    "diff",
     "png",
     "main",
 ]
@@ -30,7 +33,7 @@ def main(arguments: list[str]) -> int: ...
 @final
 class Cell:
     @staticmethod
-    def read(path: _Path, strict: bool) -> Cell: ...
+    def read(path: _Path, strict: bool, zero_for_bad_radii: bool) -> Cell: ...
     @staticmethod
     def read_bytes(bytes: bytes, name: str, format: str | None, strict: bool) -> Cell: ...
     @staticmethod
@@ -79,9 +82,24 @@ class Cell:
     def restore(state: bytes) -> Cell: ...
 
 @final
+class Edits:
+    def __new__(cls, options: list[str]) -> Edits: ...
+    @property
+    def mends_radii(self) -> bool: ...
+    def apply(self, cell: Cell) -> tuple[Cell, list[dict[str, Any]]]: ...
+
+def diff(first: Cell, second: Cell, tolerance: float) -> dict[str, Any]: ...
+@final
 class Recipe:
     def __new__(cls, options: list[str]) -> Recipe: ...
-    def mesh(self, cell: Cell, threads: int | None) -> tuple[Surface, dict[str, Any]]: ...
+    def mesh(
+        self, cell: Cell, threads: int | None, stop: Stop | None
+    ) -> tuple[Surface, dict[str, Any]]: ...
+
+@final
+class Stop:
+    def __new__(cls) -> Stop: ...
+    def set(self) -> None: ...
 
 @final
 class Surface:

@@ -12,12 +12,13 @@ from ._morphology import Morphology, read
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Literal, TypeAlias
+    from typing import Any, Literal, TypeAlias, Union
 
     import numpy as np
     from numpy.typing import NDArray
 
-    Drawable: TypeAlias = "Morphology | DrawnCircuit | str | os.PathLike[str]"
+    # Not "… | …" in quotes: who evaluates annotations could not add to a text.
+    Drawable: TypeAlias = Union[Morphology, "DrawnCircuit", str, os.PathLike[str]]
     ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
     Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
 

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from . import _neurotess
-    from ._pictures import Drawable
+    # The second is a part of the first: who evaluates annotations looks for it here.
+    from ._pictures import Drawable, DrawnCircuit
 
 needed("jupyter_rfb", "notebook")
 from jupyter_rfb import RemoteFrameBuffer  # noqa: E402

@@ -1,6 +1,7 @@
 //! A traced cell.
 
 mod columns;
+mod edits;
 mod paths;
 mod state;
 mod table;
@@ -21,6 +22,7 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::work::released;
 use crate::{arrays, errors, json};
+pub(crate) use edits::{Edits, diff};
 
 /// A morphology and its arrays, which are made when they are first asked for.
 #[pyclass(frozen, module = "neurotess._neurotess")]
@@ -85,9 +87,18 @@ impl Cell {
 #[pymethods]
 impl Cell {
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf, strict: bool) -> PyResult<Self> {
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        strict: bool,
+        zero_for_bad_radii: bool,
+    ) -> PyResult<Self> {
+        let options = ReadOptions {
+            strict,
+            zero_for_bad_radii,
+        };
         // Small files take less time than a thread.
-        let read = py.detach(|| formats::read(path, &reading(strict)));
+        let read = py.detach(|| formats::read(path, &options));
         Self::of_result(py, read)
     }
 

@@ -4,6 +4,7 @@ mod recordings;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
@@ -20,8 +21,8 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, Pair};
 use crate::cell::Cell;
 use crate::errors;
-use crate::surface::{Columns, Recipe, Surface, of_made};
-use crate::work::released;
+use crate::surface::{Columns, Recipe, Stopped, Surface, of_made};
+use crate::work::{Stop, released, stoppable};
 pub(crate) use recordings::Report;
 
 /// Coarse meshes that are kept, for nodes that share a morphology.
@@ -277,19 +278,25 @@ impl Mesher {
         }
         let (circuit, meshes) = (Arc::clone(&self.circuit), Arc::clone(&self.meshes));
         let recipe = self.recipe.clone();
-        let made = released(py, threads, move || {
+        let made = stoppable(py, threads, &Stop::default(), move |stopped| {
             let read = circuit.templates[template.index()].read();
             let read = read.map_err(ToString::to_string)?;
-            let mesh = kept(&meshes, template.0, || recipe.generate(&read.morphology))?;
+            let mesh = kept(&meshes, template.0, || {
+                recipe.generate(&read.morphology, stopped)
+            })?;
             let at = instance.world_from_cell(soma_center(&read.morphology));
-            recipe.surface(&mesh, |surface| placed(surface, at))
+            recipe.surface(&mesh, stopped, |surface| placed(surface, at, stopped))
         })?;
         of_made(py, made)
     }
 }
 
-fn placed(surface: &dyn neurotess::mesh::Surface, at: DAffine3) -> Columns {
-    Columns::of(&Placed::new(surface, at))
+fn placed(
+    surface: &dyn neurotess::mesh::Surface,
+    at: DAffine3,
+    stopped: &AtomicBool,
+) -> Result<Columns, Stopped> {
+    Columns::of(&Placed::new(surface, at), stopped)
 }
 
 /// The mesh of a template: the one that is there, or one that is made.

@@ -1,5 +1,8 @@
 //! A surface as one array for each attribute.
 
+use std::fmt::{self, Display, Formatter};
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec3;
 use neurotess::mesh::{Faces, Surface, SurfaceVertex};
 use rayon::prelude::*;
@@ -17,47 +20,105 @@ pub(crate) struct Columns {
     pub(super) faces: Faces,
 }
 
+/// Another thread asked to stop.
+#[derive(Debug)]
+pub(crate) struct Stopped;
+
+impl Display for Stopped {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("stopped")
+    }
+}
+
+/// Blocks that are made at a time, for each thread: more make waiting for the slowest one rarer, and take memory
+/// (a block of level 4 is about a megabyte).
+const BLOCKS_PER_THREAD: usize = 2;
+
 impl Columns {
-    /// Collects all blocks of a surface, of which as many are made at a time as there are threads.
-    pub(crate) fn of(surface: &dyn Surface) -> Self {
-        let count = surface.vertex_count();
-        let mut columns = Self {
-            origin: surface.origin(),
-            vertices: Vec::with_capacity(count),
-            normals: Vec::with_capacity(count),
-            types: Vec::with_capacity(count),
-            points: Vec::with_capacity(count),
-            sections: Vec::with_capacity(count),
-            radii: Vec::with_capacity(count),
-            faces: Faces {
-                triangles: Vec::with_capacity(surface.triangle_count()),
-                quads: Vec::with_capacity(surface.quad_count()),
-            },
-        };
-        let at_once = rayon::current_num_threads();
+    /// Collects all blocks of a surface, some at a time: each is made and written into its place by one thread.
+    ///
+    /// # Errors
+    /// Another thread has set `stopped`.
+    pub(crate) fn of(surface: &dyn Surface, stopped: &AtomicBool) -> Result<Self, Stopped> {
+        let mut columns = Self::zero(surface);
+        let at_once = BLOCKS_PER_THREAD * rayon::current_num_threads();
         let mut made: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); at_once];
-        in_groups(surface.vertex_blocks(), at_once, |blocks| {
-            let blocks: Vec<usize> = blocks.collect();
-            made.par_iter_mut().zip(&blocks).for_each(|(out, &block)| {
-                out.clear();
-                surface.vertices(block, out);
-            });
-            made.iter().take(blocks.len()).for_each(|v| columns.push(v));
-        });
-        let mut made = vec![Faces::default(); at_once];
-        in_groups(surface.face_blocks(), at_once, |blocks| {
-            let blocks: Vec<usize> = blocks.collect();
-            made.par_iter_mut().zip(&blocks).for_each(|(out, &block)| {
-                out.triangles.clear();
-                out.quads.clear();
-                surface.faces(block, out);
-            });
-            for Faces { triangles, quads } in made.iter().take(blocks.len()) {
-                columns.faces.triangles.extend_from_slice(triangles);
-                columns.faces.quads.extend_from_slice(quads);
+        let mut rest = columns.rows();
+        for first in (0..surface.vertex_blocks()).step_by(at_once) {
+            if stopped.load(Ordering::Relaxed) {
+                return Err(Stopped);
             }
-        });
-        columns
+            let blocks = at_once.min(surface.vertex_blocks() - first);
+            let made = made[..blocks].par_iter_mut().enumerate();
+            let made: Vec<&[SurfaceVertex]> = made
+                .map(|(block, out)| {
+                    out.clear();
+                    surface.vertices(first + block, out);
+                    &out[..]
+                })
+                .collect();
+            let places: Vec<_> = made.iter().map(|block| rest.take(block.len())).collect();
+            let filled = places.into_par_iter().zip(made);
+            filled.for_each(|(rows, block)| rows.fill(surface.origin(), block));
+        }
+        let mut made = vec![Faces::default(); at_once];
+        let Faces { triangles, quads } = &mut columns.faces;
+        let (mut triangles, mut quads) = (&mut triangles[..], &mut quads[..]);
+        for first in (0..surface.face_blocks()).step_by(at_once) {
+            if stopped.load(Ordering::Relaxed) {
+                return Err(Stopped);
+            }
+            let blocks = at_once.min(surface.face_blocks() - first);
+            let made = made[..blocks].par_iter_mut().enumerate();
+            let made: Vec<&Faces> = made
+                .map(|(block, out)| {
+                    out.triangles.clear();
+                    out.quads.clear();
+                    surface.faces(first + block, out);
+                    &*out
+                })
+                .collect();
+            let place = |faces: &&Faces| {
+                let triangles = take(&mut triangles, faces.triangles.len());
+                (triangles, take(&mut quads, faces.quads.len()))
+            };
+            let places: Vec<_> = made.iter().map(place).collect();
+            places.into_par_iter().zip(made).for_each(|(to, faces)| {
+                to.0.copy_from_slice(&faces.triangles);
+                to.1.copy_from_slice(&faces.quads);
+            });
+        }
+        Ok(columns)
+    }
+
+    /// Columns of the surface's size. Zeros cost nothing until they are written over: the system gives pages of
+    /// them when they are first touched.
+    fn zero(surface: &dyn Surface) -> Self {
+        let count = surface.vertex_count();
+        Self {
+            origin: surface.origin(),
+            vertices: vec![[0.0; 3]; count],
+            normals: vec![[0.0; 3]; count],
+            types: vec![0; count],
+            points: vec![0; count],
+            sections: vec![0; count],
+            radii: vec![0.0; count],
+            faces: Faces {
+                triangles: vec![[0; 3]; surface.triangle_count()],
+                quads: vec![[0; 4]; surface.quad_count()],
+            },
+        }
+    }
+
+    fn rows(&mut self) -> Rows<'_> {
+        Rows {
+            vertices: &mut self.vertices,
+            normals: &mut self.normals,
+            types: &mut self.types,
+            points: &mut self.points,
+            sections: &mut self.sections,
+            radii: &mut self.radii,
+        }
     }
 
     /// Vertices and triangles that come from elsewhere: there are no attributes.
@@ -77,23 +138,51 @@ impl Columns {
             },
         }
     }
+}
 
-    fn push(&mut self, vertices: &[SurfaceVertex]) {
-        let origin = self.origin;
+/// Rows of the columns of vertices.
+struct Rows<'c> {
+    vertices: &'c mut [[f64; 3]],
+    normals: &'c mut [[f32; 3]],
+    types: &'c mut [i32],
+    points: &'c mut [i32],
+    sections: &'c mut [i32],
+    radii: &'c mut [f32],
+}
+
+impl<'c> Rows<'c> {
+    /// Takes the first rows away.
+    fn take(&mut self, count: usize) -> Self {
+        Self {
+            vertices: take(&mut self.vertices, count),
+            normals: take(&mut self.normals, count),
+            types: take(&mut self.types, count),
+            points: take(&mut self.points, count),
+            sections: take(&mut self.sections, count),
+            radii: take(&mut self.radii, count),
+        }
+    }
+
+    fn fill(self, origin: DVec3, vertices: &[SurfaceVertex]) {
         let at = |v: &SurfaceVertex| (origin + v.position.as_dvec3()).to_array();
-        self.vertices.extend(vertices.iter().map(at));
-        let normals = vertices.iter().map(|v| v.normal.to_array());
-        self.normals.extend(normals);
-        self.types.extend(vertices.iter().map(|v| v.kind));
-        self.points.extend(vertices.iter().map(|v| v.point));
-        self.sections.extend(vertices.iter().map(|v| v.section));
-        self.radii.extend(vertices.iter().map(|v| v.radius));
+        fill(self.vertices, vertices, at);
+        fill(self.normals, vertices, |v| v.normal.to_array());
+        fill(self.types, vertices, |v| v.kind);
+        fill(self.points, vertices, |v| v.point);
+        fill(self.sections, vertices, |v| v.section);
+        fill(self.radii, vertices, |v| v.radius);
     }
 }
 
-/// Ranges of `size` numbers below `count`, the last one shorter.
-fn in_groups(count: usize, size: usize, mut work: impl FnMut(std::ops::Range<usize>)) {
-    for first in (0..count).step_by(size.max(1)) {
-        work(first..count.min(first + size.max(1)));
+fn fill<T>(column: &mut [T], vertices: &[SurfaceVertex], value: impl Fn(&SurfaceVertex) -> T) {
+    for (place, vertex) in column.iter_mut().zip(vertices) {
+        *place = value(vertex);
     }
+}
+
+/// Takes the first items away.
+fn take<'s, T>(rest: &mut &'s mut [T], count: usize) -> &'s mut [T] {
+    let (first, others) = std::mem::take(rest).split_at_mut(count);
+    *rest = others;
+    first
 }

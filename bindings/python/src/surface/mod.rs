@@ -14,9 +14,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::cell::{Cell, existing};
-use crate::work::released;
+use crate::work::{Stop, released, stoppable};
 use crate::{arrays, errors, json};
-pub(crate) use columns::Columns;
+pub(crate) use columns::{Columns, Stopped};
 use slices::Slices;
 
 /// How cells are meshed: options of the command line, checked.
@@ -31,17 +31,18 @@ impl Recipe {
         recipe.map(Self).map_err(|e| errors::option(py, &e))
     }
 
-    /// Meshes a cell: its surface, and what is known of it.
+    /// Meshes a cell: its surface, and what is known of it. `stop`: by which others can stop it.
     fn mesh<'py>(
         &self,
         py: Python<'py>,
         cell: &Cell,
         threads: Option<usize>,
+        stop: Option<&Stop>,
     ) -> PyResult<(Surface, Bound<'py, PyAny>)> {
         let (recipe, morphology) = (self.0.clone(), cell.morphology.clone());
-        let made = released(py, threads, move || {
-            let cell = recipe.generate(&morphology)?;
-            recipe.surface(&cell, |surface| Columns::of(surface))
+        let made = stoppable(py, threads, &Stop::of(stop), move |stopped| {
+            let cell = recipe.generate(&morphology, stopped)?;
+            recipe.surface(&cell, stopped, |surface| Columns::of(surface, stopped))
         })?;
         of_made(py, made)
     }
@@ -50,8 +51,9 @@ impl Recipe {
 /// A surface that was made, or why not.
 pub(crate) fn of_made(
     py: Python<'_>,
-    made: Result<(Columns, MeshReport), String>,
+    made: Result<(Result<Columns, Stopped>, MeshReport), String>,
 ) -> PyResult<(Surface, Bound<'_, PyAny>)> {
+    let made = made.and_then(|(columns, report)| Ok((columns.map_err(|e| e.to_string())?, report)));
     let (columns, report) = made.map_err(|e| errors::mesh(py, &e))?;
     Ok((Surface::new(py, columns)?, json::serialized(py, &report)?))
 }
@@ -150,15 +152,15 @@ impl Surface {
     fn read(py: Python<'_>, path: PathBuf, format: Option<String>) -> PyResult<Self> {
         let format = format.map(|name| format_named(&name)).transpose()?;
         let file = path.display().to_string();
-        let read = released(py, None, move || {
+        let read = stoppable(py, None, &Stop::default(), move |stopped| {
             let read = match format {
                 Some(format) => mesh::read_as(&path, format),
                 None => mesh::read(&path),
             };
-            read.map(|surface| Columns::of(&surface))
+            read.map(|surface| Columns::of(&surface, stopped))
         })?;
         match read {
-            Ok(columns) => Self::new(py, columns),
+            Ok(columns) => Self::new(py, columns.map_err(errors::bug)?),
             Err(mesh::ReadError::Io(e)) => Err(errors::read_io(py, &file, &e)),
             Err(e) => {
                 let line = match e.place() {

@@ -26,6 +26,7 @@ use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
 use crate::normals::average_normals;
+use crate::stop::Stop;
 use draw_in::DrawIn;
 use graph::RingGraph;
 use stretch::Stretch;
@@ -37,7 +38,7 @@ const MOST_PATCHES: usize = 4_000;
 
 /// Draws in rings of a mesh. `faulty`: patches around forks whose best shape is known to have faults.
 /// Returns the tracing points that are drawn in, ascending.
-pub(crate) fn draw_in_rings(mesh: &mut CoarseMesh, faulty: &[u32]) -> Vec<u32> {
+pub(crate) fn draw_in_rings(mesh: &mut CoarseMesh, faulty: &[u32], stop: Stop<'_>) -> Vec<u32> {
     let graph = RingGraph::new(mesh);
     let mut suspects = Suspects::new(mesh, &graph);
     for &patch in faulty {
@@ -47,6 +48,7 @@ pub(crate) fn draw_in_rings(mesh: &mut CoarseMesh, faulty: &[u32]) -> Vec<u32> {
     let stretches = Stretches::new(mesh, &graph, &suspects);
     let drawn: Vec<DrawIn> = (0..stretches.patches.len())
         .into_par_iter()
+        .filter(|_| !stop.asked())
         .filter_map(|number| draw_in(mesh, &stretches, number))
         .collect();
     let mut rings: Vec<u32> = drawn.into_iter().flat_map(|d| d.write(mesh)).collect();

@@ -48,6 +48,7 @@ pub use report::{SeparatedPlace, Separation};
 use crate::fork;
 use crate::prepare::SomaSphere;
 use crate::skeleton::Skeleton;
+use crate::stop::Stop;
 use crate::warning::Warnings;
 
 use clearance::Clearance;
@@ -81,10 +82,16 @@ pub(crate) fn separate(
     soma_spheres: &[Option<SomaSphere>],
     soma_samples: &[i64],
     warnings: &mut Warnings,
+    stop: Stop<'_>,
 ) -> Separated {
     let mut rods = Rods::new(skeleton, soma_spheres);
     let traced = std::mem::take(skeleton);
-    let report = move_apart(&mut rods, Depths::new(&traced, soma_samples), warnings);
+    let report = move_apart(
+        &mut rods,
+        Depths::new(&traced, soma_samples),
+        warnings,
+        stop,
+    );
     warn(&report, warnings);
     *skeleton = rods.skeleton();
     Separated {
@@ -93,7 +100,12 @@ pub(crate) fn separate(
     }
 }
 
-fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, warnings: &mut Warnings) -> Separation {
+fn move_apart(
+    rods: &mut Rods,
+    mut depths: Depths<'_>,
+    warnings: &mut Warnings,
+    stop: Stop<'_>,
+) -> Separation {
     let mut complete = true;
     let mut may_add = MOST_ADDED.0 * rods.count() + MOST_ADDED.1;
     for round in 0..MOST_ROUNDS {
@@ -109,12 +121,12 @@ fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, warnings: &mut Warnings) 
         if !found.touches() {
             break;
         }
-        complete &= solver::solve(rods, &spread);
+        complete &= solver::solve(rods, &spread, stop);
         let free = room(rods);
         thin_out::thin_out(rods, &free);
         clear_forks(rods, warnings);
         // No number of rounds sorts a crowd.
-        if !complete {
+        if !complete || stop.asked() {
             break;
         }
     }

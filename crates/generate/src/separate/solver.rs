@@ -9,6 +9,7 @@ use super::rods::Rods;
 use super::search::{Found, Margin, SOMA_REACH, SomaContact, search};
 use super::side::{self, CROSSED, DEEP, Pair, Sides};
 use super::spread::{GAP, Spread};
+use crate::stop::Stop;
 
 /// Searches for contacts, at most.
 const MOST_SEARCHES: usize = 30;
@@ -35,7 +36,7 @@ const SOMA_STEP: (f64, f64) = (0.5, 0.02);
 const MOST_WAITING: usize = 10;
 
 /// Moves the points of the rods. Returns whether each search saw all contacts.
-pub(super) fn solve(rods: &mut Rods, spread: &Spread) -> bool {
+pub(super) fn solve(rods: &mut Rods, spread: &Spread, stop: Stop<'_>) -> bool {
     let mut solver = Solver {
         elastic: Elastic::new(rods, spread),
         pairs: Vec::new(),
@@ -54,7 +55,8 @@ pub(super) fn solve(rods: &mut Rods, spread: &Spread) -> bool {
         } else {
             MOST_IN_CROWD
         };
-        if !best.improves(rods, &found, &solver.elastic.centers) || round >= most {
+        let improves = best.improves(rods, &found, &solver.elastic.centers);
+        if !improves || round >= most || stop.asked() {
             break;
         }
         solver.strict = round < WITHOUT_MEMORY;

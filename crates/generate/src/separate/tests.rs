@@ -45,7 +45,7 @@ impl Tubes {
         let mut skeleton = Skeleton::from_nodes(self.0);
         let mut warnings = Warnings::default();
         let samples = vec![-7; spheres.len()];
-        let separated = separate(&mut skeleton, spheres, &samples, &mut warnings);
+        let separated = separate(&mut skeleton, spheres, &samples, &mut warnings, Stop::NEVER);
         let parents_first =
             |(i, n): (usize, &SkeletonNode)| n.parent == NONE || (n.parent as usize) < i;
         assert!(skeleton.nodes().iter().enumerate().all(parents_first));
@@ -256,7 +256,13 @@ fn a_point_stays_if_the_shorter_way_would_touch_another_branch() {
     let last = tubes.push(right, 0.5, bend, Root::Free);
     tubes.tube([DVec3::Z * -9.0, DVec3::Z * 9.0], 2, 0.5, NONE);
     let mut skeleton = Skeleton::from_nodes(tubes.0);
-    let separated = separate(&mut skeleton, &[], &[], &mut Warnings::default());
+    let separated = separate(
+        &mut skeleton,
+        &[],
+        &[],
+        &mut Warnings::default(),
+        Stop::NEVER,
+    );
     assert!(separated.report.places.is_empty());
     assert!(!separated.clearance.allows(first, last));
     assert!(separated.clearance.allows(first, bend));
@@ -330,7 +336,7 @@ proptest! {
         let skeleton = Skeleton::from_nodes(wander(&steps).0);
         let mut rods = Rods::new(&skeleton, &[]);
         let depths = Depths::new(&skeleton, &[]);
-        let report = move_apart(&mut rods, depths, &mut Warnings::default());
+        let report = move_apart(&mut rods, depths, &mut Warnings::default(), Stop::NEVER);
         let left = report.places.iter().map(|p| p.after).fold(0.0, f64::max);
         prop_assert!(left <= deepest(&rods));
         if report.complete {

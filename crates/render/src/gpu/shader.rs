@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 38] = [
+pub(crate) const FILES: [WgslFile; 40] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources/adaptive", "placed.wgsl"),
@@ -40,6 +40,8 @@ pub(crate) const FILES: [WgslFile; 38] = [
     file!("sources/markers", "marker_id.wgsl"),
     file!("sources/markers", "marker_keys.wgsl"),
     file!("sources/budgeted", "budgeted.wgsl"),
+    file!("sources/budgeted", "selection.wgsl"),
+    file!("sources/budgeted", "candidates.wgsl"),
     file!("sources/budgeted", "select.wgsl"),
     file!("sources/budgeted", "visible_chunks.wgsl"),
     file!("sources/budgeted", "visible_chunks_id.wgsl"),

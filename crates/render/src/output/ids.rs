@@ -102,14 +102,14 @@ impl Identifier {
             })
         };
         Some(Self {
-            key: renderer.key(),
+            key: renderer.key().without_edges(),
             pipelines: (0..source.shaders()).map(pipeline).collect(),
             canvas: None,
         })
     }
 
     pub(crate) fn fits(&self, renderer: &TileRenderer) -> bool {
-        self.key == renderer.key()
+        self.key == renderer.key().without_edges()
     }
 
     /// Draws the ids of a frame and starts to copy them to the host.

@@ -47,15 +47,8 @@ impl<'g> Meter<'g> {
         source: &dyn VertexSource,
         table: &ColorTable,
     ) -> Result<Self, DeviceError> {
-        let mut renderer = TileRenderer::new(
-            gpu,
-            source,
-            PipelineKey {
-                samples: 1,
-                valued: table.values.instances() > 0,
-                ..PipelineKey::default()
-            },
-        )?;
+        let key = PipelineKey::new(source.key(), 1, table, &Look::default());
+        let mut renderer = TileRenderer::new(gpu, source, key)?;
         renderer.set_table(gpu, table);
         Ok(Self { gpu, renderer })
     }

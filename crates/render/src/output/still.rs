@@ -276,12 +276,7 @@ impl StillRenderer {
         options: &PictureOptions,
         parting: &Parting,
     ) -> Result<&mut TileRenderer, DeviceError> {
-        let key = PipelineKey {
-            source: source.key(),
-            samples: parting.samples,
-            cut: options.look.clip.is_some(),
-            valued: table.values.instances() > 0,
-        };
+        let key = PipelineKey::new(source.key(), parting.samples, table, &options.look);
         let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {

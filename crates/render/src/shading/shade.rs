@@ -7,7 +7,7 @@ use neurotess_refine::wgsl::{Constants, Shader as Composed, ShaderParts};
 use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
-use crate::scene::color::{CATEGORY_BIT, Rgb, is_dark, linear, luminance};
+use crate::scene::color::{CATEGORY_BIT, ColorTable, Rgb, is_dark, linear, luminance};
 use crate::sources::{SourceKey, VertexSource};
 use crate::view::frame::{Frame, Tile};
 
@@ -74,6 +74,13 @@ pub enum Light {
     From(Vec3),
     /// No light: plain colors.
     Flat,
+}
+
+impl Look {
+    /// The background against which colors of a scale have edges. Plain colors have none.
+    fn edges_against(&self) -> Option<Rgb> {
+        self.contrast.filter(|_| self.light != Light::Flat)
+    }
 }
 
 impl Default for Look {
@@ -174,8 +181,7 @@ impl Shade {
             jitter: [0.0; 2],
             batch: 0,
             least_half_width: 0.5 * look.least_width.max(0.0) * scale as f32,
-            // Plain colors have no edges.
-            edge: edge(look.contrast.filter(|_| lit > 0.0)),
+            edge: edge_color(look),
         }
         .within(&frame.tile)
     }
@@ -197,15 +203,10 @@ impl Shade {
     }
 }
 
-/// Linear color of the edges of this look; all 0 without edges.
-pub(crate) fn edge_color(look: &Look) -> [f32; 4] {
-    edge(look.contrast.filter(|_| look.light != Light::Flat))
-}
-
-/// Color of edges on a background, and the background's luminance; a luminance above 1 gives no
+/// Linear color of the edges of this look, and the background's luminance; one above 1 gives no
 /// edges.
-fn edge(background: Option<Rgb>) -> [f32; 4] {
-    let Some(background) = background else {
+pub(crate) fn edge_color(look: &Look) -> [f32; 4] {
+    let Some(background) = look.edges_against() else {
         return [0.0, 0.0, 0.0, 100.0];
     };
     let ink = if is_dark(background) { 0.6 } else { 0.05 };
@@ -326,6 +327,31 @@ pub(crate) struct PipelineKey {
     /// Whether instances have values. Shaders for scenes without values do not look for them: that
     /// took software Vulkan 10 ms a frame.
     pub(crate) valued: bool,
+    /// Whether colors of a scale have edges, see [`Look::contrast`]. Elsewhere they are not
+    /// interpolated: where triangles are small, setting up one more color for each took software
+    /// Vulkan as long as all the rest of drawing them.
+    pub(crate) edged: bool,
+}
+
+impl PipelineKey {
+    /// For a source's shaders, colors and looks.
+    pub(crate) fn new(source: SourceKey, samples: u32, table: &ColorTable, look: &Look) -> Self {
+        Self {
+            source,
+            samples,
+            cut: look.clip.is_some(),
+            valued: table.values.instances() > 0,
+            edged: !table.scale.is_empty() && look.edges_against().is_some(),
+        }
+    }
+
+    /// For passes that draw no colors.
+    pub(crate) fn without_edges(self) -> Self {
+        Self {
+            edged: false,
+            ..self
+        }
+    }
 }
 
 /// The shader for a source's vertices.
@@ -353,6 +379,9 @@ pub(crate) fn constants(key: PipelineKey) -> Constants {
     }
     if key.samples > 1 {
         constants.flag("MULTISAMPLED");
+    }
+    if key.edged {
+        constants.flag("EDGED");
     }
     constants
 }

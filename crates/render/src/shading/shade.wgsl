@@ -68,9 +68,11 @@ struct Varying {
     @location(5) thin: f32,
     // 1: the instance has an outline.
     @location(6) @interpolate(flat) outline: u32,
+#ifdef EDGED
     // Share of the edge's color at edges, and before it the color times that share: so what is
     // interpolated is what corners would look like, and linear in their colors.
     @location(7) @interpolate(perspective, centroid) edge: vec4<f32>,
+#endif
 }
 
 fn category_entry(category: u32) -> u32 {
@@ -170,7 +172,6 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     v.axis += shade.shift;
     let state = state_of(v.instance);
     let color = color_of(v.color_key, v.instance);
-    let edge = color.a * lack_of_contrast(color.rgb);
     var relative = v.position;
     var coverage = 1.0;
     var thin = 0.0;
@@ -206,7 +207,10 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     if (state & HIGHLIGHTED) != 0u {
         out.color = mix(out.color, shade.highlighted.rgb, shade.highlighted.a);
     }
+#ifdef EDGED
+    let edge = color.a * lack_of_contrast(color.rgb);
     out.edge = vec4(edge * out.color, edge);
+#endif
     out.relative = relative;
     out.grid = v.grid;
     out.coverage = coverage;
@@ -328,18 +332,26 @@ fn facet(world_normal: vec3<f32>, relative: vec3<f32>, coverage: f32, thin: f32,
 fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     let f = facet(in.normal, in.relative, in.coverage, in.thin, front);
     var color = in.color;
+#ifdef EDGED
     var edged = in.edge;
+#endif
     if shade.wire > 0.0 {
         let line = select(vec3(0.22), color * 0.06, luminance(color) > 0.06);
         color = mix(color, line, wireframe(in.grid) * (1.0 - in.thin));
+#ifdef EDGED
         edged = vec4(color * edged.a, edged.a);
+#endif
     }
     if shade.lit > 0.0 {
         let l = lights(f.normal, f.to_eye);
         color = light(color, 1.0, l);
+#ifdef EDGED
         edged = vec4(light(edged.rgb, edged.a, l), edged.a);
+#endif
     }
+#ifdef EDGED
     color += 0.7 * f.edge * (shade.edge.rgb * edged.a - edged.rgb);
+#endif
     var out: Sample;
     out.color = vec4(color, 1.0);
     out.normal = vec4(f.normal * 0.5 + 0.5, f32(in.outline) / 255.0);

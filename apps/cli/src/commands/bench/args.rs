@@ -67,7 +67,7 @@ pub(crate) struct StaticArgs {
 #[derive(Args, Debug)]
 pub(crate) struct ExplorationArgs {
     /// Neurons of each scene
-    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "1,10,100,1000,10000",
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "1,10,100,1000,10000,100000,1000000",
           value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) neurons: Vec<u32>,
     /// Distinct neurons: scenes of more show them several times

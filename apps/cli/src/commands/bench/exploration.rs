@@ -46,6 +46,10 @@ struct Row {
     triangles: u64,
     /// Triangles that it would take to draw everything within half a pixel.
     wanted: u64,
+    /// Whether it may be more: in the largest scenes, not everything is asked.
+    at_least: bool,
+    /// Chunks of 64 segments that a frame measures.
+    measured: u64,
     bytes: u64,
     adaptive: Option<Times>,
     adaptive_triangles: Option<u64>,
@@ -107,6 +111,8 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
             exploration: times,
             triangles: stats.triangles,
             wanted: stats.requested,
+            at_least: stats.at_least,
+            measured: source.measured(&gpu)?,
             bytes: source.bytes().iter().map(|(_, bytes)| bytes).sum(),
             adaptive: None,
             adaptive_triangles: None,
@@ -118,6 +124,9 @@ pub(super) fn run(args: &ExplorationArgs, reporter: &Reporter) -> anyhow::Result
         }
         reporter.result(&line(&row));
         document.rows.push(row);
+    }
+    if let Some(bar) = bar(&document.rows) {
+        reporter.result(&bar);
     }
     reporter.document(&document)
 }
@@ -187,7 +196,7 @@ fn head(document: &Document<'_>) -> String {
         "{adapter} ({backend}), {width}x{height} pixels, budget {budget} triangles\n\
          {distinct} distinct neurons of {points:.0} points: {bytes_per_point:.1} bytes a point, \
          sketched in {sketch_ms:.0} ms, uploaded in {upload_ms:.0} ms\n\n\
-         {:>8} {:>10} {:>10} {:>9} {:>9} {:>10} {:>11} {:>8} {:>12} {:>12} {:>10} {:>7}",
+         {:>8} {:>10} {:>10} {:>9} {:>9} {:>10} {:>12} {:>9} {:>8} {:>12} {:>12} {:>10} {:>7}",
         "neurons",
         "points",
         "waited ms",
@@ -195,6 +204,7 @@ fn head(document: &Document<'_>) -> String {
         "draw",
         "triangles",
         "wanted",
+        "measured",
         "MiB",
         "adaptive ms",
         "triangles",
@@ -203,19 +213,40 @@ fn head(document: &Document<'_>) -> String {
     )
 }
 
+/// How the frame's time grows from 10,000 neurons to the largest scene.
+fn bar(rows: &[Row]) -> Option<String> {
+    let usual = rows.iter().find(|row| row.neurons == 10_000)?;
+    let largest = rows.iter().max_by_key(|row| row.neurons)?;
+    if largest.neurons <= usual.neurons {
+        return None;
+    }
+    let ms = largest.exploration.waited;
+    let ratio = ms / usual.exploration.waited;
+    let verdict = if ratio <= 2.0 && ms <= 1000.0 {
+        "met"
+    } else {
+        "missed"
+    };
+    Some(format!(
+        "\n{} neurons take {ratio:.2} times as long as {} (bar: 2 times, and a second): {verdict}",
+        largest.neurons, usual.neurons
+    ))
+}
+
 fn line(row: &Row) -> String {
     let ms = |ms: Option<f64>| ms.map_or("-".into(), |ms| format!("{ms:.2}"));
     let whole = |n: Option<u64>| n.map_or("-".into(), |n| n.to_string());
     let mib = |n: u64| n as f64 / f64::from(1 << 20);
     format!(
-        "{:>8} {:>10} {:>10.2} {:>9} {:>9} {:>10} {:>11} {:>8.2} {:>12} {:>12} {:>10} {:>7}",
+        "{:>8} {:>10} {:>10.2} {:>9} {:>9} {:>10} {:>12} {:>9} {:>8.2} {:>12} {:>12} {:>10} {:>7}",
         row.neurons,
         row.points,
         row.exploration.waited,
         ms(row.exploration.choose),
         ms(row.exploration.draw),
         row.triangles,
-        row.wanted,
+        format!("{}{}", if row.at_least { ">" } else { "" }, row.wanted),
+        row.measured,
         mib(row.bytes),
         ms(row.adaptive.map(|times| times.waited)),
         whole(row.adaptive_triangles),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use neurotess::generate::{GenerateOptions, generate};
 use neurotess::mesh::{CoarseMesh, Role};
-use neurotess::render::bounds::bounds;
+use neurotess::render::bounds::{bounds, merged};
 use neurotess::render::color::{ColorTable, Palette, category};
 use neurotess::render::{BoundingSphere, Camera, Frame, Side};
 use neurotess::synth::{Kind, Options, grow};
@@ -21,6 +21,8 @@ pub(crate) struct Neuron {
     pub(crate) mesh: CoarseMesh,
     pub(crate) color_keys: Vec<u32>,
     spheres: Vec<BoundingSphere>,
+    /// A single sphere around them.
+    whole: Vec<BoundingSphere>,
     /// Translation (µm) that moves its soma to the origin.
     to_origin: DVec3,
 }
@@ -38,9 +40,11 @@ pub(crate) fn neurons(distinct: u32, points: u32) -> Vec<Neuron> {
             let mesh = generate(&morphology, &GenerateOptions::default())
                 .expect("a synthetic cell is within 32 bits")
                 .mesh;
+            let spheres = bounds(&mesh);
             Neuron {
                 color_keys: color_keys(&mesh),
-                spheres: bounds(&mesh),
+                whole: merged(&spheres, 1),
+                spheres,
                 to_origin: -(mesh.origin + soma.unwrap_or(DVec3::ZERO)),
                 mesh,
             }
@@ -78,6 +82,9 @@ pub(crate) struct BenchScene {
     pub(crate) far: f64,
 }
 
+/// Most neurons that the camera is fitted to in parts.
+const MOST_IN_PARTS: u32 = 20_000;
+
 impl BenchScene {
     pub(crate) fn new(neurons: &[Neuron], count: u32, size: [u32; 2]) -> anyhow::Result<Self> {
         let side = f64::from(count).sqrt().ceil() as u32;
@@ -92,8 +99,15 @@ impl BenchScene {
         let spheres: Vec<BoundingSphere> = placements
             .iter()
             .flat_map(|&(neuron, translation)| {
-                let spheres = neurons[neuron].spheres.iter();
-                spheres.map(move |&(center, radius)| (center + translation, radius))
+                let neuron = &neurons[neuron];
+                // Spheres of parts fit the picture tightly, and take gigabytes for a million.
+                let spheres = match count > MOST_IN_PARTS {
+                    true => &neuron.whole,
+                    false => &neuron.spheres,
+                };
+                spheres
+                    .iter()
+                    .map(move |&(center, radius)| (center + translation, radius))
             })
             .collect();
         let aspect = f64::from(size[0]) / f64::from(size[1]);

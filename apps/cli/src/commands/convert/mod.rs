@@ -1,6 +1,7 @@
 //! `neurotess convert`: morphologies in another format, and mended on the way.
 
 mod edits;
+mod in_memory;
 mod report;
 
 use std::collections::BTreeMap;
@@ -21,6 +22,7 @@ use crate::io::output::{self, OutputError};
 use crate::io::targets;
 use crate::report::{Entry, Failure, Reporter, usage};
 use edits::EditArgs;
+pub use in_memory::EditRecipe;
 
 /// `neurotess convert`
 #[derive(Args, Debug)]

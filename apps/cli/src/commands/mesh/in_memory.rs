@@ -1,7 +1,9 @@
 //! Meshes that stay in memory: the options, surfaces and checks of `neurotess mesh` without its files.
 
+use std::sync::atomic::AtomicBool;
+
 use clap::Parser;
-use neurotess::generate::{Generated, generate};
+use neurotess::generate::{Generated, generate_stoppable};
 use neurotess::mesh::{Quality, Surface};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
@@ -66,28 +68,37 @@ impl MeshRecipe {
         Ok(Self { options })
     }
 
-    /// Generates the coarse mesh of a cell.
+    /// Generates the coarse mesh of a cell. Ends soon after another thread sets `stopped`.
     ///
     /// # Errors
-    /// If it cannot be meshed, or the options leave nothing of it.
-    pub fn generate(&self, morphology: &Morphology) -> Result<CellMesh, String> {
-        let generated = generate(morphology, &self.options.generate).map_err(|e| e.to_string())?;
+    /// If it cannot be meshed, the options leave nothing of it, or it was stopped.
+    pub fn generate(
+        &self,
+        morphology: &Morphology,
+        stopped: &AtomicBool,
+    ) -> Result<CellMesh, String> {
+        let options = &self.options.generate;
+        let generated = generate_stoppable(morphology, options, || 0.0, stopped);
+        let generated = generated.map_err(|e| e.to_string())?;
         something_left(&generated).map_err(|Failure(what)| what)?;
         Ok(CellMesh { generated })
     }
 
-    /// Makes a cell's surface and hands it to `take`; tells what is known of it.
+    /// Makes a cell's surface and hands it to `take`; tells what is known of it. Merging ends soon after another
+    /// thread sets `stopped`.
     ///
     /// # Errors
-    /// If what crosses cannot be merged, or solvers could not take what was asked for as a simulation mesh.
+    /// If it was stopped, what crosses cannot be merged, or solvers could not take what was asked for as a simulation mesh.
     pub fn surface<T>(
         &self,
         cell: &CellMesh,
+        stopped: &AtomicBool,
         take: impl FnOnce(&dyn Surface) -> T,
     ) -> Result<(T, MeshReport), String> {
         let CellMesh { generated } = cell;
         let told = |Failure(what)| what;
-        let surface = CellSurface::new(&generated.mesh, &self.options).map_err(told)?;
+        let surface =
+            CellSurface::stoppable(&generated.mesh, &self.options, stopped).map_err(told)?;
         if self.options.simulation {
             verdict::check(&surface, generated).map_err(told)?;
         }
@@ -123,8 +134,9 @@ mod tests {
         let read = swc::read_bytes(text, "cell", &ReadOptions::default()).expect("a cell");
         let triangles = |options: &[&str]| {
             let recipe = recipe(options).expect("options");
-            let cell = recipe.generate(&read.morphology).expect("a mesh");
-            let made = recipe.surface(&cell, |surface| SurfaceMesh::collect(surface));
+            let running = AtomicBool::new(false);
+            let cell = recipe.generate(&read.morphology, &running).expect("a mesh");
+            let made = recipe.surface(&cell, &running, |surface| SurfaceMesh::collect(surface));
             let (mesh, report) = made.expect("a surface");
             assert!(report.closed && report.components == 1);
             mesh.faces.triangles.len()

@@ -1,6 +1,7 @@
 //! The surface of a cell as it is written: refined block by block, or whole in memory where what crosses is
 //! merged.
 
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use neurotess::generate::Separation;
@@ -8,7 +9,7 @@ use neurotess::mesh::{
     CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
 };
 use neurotess::refine::{CoarseSurface, Lod, Refinement};
-use neurotess::union::{Kin, Place, UnionOptions, UnionReport, union};
+use neurotess::union::{Kin, Place, UnionOptions, UnionReport, union_stoppable};
 use serde::Serialize;
 
 use super::options::{MeshLevels, MeshOptions};
@@ -28,6 +29,15 @@ pub(super) struct CellSurface<'m> {
 impl<'m> CellSurface<'m> {
     /// Refines a coarse mesh, and merges what crosses if that is asked for.
     pub(super) fn new(mesh: &'m CoarseMesh, options: &MeshOptions) -> Result<Self, Failure> {
+        Self::stoppable(mesh, options, &AtomicBool::new(false))
+    }
+
+    /// The same; merging ends soon after another thread sets `stopped`.
+    pub(super) fn stoppable(
+        mesh: &'m CoarseMesh,
+        options: &MeshOptions,
+        stopped: &AtomicBool,
+    ) -> Result<Self, Failure> {
         let clock = Instant::now();
         let surface = refined(mesh, options);
         if !options.merge {
@@ -41,7 +51,7 @@ impl<'m> CellSurface<'m> {
             });
         }
         let whole = SurfaceMesh::collect(&*surface);
-        let merged = union(&whole, &UnionOptions::default());
+        let merged = union_stoppable(&whole, &UnionOptions::default(), stopped);
         let merged = merged.map_err(|e| Failure(format!("what crosses cannot be merged: {e}")))?;
         if merged.report.pairs > 0 {
             let at = merged.report.places.first().map(|p| p.points);

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use neurotess::circuit::Compartment;
 use neurotess::coloring::with_middles;
@@ -40,7 +41,7 @@ pub(crate) fn read(
     };
     let entries = each(inputs, reporter, |input| {
         let cut = cuts.get(&input.path).map_or(&[][..], Vec::as_slice);
-        cell(input, cut, read, &options)
+        cell(input, cut, read, &options, reporter.stopped())
     })?;
     let one = entries.len() == 1;
     for entry in &entries {
@@ -67,6 +68,7 @@ fn cell(
     cut: &[Compartment],
     read: ReadOptions,
     options: &GenerateOptions,
+    stopped: &AtomicBool,
 ) -> Result<MeshedCell, Failure> {
     let mut read = read_morphology(&input.path, None, &read)?;
     if !cut.is_empty() {
@@ -75,18 +77,19 @@ fn cell(
     let file = input.path.display().to_string();
     Ok(MeshedCell {
         warnings: read.warnings,
-        ..meshed(file, read.morphology, options)?
+        ..meshed(file, read.morphology, options, stopped)?
     })
 }
 
-/// Meshes a cell that is in memory.
+/// Meshes a cell that is in memory, unless another thread sets `stopped`.
 pub(super) fn meshed(
     file: String,
     morphology: Morphology,
     options: &GenerateOptions,
+    stopped: &AtomicBool,
 ) -> Result<MeshedCell, Failure> {
-    let generated =
-        generate::generate(&morphology, options).map_err(|e| Failure(format!("{file}: {e}")))?;
+    let generated = generate::generate_stoppable(&morphology, options, || 0.0, stopped);
+    let generated = generated.map_err(|e| Failure(format!("{file}: {e}")))?;
     let mended = generated.warnings.iter();
     Ok(MeshedCell {
         file,

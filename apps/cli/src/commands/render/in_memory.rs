@@ -2,6 +2,8 @@
 //! `neurotess render` without its files.
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 use glam::{DVec2, DVec3};
@@ -9,7 +11,7 @@ use neurotess::coloring::MarkerSet;
 use neurotess::morphology::{Morphology, SectionId, shape};
 use neurotess::render::overlay::Overlay;
 use neurotess::render::{
-    BoundingSphere, Camera, Gpu, Image, PictureOptions, Placement, StillRenderer, Viewpoint,
+    BoundingSphere, Camera, Gpu, Image, PictureOptions, Placement, StillRenderer, Viewpoint, Watch,
 };
 use rayon::prelude::*;
 
@@ -48,7 +50,7 @@ pub enum DrawingInput<'a> {
 pub enum DrawError {
     /// An option is wrong, in the words of the command line.
     Option(String),
-    /// An input or the device fails.
+    /// An input or the device fails, or another thread asked to stop.
     Failed(String),
 }
 
@@ -86,7 +88,8 @@ pub struct Picked {
 }
 
 impl Drawing {
-    /// Reads, meshes and uploads what is to be drawn. Returns what there is to say about it, too.
+    /// Reads, meshes and uploads what is to be drawn. Returns what there is to say about it, too. Ends soon after
+    /// another thread sets `stopped`.
     ///
     /// # Errors
     /// Wrong options, inputs that fail, or a device that does.
@@ -94,10 +97,11 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         options: impl IntoIterator<Item = String>,
+        stopped: &Arc<AtomicBool>,
     ) -> Result<(Self, Vec<String>), DrawError> {
         let Options { args, common } = parsed(input, options)?;
         let args = Box::new(args);
-        let reporter = Reporter::recording(common);
+        let reporter = Reporter::recording(common, stopped);
         let made = Self::made(gpu, input, args, &reporter);
         let mut told = reporter.take_recorded();
         match made {
@@ -123,7 +127,7 @@ impl Drawing {
             placements,
             instances,
         } = match input {
-            DrawingInput::Cells(cells) => in_memory(cells, &args)?,
+            DrawingInput::Cells(cells) => in_memory(cells, &args, reporter.stopped())?,
             DrawingInput::Circuit(_) => scene::read(&args, reporter)?,
         };
         let done = |entry| match entry {
@@ -134,6 +138,9 @@ impl Drawing {
             }
         };
         let cells: Vec<MeshedCell> = entries.into_iter().filter_map(done).collect();
+        if reporter.stopped().load(Ordering::Relaxed) {
+            anyhow::bail!("stopped");
+        }
         if placements.is_empty() {
             anyhow::bail!("there is no cell to draw");
         }
@@ -184,11 +191,20 @@ impl Drawing {
         self.cameras.get(picture).copied()
     }
 
-    /// Draws one of the pictures, with legend and scale bar.
+    /// Draws one of the pictures, with legend and scale bar. Ends soon after another thread sets `stopped`.
     ///
     /// # Errors
-    /// The device or a report fails.
-    pub fn draw(&mut self, gpu: &Gpu, picture: usize) -> Result<Image, DrawError> {
+    /// The device or a report fails, or the picture was stopped.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        picture: usize,
+        stopped: &Arc<AtomicBool>,
+    ) -> Result<Image, DrawError> {
+        self.stoppable(stopped, |drawing| drawing.numbered(gpu, picture))
+    }
+
+    fn numbered(&mut self, gpu: &Gpu, picture: usize) -> Result<Image, DrawError> {
         let Some(camera) = self.camera(picture) else {
             return Err(DrawError::Failed("there is no such picture".into()));
         };
@@ -216,16 +232,18 @@ impl Drawing {
         Ok(image)
     }
 
-    /// Draws from anywhere, at another size and number of samples, with the colors of one of the pictures.
+    /// Draws from anywhere, at another size and number of samples, with the colors of one of the pictures. Ends
+    /// soon after another thread sets `stopped`.
     ///
     /// # Errors
-    /// The device or a report fails.
+    /// The device or a report fails, or the picture was stopped.
     pub fn draw_from(
         &mut self,
         gpu: &Gpu,
         picture: usize,
         camera: Camera,
         (size, samples): ([u32; 2], u32),
+        stopped: &Arc<AtomicBool>,
     ) -> Result<Image, DrawError> {
         if self.args.size.0 != size {
             self.args.size = Size(size);
@@ -238,7 +256,27 @@ impl Drawing {
             samples,
             ..draw::picture_options(&self.args)
         };
-        self.drawn(gpu, picture, camera, &options)
+        self.stoppable(stopped, |drawing| {
+            drawing.drawn(gpu, picture, camera, &options)
+        })
+    }
+
+    /// Draws with a renderer that another thread can stop.
+    fn stoppable(
+        &mut self,
+        stopped: &Arc<AtomicBool>,
+        draw: impl FnOnce(&mut Self) -> Result<Image, DrawError>,
+    ) -> Result<Image, DrawError> {
+        self.renderer.set_watch(Watch {
+            stopped: Arc::clone(stopped),
+            ..Watch::default()
+        });
+        let drawn = draw(self);
+        if drawn.is_err() {
+            // What was stopped in the middle of a tile has its buffers in use still.
+            self.renderer = StillRenderer::new();
+        }
+        drawn
     }
 
     fn drawn(
@@ -380,11 +418,15 @@ fn parsed(
 }
 
 /// The scene of cells that are in memory, each in its own coordinates.
-fn in_memory(cells: &[(&str, &Morphology)], args: &RenderArgs) -> anyhow::Result<RenderScene> {
+fn in_memory(
+    cells: &[(&str, &Morphology)],
+    args: &RenderArgs,
+    stopped: &AtomicBool,
+) -> anyhow::Result<RenderScene> {
     scene::check_of_cells(args)?;
     let options = cells::options(args);
     let meshed = cells.par_iter().map(|&(name, morphology)| {
-        let cell = cells::meshed(name.to_owned(), morphology.clone(), &options);
+        let cell = cells::meshed(name.to_owned(), morphology.clone(), &options, stopped);
         cell.map(Entry::Done).map_err(|e| anyhow::anyhow!(e.0))
     });
     let entries = meshed.collect::<anyhow::Result<Vec<_>>>()?;

@@ -102,6 +102,8 @@ struct BudgetStats {
     wanted: u64,
     /// Left out, or drawn more coarsely than within half a pixel.
     left_out: u64,
+    /// Whether `wanted` and `left_out` may be more: in the largest scenes, not everything is asked.
+    at_least: bool,
     neurons_in_picture: u64,
 }
 
@@ -150,6 +152,7 @@ impl Stats {
             budget: stats.budget,
             wanted: stats.requested,
             left_out: stats.requested - stats.triangles.min(stats.requested),
+            at_least: stats.at_least,
             neurons_in_picture: stats.instances,
         });
         self.markers = made.markers.map(|[drawn, in_view, all]| MarkerStats {
@@ -170,11 +173,13 @@ impl Stats {
             budget,
             wanted,
             left_out,
+            at_least,
             ..
         } = self.exploration.filter(|explored| explored.left_out > 0)?;
+        let least = if at_least { "at least " } else { "" };
         Some(format!(
-            "the budget of {budget} triangles: {left_out} of {wanted} are left out, those that show \
-             least; --budget allows more"
+            "the budget of {budget} triangles: {least}{left_out} of {wanted} are left out, those that \
+             show least; --budget allows more"
         ))
     }
 

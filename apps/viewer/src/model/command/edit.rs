@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::model::document::{Detail, Dimension, Document, Look, SomaEdit, SourceId};
+use crate::model::document::{
+    Detail, Dimension, Document, Look, MarkerOptions, SomaEdit, SourceId,
+};
 
 /// A change of the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +42,12 @@ pub enum Edit {
     SetGrid(bool),
     /// Shows the values of a report or of spikes, or none.
     SetReport(Option<PathBuf>),
+    /// Changes which synapses and points are shown, and how.
+    SetMarkers(Box<MarkerOptions>),
+    /// Shows synapses, or none.
+    ShowSynapses(bool),
+    /// Shows the points of a table, or none.
+    SetPoints(Option<PathBuf>),
     /// Keeps a dimension on the picture.
     AddDimension(Dimension),
     /// Removes a dimension, by its index.
@@ -63,6 +71,9 @@ impl Edit {
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
             Self::SetReport(_) => "Report",
+            Self::SetMarkers(_) | Self::ShowSynapses(_) | Self::SetPoints(_) => {
+                "Synapses and points"
+            }
             Self::AddDimension(_) => "Dimension",
             Self::RemoveDimension(_) | Self::ClearDimensions => "Remove dimension",
         }
@@ -72,7 +83,11 @@ impl Edit {
     pub fn joins(&self) -> bool {
         matches!(
             self,
-            Self::SetSoma(..) | Self::SetRing(..) | Self::SetLook(_) | Self::SetDetail(_)
+            Self::SetSoma(..)
+                | Self::SetRing(..)
+                | Self::SetLook(_)
+                | Self::SetDetail(_)
+                | Self::SetMarkers(_)
         )
     }
 
@@ -135,6 +150,15 @@ impl Edit {
             Self::SetDetail(detail) => document.detail = detail,
             Self::SetGrid(grid) => document.grid = grid,
             Self::SetReport(report) => document.set_report(report),
+            Self::SetMarkers(markers) => document.markers = *markers,
+            Self::ShowSynapses(show) => document.markers.synapses = show,
+            Self::SetPoints(points) => {
+                // Another table has other columns.
+                if points != document.markers.points {
+                    document.markers.column = None;
+                }
+                document.markers.points = points;
+            }
             Self::AddDimension(dimension) => document.dimensions.push(dimension),
             Self::RemoveDimension(which) if which < document.dimensions.len() => {
                 document.dimensions.remove(which);

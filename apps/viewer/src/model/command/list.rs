@@ -50,6 +50,16 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 ),
                 item("Close the report", None, Edit::SetReport(None).into()),
                 item(
+                    "Open points (a table of markers)…",
+                    None,
+                    Command::AskFiles(FilePurpose::Points),
+                ),
+                item(
+                    "Close the points (markers)",
+                    None,
+                    Edit::SetPoints(None).into(),
+                ),
+                item(
                     "Save session…",
                     Some((CTRL, Key::S)),
                     Command::AskFiles(FilePurpose::SaveSession),
@@ -190,6 +200,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::SetFrozen(!now.frozen),
                 ),
                 item(
+                    choose(
+                        now.synapses,
+                        "Show synapses (contacts, edges; markers)",
+                        "Hide synapses (contacts, edges; markers)",
+                    ),
+                    Some((PLAIN, Key::X)),
+                    Edit::ShowSynapses(!now.synapses).into(),
+                ),
+                item(
                     choose(now.playing, "Play the report", "Stop the report"),
                     Some((PLAIN, Key::Space)),
                     Command::TogglePlay,
@@ -285,6 +304,8 @@ pub struct Toggles {
     pub playing: bool,
     /// Whether clicks measure.
     pub measuring: bool,
+    /// Whether synapses are shown.
+    pub synapses: bool,
 }
 
 #[cfg(test)]

@@ -54,6 +54,8 @@ pub enum FilePurpose {
     Report,
     /// Saving a session.
     SaveSession,
+    /// Opening a table of points.
+    Points,
     /// Opening a palette.
     OpenPalette,
     /// Saving a palette.
@@ -76,6 +78,8 @@ pub enum Command {
     Reload,
     /// Writes a session.
     SaveSession(PathBuf),
+    /// Reads a table of points and shows them.
+    OpenPoints(PathBuf),
     /// Takes the colors of a palette's file.
     OpenPalette(PathBuf),
     /// Writes the palette, with the colors that were chosen.
@@ -157,6 +161,7 @@ impl fmt::Debug for Command {
             Self::Open(value) => with("Open", value),
             Self::OpenSample(value) => with("OpenSample", value),
             Self::SaveSession(value) => with("SaveSession", value),
+            Self::OpenPoints(value) => with("OpenPoints", value),
             Self::OpenPalette(value) => with("OpenPalette", value),
             Self::SavePalette(value) => with("SavePalette", value),
             Self::Seek(value) => with("Seek", value),

@@ -3,6 +3,7 @@
 mod detail;
 mod dimension;
 mod look;
+mod markers;
 mod neurons;
 mod placement;
 mod soma;
@@ -18,6 +19,7 @@ pub use crate::model::ids::{CircuitNode, SourceId};
 pub use detail::{Detail, LodKind, RestChoice};
 pub use dimension::{Anchor, Dimension};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
+pub use markers::MarkerOptions;
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use soma::{Method, SomaEdit};
@@ -37,6 +39,8 @@ pub struct Document {
     pub grid: bool,
     /// The recording whose values can be shown.
     pub report: Option<PathBuf>,
+    /// Synapses and points beside the cells.
+    pub markers: MarkerOptions,
     /// What was measured and is kept on the picture.
     pub dimensions: Tracked<Vec<Dimension>>,
 }

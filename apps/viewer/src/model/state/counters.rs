@@ -17,6 +17,8 @@ pub struct Counters {
     pub draft: Draft,
     /// How the quality of the picture at rest is reduced, if it is.
     pub lowered: Option<Lowered>,
+    /// Synapses and points that the picture shows, those in view, and all; none without any.
+    pub markers: Option<[usize; 3]>,
     /// The picture at rest, once it can be colored anew.
     pub static_picture: Option<StaticFigures>,
 }

@@ -8,6 +8,7 @@ use neurotess::render::{BoundingSphere, Placement};
 
 use super::State;
 use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
+use crate::model::ids::CircuitId;
 use crate::model::measuring::Figure;
 use crate::model::revision::{Memo, Revision};
 use crate::model::sources::extent;
@@ -31,6 +32,8 @@ pub(crate) struct SpheresKey {
     placements: PlacementsKey,
     hidden: Revision,
     geometry: Revision,
+    /// Revision of what was read, if points are shown.
+    points: Option<Revision>,
 }
 
 /// Derived values.
@@ -41,6 +44,7 @@ pub(super) struct Derived {
     found: Memo<(Revision, String), Vec<usize>>,
     totals: Memo<(NeuronRevisions, Revision), Totals>,
     kinds: Memo<Revision, BTreeSet<i32>>,
+    pub(super) circuits: Memo<Revision, Vec<CircuitId>>,
     pub(super) figures: Memo<FiguresKey, Vec<Option<Figure>>>,
 }
 
@@ -85,9 +89,13 @@ impl State {
             .collect()
     }
 
-    /// Bounding spheres (µm) of the neurons that are shown.
+    /// Bounding spheres (µm) of the neurons that are shown, and of points beside them.
     pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
-        let derive = || self.spheres_where(|_| true);
+        let derive = || {
+            let mut spheres = self.spheres_where(|_| true);
+            spheres.extend(self.sphere_of_points());
+            spheres
+        };
         self.derived.spheres.get(self.spheres_key(), derive)
     }
 
@@ -97,6 +105,7 @@ impl State {
             placements: self.placements_key(),
             hidden: self.document.neurons.revisions().hidden,
             geometry: self.sources.geometry(),
+            points: self.shows_points().then(|| self.marker_data.revision()),
         }
     }
 

@@ -4,6 +4,7 @@ mod counters;
 mod derived;
 mod dimension_table;
 mod dimensions;
+mod markers;
 
 use std::path::PathBuf;
 
@@ -13,6 +14,7 @@ use crate::model::circuits::Circuits;
 use crate::model::command::{Command, Edit, FilePurpose, Tab, Toggles};
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
+use crate::model::markers::{MarkerData, MarkerRef};
 use crate::model::measuring::Measuring;
 use crate::model::playback::Playback;
 use crate::model::save::{SaveForm, SaveRequest};
@@ -63,6 +65,8 @@ pub struct State {
     pub sources: Sources,
     /// Open circuits.
     pub circuits: Circuits,
+    /// Synapses and points that were read.
+    pub marker_data: MarkerData,
     /// Playback of the recording.
     pub playback: Playback,
     /// The camera's view.
@@ -75,10 +79,14 @@ pub struct State {
     pub frozen: Option<View>,
     /// The part under the cursor, in the picture or in the tree.
     pub hovered: Option<Picked>,
+    /// The synapse or point under the cursor.
+    pub hovered_marker: Option<MarkerRef>,
     /// The neurite whose ring's slider is under the cursor or being dragged.
     pub touched: Option<(SourceId, u32)>,
     /// The part that was clicked last.
     pub picked: Option<Picked>,
+    /// The synapse or point that was clicked last.
+    pub picked_marker: Option<MarkerRef>,
     /// The tool that measures, while it is on.
     pub measuring: Option<Measuring>,
     /// The dimension whose line in the list is under the cursor.
@@ -169,14 +177,17 @@ impl State {
             history: History::default(),
             sources: Sources::default(),
             circuits: Circuits::default(),
+            marker_data: MarkerData::default(),
             playback: Playback::default(),
             view: View::default(),
             fitted: None,
             key_views: Vec::new(),
             frozen: None,
             hovered: None,
+            hovered_marker: None,
             touched: None,
             picked: None,
+            picked_marker: None,
             measuring: None,
             pointed_dimension: None,
             problems: Vec::new(),
@@ -207,6 +218,7 @@ impl State {
             dark: self.settings.dark,
             playing: self.playback.playing,
             measuring: self.measuring.is_some(),
+            synapses: self.document.markers.synapses,
         }
     }
 
@@ -302,6 +314,10 @@ impl State {
                     self.key_views.remove(which);
                 }
             }
+            Command::OpenPoints(path) => {
+                self.marker_data.forget_points();
+                self.run(Edit::SetPoints(Some(path)));
+            }
             Command::OpenPalette(path) => self.effects.push(Effect::OpenPalette(path)),
             Command::SavePalette(path) => self.effects.push(Effect::SavePalette(path)),
             Command::SaveSession(path) => self.save(SaveRequest::Session(path)),
@@ -332,7 +348,8 @@ impl State {
 
     /// The view of everything from a side.
     fn fit(&self, side: Side) -> View {
-        let spheres = self.outline(|_| true);
+        let mut spheres = self.outline(|_| true);
+        spheres.extend(self.sphere_of_points());
         self.view
             .fitted(side, self.settings.y_down, self.aspect, &spheres)
     }
@@ -366,6 +383,7 @@ impl State {
         self.hovered = self.hovered.filter(there);
         self.picked = self.picked.filter(there);
         self.forget_lost_ends();
+        self.forget_lost_markers();
     }
 
     /// The source of a neuron.

@@ -55,7 +55,6 @@ impl Stage {
                 return Ok(());
             }
         };
-        self.progressive.set_colors(built.content.table.clone());
         self.rebuilds.colors += 1;
         match built.templates {
             Some(templates) => {
@@ -69,6 +68,7 @@ impl Stage {
             }
             None => self.content.recolor(built.content),
         }
+        self.set_colors();
         self.colors = Some(built.colors);
         self.checked = None;
         self.drawn = None;
@@ -157,7 +157,7 @@ impl Stage {
         // The instances are the same, with other meshes.
         let revision = self.content.revision;
         self.instances = self.instances.map(|key| key.of_content(revision));
-        self.progressive.set_colors(self.content.table.clone());
+        self.set_colors();
         self.rebuilds.templates += 1;
         self.rebuilds.colors += 1;
         self.drawn = None;

@@ -6,7 +6,7 @@ use eframe::egui;
 use neurotess::render::outline::Outlines;
 use neurotess::render::state::OUTLINED;
 use neurotess::render::{
-    AdaptiveSettings, Camera, Clip, DeviceError, Occlusion, Scene, ViewParams,
+    AdaptiveSettings, Camera, Clip, DeviceError, Occlusion, Scene, ViewParams, WithMarkers,
 };
 
 use super::cost_model::explorable;
@@ -53,6 +53,7 @@ impl Stage {
             detail: state.document.detail,
             states: StatesKey::new(&state.document),
             instances: InstancesKey::new(state, self.content.revision),
+            markers: self.markers.key(state),
         }
     }
 
@@ -131,7 +132,7 @@ impl Stage {
         self.mask = None;
         self.draw_draft(&inputs)?;
         self.drawn = Some(inputs);
-        self.legend.clone_from(&self.content.legend);
+        self.legend = self.whole_legend();
         self.revalued = false;
         self.drafted = true;
         ctx.request_repaint_after(match self.phase {
@@ -171,8 +172,13 @@ impl Stage {
             false => None,
         };
         self.explored = explorer.is_some();
-        if let Some(adaptive) = explorer {
-            return self.progressive.draft(&self.gpu, adaptive, &params);
+        let key = inputs.markers;
+        if let Some(source) = explorer {
+            let markers = self.markers.drawn(key, 1.0, Some(budget));
+            let mut source = WithMarkers::new(source, markers);
+            self.progressive.draft(&self.gpu, &mut source, &params)?;
+            self.count_markers(&params, key, Some(budget));
+            return Ok(());
         }
         self.adaptive.set_settings(AdaptiveSettings {
             // Leaves out no patches that are drawn at rest, since holes that come and go would look
@@ -182,11 +188,16 @@ impl Stage {
             wireframe: params.look.wire > 0.0,
             ..AdaptiveSettings::default()
         });
-        if self.coarser > HALF_FROM {
+        let halved = self.coarser > HALF_FROM;
+        if halved {
             params.size = params.size.map(|n| n.div_ceil(2));
         }
-        self.progressive
-            .draft(&self.gpu, &mut self.adaptive, &params)
+        let sub_pixels = if halved { 0.5 } else { 1.0 };
+        let markers = self.markers.drawn(key, sub_pixels, Some(budget));
+        let mut source = WithMarkers::new(&mut self.adaptive, markers);
+        self.progressive.draft(&self.gpu, &mut source, &params)?;
+        self.count_markers(&inputs.params, key, Some(budget));
+        Ok(())
     }
 
     fn set_instances(&mut self, state: &State, key: InstancesKey) {

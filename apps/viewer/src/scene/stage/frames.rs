@@ -67,7 +67,7 @@ impl Stage {
             ..restyled.table
         };
         self.content.legend = restyled.legend;
-        self.progressive.set_colors(self.content.table.clone());
+        self.set_colors();
         self.colors = Some(key);
         self.rebuilds.colors += 1;
         self.drawn = None;

@@ -5,6 +5,7 @@ mod building;
 mod cost_model;
 mod drafts;
 mod frames;
+mod markers;
 mod pointing;
 mod rest;
 mod static_mode;
@@ -33,6 +34,7 @@ use crate::scene::explorer::Explorer;
 use crate::scene::picks::Picks;
 use building::Built;
 use cost_model::{CostModel, RestMode};
+use markers::{MarkersKey, StageMarkers};
 pub(crate) use pointing::OUTLINES;
 use pointing::{MaskKey, Resolver};
 use static_mode::StaticKey;
@@ -65,6 +67,8 @@ pub struct Stage {
     /// Legend of the picture that was drawn last.
     legend: Legend,
     building: Option<(Checked, Task<Built>)>,
+    /// Synapses and points.
+    markers: StageMarkers,
     /// Reads the recording.
     reader: Option<FrameReader>,
     values: Option<Arc<FrameValues>>,
@@ -72,7 +76,7 @@ pub struct Stage {
     visible: Option<Arc<VisibleValues>>,
     /// Whether values of the current frame are still to be read.
     values_due: bool,
-    /// Whether values have changed since they were drawn.
+    /// Whether values, or colors of markers, have changed since they were drawn.
     revalued: bool,
     drawn: Option<PictureInputs>,
     /// Whether the static picture is still to be colored anew.
@@ -115,6 +119,7 @@ struct PictureInputs {
     detail: Detail,
     states: StatesKey,
     instances: InstancesKey,
+    markers: Option<MarkersKey>,
 }
 
 /// Phases of the full picture.
@@ -165,6 +170,7 @@ impl Stage {
             rebuilds: Rebuilds::default(),
             legend,
             building: None,
+            markers: StageMarkers::new(software),
             reader: None,
             values: None,
             visible: None,
@@ -217,7 +223,30 @@ impl Stage {
         };
         let ids_due = self.resolver.is_some();
         let due = self.values_due || self.recolor_due || ids_due;
-        shown && self.drawn.is_some() && self.building.is_none() && !due
+        shown && self.drawn.is_some() && !self.is_building() && !due
+    }
+
+    /// What is still to be done before everything is drawn, for messages of tests.
+    pub fn unsettled(&self) -> String {
+        format!(
+            "{:?} {:?}, {} slices, {:?}; drawn {}, sharp {}, picking {}, building {}, values due {}, \
+             recoloring due {}, ids due {}",
+            self.rest_mode,
+            self.phase,
+            self.slices,
+            self.cost_model,
+            self.drawn.is_some(),
+            self.is_sharp(),
+            self.can_pick(),
+            self.is_building(),
+            self.values_due,
+            self.recolor_due,
+            self.resolver.is_some(),
+        )
+    }
+
+    fn is_building(&self) -> bool {
+        self.building.is_some() || self.markers.is_making()
     }
 
     /// Whether the picture, perhaps a draft, shows the recording's current frame.
@@ -266,6 +295,7 @@ impl Stage {
     ) -> Result<Option<egui::TextureId>, DeviceError> {
         self.take_built(state, ctx)?;
         self.update_templates(state, ctx)?;
+        self.update_markers(state, ctx)?;
         if let Some(why) = self.explorer.update(&self.gpu, &self.content, ctx) {
             state.problem("preparing drafts", why);
         }
@@ -306,6 +336,7 @@ impl Stage {
             true => Draft::Budget(self.explorer.budget()),
             false => Draft::Error(self.coarser),
         };
+        state.counters.markers = self.markers.shown();
         state.counters.lowered = self.lowered();
         state.counters.static_picture = self.static_figures();
         self.gpu.check()?;
@@ -324,8 +355,8 @@ impl Stage {
 
     /// Bytes on the device: of cells, and of pictures.
     fn bytes(&self) -> [u64; 2] {
-        let cells = self.adaptive.bytes().iter().map(|(_, bytes)| bytes).sum();
-        [cells, self.progressive.bytes()]
+        let cells: u64 = self.adaptive.bytes().iter().map(|(_, bytes)| bytes).sum();
+        [cells + self.markers.bytes(), self.progressive.bytes()]
     }
 
     /// The picture's texture for egui; its id stays the same as long as the texture does.

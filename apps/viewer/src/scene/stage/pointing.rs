@@ -8,10 +8,11 @@ use neurotess::render::pick::{PickHit, PickId, PickResolver, ProxyPickResolver};
 use neurotess::render::{DeviceError, ViewParams};
 
 use super::Stage;
+use crate::model::markers::MarkerRef;
 use crate::model::revision::Revision;
 use crate::model::state::{Picked, State};
 use crate::scene::content;
-use crate::scene::picks::{CursorHit, Picks, seen};
+use crate::scene::picks::{CursorHit, HitTarget, Picks, seen};
 
 /// How outlines look: wider ones would hide thin neurites.
 pub(crate) const OUTLINES: Outlines = Outlines {
@@ -42,6 +43,7 @@ impl Resolver {
 pub(super) struct MaskKey {
     hovered: Option<Picked>,
     picked: Option<Picked>,
+    markers: [Option<MarkerRef>; 2],
     members: Revision,
     selection: Revision,
     params: ViewParams,
@@ -71,9 +73,13 @@ impl Stage {
         let Some(resolver) = self.resolver.take() else {
             return Ok(());
         };
-        let content = &self.content;
+        let (content, markers) = (&self.content, &self.markers);
         self.picks_stale = false;
         self.picks = Some(Picks::new(size, &ids, |id| {
+            if let Some((marker, place)) = markers.picked(id) {
+                let target = HitTarget::Marker(marker);
+                return Some(CursorHit { target, place });
+            }
             let hit = resolver.resolve(id)?;
             let instance = content.instances.get(hit.instance as usize)?;
             let source = content.sources.get(instance.source)?;
@@ -93,6 +99,7 @@ impl Stage {
         let key = MaskKey {
             hovered: state.hovered,
             picked: state.picked,
+            markers: [state.hovered_marker, state.picked_marker],
             members: revisions.members,
             selection: revisions.selection,
             params: drawn.params,
@@ -104,7 +111,12 @@ impl Stage {
             let source = state.source_of(neuron)?;
             source.sections.get(section as usize).copied()
         };
-        let mask = picks.mask(&state.document, state.hovered, state.picked, facts);
+        let mask = picks.mask(
+            &state.document,
+            [key.hovered, key.picked],
+            key.markers,
+            facts,
+        );
         self.progressive
             .set_outlines(&self.gpu, OUTLINES, Some((picks.size(), &mask)));
         self.progressive.show(&self.gpu);

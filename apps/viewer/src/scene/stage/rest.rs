@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::render::{AdaptiveSettings, DeviceError, Frame, Steps, VertexSource, ViewParams};
+use neurotess::render::{
+    AdaptiveSettings, DeviceError, Frame, Steps, VertexSource, ViewParams, WithMarkers,
+};
 
 use super::cost_model::RestMode;
 use super::pointing::Resolver;
@@ -20,10 +22,12 @@ const SLICE_MS: f64 = 120.0;
 /// would take longer in all.
 const MOST_SLICES: f64 = 3.0;
 
-/// The source of the picture at rest, without borrowing the whole stage; none if exploration mode cannot
+/// The source of the picture at rest and the markers beside it, without borrowing the whole stage; none if exploration mode cannot
 /// draw it any more.
 macro_rules! rest_source {
     ($stage:ident) => {{
+        let rest_budget = $stage.rest_budget();
+        let key = $stage.drawn.as_ref().and_then(|drawn| drawn.markers);
         let source: Option<&mut dyn VertexSource> = match $stage.rest_mode {
             RestMode::Refined | RestMode::Coarser => Some(&mut $stage.adaptive),
             RestMode::Explored => {
@@ -35,7 +39,8 @@ macro_rules! rest_source {
                 explored.map(|source| source as &mut dyn VertexSource)
             }
         };
-        source
+        let markers = $stage.markers.drawn(key, 1.0, rest_budget);
+        source.map(|source| WithMarkers::new(source, markers))
     }};
 }
 pub(super) use rest_source;
@@ -110,6 +115,9 @@ impl Stage {
             wireframe: params.look.wire > 0.0,
             ..AdaptiveSettings::default()
         });
+        let key = self.drawn.as_ref().and_then(|drawn| drawn.markers);
+        let budget = self.rest_budget();
+        self.count_markers(params, key, budget);
     }
 
     pub(super) fn steps(&self) -> Steps {
@@ -137,11 +145,11 @@ impl Stage {
         if identifies {
             return self.identify(&params);
         }
-        let Some(source) = rest_source!(self) else {
+        let Some(mut source) = rest_source!(self) else {
             self.phase = RestPhase::Waits;
             return Ok(());
         };
-        self.progressive.slice(&self.gpu, source)?;
+        self.progressive.slice(&self.gpu, &mut source)?;
         if self.progressive.progress().is_none() {
             self.phase = match self.rest_mode {
                 RestMode::Explored => RestPhase::Surveys,
@@ -158,10 +166,10 @@ impl Stage {
 
     /// Draws the ids of the picture at rest.
     pub(super) fn identify(&mut self, params: &ViewParams) -> Result<(), DeviceError> {
-        let Some(source) = rest_source!(self) else {
+        let Some(mut source) = rest_source!(self) else {
             return Ok(());
         };
-        self.progressive.identify(&self.gpu, source, params)?;
+        self.progressive.identify(&self.gpu, &mut source, params)?;
         self.resolver = match self.rest_mode {
             RestMode::Refined | RestMode::Coarser => {
                 Some(Resolver::Refined(self.adaptive.resolver()))

@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use eframe::egui;
 use neurotess::coloring::fractions;
-use neurotess::render::{DeviceError, VertexSource, ViewParams};
+use neurotess::render::{DeviceError, VertexSource, ViewParams, WithMarkers};
 
 use super::cost_model::RestMode;
 use super::rest::rest_source;
-use super::{PictureInputs, RestPhase, Stage};
+use super::{MarkersKey, PictureInputs, RestPhase, Stage};
 use crate::io::frames::FrameValues;
 use crate::model::document::Detail;
 use crate::model::state::{State, StaticFigures};
@@ -24,6 +24,7 @@ pub(super) struct StaticKey {
     detail: Detail,
     coverage: CoverageKey,
     instances: InstancesKey,
+    markers: Option<MarkersKey>,
 }
 
 impl StaticKey {
@@ -33,6 +34,7 @@ impl StaticKey {
             detail: inputs.detail,
             coverage: inputs.states.coverage(),
             instances: inputs.instances,
+            markers: inputs.markers,
         }
     }
 }
@@ -74,18 +76,18 @@ impl Stage {
             return Ok(());
         }
         let steps = self.steps();
-        let Some(source) = rest_source!(self) else {
+        let Some(mut source) = rest_source!(self) else {
             self.phase = RestPhase::Waits;
             return Ok(());
         };
         if self.progressive.static_progress().is_none() {
             let begun = self
                 .progressive
-                .begin_static(&self.gpu, source, &params, steps)?;
+                .begin_static(&self.gpu, &source, &params, steps)?;
             if !begun {
                 self.phase = RestPhase::Done;
             }
-        } else if self.progressive.static_slice(&self.gpu, source)? {
+        } else if self.progressive.static_slice(&self.gpu, &mut source)? {
             self.find_visible();
         }
         Ok(())
@@ -137,7 +139,7 @@ impl Stage {
         self.progressive.recolor(&self.gpu, values.as_deref())?;
         self.recolor_due = false;
         self.drawn = Some(inputs);
-        self.legend.clone_from(&self.content.legend);
+        self.legend = self.whole_legend();
         self.revalued = false;
         Ok(())
     }

@@ -76,6 +76,8 @@ impl Viewer {
         let state = &mut self.state;
         let settings = std::mem::take(&mut state.settings);
         let (adapter, aspect) = (state.adapter.clone(), state.aspect);
+        // What is being read belongs to circuits that are closed now.
+        self.worker.stop_markers();
         *state = State::new(settings);
         (state.adapter, state.aspect) = (adapter, aspect);
         state.settings.y_down = session.y_down;
@@ -83,6 +85,7 @@ impl Viewer {
         state.document.detail = session.detail;
         state.document.grid = session.grid;
         state.document.report = session.report.clone();
+        state.document.markers = session.markers.clone();
         state.playback.pace = session.playback;
         (state.view, state.fitted) = (session.view, None);
         state.key_views = session.key_view.clone();
@@ -115,6 +118,13 @@ impl Viewer {
             self.state.status = format!("{} is shown", report.display());
             for other in &found.reports[..found.reports.len() - 1] {
                 let why = "one report shows at a time: open it alone";
+                self.state.problem(other.display().to_string(), why);
+            }
+        }
+        if let [.., points] = &found.points[..] {
+            self.state.run(Command::OpenPoints(points.clone()));
+            for other in &found.points[..found.points.len() - 1] {
+                let why = "one table of points shows at a time: open it alone";
                 self.state.problem(other.display().to_string(), why);
             }
         }
@@ -230,7 +240,12 @@ impl Viewer {
         if !waiting.is_empty() {
             self.state.effects.push(Effect::Load(waiting));
         }
-        if loading.found.files.is_empty() && !loading.found.reports.is_empty() {
+        let found = &loading.found;
+        let beside = !found.reports.is_empty() || !found.points.is_empty();
+        if found.files.is_empty() && beside {
+            if self.state.document.neurons.is_empty() && !found.points.is_empty() {
+                self.state.status = "Points show beside cells: open these, too".into();
+            }
             return;
         }
         let read = loading.ids.iter().flatten().count();

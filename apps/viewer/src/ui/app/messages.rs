@@ -4,7 +4,9 @@ use super::Viewer;
 use neurotess::generate::Generated;
 
 use crate::io::worker::Message;
+use crate::model::command::Edit;
 use crate::model::document::{SomaEdit, SourceId};
+use crate::model::markers::MarkerSource;
 
 impl Viewer {
     pub(super) fn take(&mut self, message: Message) {
@@ -34,6 +36,7 @@ impl Viewer {
                 }
             },
             Message::Soma(id, edit, generated) => self.remeshed(id, edit, *generated),
+            Message::Markers(source, content) => self.state.set_markers(source, *content),
             Message::Files(files) => {
                 for (id, stale) in files {
                     self.state.sources.set_stale(id, stale);
@@ -59,6 +62,33 @@ impl Viewer {
         self.state.sources.set_soma(id, edit, generated);
         if let Some(why) = why {
             self.state.problem(name.unwrap_or_default(), why);
+        }
+    }
+
+    /// Requests synapses and points that are to be shown and were not read yet: one after the other.
+    pub(super) fn request_markers(&mut self) {
+        // Cells of circuits join the list when all files are read.
+        if self.worker.reads_markers() || self.loading.is_some() {
+            return;
+        }
+        let Some(source) = self.state.markers_due() else {
+            return;
+        };
+        let circuits = match &source {
+            MarkerSource::Synapses(key) => key.circuits.as_slice(),
+            MarkerSource::Points(_) => &[],
+        };
+        let shared = |&id| Some((id, self.state.circuits.shared(id)?));
+        let circuits = circuits.iter().filter_map(shared).collect();
+        self.worker.read_markers(source, circuits);
+    }
+
+    /// Stops reading synapses or points: they are not shown then.
+    pub(super) fn stop_markers(&mut self) {
+        match self.worker.stop_markers() {
+            Some(MarkerSource::Synapses(_)) => self.run(Edit::ShowSynapses(false).into()),
+            Some(MarkerSource::Points(_)) => self.run(Edit::SetPoints(None).into()),
+            None => {}
         }
     }
 

@@ -147,6 +147,7 @@ impl Viewer {
         }
         self.do_effects(&ctx);
         self.request_somata();
+        self.request_markers();
         self.note_settings();
         self.end_input(&ctx);
         if self.quits {
@@ -216,6 +217,7 @@ impl Viewer {
                     progress.cancel();
                     self.state.status = format!("Stopped {}", progress.what);
                 }
+                self.stop_markers();
             }
             Effect::Go(view) => self.motion.fly(&mut self.state, view),
             Effect::Quit => self.quits = true,

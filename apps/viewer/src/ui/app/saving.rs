@@ -132,10 +132,13 @@ impl Viewer {
     }
 
     fn still_scene(&self) -> StillScene {
+        let (content, markers) = self.stage.saved_content();
         StillScene {
             gpu: self.stage.gpu().clone(),
             shared: true,
-            content: self.stage.content().clone(),
+            content,
+            markers,
+            radius: self.state.document.markers.radius(),
             look: self.state.document.look.clone(),
             states: content::states(&self.state.document),
             spheres: self.state.spheres(),

@@ -154,7 +154,7 @@ fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
 fn rows<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
     egui::Grid::new(("keys", id))
         .num_columns(2)
-        .spacing([16.0, 3.0])
+        .spacing([16.0, 1.0])
         .show(ui, |ui| {
             for (keys, what) in rows {
                 ui.label(RichText::new(keys).monospace().size(11.5));

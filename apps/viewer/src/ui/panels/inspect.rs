@@ -5,13 +5,14 @@ use neurotess::morphology::{Measures, NeuriteKind};
 
 use super::cells::{count, kind_name};
 use super::tip::Tip;
-use super::{dimension_list, figures, grouped, heading, measured};
+use super::{dimension_list, figures, grouped, heading, markers, measured};
 use crate::model::command::{Command, Edit};
 use crate::model::sources::Source;
 use crate::model::state::{CellPart, State};
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     dimension_list::show(state, ui);
+    markers::picked(state, ui);
     match *state.document.neurons.selected() {
         [] => {
             ui.weak(

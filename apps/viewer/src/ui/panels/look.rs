@@ -1,12 +1,12 @@
 //! Colors, light, and which parts of cells are shown.
 
 use eframe::egui::{self, ComboBox, Ui};
-use neurotess::render::color::{ColorMap, Palette};
+use neurotess::render::color::Palette;
 
-use super::heading;
 use super::number::{field, slider};
-use super::own_colors;
 use super::tip::Tip;
+use super::{color_map, heading};
+use super::{markers, own_colors};
 use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
@@ -20,7 +20,10 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
         state.history.end_joining();
     }
     colors(state, &mut look, stage.legend().is_bar(), ui);
-    own_colors::show(&mut look, stage.content(), ui);
+    own_colors::show(&mut look, stage, ui);
+    // Otherwise the map is chosen above.
+    let mapped = maps_cells(&look, stage.legend().is_bar());
+    markers::show(state, (!mapped).then_some(&mut look), released, ui);
     heading(ui, "Shown");
     ui.horizontal_wrapped(|ui| {
         ui.selectable_value(&mut look.parts, VisibleParts::All, "All");
@@ -97,18 +100,10 @@ fn colors(state: &mut State, look: &mut Look, bar: bool, ui: &mut Ui) {
             ColorBy::Value => report(state, ui),
             _ => {}
         }
-        // Numbers of an attribute are on a scale if there are many.
-        let scaled = look.color_by == ColorBy::Attribute && bar;
-        if look.color_by.is_number() || scaled {
+        if maps_cells(look, bar) {
             range(state, look, ui);
             ui.label("color map");
-            ComboBox::from_id_salt("map")
-                .selected_text(look.color_map.name())
-                .show_ui(ui, |ui| {
-                    for map in ColorMap::ALL {
-                        ui.selectable_value(&mut look.color_map, map, map.name());
-                    }
-                });
+            color_map::show(look, ui);
             ui.end_row();
             ui.label("");
             ui.checkbox(&mut look.trim_map, "without its faint end")
@@ -155,6 +150,12 @@ fn colors(state: &mut State, look: &mut Look, bar: bool, ui: &mut Ui) {
         });
         ui.end_row();
     });
+}
+
+/// Whether cells have colors of a color map. `bar`: whether the legend is a scale of numbers.
+fn maps_cells(look: &Look, bar: bool) -> bool {
+    // Numbers of an attribute are on a scale if there are many.
+    look.color_by.is_number() || (look.color_by == ColorBy::Attribute && bar)
 }
 
 /// Attributes of the circuits' cells.

@@ -1,6 +1,7 @@
 //! Panels: plain functions of the state that request commands.
 
 mod cells;
+mod color_map;
 mod detail;
 mod dialogs;
 mod dimension_list;
@@ -8,6 +9,7 @@ mod dimensions;
 mod empty;
 mod inspect;
 mod look;
+mod markers;
 mod marks;
 mod measuring;
 mod menu;
@@ -42,8 +44,8 @@ pub(crate) struct Screen<'a> {
     pub(crate) motion: &'a mut Motion,
     /// The file dialog, while it is open.
     pub(crate) files: &'a mut Option<FilePanel>,
-    /// Progress of reading and of saving, while they run.
-    pub(crate) tasks: [Option<Progress>; 2],
+    /// Progress of reading, of saving, and of reading synapses or points, while they run.
+    pub(crate) tasks: [Option<Progress>; 3],
     /// The error, if the picture could not be drawn.
     pub(crate) failed: Option<DeviceError>,
 }
@@ -52,6 +54,7 @@ pub(crate) struct Screen<'a> {
 pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let ctx = ui.ctx().clone();
     let before = screen.state.hovered.take();
+    let marker_before = screen.state.hovered_marker.take();
     screen.state.touched = None;
     screen.state.pointed_dimension = None;
     Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
@@ -81,7 +84,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     }
     CentralPanel::no_frame().show(ui, |ui| {
         if any {
-            viewport::show(screen, before, ui);
+            viewport::show(screen, (before, marker_before), ui);
         } else {
             let reads = screen.tasks[0].is_some();
             empty::show(screen.state, reads, ui);
@@ -187,13 +190,13 @@ fn heading(ui: &mut egui::Ui, text: &str) {
 }
 
 /// Rows of a name and a value.
-fn figures(ui: &mut egui::Ui, id: &str, rows: &[(&str, String)]) {
+fn figures(ui: &mut egui::Ui, id: &str, rows: &[(impl AsRef<str>, String)]) {
     egui::Grid::new(id)
         .num_columns(2)
         .spacing([14.0, 3.0])
         .show(ui, |ui| {
             for (name, value) in rows {
-                ui.weak(*name);
+                ui.weak(name.as_ref());
                 ui.label(value);
                 ui.end_row();
             }

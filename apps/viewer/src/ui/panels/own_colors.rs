@@ -5,13 +5,13 @@ use neurotess::coloring::ColoredThing;
 
 use super::tip::Tip;
 use crate::model::document::Look;
-use crate::scene::content::SceneContent;
+use crate::scene::stage::Stage;
 
 /// Greatest height of the list; longer ones are scrolled.
 const MOST_HEIGHT: f32 = 190.0;
 
-pub(super) fn show(look: &mut Look, content: &SceneContent, ui: &mut Ui) {
-    let things = &content.coloring.things;
+pub(super) fn show(look: &mut Look, stage: &Stage, ui: &mut Ui) {
+    let things = stage.colored_things();
     if things.is_empty() {
         return;
     }
@@ -26,7 +26,7 @@ pub(super) fn show(look: &mut Look, content: &SceneContent, ui: &mut Ui) {
                 ui.push_id(index, |ui| row(look, thing, ui));
             }
         });
-    if let Some(closest) = &content.closest {
+    if let Some(closest) = stage.closest_colors() {
         let why = "Simulated for people who lack one kind of cones (Machado and others, 2009)";
         let note = match closest.alike {
             0 => RichText::new("These colors differ for the color-blind, too").weak(),

@@ -10,7 +10,7 @@ use crate::model::state::{Lowered, State};
 
 pub(super) fn show(
     state: &mut State,
-    tasks: &[Option<Progress>; 2],
+    tasks: &[Option<Progress>; 3],
     drawing: Option<f32>,
     ui: &mut Ui,
 ) {
@@ -69,6 +69,9 @@ fn problems(state: &mut State, ui: &mut Ui) {
 const LOWERED: &str = "Full detail would block the window here. Hide or isolate neurons, or move closer, to get it back. \
     Saved pictures always have full detail.";
 
+const THINNED: &str = "More synapses or points are in view than pixels, or a frame, can show: they are left out \
+    evenly. Move closer to see all.";
+
 /// Says where quality is reduced, and why.
 fn lowered(state: &State, ui: &mut Ui) {
     let warn = ui.visuals().warn_fg_color;
@@ -93,6 +96,13 @@ fn lowered(state: &State, ui: &mut Ui) {
             Lowered::Error(times) => format!("reduced: {times:.0} times as coarse"),
         };
         ui.colored_label(warn, text).on_hover_text(LOWERED);
+    }
+    if let Some([drawn, in_view, _]) = state.counters.markers
+        && drawn < in_view
+    {
+        let [drawn, in_view] = [drawn, in_view].map(|n| grouped(n as u64));
+        ui.colored_label(warn, format!("{drawn} of {in_view} markers drawn"))
+            .on_hover_text(THINNED);
     }
     if state.document.look.cut.is_some() {
         ui.colored_label(warn, "cutting plane")

@@ -9,7 +9,8 @@ use neurotess::render::color::is_dark;
 use neurotess::render::overlay::{Legend, nice_length};
 
 use super::{Screen, marks, measuring, plate, tip};
-use crate::model::command::{Command, Edit};
+use crate::model::command::{Command, Edit, Tab};
+use crate::model::markers::MarkerRef;
 use crate::model::state::{Picked, State};
 
 /// Angle (radians) for each point that the mouse is dragged.
@@ -19,8 +20,11 @@ const WHEEL: f64 = 0.0022;
 /// Speed of flying by keys: multiples of the distance to the target per second.
 const SPEED: f64 = 0.7;
 
-/// Shows the picture. `before`: the part under the cursor in the frame before.
-pub(super) fn show(screen: &mut Screen<'_>, before: Option<Picked>, ui: &mut Ui) {
+/// What the cursor was at in the frame before: a part of a neuron, or a marker.
+pub(super) type Before = (Option<Picked>, Option<MarkerRef>);
+
+/// Shows the picture.
+pub(super) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
     let rect = ui.available_rect_before_wrap();
     let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
     tip::set_picture(ui.ctx(), rect);
@@ -160,15 +164,20 @@ fn fly(screen: &mut Screen<'_>, upwards: DVec3, ui: &Ui) {
 }
 
 /// Finds the part under the cursor, and handles clicks.
-fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, points: f32) {
+fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f32) {
     let at = response
         .hover_pos()
         .map(|at| (at - response.rect.min) * points);
     let seen = at.and_then(|at| screen.stage.hit_at(at.x, at.y));
     // Lists and sliders set the part themselves; elsewhere the cursor is over the picture.
     if at.is_some() {
-        screen.state.hovered = match screen.stage.can_pick() {
-            true => seen.map(|s| s.picked),
+        let now = || {
+            let picked = seen.and_then(|s| s.picked());
+            (picked, seen.and_then(|s| s.marker()))
+        };
+        let state = &mut *screen.state;
+        (state.hovered, state.hovered_marker) = match screen.stage.can_pick() {
+            true => now(),
             false => before,
         };
     }
@@ -189,7 +198,26 @@ fn point(screen: &mut Screen<'_>, before: Option<Picked>, response: &Response, p
                 .push(Command::Go(view.focused((seen.place, size))));
         }
     } else if response.clicked() {
-        click(screen.state, seen.map(|s| s.picked), response);
+        match seen.and_then(|s| s.marker()) {
+            Some(marker) => click_marker(screen.state, marker),
+            None => click(screen.state, seen.and_then(|s| s.picked()), response),
+        }
+    }
+}
+
+/// Tells what a synapse or point is. The selection stays, since it decides which synapses show.
+fn click_marker(state: &mut State, marker: MarkerRef) {
+    (state.picked, state.picked_marker) = (None, Some(marker));
+    if let Some(facts) = state.marker_facts(marker) {
+        let rows = facts
+            .rows
+            .iter()
+            .map(|(name, value)| format!("{name} {value}"));
+        let rows: Vec<String> = rows.collect();
+        state.status = format!("{}: {}", facts.title, rows.join(", "));
+    }
+    if state.tab != Tab::Inspect {
+        state.requests.push(Command::Show(Tab::Inspect));
     }
 }
 
@@ -197,6 +225,7 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
     let adds = response
         .ctx
         .input(|i| i.modifiers.shift || i.modifiers.command);
+    state.picked_marker = None;
     match picked {
         Some(picked) => {
             state.picked = Some(picked);

@@ -333,13 +333,7 @@ impl ProgressiveRenderer {
         samples: u32,
         params: &ViewParams,
     ) -> Result<usize, DeviceError> {
-        let cut = params.look.clip.is_some();
-        let key = PipelineKey {
-            source: source.key(),
-            samples,
-            cut,
-            valued: self.table.values.instances() > 0,
-        };
+        let key = PipelineKey::new(source.key(), samples, &self.table, &params.look);
         let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {

@@ -97,7 +97,7 @@ pub(crate) struct Part<'a> {
 impl Collector {
     /// None if the source has no color keys to look up.
     pub(crate) fn new(gpu: &Gpu, source: &dyn VertexSource, wanted: &Wanted<'_>) -> Option<Self> {
-        let key = wanted.key;
+        let key = wanted.key.without_edges();
         let keyed = KeyedShader::new(gpu, source, key, wanted.shade_layout)?;
         let device = &gpu.device;
         let layout = group_layout(device, "collect", &entries(key.samples > 1));
@@ -132,7 +132,7 @@ impl Collector {
 
     /// Whether its pipelines are those of this key.
     pub(crate) fn fits(&self, key: PipelineKey) -> bool {
-        self.key == key
+        self.key == key.without_edges()
     }
 
     /// Draws a tile whose depths and occlusion are there, and collects `kept` pixels of it. `groups`:

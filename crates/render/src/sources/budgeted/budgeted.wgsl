@@ -274,6 +274,19 @@ fn bin_of(worth: f32) -> u32 {
     return u32(clamp(bin, 1.0, f32(BINS - 1u)));
 }
 
+// The least worth of a bin.
+fn worth_of(bin: u32) -> f32 {
+    return exp2(f32(bin) / BINS_OF_OCTAVE + LOWEST_OCTAVE);
+}
+
+// A random factor for each instance, the same in every frame, from 1 / MOST_CHANCE to MOST_CHANCE:
+// it keeps equal chunks of different instances from appearing and vanishing all at once.
+const MOST_CHANCE: f32 = 1.1892071;
+
+fn chance_factor(instance: u32) -> f32 {
+    return exp2(0.5 * chance(instance) - 0.25);
+}
+
 // A random number from 0 to 1 for each instance, the same in every frame.
 fn chance(instance: u32) -> f32 {
     var h = instance * 747796405u + 277803737u;
@@ -308,7 +321,8 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     let depth = dot(eye.forward, center);
     if ((chunk.flags & CHUNK_SOMA) != 0u) {
         let near = max(depth - reach, eye.near);
-        return soma_offers(chunk, chunk.radius * place.scale / (eye.slope * max(depth, near)));
+        let radius = chunk.radius * place.scale / (eye.slope * max(depth, near));
+        return soma_offers(chunk, radius, chance_factor(instance));
     }
     var seen = Seen(depth - reach, depth, 1.0);
     if (!(depth > 4.0 * reach) || !enclosed(center, reach)) {
@@ -346,9 +360,8 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     let second = segments(chunk, fine) << halvings;
     let third = second * strips + caps;
     // Worth goes by projected size. A chunk is worth as much as the largest one behind it, so that
-    // no chunk is drawn without those that lead to it. The random factor keeps equal chunks of
-    // different instances from appearing and vanishing all at once.
-    let worth = 2.0 * chunk.carried / (far_pixel * sqrt(far_pixel)) * exp2(0.5 * chance(instance) - 0.25);
+    // no chunk is drawn without those that lead to it.
+    let worth = 2.0 * chunk.carried / (far_pixel * sqrt(far_pixel)) * chance_factor(instance);
     var all = no_offers();
     all.bins.x = max(bin_of(worth), 1u);
     all.quads.x = first;
@@ -368,11 +381,15 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     return all;
 }
 
+// Worth of a soma of a pixel.
+const SOMA_WORTH: f32 = 256.0;
+
 // Somata are worth more than neurites of their size: they show where the neurons of a circuit are.
-fn soma_offers(chunk: Chunk, radius: f32) -> Offers {
+// One below a pixel is worth its radius: where there are too many, the nearest are drawn.
+fn soma_offers(chunk: Chunk, radius: f32, factor: f32) -> Offers {
     let area = 3.1416 * radius * radius;
     var all = no_offers();
-    all.bins.x = bin_of(256.0 * max(area, 1.0));
+    all.bins.x = max(bin_of(SOMA_WORTH * factor * select(sqrt(area), area, area > 1.0)), 1u);
     all.quads.x = 1u;
     all.lods.x = packed_lod(WHAT_DOT, 0u, 0u, 1u, FULL_WIDTH);
     if (radius <= 1.0) {

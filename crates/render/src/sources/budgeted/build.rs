@@ -48,6 +48,7 @@ impl Proxy {
             }
         }
         carriers.carry(&mut proxy.chunks);
+        proxy.sort();
         proxy.set_color_keys(color_keys);
         (proxy.center, proxy.reach) = sphere_around(&proxy.chunks);
         proxy

@@ -1,5 +1,5 @@
 //! What the shaders of exploration mode share with the host: constants, and structs that are twins
-//! of those in budgeted.wgsl and select.wgsl.
+//! of those in budgeted.wgsl and selection.wgsl.
 
 use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::Constants;
@@ -13,9 +13,9 @@ pub(crate) const CLUSTER: usize = 64;
 /// Size of the workgroups that compute sums.
 pub(crate) const WIDE: usize = 256;
 /// Bins of the histogram of quads by worth.
-pub(crate) const BINS: usize = 1024;
+pub(crate) const BINS: usize = 4096;
 /// Bins of the histogram per octave of worth.
-pub(crate) const BINS_OF_OCTAVE: f32 = 24.0;
+pub(crate) const BINS_OF_OCTAVE: f32 = 96.0;
 /// Binary logarithm of the worth (square pixels per quad) at which the bins begin.
 pub(crate) const LOWEST_OCTAVE: f32 = -20.0;
 /// Quads of a full block of the draw.
@@ -105,7 +105,7 @@ pub(crate) struct Chunk {
     pub(crate) end: u32,
 }
 
-/// A template: its bounding sphere and its chunks.
+/// A template: its bounding sphere and its chunks, somata first, then by what they carry.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct Shape {
@@ -113,7 +113,9 @@ pub(crate) struct Shape {
     pub(crate) reach: f32,
     pub(crate) first_chunk: u32,
     pub(crate) chunks: u32,
-    pub(crate) pad: [u32; 2],
+    /// Number of chunks that are somata, and the greatest radius (µm) of them.
+    pub(crate) somata: u32,
+    pub(crate) soma_radius: f32,
 }
 
 /// An instance with its placement. A point p, relative to the template's origin, is in the world at
@@ -155,8 +157,8 @@ pub(crate) struct Eye {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Sums {
-    /// Clusters of chunks of instances that may show.
-    pub(crate) clusters: u32,
+    /// Chunks that are measured.
+    pub(crate) chunks: u32,
     /// Those of which anything is drawn.
     pub(crate) visible: u32,
     /// Least bin of the histogram that is drawn.
@@ -168,7 +170,23 @@ pub(crate) struct Sums {
     pub(crate) wanted: u32,
     /// Instances that may show.
     pub(crate) instances: u32,
-    pub(crate) pad: u32,
+    /// Least bin that must be measured in the next frame, or the next round of this one.
+    pub(crate) floor: u32,
+    /// Times that the selection was repeated with a lower floor.
+    pub(crate) rounds: u32,
+    /// 1 until the selection is complete.
+    pub(crate) open: u32,
+    pub(crate) pad: [u32; 2],
+}
+
+/// What is selected from an instance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Extent {
+    /// Index of its first chunk among all that are measured.
+    pub(crate) first: u32,
+    /// Number of its chunks that may be worth the floor.
+    pub(crate) chunks: u32,
 }
 
 /// A chunk or soma that is drawn.

@@ -141,7 +141,8 @@ impl View {
         if chunk.flags & CHUNK_SOMA != 0 {
             let radius = f64::from(chunk.radius) * scale / pixel;
             let area = std::f64::consts::PI * radius * radius;
-            steps.add(256.0 * area.max(1.0), 1);
+            let worth = if area > 1.0 { area } else { area.sqrt() };
+            steps.add(256.0 * worth * (0.5 * chance - 0.25).exp2(), 1);
             let own = chunk.counts[0];
             let sphere = if radius > 3.0 { DOME_QUADS } else { DISC_QUADS };
             if radius > 1.0 {

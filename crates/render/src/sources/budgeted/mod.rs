@@ -51,7 +51,7 @@ use crate::scene::Instance;
 use crate::sources::{SourceKey, VertexSource};
 use crate::view::frame::{Frame, Tile};
 use crate::view::frustum::shows;
-use layout::{CELL, CLUSTER, Eye, GpuInstance};
+use layout::{CELL, Eye, GpuInstance};
 use passes::{Groups, Passes, Resident, Size, Work, vertex_shader};
 use residents::Known;
 
@@ -171,7 +171,6 @@ impl Exploration {
         for instance in &self.instances {
             let chunks = u64::from(self.known[instance.template.0 as usize].chunks);
             size.chunks += chunks;
-            size.clusters += chunks.div_ceil(CLUSTER as u64);
         }
         size
     }

@@ -5,29 +5,43 @@ use neurotess_refine::gpu;
 use neurotess_refine::wgsl::{Shader, ShaderParts};
 use wgpu::BufferUsages;
 
-use super::layout::{BINS, BLOCK, CLUSTER, Eye, Sums, VisibleChunk, WIDE, constants};
+use super::layout::{
+    BINS, BINS_OF_OCTAVE, BLOCK, CLUSTER, Extent, Eye, LOWEST_OCTAVE, ROW, Sums, VisibleChunk,
+    WIDE, constants,
+};
 use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::growable::GrowableBuffer;
 use crate::gpu::shader;
 
-/// Twin of the struct in `select.wgsl`.
+/// Twin of the struct in `selection.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct VisibleCluster {
     pub(crate) cluster: u32,
+    pub(crate) first_instance: u32,
+    pub(crate) last_instance: u32,
     pub(crate) quads: u32,
     pub(crate) visible_chunks: u32,
 }
 
-/// Twin of the struct in `select.wgsl`.
+/// Twin of the struct in `selection.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct Measured {
+    pub(crate) instance: u32,
+    pub(crate) best: u32,
+}
+
+/// Twin of the struct in `selection.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct Arguments {
     pub(crate) clusters: [u32; 3],
     pub(crate) visible: [u32; 3],
     pub(crate) draws: [u32; 10],
+    pub(crate) again: [u32; 3],
 }
 
 /// What the passes read: templates and instances.
@@ -63,11 +77,11 @@ pub(crate) fn drawing_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
 pub(crate) const STEPS: [Step; 7] = [
     Step {
         entry: "cull_instances",
-        bindings: &[0, 2, 3, 4],
+        bindings: &[0, 1, 2, 3, 4],
     },
     Step {
-        entry: "sum_clusters",
-        bindings: &[0, 4, 6],
+        entry: "sum_chunks",
+        bindings: &[0, 4, 6, 7],
     },
     Step {
         entry: "measure",
@@ -91,6 +105,15 @@ pub(crate) const STEPS: [Step; 7] = [
     },
 ];
 
+/// The first steps, which are repeated until the least worth is known; and how often: the floor is
+/// a guess, falls three times, and then is 0.
+const MEASURING: usize = 4;
+const ROUNDS: usize = 5;
+/// The first guess (binary logarithm) for scenes of at least so many chunks: the worth of a soma of three pixels. In
+/// smaller ones everything is measured.
+const MANY: u64 = 1 << 20;
+const FIRST_FLOOR: f32 = 9.6;
+
 /// Pipelines of all passes: made once.
 #[derive(Debug)]
 pub(crate) struct Passes {
@@ -104,7 +127,6 @@ pub(crate) struct Passes {
 pub(crate) struct Size {
     pub(crate) instances: usize,
     pub(crate) chunks: u64,
-    pub(crate) clusters: u64,
     /// Most quads.
     pub(crate) budget: u32,
 }
@@ -114,10 +136,10 @@ pub(crate) struct Size {
 pub(crate) struct Work {
     size: Size,
     pub(crate) eye: wgpu::Buffer,
-    /// Sums, then where the clusters of each instance begin.
+    /// Sums, then what is selected from each instance.
     pub(crate) book: wgpu::Buffer,
     arguments: wgpu::Buffer,
-    best: wgpu::Buffer,
+    measured: wgpu::Buffer,
     histogram: wgpu::Buffer,
     visible: wgpu::Buffer,
     pub(crate) visible_chunks: wgpu::Buffer,
@@ -175,7 +197,7 @@ impl Passes {
             4 => &work.book,
             5 => &resident.packed.buffer,
             6 => &work.arguments,
-            7 => &work.best,
+            7 => &work.measured,
             8 => &work.histogram,
             9 => &work.visible,
             10 => &work.visible_chunks,
@@ -231,16 +253,27 @@ impl Passes {
             timestamp_writes: timestamps,
         });
         let Some(groups) = groups else { return };
-        let of_instances = (instances.div_ceil(WIDE) as u32).max(1);
-        for ((step, pipeline), group) in STEPS.iter().zip(&self.pipelines).zip(&groups.passes) {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            match step.entry {
-                "cull_instances" => pass.dispatch_workgroups(of_instances, 1, 1),
+        let mut dispatch = |step: usize, round: usize| {
+            pass.set_pipeline(&self.pipelines[step]);
+            pass.set_bind_group(0, &groups.passes[step], &[]);
+            match STEPS[step].entry {
+                "cull_instances" if round == 0 => {
+                    let all = (instances.div_ceil(WIDE) as u32).max(1);
+                    pass.dispatch_workgroups(all.min(ROW as u32), all.div_ceil(ROW as u32), 1);
+                }
+                "cull_instances" => pass.dispatch_workgroups_indirect(&work.arguments, 64),
                 "measure" => pass.dispatch_workgroups_indirect(&work.arguments, 0),
                 "count" | "write" => pass.dispatch_workgroups_indirect(&work.arguments, 12),
                 _ => pass.dispatch_workgroups(1, 1, 1),
             }
+        };
+        for round in 0..ROUNDS {
+            for step in 0..MEASURING {
+                dispatch(step, round);
+            }
+        }
+        for step in MEASURING..STEPS.len() {
+            dispatch(step, 0);
         }
     }
 
@@ -273,23 +306,29 @@ impl Work {
             }))
         };
         // Every visible cluster draws at least one quad, and so does every visible chunk.
-        let most_visible = size.clusters.min(quads);
-        let book = size_of::<Sums>() as u64 + 4 * (size.instances as u64).max(1);
+        let clusters = size.chunks.div_ceil(CLUSTER as u64);
+        let most_visible = clusters.min(quads);
+        let extents = size_of::<Extent>() as u64 * (size.instances as u64).max(1);
+        let book = size_of::<Sums>() as u64 + extents;
         let most_visible_chunks = size.chunks.min(quads);
         let work = Self {
             size,
             eye: make("eye", size_of::<Eye>() as u64, BufferUsages::UNIFORM)?,
-            book: make("starts of instances", book, stored)?,
+            book: make("extents of instances", book, stored)?,
             arguments: make(
                 "arguments",
                 size_of::<Arguments>() as u64,
                 stored | BufferUsages::INDIRECT,
             )?,
-            best: make("clusters of chunks", 4 * size.clusters, stored)?,
+            measured: make(
+                "clusters of chunks",
+                size_of::<Measured>() as u64 * clusters,
+                stored,
+            )?,
             histogram: make("histogram", 4 * BINS as u64, stored)?,
             visible: make(
                 "visible clusters",
-                size_of::<VisibleCluster>() as u64 * most_visible,
+                size_of::<VisibleCluster>() as u64 * most_visible.max(1),
                 stored,
             )?,
             visible_chunks: make(
@@ -300,10 +339,21 @@ impl Work {
             quads: make("quads", 4 * (quads + 1), stored)?,
             indices: make("indices", 4 * INDICES as u64, BufferUsages::INDEX)?,
         };
+        if size.chunks >= MANY {
+            let bin = (FIRST_FLOOR - LOWEST_OCTAVE) * BINS_OF_OCTAVE;
+            work.set_floor(gpu, bin as u32);
+        }
         gpu.queue
             .write_buffer(&work.indices, 0, bytemuck::cast_slice(&indices()));
         gpu.check()?;
         Ok(work)
+    }
+
+    /// Sets the bin from which on the next frame measures chunks at first; 0: all in view.
+    pub(crate) fn set_floor(&self, gpu: &Gpu, bin: u32) {
+        let at = std::mem::offset_of!(Sums, floor) as u64;
+        gpu.queue
+            .write_buffer(&self.book, at, bytemuck::bytes_of(&bin));
     }
 
     /// Whether a scene of this size fits into the buffers.
@@ -311,19 +361,15 @@ impl Work {
         let Size {
             instances,
             chunks,
-            clusters,
             budget,
         } = self.size;
-        instances >= size.instances
-            && chunks >= size.chunks
-            && clusters >= size.clusters
-            && budget >= size.budget
+        instances >= size.instances && chunks >= size.chunks && budget >= size.budget
     }
 
     pub(crate) fn bytes(&self) -> Vec<(&'static str, u64)> {
         vec![
-            ("starts", self.book.size()),
-            ("clusters", self.best.size() + self.visible.size()),
+            ("extents", self.book.size()),
+            ("clusters", self.measured.size() + self.visible.size()),
             ("visible_chunks", self.visible_chunks.size()),
             ("quads", self.quads.size()),
             ("histogram", self.histogram.size() + self.arguments.size()),
@@ -370,4 +416,4 @@ fn binding(binding: u32) -> wgpu::BindGroupLayoutEntry {
     }
 }
 
-const _: () = assert!(CLUSTER == 64 && size_of::<VisibleCluster>() == 12);
+const _: () = assert!(CLUSTER == 64 && size_of::<VisibleCluster>() == 20);

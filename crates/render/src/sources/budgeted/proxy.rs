@@ -8,7 +8,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::layout::{CHUNK_ONE_COLOR_KEY, Chunk};
+use super::layout::{CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk};
 use crate::view::frustum::BoundingSphere;
 
 /// A template for exploration mode, computed on the host, ready to be uploaded.
@@ -66,6 +66,26 @@ impl Proxy {
     pub fn bytes(&self) -> u64 {
         (size_of_val(&*self.chunks) + size_of_val(&*self.packed) + size_of_val(&*self.color_keys))
             as u64
+    }
+
+    /// The chunks that are somata.
+    pub(super) fn somata(&self) -> &[Chunk] {
+        let neurites = |chunk: &Chunk| chunk.flags & CHUNK_SOMA == 0;
+        let somata = self.chunks.iter().position(neurites);
+        &self.chunks[..somata.unwrap_or(self.chunks.len())]
+    }
+
+    /// Sorts chunks: somata, then those that carry most. So the first ones of any instance are
+    /// those that are worth most, wherever it is.
+    pub(super) fn sort(&mut self) {
+        let colors = std::mem::take(&mut self.colors);
+        let mut all: Vec<(Chunk, Vec<u32>)> = self.chunks.drain(..).zip(colors).collect();
+        let key = |chunk: &Chunk| (chunk.flags & CHUNK_SOMA == 0, -chunk.carried);
+        all.sort_by(|(a, _), (b, _)| {
+            let ((a, less), (b, more)) = (key(a), key(b));
+            a.cmp(&b).then(less.total_cmp(&more))
+        });
+        (self.chunks, self.colors) = all.into_iter().unzip();
     }
 
     /// Adds a chunk with the tracing points that color it.

@@ -77,7 +77,8 @@ impl Exploration {
                 reach: known.reach,
                 first_chunk: known.first_chunk,
                 chunks: known.chunks,
-                ..Shape::default()
+                somata: proxy.somata().len() as u32,
+                soma_radius: proxy.somata().iter().map(|c| c.radius).fold(0.0, f32::max),
             });
             chunks.extend(known.placed(proxy));
             packed.extend(&proxy.packed);

@@ -1,149 +1,32 @@
-// Selects what exploration mode draws, and how finely, within a budget. Seven passes, and nothing
-// is read back:
+// Selects what exploration mode draws, and how finely, within a budget. Nothing is read back. Passes:
 //
-// cull_instances  for each instance that may show, its number of clusters of 64 chunks
-// sum_clusters    where the clusters of each instance begin
-// measure         for each chunk, the steps that it requests, summed into a histogram of quads by
-// worth limit           the least worth that is within the budget, and the clusters that have
-// anything above it count           the quads and visible chunks of each of those clusters
-// sum_visible     where those of each cluster begin; arguments of the draws write           the
-// list of quads, in the order of instances and chunks, so that equal frames are
+// cull_instances  for each instance that may show, how many of its chunks may be worth the floor
+// sum_chunks      lists these chunks, in clusters of 64
+// measure         for each of these chunks, the steps that it requests, summed into a histogram of
+//                 quads by worth
+// limit           the least worth that is within the budget, and the clusters that have anything
+//                 above it
+// count           the quads and visible chunks of each of those clusters
+// sum_visible     where those of each cluster begin; arguments of the draws
+// write           the list of quads, in the order of instances and chunks, so that equal frames are
 //                 drawn equally
+//
+// The floor is a guess at the least worth, somewhat below that of the frame before. If the budget
+// is not exceeded above it, the first four passes are repeated with lower floors, the last of them
+// 0: so what is drawn depends on the camera alone, and only what it costs on the guess. Chunks of a
+// template are sorted by their worth at equal distance, so an instance's share of the work is a
+// search in that list.
 //
 // Called by passes.rs.
 
-#import budgeted.wgsl
+#import candidates.wgsl
 
-struct Shape {
-    center: vec3<f32>,
-    reach: f32,
-    first_chunk: u32,
-    chunks: u32,
-    pad: vec2<u32>,
-}
-
-struct Sums {
-    clusters: u32,
-    visible: u32,
-    threshold: u32,
-    quads: u32,
-    visible_chunks: u32,
-    wanted: u32,
-    instances: u32,
-    pad: u32,
-}
-
-struct VisibleCluster {
-    cluster: u32,
-    // Counts; after sum_visible, indices of the first.
-    quads: u32,
-    visible_chunks: u32,
-}
-
-struct Arguments {
-    clusters: array<u32, 3>,
-    visible: array<u32, 3>,
-    // Two indexed draws: full blocks of quads, and the rest.
-    draws: array<u32, 10>,
-}
-
-struct Book {
-    sums: Sums,
-    // By instance: its number of clusters; after sum_clusters, the index of its first.
-    starts: array<u32>,
-}
-
-@group(0) @binding(2) var<storage, read> shapes: array<Shape>;
-@group(0) @binding(4) var<storage, read_write> book: Book;
-@group(0) @binding(6) var<storage, read_write> arguments: Arguments;
-// By cluster: the greatest bin of its chunks.
-@group(0) @binding(7) var<storage, read_write> best: array<u32>;
-// By bin: number of quads.
-@group(0) @binding(8) var<storage, read_write> histogram: array<atomic<u32>>;
-@group(0) @binding(9) var<storage, read_write> visible: array<VisibleCluster>;
-@group(0) @binding(10) var<storage, read_write> visible_chunks: array<VisibleChunk>;
-// Number of quads, then the index of each quad's visible chunk.
-@group(0) @binding(11) var<storage, read_write> quads: array<u32>;
-
-@compute @workgroup_size(WIDE)
-fn cull_instances(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let instance = (group.y * ROW + group.x) * WIDE + lane;
-    if (instance >= eye.instances) {
-        return;
+// The last instance that a cluster has chunks of, or a later one.
+fn last_instance(cluster: u32) -> u32 {
+    if ((cluster + 1u) * CLUSTER < book.sums.chunks) {
+        return measured[cluster + 1u].instance;
     }
-    let place = gpu_instances[instance];
-    let shape = shapes[place.shape];
-    var count = 0u;
-    if ((place.flags & HIDDEN) == 0u && shape.chunks > 0u
-        && in_sight(relative(place, shape.center), shape.reach * place.scale)) {
-        count = (shape.chunks + CLUSTER - 1u) / CLUSTER;
-    }
-    book.starts[instance] = count;
-}
-
-var<workgroup> parts: array<u32, WIDE>;
-
-// Sum of the values of all lanes before this one.
-fn sum_before(lane: u32, value: u32) -> u32 {
-    parts[lane] = value;
-    workgroupBarrier();
-    for (var stride = 1u; stride < WIDE; stride *= 2u) {
-        var before = 0u;
-        if (lane >= stride) {
-            before = parts[lane - stride];
-        }
-        workgroupBarrier();
-        parts[lane] += before;
-        workgroupBarrier();
-    }
-    return parts[lane] - value;
-}
-
-fn dispatch_of(groups: u32) -> array<u32, 3> {
-    let rows = (groups + ROW - 1u) / ROW;
-    return array<u32, 3>(min(groups, ROW), rows, min(groups, 1u));
-}
-
-@compute @workgroup_size(WIDE)
-fn sum_clusters(@builtin(local_invocation_index) lane: u32) {
-    let share = (eye.instances + WIDE - 1u) / WIDE;
-    let first = min(lane * share, eye.instances);
-    let end = min(first + share, eye.instances);
-    var sum = 0u;
-    for (var i = first; i < end; i += 1u) {
-        sum += book.starts[i];
-    }
-    var at = sum_before(lane, sum);
-    let total = parts[WIDE - 1u];
-    var seen = 0u;
-    for (var i = first; i < end; i += 1u) {
-        let count = book.starts[i];
-        book.starts[i] = at;
-        at += count;
-        seen += u32(count > 0u);
-    }
-    workgroupBarrier();
-    let before = sum_before(lane, seen);
-    if (lane == 0u) {
-        book.sums.clusters = total;
-        book.sums.instances = parts[WIDE - 1u];
-        arguments.clusters = dispatch_of(total);
-    }
-}
-
-// The instance that a cluster belongs to: the last that begins at or before it.
-fn owner_of(cluster: u32) -> u32 {
-    var low = 0u;
-    var high = eye.instances;
-    while (high - low > 1u) {
-        let middle = (low + high) / 2u;
-        if (book.starts[middle] <= cluster) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
+    return eye.instances - 1u;
 }
 
 // The chunk of a lane, and the steps that it requests.
@@ -153,16 +36,31 @@ struct LodRequest {
     offers: Offers,
 }
 
-fn lod_requests(cluster: u32, lane: u32) -> LodRequest {
-    let instance = owner_of(cluster);
-    let place = gpu_instances[instance];
-    let shape = shapes[place.shape];
-    let index = (cluster - book.starts[instance]) * CLUSTER + lane;
-    if (index >= shape.chunks) {
-        return LodRequest(instance, 0u, no_offers());
+fn no_request() -> LodRequest {
+    return LodRequest(0u, 0u, no_offers());
+}
+
+// `first` and `last`: between them is the chunk's instance.
+fn lod_request(cluster: u32, lane: u32, first: u32, last: u32) -> LodRequest {
+    let at = cluster * CLUSTER + lane;
+    if (at >= book.sums.chunks) {
+        return no_request();
     }
-    let chunk = shape.first_chunk + index;
-    return LodRequest(instance, chunk, offers(instance, place, chunk));
+    // The last instance that begins at or before it. Those without chunks begin where the next one
+    // does.
+    var low = first;
+    var high = last + 1u;
+    while (high - low > 1u) {
+        let middle = (low + high) / 2u;
+        if (book.extents[middle].first <= at) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let place = gpu_instances[low];
+    let chunk = shapes[place.shape].first_chunk + at - book.extents[low].first;
+    return LodRequest(low, chunk, offers(low, place, chunk));
 }
 
 var<workgroup> greatest: atomic<u32>;
@@ -170,9 +68,10 @@ var<workgroup> greatest: atomic<u32>;
 @compute @workgroup_size(CLUSTER)
 fn measure(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let cluster = group.y * ROW + group.x;
-    let there = cluster < book.sums.clusters;
+    let there = cluster * CLUSTER < book.sums.chunks;
     if (there) {
-        let offers = lod_requests(cluster, lane).offers;
+        let first = measured[cluster].instance;
+        let offers = lod_request(cluster, lane, first, last_instance(cluster)).offers;
         for (var k = 0u; k < 4u; k += 1u) {
             if (offers.quads[k] > 0u) {
                 atomicAdd(&histogram[offers.bins[k]], offers.quads[k]);
@@ -182,15 +81,27 @@ fn measure(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
     }
     workgroupBarrier();
     if (there && lane == 0u) {
-        best[cluster] = atomicLoad(&greatest);
+        measured[cluster].best = atomicLoad(&greatest);
     }
 }
 
 var<workgroup> least: atomic<u32>;
 
+// By how many bins the floor is below the least worth of the frame before, and by how many octaves
+// it falls from round to round.
+const FLOOR_MARGIN: u32 = u32(0.25 * BINS_OF_OCTAVE);
+const FLOOR_FALLS = array<f32, 3>(1.0, 4.0, 10.0);
+
+fn below(bin: u32, bins: u32) -> u32 {
+    return bin - min(bin, bins);
+}
+
 @compute @workgroup_size(WIDE)
 fn limit(@builtin(local_invocation_index) lane: u32) {
-    // Sums from the greatest bin down: four bins a lane.
+    let open = book.sums.open == 1u;
+    let floor = book.sums.floor;
+    let rounds = book.sums.rounds;
+    // Sums from the greatest bin down, several bins a lane.
     let each = BINS / WIDE;
     var sum = 0u;
     for (var k = 0u; k < each; k += 1u) {
@@ -209,28 +120,58 @@ fn limit(@builtin(local_invocation_index) lane: u32) {
     }
     workgroupBarrier();
     let threshold = max(atomicLoad(&least), 1u);
-    let share = (book.sums.clusters + WIDE - 1u) / WIDE;
-    let first = min(lane * share, book.sums.clusters);
-    let end = min(first + share, book.sums.clusters);
+    // Bins below the floor hold only part of what is requested.
+    let complete = floor <= 1u || threshold > floor;
+    let all = (book.sums.chunks + CLUSTER - 1u) / CLUSTER;
+    let clusters = select(0u, all, open && complete);
+    let share = (clusters + WIDE - 1u) / WIDE;
+    let first = min(lane * share, clusters);
+    let end = min(first + share, clusters);
     var count = 0u;
     for (var i = first; i < end; i += 1u) {
-        count += u32(best[i] >= threshold);
+        count += u32(measured[i].best >= threshold);
     }
     var at = sum_before(lane, count);
     let total = min(parts[WIDE - 1u], arrayLength(&visible));
     for (var i = first; i < end; i += 1u) {
-        if (best[i] >= threshold) {
+        if (measured[i].best >= threshold) {
             if (at < total) {
                 visible[at].cluster = i;
+                visible[at].first_instance = measured[i].instance;
+                visible[at].last_instance = last_instance(i);
             }
             at += 1u;
         }
     }
-    if (lane == 0u) {
+    if (!open) {
+        return;
+    }
+    if (!complete) {
+        for (var k = 0u; k < each; k += 1u) {
+            atomicStore(&histogram[lane * each + k], 0u);
+        }
+    }
+    if (lane > 0u) {
+        return;
+    }
+    // Nothing is measured anew unless cull_instances is.
+    arguments.clusters = dispatch_of(0u);
+    if (complete) {
         book.sums.visible = total;
         book.sums.threshold = threshold;
         book.sums.wanted = wanted;
+        book.sums.floor = below(threshold, FLOOR_MARGIN);
+        book.sums.rounds = 0u;
+        book.sums.open = 0u;
         arguments.visible = dispatch_of(total);
+        arguments.again = dispatch_of(0u);
+    } else {
+        book.sums.floor = 0u;
+        if (rounds < 3u) {
+            book.sums.floor = below(floor, u32(FLOOR_FALLS[rounds] * BINS_OF_OCTAVE));
+        }
+        book.sums.rounds = rounds + 1u;
+        arguments.again = dispatch_of((eye.instances + WIDE - 1u) / WIDE);
     }
 }
 
@@ -261,6 +202,12 @@ fn drawn(offers: Offers) -> Drawn {
     return it;
 }
 
+// What a lane of a visible cluster requests.
+fn requested(at: u32, lane: u32) -> LodRequest {
+    let it = visible[at];
+    return lod_request(it.cluster, lane, it.first_instance, it.last_instance);
+}
+
 var<workgroup> quad_count: atomic<u32>;
 var<workgroup> visible_chunk_count: atomic<u32>;
 
@@ -269,7 +216,7 @@ fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
     let at = group.y * ROW + group.x;
     let there = at < book.sums.visible;
     if (there) {
-        let it = drawn(lod_requests(visible[at].cluster, lane).offers);
+        let it = drawn(requested(at, lane).offers);
         if (it.quads > 0u) {
             atomicAdd(&quad_count, it.quads);
             atomicAdd(&visible_chunk_count, 1u);
@@ -330,10 +277,10 @@ var<workgroup> visible_chunks_before: array<u32, CLUSTER>;
 fn write(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let at = group.y * ROW + group.x;
     let there = at < book.sums.visible;
-    var ask = LodRequest(0u, 0u, no_offers());
+    var ask = no_request();
     var it = Drawn(0u, 0u);
     if (there) {
-        ask = lod_requests(visible[at].cluster, lane);
+        ask = requested(at, lane);
         it = drawn(ask.offers);
     }
     // Inclusive sums, computed by each lane for itself: this takes two barriers instead of twelve,

@@ -6,6 +6,9 @@ use crate::gpu::buffers::read_back;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 
+/// Most chunks of a scene that are all asked for statistics.
+const MOST_ASKED: u64 = 1 << 23;
+
 /// Sums of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExplorationStats {
@@ -15,6 +18,9 @@ pub struct ExplorationStats {
     pub budget: u64,
     /// Triangles that it would take to draw everything within half a pixel.
     pub requested: u64,
+    /// Whether it may take more: of scenes of more than 8 million chunks only those are asked that
+    /// are worth about as much as those drawn.
+    pub at_least: bool,
     /// Chunks and somata drawn.
     pub visible_chunks: u64,
     /// Instances that are not hidden and may show in the picture.
@@ -37,25 +43,32 @@ pub struct DrawnChunk {
 }
 
 impl Exploration {
-    /// What the picture that was prepared last draws. Selects once more and waits for the device:
-    /// for statistics, not for every frame.
+    /// What the picture that was prepared last draws. Selects once more, from everything in view
+    /// unless that would take seconds, and waits for the device: for statistics, not for every
+    /// frame.
     ///
     /// # Errors
     /// The device reports an error.
     pub fn stats(&self, gpu: &Gpu) -> Result<ExplorationStats, DeviceError> {
+        let all = self.size().chunks <= MOST_ASKED;
+        if all {
+            self.work.set_floor(gpu, 0);
+        }
         let sums = self.sums(gpu)?;
         Ok(ExplorationStats {
             triangles: 2 * u64::from(sums.quads),
             budget: u64::from(self.budget),
             requested: 2 * u64::from(sums.wanted),
+            // Below the budget nothing is left out, so everything was asked.
+            at_least: !all && sums.threshold > 1,
             visible_chunks: u64::from(sums.visible_chunks),
             instances: u64::from(sums.instances),
             all_instances: self.instances.len() as u64,
         })
     }
 
-    /// The visible chunks, in the order in which they are drawn. Selects and waits like
-    /// [`Exploration::stats`].
+    /// The visible chunks, in the order in which they are drawn. Selects once more, as a frame
+    /// does, and waits for the device.
     ///
     /// # Errors
     /// The device reports an error.
@@ -75,6 +88,17 @@ impl Exploration {
                 quads: end - visible_chunk.first,
             })
             .collect())
+    }
+
+    /// How many chunks a frame measures to find out which are drawn, for the picture that was
+    /// prepared last, if the frame before was the same. Selects once more, as a frame does, and
+    /// waits for the device.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub fn measured(&self, gpu: &Gpu) -> Result<u64, DeviceError> {
+        self.sums(gpu)?;
+        Ok(u64::from(self.sums(gpu)?.chunks))
     }
 
     fn first_chunk(&self, instance: usize) -> u32 {

@@ -3,10 +3,11 @@
 //! A marker's color key is a category, in a part of the color table that follows the cells' own
 //! ([`Coloring::add_markers`]). Numbers are colored in steps of the scale.
 
-use std::collections::{HashMap, HashSet};
+mod points;
+mod synapses;
 
 use glam::DVec3;
-use neurotess_circuit::{Circuit, CircuitError, Edges, NodeRef, PointTable, SynapseSide};
+use neurotess_circuit::CircuitError;
 use neurotess_render::color::{CATEGORY_BIT, Rgb, category};
 use neurotess_render::overlay::Legend;
 use neurotess_render::{BoundingSphere, Marker};
@@ -14,16 +15,10 @@ use neurotess_render::{BoundingSphere, Marker};
 use crate::own_colors::{ColorTarget, ColoredThing};
 use crate::scheme::{ColorScheme, Coloring, NOTHING};
 
-/// Which synapses are shown, and what their colors tell.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SynapseOptions {
-    /// Names of populations of edges; none: all.
-    pub populations: Vec<String>,
-    /// The side whose place and cell are meant.
-    pub side: SynapseSide,
-    /// A number of each synapse, such as `delay`; none: colors tell the population.
-    pub property: Option<String>,
-}
+pub use points::points;
+pub use synapses::{
+    EdgeSynapses, ShownCells, SynapseFacts, SynapseOptions, synapse_markers, synapses,
+};
 
 /// Markers, and what their colors mean.
 #[derive(Clone, Debug)]
@@ -34,12 +29,23 @@ pub struct MarkerSet {
     pub colors: Vec<Rgb>,
     /// The legend.
     pub legend: Legend,
+    /// What each marker is.
+    pub rows: Vec<MarkerRow>,
     /// How many were left out, because their cell is not drawn.
     pub left_out: usize,
     /// What has a color that one may set.
     things: Vec<ColoredThing>,
     /// Whether they lie on cells that are drawn.
     on_cells: bool,
+}
+
+/// What a marker is: a row of what it was made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct MarkerRow {
+    /// Index of the population of edges among those that were given; 0 for points.
+    pub table: u32,
+    /// Number of the edge in its population, or of the point in its table, from 0.
+    pub row: u64,
 }
 
 /// Why there are no markers.
@@ -83,138 +89,6 @@ pub enum MarkerError {
     },
 }
 
-/// Synapses of the cells that are drawn.
-///
-/// # Errors
-/// There are no such edges, they have no places, or a file is invalid.
-pub fn synapses(
-    circuit: &Circuit,
-    drawn: &[NodeRef],
-    options: &SynapseOptions,
-    scheme: &ColorScheme,
-) -> Result<MarkerSet, MarkerError> {
-    let chosen = chosen(circuit, &options.populations)?;
-    let drawn = ids(circuit, drawn);
-    let mut markers = Vec::new();
-    let mut values = Vec::new();
-    let mut left_out = 0;
-    for (edges, number) in chosen.iter().zip(0..) {
-        let read = edges.synapses_on(options.side)?;
-        let (population, nodes, side) = match options.side {
-            SynapseSide::Afferent => (&edges.target, &read.targets, "afferent"),
-            SynapseSide::Efferent => (&edges.source, &read.sources, "efferent"),
-        };
-        if read.positions.is_empty() && !nodes.is_empty() {
-            return Err(MarkerError::NoPlaces {
-                file: edges.file.display().to_string(),
-                name: edges.name.clone(),
-                side,
-            });
-        }
-        let numbers = match &options.property {
-            Some(name) => Some(property(edges, name)?),
-            None => None,
-        };
-        let here = drawn.get(population.as_str());
-        for (row, (node, &position)) in nodes.iter().zip(&read.positions).enumerate() {
-            let shown = here.is_some_and(|ids| ids.contains(node)) && position.is_finite();
-            if !shown {
-                left_out += 1;
-                continue;
-            }
-            let color_key = category(number);
-            markers.push(Marker {
-                position,
-                color_key,
-            });
-            values.extend(numbers.as_ref().map(|numbers| numbers[row]));
-        }
-    }
-    let mut set = match &options.property {
-        Some(name) => by_number(markers, &values, name, scheme),
-        None => {
-            let names = chosen.iter().map(|edges| edges.name.clone());
-            by_name(markers, names.collect(), scheme)
-        }
-    };
-    (set.left_out, set.on_cells) = (left_out, true);
-    Ok(set)
-}
-
-/// Points of a table. `property`: the column that colors tell; none: all have one color.
-///
-/// # Errors
-/// There is no such column of numbers.
-pub fn points(
-    file: &str,
-    table: &PointTable,
-    property: Option<&str>,
-    scheme: &ColorScheme,
-) -> Result<MarkerSet, MarkerError> {
-    let marker = |&position| Marker {
-        position,
-        color_key: category(0),
-    };
-    let markers: Vec<Marker> = table.positions.iter().map(marker).collect();
-    let Some(name) = property else {
-        let stem = std::path::Path::new(file).file_stem().unwrap_or_default();
-        return Ok(by_name(
-            markers,
-            vec![stem.to_string_lossy().into_owned()],
-            scheme,
-        ));
-    };
-    let column = table.columns.iter().find(|(column, _)| column == name);
-    let (_, values) = column.ok_or_else(|| MarkerError::NoNumbers {
-        file: file.to_owned(),
-        name: name.to_owned(),
-        there: listed(table.columns.iter().map(|(name, _)| name.as_str())),
-    })?;
-    Ok(by_number(markers, values, name, scheme))
-}
-
-fn chosen<'c>(circuit: &'c Circuit, names: &[String]) -> Result<Vec<&'c Edges>, MarkerError> {
-    if names.is_empty() && !circuit.edges.is_empty() {
-        return Ok(circuit.edges.iter().collect());
-    }
-    let none = |name: &str| MarkerError::NoEdges {
-        file: circuit.file.clone(),
-        name: name.to_owned(),
-        there: listed(circuit.edges.iter().map(|edges| edges.name.as_str())),
-    };
-    if names.is_empty() {
-        return Err(none("of any name"));
-    }
-    let found = names.iter().map(|name| {
-        let found = circuit.edges.iter().find(|edges| edges.name == *name);
-        found.ok_or_else(|| none(name))
-    });
-    found.collect()
-}
-
-/// Ids of nodes by the name of their population.
-fn ids<'c>(circuit: &'c Circuit, nodes: &[NodeRef]) -> HashMap<&'c str, HashSet<u64>> {
-    let mut ids: HashMap<&str, HashSet<u64>> = HashMap::new();
-    for node in nodes {
-        let population = &circuit.populations[node.population as usize];
-        let id = population.ids[node.row as usize];
-        ids.entry(&population.name).or_default().insert(id);
-    }
-    ids
-}
-
-fn property(edges: &Edges, name: &str) -> Result<Vec<f64>, MarkerError> {
-    let there = edges.properties()?;
-    if there.iter().any(|known| known == name) {
-        return Ok(edges.property(name)?);
-    }
-    Err(MarkerError::NoNumbers {
-        file: edges.file.display().to_string(),
-        name: name.to_owned(),
-        there: listed(there.iter().map(String::as_str)),
-    })
-}
-
 fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
     let names: Vec<&str> = names.collect();
     match names.is_empty() {
@@ -239,6 +113,7 @@ fn by_name(markers: Vec<Marker>, names: Vec<String>, scheme: &ColorScheme) -> Ma
         colors,
         legend,
         things,
+        rows: Vec::new(),
         left_out: 0,
         on_cells: false,
     }
@@ -283,6 +158,7 @@ fn by_number(
         markers,
         colors,
         things: Vec::new(),
+        rows: Vec::new(),
         left_out: 0,
         on_cells: false,
     }
@@ -302,6 +178,11 @@ fn color(index: usize) -> Rgb {
 }
 
 impl MarkerSet {
+    /// What has a color that one may set.
+    pub fn things(&self) -> &[ColoredThing] {
+        &self.things
+    }
+
     /// A sphere (µm) around the points of a table, which may lie away from all cells; none around synapses, which
     /// lie on them.
     pub fn bounds(&self) -> Option<BoundingSphere> {
@@ -317,18 +198,21 @@ impl MarkerSet {
 }
 
 impl Coloring {
+    /// Number of categories that the cells have, also beyond the end of the table, where all have its last
+    /// color.
+    pub fn categories(&self) -> usize {
+        let keys = self.color_keys.iter().flatten();
+        let categories = keys.filter(|&key| key & CATEGORY_BIT != 0);
+        let used = categories.map(|key| (key & !CATEGORY_BIT) as usize + 1);
+        self.table.categories.len().max(used.max().unwrap_or(0))
+    }
+
     /// Adds the colors of markers to the table, and their legend below the cells'. The markers' color keys are
     /// changed accordingly.
     pub fn add_markers(&mut self, set: &mut MarkerSet) {
-        // Categories of cells beyond the end of the table have its last color: they keep it.
-        let keys = self.color_keys.iter().flatten();
-        let categories = keys.filter(|&key| key & CATEGORY_BIT != 0);
-        let used = categories
-            .map(|key| (key & !CATEGORY_BIT) as usize + 1)
-            .max();
+        let first = self.categories();
         let own = &mut self.table.categories;
         let last = own.last().copied().unwrap_or(NOTHING);
-        let first = own.len().max(used.unwrap_or(0));
         own.resize(first, last);
         own.extend(&set.colors);
         for marker in &mut set.markers {
@@ -341,6 +225,9 @@ impl Coloring {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+
+    use neurotess_circuit::PointTable;
     use neurotess_render::color::{ColorMap, Palette};
 
     use super::*;
@@ -412,5 +299,49 @@ mod tests {
         assert_eq!(said, "p.csv: has no number 'size': it has w");
         let set = points("p.csv", &table(&[3.0, 3.0]), Some("w"), &scheme()).expect("markers");
         assert_eq!(set.bounds(), Some((DVec3::X * 3.0, 0.0)));
+    }
+
+    fn edges(folder: &std::path::Path) -> neurotess_circuit::Edges {
+        let at = |x: f64| DVec3::new(x, 1.0, 2.0);
+        let synapses = neurotess_circuit::Synapses {
+            sources: vec![7, 8, 9, 7],
+            targets: vec![1, 2, 1, 3],
+            positions: vec![at(0.0), at(10.0), at(20.0), DVec3::NAN],
+        };
+        let file = folder.join("edges.h5");
+        let delays = [("delay", vec![0.5, 1.5, 2.5, 3.5])];
+        let to = std::fs::File::create(&file).expect("a file");
+        neurotess_circuit::write::edges("syn", ["pre", "post"], &synapses, &delays, to)
+            .expect("written");
+        neurotess_circuit::Edges {
+            name: "syn".into(),
+            file,
+            source: "pre".into(),
+            target: "post".into(),
+            count: 4,
+        }
+    }
+
+    #[test]
+    fn synapses_are_read_once_and_shown_in_part() {
+        use neurotess_circuit::SynapseSide::Afferent;
+        let folder = tempfile::tempdir().expect("a folder");
+        let edges = edges(folder.path());
+        let read = EdgeSynapses::read(&edges, Afferent, Some("delay")).expect("read");
+        assert_eq!(read.len(), 4);
+        let facts = read.facts(2).expect("a synapse");
+        assert_eq!((facts.cell, facts.partner, facts.number), (1, 9, Some(2.5)));
+        assert_eq!(read.facts(4), None);
+        // Cell 1 was moved, cell 3 has a synapse without a place.
+        let moved = DVec3::Y * 100.0;
+        let shown = HashMap::from([(1, moved), (3, DVec3::ZERO)]);
+        let shown = ShownCells::from([("post".to_owned(), shown)]);
+        let set = synapse_markers(&[(&read, &shown)], Some("delay"), &scheme());
+        let rows: Vec<u64> = set.rows.iter().map(|row| row.row).collect();
+        assert_eq!((rows, set.left_out), (vec![0, 2], 2));
+        assert_eq!(set.markers[1].position, DVec3::new(20.0, 101.0, 2.0));
+        assert!(set.legend.is_bar() && set.bounds().is_none());
+        let missing = EdgeSynapses::read(&edges, Afferent, Some("size")).expect_err("none");
+        assert!(missing.to_string().contains("it has delay"), "{missing}");
     }
 }

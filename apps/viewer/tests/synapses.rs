@@ -1,0 +1,423 @@
+//! Synapses of circuits and points of tables in the window.
+
+mod common;
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::Path;
+
+use eframe::egui::{Modifiers, Pos2};
+use egui_kittest::kittest::Queryable;
+use neurotess::circuit::SynapseSide;
+use neurotess::coloring::ColorTarget;
+use neurotess::synth::Kind;
+use neurotess::synth::circuit::EDGES;
+use neurotess_viewer::command::{Edit, Tab};
+use neurotess_viewer::document::MarkerOptions;
+use neurotess_viewer::markers::MarkerRef;
+use neurotess_viewer::save::PictureFile;
+use neurotess_viewer::{Command, draw_session};
+
+use common::circuit::write_with_synapses;
+use common::{
+    Window, click, differing, gpu, picture, rest, run, set_look, settle, snapshot, state, viewer,
+    wait, window, with_samples,
+};
+
+/// Cells of the circuit, and synapses onto each.
+const CELLS: usize = 6;
+const EACH: usize = 20;
+
+/// A window with a circuit whose cells have [`EACH`] chemical synapses and a gap each.
+fn with_synapses() -> (Window, tempfile::TempDir) {
+    let mut window = window();
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_with_synapses(folder.path(), CELLS, 3, EACH);
+    let path = folder.path().to_path_buf();
+    run(&mut window, Command::Open(vec![path]));
+    assert_eq!(state(&mut window).document.neurons.len(), CELLS);
+    (window, folder)
+}
+
+fn set_markers(window: &mut Window, change: impl FnOnce(&mut MarkerOptions)) {
+    let mut markers = state(window).document.markers.clone();
+    change(&mut markers);
+    run(window, Edit::SetMarkers(Box::new(markers)));
+}
+
+/// Number of all synapses and points of the picture.
+fn all(window: &mut Window) -> Option<usize> {
+    let counters = &state(window).counters;
+    counters.markers.map(|[_, _, all]| all)
+}
+
+/// Synapses and points that show, and where.
+fn seen(window: &mut Window) -> Vec<(MarkerRef, Pos2)> {
+    wait(window, |w| viewer(w).stage.can_pick());
+    let rect = picture(window);
+    let stage = &viewer(window).stage;
+    let (mut known, mut found) = (HashSet::new(), Vec::new());
+    for y in 0..rect.height() as usize {
+        for x in 0..rect.width() as usize {
+            let [x, y] = [x, y].map(|n| n as f32 + 0.5);
+            let marker = stage.hit_at(x, y).and_then(|hit| hit.marker());
+            if let Some(marker) = marker.filter(|&marker| known.insert(marker)) {
+                found.push((marker, rect.min + eframe::egui::Vec2::new(x, y)));
+            }
+        }
+    }
+    found
+}
+
+/// The picture alone, without panels.
+fn drawn(window: &mut Window) -> Vec<u8> {
+    let rect = picture(window);
+    let image = window.render().expect("a picture");
+    let [left, right] = [rect.left(), rect.right()].map(|x| x as u32);
+    let rows = (rect.top() as u32)..(rect.bottom() as u32);
+    let pixels = rows.flat_map(|y| (left..right).map(move |x| (x, y)));
+    pixels.flat_map(|(x, y)| image.get_pixel(x, y).0).collect()
+}
+
+fn legend_names(window: &mut Window) -> Vec<String> {
+    let things = viewer(window).stage.colored_things();
+    things
+        .iter()
+        .map(|thing| thing.target.to_string())
+        .collect()
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn synapses_show_and_are_undone() {
+    let (mut window, _folder) = with_synapses();
+    rest(&mut window);
+    let without = drawn(&mut window);
+    assert_eq!(all(&mut window), None);
+    run(&mut window, Edit::ShowSynapses(true));
+    rest(&mut window);
+    assert_eq!(all(&mut window), Some(CELLS * (EACH + 1)));
+    let with = drawn(&mut window);
+    let shown = differing(&without, &with);
+    assert!(shown > 300, "{shown} pixels");
+    let names = legend_names(&mut window);
+    assert!(
+        names.contains(&EDGES.to_owned()) && names.contains(&"gaps".to_owned()),
+        "{names:?}"
+    );
+    // One of the populations; a side that the file does not have.
+    set_markers(&mut window, |markers| markers.edges = vec!["gaps".into()]);
+    assert_eq!(all(&mut window), Some(CELLS));
+    set_markers(&mut window, |markers| markers.side = SynapseSide::Efferent);
+    assert_eq!(all(&mut window), None);
+    let problem = state(&mut window).problems.pop().expect("a problem");
+    assert!(problem.why.contains("efferent_surface_x"), "{problem:?}");
+    run(&mut window, Command::Undo);
+    run(&mut window, Command::Undo);
+    rest(&mut window);
+    assert_eq!(all(&mut window), None);
+    let left = differing(&without, &drawn(&mut window));
+    assert!(left < shown / 4, "{left} of {shown} pixels");
+    assert!(state(&mut window).problems.is_empty());
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn only_those_of_cells_that_are_shown_and_selected() {
+    let (mut window, _folder) = with_synapses();
+    run(&mut window, Edit::ShowSynapses(true));
+    rest(&mut window);
+    let before = state(&mut window).counters.rebuilds;
+    run(&mut window, Edit::Select(vec![2], false));
+    assert_eq!(all(&mut window), Some(EACH + 1));
+    // Markers at other places are another picture, of the same cells.
+    rest(&mut window);
+    let after = state(&mut window).counters.rebuilds;
+    assert_eq!(
+        (after.templates, after.proxies),
+        (before.templates, before.proxies)
+    );
+    set_markers(&mut window, |markers| markers.of_selected = false);
+    assert_eq!(all(&mut window), Some(CELLS * (EACH + 1)));
+    run(&mut window, Edit::Hide);
+    assert_eq!(all(&mut window), Some((CELLS - 1) * (EACH + 1)));
+    run(&mut window, Edit::ShowAll);
+    assert_eq!(all(&mut window), Some(CELLS * (EACH + 1)));
+    // Side by side, synapses go with their cells.
+    let origins = |window: &mut Window| -> Vec<glam::DVec3> {
+        let stage = &viewer(window).stage;
+        stage.marker_positions().to_vec()
+    };
+    let traced = origins(&mut window);
+    run(&mut window, Edit::SetGrid(true));
+    let moved = origins(&mut window);
+    let placements = state(&mut window).placements();
+    let neurons = &state(&mut window).document.neurons;
+    let way = |i: usize| placements[i].translation - neurons[i].placement.translation;
+    let ways: Vec<glam::DVec3> = (0..CELLS).map(way).collect();
+    for (from, to) in traced.iter().zip(&moved) {
+        let fits = ways.iter().any(|way| (*to - *from).distance(*way) < 1e-6);
+        assert!(fits, "{from} to {to}");
+    }
+    assert!(ways.iter().any(|way| way.length() > 1.0));
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn colors_of_synapses_change_without_drawing() {
+    let (mut window, _folder) = with_synapses();
+    run(&mut window, Edit::ShowSynapses(true));
+    set_markers(&mut window, |markers| markers.size = 12.0);
+    rest(&mut window);
+    let before = state(&mut window).counters.rebuilds;
+    let pure = |window: &mut Window| {
+        let image = window.render().expect("a picture");
+        let is = |p: &&[u8]| p[0] > 180 && p[1] < 90 && p[2] > 180;
+        image.as_raw().chunks(4).filter(is).count()
+    };
+    let few = pure(&mut window);
+    set_look(&mut window, |look| {
+        let target = ColorTarget::Category(EDGES.to_owned());
+        look.own_colors.set(target, [255, 0, 255]);
+    });
+    assert!(viewer(&mut window).stage.is_static() && viewer(&mut window).stage.is_sharp());
+    let after = state(&mut window).counters.rebuilds;
+    assert_eq!(
+        (after.templates, after.instances),
+        (before.templates, before.instances)
+    );
+    assert!(pure(&mut window) > few + 500);
+    // Other colors of the cells leave synapses as they are.
+    let positions = viewer(&mut window).stage.marker_positions().len();
+    set_look(&mut window, |look| {
+        look.color_by = neurotess_viewer::document::ColorBy::Neuron;
+    });
+    rest(&mut window);
+    assert_eq!(
+        viewer(&mut window).stage.marker_positions().len(),
+        positions
+    );
+    assert!(pure(&mut window) > few + 500);
+    // By a number: all populations have it, or it is an error that is told.
+    set_markers(&mut window, |markers| {
+        markers.property = Some("delay".into());
+    });
+    assert_eq!(all(&mut window), Some(CELLS * (EACH + 1)));
+    assert!(!legend_names(&mut window).contains(&EDGES.to_owned()));
+    set_markers(&mut window, |markers| {
+        markers.property = Some("conductance".into());
+    });
+    let problem = state(&mut window).problems.pop().expect("a problem");
+    assert!(
+        problem.why.contains("has no number 'conductance'"),
+        "{problem:?}"
+    );
+    assert_eq!(all(&mut window), None);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn a_click_tells_which_synapse_it_is() {
+    let (mut window, _folder) = with_synapses();
+    set_markers(&mut window, |markers| {
+        markers.synapses = true;
+        markers.edges = vec![EDGES.into()];
+        markers.property = Some("conductance".into());
+        markers.size = 12.0;
+    });
+    run(&mut window, Command::Show(Tab::Look));
+    rest(&mut window);
+    snapshot(&mut window, "synapses");
+    let found = seen(&mut window);
+    assert!(found.len() > CELLS * EACH / 2, "{} are seen", found.len());
+    let (marker, at) = found[found.len() / 2];
+    click(&mut window, at, Modifiers::NONE);
+    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    assert_eq!(
+        state(&mut window).document.selected().count(),
+        0,
+        "a synapse is no cell"
+    );
+    let facts = state(&mut window).marker_facts(marker).expect("facts");
+    let MarkerRef::Synapse(row) = marker else {
+        panic!("{marker:?}");
+    };
+    assert_eq!(facts.title, format!("Synapse {}", row.row));
+    // Synapses are written cell by cell.
+    let cell = row.row as usize / EACH;
+    assert_eq!(facts.neurons[0], Some(cell));
+    let number = facts.rows.iter().find(|(name, _)| name == "conductance");
+    let number = number.and_then(|(_, text)| text.parse::<f64>().ok());
+    assert!(number.is_some_and(|n| n > 0.0), "{facts:?}");
+    assert!(state(&mut window).status.starts_with("Synapse"));
+    rest(&mut window);
+    snapshot(&mut window, "synapse_picked");
+    window.get_by_label("Select its cell").click();
+    window.run_steps(2);
+    settle(&mut window);
+    assert_eq!(
+        state(&mut window).document.selected().collect::<Vec<_>>(),
+        [cell]
+    );
+    assert_eq!(all(&mut window), Some(EACH));
+    // In exploration mode the same ones are picked.
+    run(&mut window, Edit::SelectNone);
+    viewer(&mut window).stage.limit_patches(Some(0));
+    let turned = state(&mut window).view.orbited(0.2, 0.0, glam::DVec3::Y);
+    run(&mut window, Command::Go(turned));
+    assert!(state(&mut window).counters.lowered.is_some());
+    assert!(seen(&mut window).len() > CELLS * EACH / 2);
+    // Switched off, it is forgotten.
+    run(&mut window, Edit::ShowSynapses(false));
+    assert_eq!(state(&mut window).picked_marker, None);
+    assert!(window.query_by_label("Select its cell").is_none());
+}
+
+fn write_points(file: &Path) {
+    let rows = (0..40).map(|i| format!("{},{},{},{}\n", 3 * i - 60, i, 30, f64::from(i) / 10.0));
+    let text: String = std::iter::once("x,y,z,weight\n".to_owned())
+        .chain(rows)
+        .collect();
+    fs::write(file, text).expect("written");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn points_of_a_table_show_beside_any_cell() {
+    let mut window = with_samples(&[Kind::Star]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("spines.csv");
+    write_points(&file);
+    // As a drop opens it.
+    run(&mut window, Command::Open(vec![file.clone()]));
+    assert_eq!(all(&mut window), Some(40));
+    assert_eq!(state(&mut window).document.neurons.len(), 1);
+    assert!(legend_names(&mut window).contains(&"spines".to_owned()));
+    set_markers(&mut window, |markers| {
+        markers.column = Some("weight".into());
+        markers.size = 4.0;
+    });
+    assert!(!legend_names(&mut window).contains(&"spines".to_owned()));
+    let (marker, at) = seen(&mut window)[0];
+    click(&mut window, at, Modifiers::NONE);
+    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    let facts = state(&mut window).marker_facts(marker).expect("facts");
+    assert!(facts.title.starts_with("Point ") && facts.neurons == [None; 2]);
+    assert!(facts.rows.iter().any(|(name, _)| name == "weight"));
+    // They may lie away from all cells.
+    fs::write(&file, "x,y,z\n3000,0,0\n").expect("written");
+    run(&mut window, Command::OpenPoints(file.clone()));
+    set_markers(&mut window, |markers| {
+        (markers.column, markers.size) = (None, 60.0);
+    });
+    run(&mut window, Command::Home);
+    rest(&mut window);
+    assert_eq!(seen(&mut window).len(), 1);
+    // Broken ones are told of, and nothing else is lost.
+    fs::write(&file, "x,y,z\n1,2,up\n").expect("written");
+    run(&mut window, Command::OpenPoints(file.clone()));
+    let problem = state(&mut window).problems.pop().expect("a problem");
+    assert!(
+        problem.why.starts_with("line 2: ") && problem.what.ends_with("spines.csv"),
+        "{problem:?}"
+    );
+    assert_eq!(all(&mut window), None);
+    run(&mut window, Edit::SetPoints(None));
+    assert_eq!(
+        state(&mut window).document.markers,
+        MarkerOptions {
+            size: 60.0,
+            ..MarkerOptions::default()
+        }
+    );
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn sessions_and_saved_pictures_have_synapses_and_points() {
+    let (mut window, folder) = with_synapses();
+    let at = |name: &str| folder.path().join(name);
+    write_points(&at("spines.csv"));
+    run(&mut window, Command::OpenPoints(at("spines.csv")));
+    set_markers(&mut window, |markers| {
+        markers.synapses = true;
+        markers.column = Some("weight".into());
+        markers.size = 9.0;
+    });
+    assert_eq!(all(&mut window), Some(CELLS * (EACH + 1) + 40));
+    let save = |name: &str| PictureFile {
+        out: at(name),
+        size: [320, 240],
+        samples: 4,
+        transparent: false,
+        replace: false,
+    };
+    run(&mut window, Command::SavePicture(save("saved.png")));
+    run(&mut window, Command::SaveSession(at("mine.neurotess")));
+    let text = fs::read_to_string(at("mine.neurotess")).expect("written");
+    assert!(text.contains("points = \"spines.csv\""), "{text}");
+    let drawn = draw_session(&at("mine.neurotess"), &save("drawn.png"), None).expect("drawn");
+    assert!(drawn.failures.is_empty(), "{:?}", drawn.failures);
+    let bytes = |name: &str| fs::read(at(name)).expect("a picture");
+    assert!(bytes("saved.png") == bytes("drawn.png"), "the same picture");
+    run(&mut window, Edit::ShowSynapses(false));
+    run(&mut window, Command::SavePicture(save("without.png")));
+    assert!(bytes("saved.png") != bytes("without.png"));
+
+    let mut other = self::window();
+    other.step();
+    run(&mut other, Command::Open(vec![at("mine.neurotess")]));
+    assert_eq!(all(&mut other), Some(CELLS * (EACH + 1) + 40));
+    assert!(
+        state(&mut other).problems.is_empty(),
+        "{:?}",
+        state(&mut other).problems
+    );
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn too_many_for_the_pixels_are_thinned_out_and_counted() {
+    let mut window = with_samples(&[Kind::Star]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("many.csv");
+    let rows = (0..60_000).map(|i| format!("{},{},0\n", f64::from(i % 245) * 1e-3, i / 245));
+    let text: String = std::iter::once("x,y,z\n".to_owned()).chain(rows).collect();
+    fs::write(&file, text).expect("written");
+    run(&mut window, Command::OpenPoints(file));
+    let far = state(&mut window).view.zoomed(12.0, glam::DVec3::ZERO);
+    run(&mut window, Command::Go(far));
+    rest(&mut window);
+    let [drawn, in_view, all] = state(&mut window).counters.markers.expect("markers");
+    assert_eq!((in_view, all), (60_000, 60_000));
+    assert!(drawn < in_view / 2, "{drawn}");
+    let said = format!("{} of 60\u{a0}000 markers drawn", grouped(drawn));
+    window.run_steps(2);
+    window.get_by_label(&said);
+}
+
+fn grouped(number: usize) -> String {
+    match number {
+        0..1000 => number.to_string(),
+        _ => format!("{}\u{a0}{:03}", number / 1000, number % 1000),
+    }
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn reading_can_be_stopped() {
+    let (mut window, _folder) = with_synapses();
+    state(&mut window).run(Edit::ShowSynapses(true));
+    window.step();
+    state(&mut window).run(Command::Cancel);
+    window.step();
+    settle(&mut window);
+    // Whether it was in time or not: what is shown is what the panel says.
+    let shows = state(&mut window).document.markers.synapses;
+    assert_eq!(all(&mut window).is_some(), shows);
+    run(&mut window, Edit::ShowSynapses(true));
+    assert_eq!(all(&mut window), Some(CELLS * (EACH + 1)));
+    // Without a circuit there are none: told once.
+    let mut other = with_samples(&[Kind::Star]);
+    run(&mut other, Edit::ShowSynapses(true));
+    other.run_steps(5);
+    let [problem] = &state(&mut other).problems[..] else {
+        panic!("{:?}", state(&mut other).problems);
+    };
+    assert!(problem.why.contains("SONATA circuit"), "{problem:?}");
+}
+
+neurotess_testing::main!();

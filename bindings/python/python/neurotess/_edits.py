@@ -1,0 +1,138 @@
+"""Mended and compared tracings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from . import _neurotess, _options
+from ._morphology import Morphology, _read, _warn, read
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterable, Sequence
+    from typing import Any, Literal
+
+    Source = Morphology | str | os.PathLike[str]
+    Axis = Literal["x", "y", "z"]
+
+
+def edit(
+    cell: Source,
+    *,
+    types: Mapping[str | int, str | int] | None = None,
+    scale: float | None = None,
+    units: Literal["um", "nm"] | Sequence[float] | None = None,
+    mend_radii: bool | float = False,
+    reroot: int | Sequence[int] | None = None,
+    join: float | None = None,
+    subtree: int | None = None,
+    smooth: float | Literal["auto"] | None = None,
+    resample: float | None = None,
+    simplify: float | None = None,
+    recenter: bool = False,
+    rotate: Mapping[Axis, float] | Iterable[tuple[Axis, float]] | None = None,
+    mirror: Axis | Iterable[Axis] | None = None,
+) -> Morphology:
+    """A mended copy of a cell: of a `Morphology`, or of a file. The cell itself stays as it is.
+
+    The options are those of ``neurotess convert``, and are applied in this order, whatever their order in the call.
+    Lengths are µm after `units` or `scale`; samples are the file's own numbers (`Morphology.samples`).
+
+    - `types`: gives samples other types, as in ``{5: "axon", "undefined": 3}``; all at once, so ``{2: 3, 3: 2}``
+      swaps them
+    - `scale`: multiplies coordinates and radii
+    - `units`: the unit of the file, to be turned into µm: ``"um"``, ``"nm"``, or the sides (x, y, z) of a voxel in µm
+    - `mend_radii`: interpolates radii that are not above 0 or no number, and those 5 times (or as many times as
+      given) thicker or thinner than their neighborhood
+    - `reroot`: makes this sample the root of its tree, which must have no soma; several for several trees
+    - `join`: connects each piece without a soma to the nearest sample of another piece within this distance (µm;
+      ``math.inf`` for any)
+    - `subtree`: keeps this sample and what hangs on it
+    - `smooth`: smooths noise away that is shorter than this length (µm), or ``"auto"``
+    - `resample`: puts samples at this distance (µm) along each section, as nearly as equal parts allow
+    - `simplify`: leaves out samples without which the membrane moves by no more than this tolerance (µm)
+    - `recenter`: moves the soma, or without one the first root, to the origin
+    - `rotate`: turns around axes through the origin, counterclockwise, by degrees: ``{"z": 90}``, or pairs where an
+      axis comes twice
+    - `mirror`: changes the sign of the coordinates of an axis, or of several
+
+    `Morphology.edits` of the result tells what each of them changed.
+
+    Raises ``ValueError`` for options and for edits that cannot be done, `ReadError` for files.
+
+    >>> import neurotess as nt
+    >>> cell = nt.synth("granule", seed=1, points=200)
+    >>> light = nt.edit(cell, simplify=0.2, recenter=True)
+    >>> len(light) < len(cell), light.soma.center.tolist()
+    (True, [0.0, 0.0, 0.0])
+    >>> [edit["edit"] for edit in light.edits]
+    ['simplify', 'recenter']
+    """
+    pairs = rotate.items() if isinstance(rotate, Mapping) else rotate or ()
+    words = _words("types", [_join(types.items(), ",")] if types else ())
+    words += _options.arguments({"scale": scale})
+    words += _words("units", [] if units is None else [units if isinstance(units, str) else _voxel(units)])
+    words += _options.arguments({"mend_radii": mend_radii})
+    words += _words("reroot", _several(reroot))
+    words += _options.arguments(
+        {
+            "join": join,
+            "subtree": subtree,
+            "smooth": smooth,
+            "resample": resample,
+            "simplify": simplify,
+            "recenter": recenter,
+        }
+    )
+    words += _words("rotate", [_join([pair], "") for pair in pairs])
+    words += _words("mirror", _several(mirror))
+    edits = _neurotess.Edits(words)
+    if isinstance(cell, Morphology):
+        read = cell._cell
+    else:
+        read = _read(cell, None, None, False, bad_radii=edits.mends_radii)
+        _warn(read)
+    edited, reports = edits.apply(read)
+    return Morphology(edited, tuple(reports))
+
+
+def _words(name: str, values: Iterable[object]) -> list[str]:
+    flag = "--" + name
+    return [f"{flag}={_options.word(value)}" for value in values]
+
+
+def _join(pairs: Iterable[tuple[object, object]], by: str) -> str:
+    return by.join(f"{_options.word(of)}={_options.word(to)}" for of, to in pairs)
+
+
+def _voxel(sides: Sequence[float]) -> str:
+    return "voxel=" + ",".join(map(_options.word, sides))
+
+
+def _several(values: Any) -> Iterable[object]:
+    """One value or several, as several."""
+    if values is None:
+        return ()
+    return (values,) if isinstance(values, str) or not hasattr(values, "__iter__") else values
+
+
+def diff(first: Source, second: Source, *, tolerance: float = 0.001) -> dict[str, Any]:
+    """What differs between two cells or files, under the names of ``neurotess diff --json``.
+
+    The keys are ``same``, ``matched_by``, ``samples``, ``sections``, ``neurites``, ``forks``, ``ends``, ``length``
+    and ``length_by_type`` (each with ``before``, the first cell, and ``after``, the second); ``only_in_first``,
+    ``only_in_second``, ``moved``, ``radii``, ``types`` and ``parents`` (each with ``count``, ``largest`` in µm where
+    it is a length, and the numbers of the first ten ``samples``); ``retyped`` and ``soma``. Distances and differences
+    of radii up to `tolerance` (µm) are none.
+
+    >>> import neurotess as nt
+    >>> cell = nt.synth("granule", seed=1, points=200)
+    >>> nt.diff(cell, cell)["same"]
+    True
+    >>> moved = nt.diff(cell, nt.edit(cell, scale=2))["moved"]
+    >>> moved["count"], moved["largest"] > 10
+    (200, True)
+    """
+    cells = [cell if isinstance(cell, Morphology) else read(cell) for cell in (first, second)]
+    return _neurotess.diff(cells[0]._cell, cells[1]._cell, float(tolerance))

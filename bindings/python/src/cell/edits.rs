@@ -1,0 +1,64 @@
+//! Mended and compared tracings.
+
+use std::sync::Arc;
+
+use neurotess::morphology::Difference;
+use neurotess_cli::embed::EditRecipe;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::{Cell, Told};
+use crate::work::released;
+use crate::{errors, json};
+
+/// How tracings are mended: options of the command line, checked.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+pub(crate) struct Edits(EditRecipe);
+
+#[pymethods]
+impl Edits {
+    #[new]
+    fn new(py: Python<'_>, options: Vec<String>) -> PyResult<Self> {
+        let recipe = EditRecipe::new(options);
+        recipe.map(Self).map_err(|e| errors::option(py, &e))
+    }
+
+    /// Whether radii that are no numbers may be read, since they are mended.
+    #[getter]
+    fn mends_radii(&self) -> bool {
+        self.0.mends_radii()
+    }
+
+    /// The mended cell, and a dictionary of what each edit changed.
+    fn apply<'py>(&self, py: Python<'py>, cell: &Cell) -> PyResult<(Cell, Vec<Bound<'py, PyAny>>)> {
+        let (recipe, morphology) = (self.0.clone(), Arc::clone(&cell.morphology));
+        let edited = released(py, None, move || recipe.apply(&morphology))?;
+        let edited = edited.map_err(PyValueError::new_err)?;
+        let reports = edited.reports.iter();
+        let reports: PyResult<_> = reports.map(|r| json::serialized(py, r)).collect();
+        let stays = |told: &&Told| !self.0.settles(&told.code);
+        let warnings = cell.warnings.iter().filter(stays).cloned().collect();
+        let cell = Cell::new(Arc::new(edited.morphology), &cell.format, warnings);
+        Ok((cell, reports?))
+    }
+}
+
+/// What differs between two cells. `tolerance`: distances and differences of radii up to this one (µm) are none.
+#[pyfunction]
+pub(crate) fn diff<'py>(
+    py: Python<'py>,
+    first: &Cell,
+    second: &Cell,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    if !(tolerance >= 0.0 && tolerance.is_finite()) {
+        let message = format!("tolerance={tolerance} is not a number from 0 on");
+        return Err(PyValueError::new_err(message));
+    }
+    let cells = [&first.morphology, &second.morphology].map(Arc::clone);
+    let difference = released(py, None, move || {
+        let [first, second] = cells;
+        Difference::of(&first, &second, tolerance)
+    })?;
+    json::serialized(py, &difference)
+}

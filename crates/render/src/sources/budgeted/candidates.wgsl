@@ -1,0 +1,96 @@
+// The first two of the passes of select.wgsl: which chunks may be worth the floor, and so are measured.
+
+#import selection.wgsl
+
+// The least radius (pixels) of a soma whose worth is in this bin or above.
+fn soma_radius_at(bin: u32) -> f32 {
+    let worth = worth_of(bin) / (SOMA_WORTH * MOST_CHANCE);
+    let area = select(worth * worth, worth, worth > 1.0);
+    return sqrt(area / 3.1416);
+}
+
+// How many of an instance's chunks may be worth the floor: the first ones, since chunks are sorted
+// by what they carry. `nearest`: size (µm) of a pixel at the instance's nearest point.
+fn chunks_above_floor(shape: Shape, nearest: f32) -> u32 {
+    let floor = book.sums.floor;
+    if (floor <= 1u) {
+        return shape.chunks;
+    }
+    // A little less, since two compilations of an expression may round differently.
+    let carried = 0.99 * worth_of(floor) * nearest * sqrt(nearest) / (2.0 * MOST_CHANCE);
+    var low = shape.somata;
+    var high = shape.chunks;
+    while (low < high) {
+        let middle = (low + high) / 2u;
+        if (chunks[shape.first_chunk + middle].carried >= carried) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    if (low == shape.somata && shape.soma_radius < 0.99 * soma_radius_at(floor) * nearest) {
+        return 0u;
+    }
+    return low;
+}
+
+@compute @workgroup_size(WIDE)
+fn cull_instances(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let instance = (group.y * ROW + group.x) * WIDE + lane;
+    if (instance == 0u) {
+        book.sums.open = 1u;
+    }
+    if (instance >= eye.instances) {
+        return;
+    }
+    let place = gpu_instances[instance];
+    let shape = shapes[place.shape];
+    var count = NOT_IN_VIEW;
+    if ((place.flags & HIDDEN) == 0u && shape.chunks > 0u) {
+        let center = relative(place, shape.center);
+        let reach = shape.reach * place.scale;
+        if (in_sight(center, reach)) {
+            let depth = max(dot(eye.forward, center) - reach, eye.near);
+            count = chunks_above_floor(shape, eye.slope * depth / place.scale);
+        }
+    }
+    book.extents[instance].chunks = count;
+}
+
+fn measured_chunks(extent: Extent) -> u32 {
+    return select(extent.chunks, 0u, extent.chunks == NOT_IN_VIEW);
+}
+
+@compute @workgroup_size(WIDE)
+fn sum_chunks(@builtin(local_invocation_index) lane: u32) {
+    let open = book.sums.open == 1u;
+    let instances = select(0u, eye.instances, open);
+    let share = (instances + WIDE - 1u) / WIDE;
+    let first = min(lane * share, instances);
+    let end = min(first + share, instances);
+    var sum = 0u;
+    for (var i = first; i < end; i += 1u) {
+        sum += measured_chunks(book.extents[i]);
+    }
+    var at = sum_before(lane, sum);
+    let total = parts[WIDE - 1u];
+    var seen = 0u;
+    for (var i = first; i < end; i += 1u) {
+        let extent = book.extents[i];
+        let next = at + measured_chunks(extent);
+        book.extents[i].first = at;
+        // The clusters that begin in this instance.
+        for (var k = (at + CLUSTER - 1u) / CLUSTER; k * CLUSTER < next; k += 1u) {
+            measured[k].instance = i;
+        }
+        at = next;
+        seen += u32(extent.chunks != NOT_IN_VIEW);
+    }
+    workgroupBarrier();
+    let before = sum_before(lane, seen);
+    if (lane == 0u && open) {
+        book.sums.chunks = total;
+        book.sums.instances = parts[WIDE - 1u];
+        arguments.clusters = dispatch_of((total + CLUSTER - 1u) / CLUSTER);
+    }
+}

@@ -1,0 +1,149 @@
+"""Mended and compared cells."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+import pickle
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import neurotess as nt
+import numpy as np
+import pytest
+
+CELL = b"1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 20 0 1 2\n4 3 5 30 0 1 3\n5 2 -4 31 0 0.5 3\n6 2 -9 40 1 0.5 5\n"
+
+
+@pytest.fixture(scope="module")
+def cell() -> nt.Morphology:
+    return nt.read(CELL)
+
+
+def command(*words: object) -> subprocess.CompletedProcess[str]:
+    line = [sys.executable, "-m", "neurotess", *map(str, words)]
+    return subprocess.run(line, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"types": {2: "basal", "dendrite": 2}}, ["--types", "2=basal,dendrite=2"]),
+        ({"scale": np.float32(0.5)}, ["--scale", "0.5"]),
+        ({"units": "nm"}, ["--units", "nm"]),
+        ({"units": (0.1, 0.1, 0.5)}, ["--units", "voxel=0.1,0.1,0.5"]),
+        ({"mend_radii": True}, ["--mend-radii"]),
+        ({"mend_radii": 1.5}, ["--mend-radii=1.5"]),
+        ({"types": {"soma": 3}, "reroot": 6}, ["--types", "soma=3", "--reroot", "6"]),
+        ({"join": math.inf}, ["--join", "inf"]),
+        ({"subtree": np.int64(3)}, ["--subtree", "3"]),
+        ({"smooth": "auto"}, ["--smooth", "auto"]),
+        ({"smooth": 8}, ["--smooth", "8"]),
+        ({"resample": 2.5}, ["--resample", "2.5"]),
+        ({"simplify": 1}, ["--simplify", "1"]),
+        ({"recenter": True}, ["--recenter"]),
+        ({"rotate": {"z": 90, "x": -30}}, ["--rotate", "z=90", "--rotate", "x=-30"]),
+        ({"rotate": [("z", 1), ("y", 2), ("z", 3)]}, ["--rotate=z=1", "--rotate=y=2", "--rotate=z=3"]),
+        ({"mirror": "x"}, ["--mirror", "x"]),
+        ({"mirror": ["x", "y"], "simplify": 0.5}, ["--mirror=x", "--mirror=y", "--simplify=0.5"]),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
+)
+def test_edits_are_those_of_the_command(
+    tmp_path: Path, options: dict[str, object], words: list[str]
+) -> None:
+    (tmp_path / "cell.swc").write_bytes(CELL)
+    edited = nt.edit(nt.read(tmp_path / "cell.swc"), **options)  # type: ignore[arg-type]
+    edited.save(tmp_path / "ours.swc")
+    ran = command("convert", tmp_path / "cell.swc", "-o", tmp_path / "theirs.swc", "--json", *words)
+    assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "ours.swc").read_bytes() == (tmp_path / "theirs.swc").read_bytes()
+    assert list(edited.edits) == json.loads(ran.stdout)[0]["edits"]
+
+
+def test_what_edits_do(cell: nt.Morphology) -> None:
+    assert nt.edit(cell) == cell and cell.edits == ()
+    turned = nt.edit(cell, rotate={"z": 90}, mirror="y")
+    x, y, z = cell.points.T
+    assert np.allclose(turned.points, np.stack([-y, -x, z], axis=1), atol=1e-5)
+    assert nt.edit(cell, units="nm").points == pytest.approx(cell.points / 1000)
+    even = nt.edit(cell, resample=1)
+    assert even.edits[0]["renumbered"] and len(even) > 3 * len(cell)
+    assert len(nt.edit(cell, subtree=5)) == 2
+    assert len(cell) == 5, "the cell itself stays"
+
+
+def test_radii_that_are_no_numbers_are_mended(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.swc"
+    bad.write_bytes(CELL.replace(b"20 0 1 2", b"20 0 nan 2"))
+    with pytest.raises(nt.ReadError):
+        nt.read(bad)
+    with pytest.warns(nt.ReadWarning):
+        mended = nt.edit(bad, mend_radii=True)
+    assert mended.radii[1] == 1 and mended.edits[0]["changed"] == 1
+
+
+def test_a_unit_that_was_dealt_with_is_not_warned_of() -> None:
+    far = b"1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 90000000 0 1 2\n"
+    with pytest.warns(nt.ReadWarning, match="too_large"):
+        cell = nt.read(far)
+    codes = [notice.code for notice in nt.edit(cell, mirror="x").warnings]
+    assert "too_large" in codes
+    assert "too_large" not in [notice.code for notice in nt.edit(cell, units="nm").warnings]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"scale": 0}, "'0' for 'scale'"),
+        ({"scale": 2, "units": "nm"}, "'scale.* cannot be used with 'units"),
+        ({"units": (1, 2)}, "um, nm or voxel"),
+        ({"mend_radii": 0.5}, "a number above 1"),
+        ({"rotate": {"w": 3}}, "an axis and degrees"),
+        ({"mirror": "xy"}, "x, y or z"),
+        ({"subtree": 77}, "no sample has the number 77"),
+        ({"reroot": 6}, "in a tree with a soma"),
+        ({"resample": 1e-9}, "take a larger one"),
+        ({"types": {"branch": 3}}, "'branch=3' for 'types'"),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
+)
+def test_wrong_edits_are_value_errors(
+    cell: nt.Morphology, options: dict[str, object], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        nt.edit(cell, **options)  # type: ignore[arg-type]
+
+
+def test_no_edit_of_the_command_is_missing() -> None:
+    helped = command("convert", "--help").stdout
+    flags = {flag.replace("-", "_") for flag in re.findall(r"^\s+(?:-\w, )?--([a-z-]+)", helped, re.M)}
+    files = {"out", "force", "format", "strict", "dry_run", "threads", "help"}
+    common = {"json", "quiet", "verbose", "no_progress", "color"}
+    assert flags - files - common == set(inspect.signature(nt.edit).parameters) - {"cell"}
+
+
+def test_edited_cells_are_pickled(cell: nt.Morphology) -> None:
+    edited = nt.edit(cell, scale=2)
+    again = pickle.loads(pickle.dumps(edited))
+    assert again == edited and again.edits == edited.edits and again.edits[0]["edit"] == "scale"
+
+
+def test_differences_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) -> None:
+    (tmp_path / "a.swc").write_bytes(CELL)
+    (tmp_path / "b.swc").write_bytes(CELL.replace(b"4 3 5 30", b"4 4 5 30.5"))
+    ran = command("diff", tmp_path / "a.swc", tmp_path / "b.swc", "--json")
+    assert ran.returncode == 1
+    theirs = json.loads(ran.stdout)
+    del theirs["files"]
+    ours = nt.diff(cell, tmp_path / "b.swc")
+    assert ours == theirs and not ours["same"]
+    assert ours["moved"] == {"count": 1, "largest": pytest.approx(0.5), "samples": [4]}
+    assert ours["retyped"][0]["count"] == 1
+    assert nt.diff(cell, cell)["same"] and nt.diff(cell, nt.edit(cell, scale=1.00001))["same"]
+    for tolerance in (-1, math.nan, math.inf):
+        with pytest.raises(ValueError, match="tolerance"):
+            nt.diff(cell, cell, tolerance=tolerance)
