@@ -104,7 +104,7 @@ def test_one_cell_is_shared_by_threads() -> None:
 LONG_WORK = {
     "mesh": "nt.mesh(cell, level=2)",
     "separate": "nt.mesh(cell, crossings='separate', level=1)",
-    "merge": "nt.mesh(cell, crossings='merge', level=16, types='axon,dendrite')",
+    "merge": "nt.mesh(cell, crossings='merge', level=8, types='axon,dendrite')",
     "mesh_many": "list(nt.mesh_many([cell] * 50, threads=2, level=4))",
     "render": "nt.render(cell, size=(8000, 8000), samples=64)",
 }

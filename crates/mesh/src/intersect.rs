@@ -21,6 +21,8 @@
 //! least". Batches of the tree's leaves are searched in order, and their size depends on what was found
 //! before and on nothing else: an unfinished search is the same on every machine.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -42,7 +44,7 @@ impl SurfaceMesh {
 /// Time grows with the faces and with the pairs found: a million triangles take about a second.
 /// Panics if a face names a vertex that is not there.
 pub fn self_intersections(positions: &[Vec3], faces: &Faces) -> Vec<[u32; 2]> {
-    search(positions, faces, Limits::NONE).pairs
+    search(positions, faces, Limits::NONE, || true).pairs
 }
 
 /// Those pairs of [`self_intersections`] that have at least one of the `chosen` faces. What changed a few
@@ -102,8 +104,18 @@ pub fn self_intersections_of(positions: &[Vec3], faces: &Faces, chosen: &[u32]) 
 
 /// Like [`self_intersections`], in a time that grows with the faces whatever their places.
 pub fn search_self_intersections(positions: &[Vec3], faces: &Faces) -> Search {
-    let count = faces.triangles.len() + 2 * faces.quads.len();
-    search(positions, faces, Limits::of(count))
+    search(positions, faces, Limits::of(faces), || true)
+}
+
+/// [`search_self_intersections`], which ends soon, incomplete, after another thread has set `stopped`.
+pub fn search_self_intersections_stoppable(
+    positions: &[Vec3],
+    faces: &Faces,
+    stopped: &AtomicBool,
+) -> Search {
+    // Nothing else is read by it: a moment later is as good.
+    let go_on = || !stopped.load(Ordering::Relaxed);
+    search(positions, faces, Limits::of(faces), go_on)
 }
 
 /// What a search has found.
@@ -137,7 +149,8 @@ impl Limits {
     /// Looks for each triangle. Real meshes need about 20, needles in a tangle some hundred.
     const LOOKS: u64 = 256;
 
-    fn of(triangles: usize) -> Self {
+    fn of(faces: &Faces) -> Self {
+        let triangles = faces.triangles.len() + 2 * faces.quads.len();
         let looks = Self::LOOKS * triangles as u64;
         Self {
             pairs: triangles.max(Self::LEAST.pairs),
@@ -150,7 +163,7 @@ impl Limits {
 const FIRST_BATCH: usize = 8;
 const MOST_BATCH: u64 = 256;
 
-fn search(positions: &[Vec3], faces: &Faces, limits: Limits) -> Search {
+fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() -> bool) -> Search {
     let triangles = triangles(positions, faces);
     let boxes: Vec<Bounds> = triangles
         .par_iter()
@@ -175,7 +188,9 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits) -> Search {
     let (mut pairs, mut looked_at) = (Vec::new(), 0);
     let leaves = tree.leaf_count();
     let (mut next, mut batch) = (0, FIRST_BATCH);
-    while next < leaves && pairs.len() < limits.pairs && looked_at < limits.looked_at {
+    let within =
+        |pairs: &[_], looked_at| pairs.len() < limits.pairs && looked_at < limits.looked_at;
+    while next < leaves && within(&pairs, looked_at) && go_on() {
         let end = leaves.min(next + batch);
         let found = (next..end)
             .into_par_iter()
@@ -302,7 +317,7 @@ mod tests {
             pairs: triangles,
             looked_at: Limits::LOOKS * triangles as u64,
         };
-        let found = search(positions, faces, limits);
+        let found = search(positions, faces, limits, || true);
         (found.looked_at, found.complete)
     }
 
@@ -337,6 +352,7 @@ mod tests {
                 pairs: 10,
                 looked_at: u64::MAX,
             },
+            || true,
         );
         let whole = search_self_intersections(&positions, &faces);
         assert!(whole.complete && whole.pairs == all);
@@ -345,6 +361,18 @@ mod tests {
                 .iter()
                 .all(|pair| all.binary_search(pair).is_ok())
         );
+    }
+
+    #[test]
+    fn another_thread_can_stop_a_search() {
+        let (positions, faces) = pieces((0..60).map(|i| (i as f32 * 0.01 * Vec3::X, 1.0)));
+        let found = |stopped| {
+            let stopped = AtomicBool::new(stopped);
+            search_self_intersections_stoppable(&positions, &faces, &stopped)
+        };
+        let stopped = found(true);
+        assert!(!stopped.complete && stopped.looked_at == 0 && stopped.pairs.is_empty());
+        assert_eq!(found(false), search_self_intersections(&positions, &faces));
     }
 
     #[test]

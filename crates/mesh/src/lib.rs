@@ -51,7 +51,10 @@ pub use coarse::{
 pub use forest::Forest;
 pub use format::{Format, UnknownFormat};
 pub use in_unit::InUnit;
-pub use intersect::{Search, search_self_intersections, self_intersections, self_intersections_of};
+pub use intersect::{
+    Search, search_self_intersections, search_self_intersections_stoppable, self_intersections,
+    self_intersections_of,
+};
 pub use label::{FaceLabel, region_code, region_name, type_of_region};
 pub use measure::{Measure, measure, measure_surface};
 pub use placed::Placed;

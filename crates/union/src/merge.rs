@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess_mesh::{
-    SurfaceMesh, Topology, measure, search_self_intersections, self_intersections,
-    self_intersections_of, topology,
+    SurfaceMesh, Topology, measure, search_self_intersections_stoppable, self_intersections_of,
+    topology,
 };
 
 use crate::options::{UnionError, UnionOptions};
@@ -39,7 +39,7 @@ pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionE
     union_stoppable(mesh, options, &AtomicBool::new(false))
 }
 
-/// [`union`], which ends soon after another thread sets `stopped`: between its searches and cuts.
+/// [`union`], which ends soon after another thread sets `stopped`: while it searches, and between its other steps.
 ///
 /// # Errors
 /// As [`union`], and [`UnionError::Stopped`].
@@ -54,14 +54,14 @@ pub fn union_stoppable(
     };
     check()?;
     let mut work = Work::new(mesh)?;
-    let mut report = before(&work)?;
-    let mut pairs = first_pairs(&work)?;
     check()?;
+    let mut report = before(&work)?;
+    let mut pairs = crossings(&work, stopped)?;
     report.pairs_before = pairs.len();
     report.places = places(&work, &pairs);
     report.dropped = drop_hidden(&mut work, &pairs);
     if !report.dropped.is_empty() {
-        pairs = crossings(&work);
+        pairs = crossings(&work, stopped)?;
     }
 
     let mut needles = options.needles;
@@ -94,7 +94,7 @@ pub fn union_stoppable(
         report.smoothed = smooth(&mut work, options.smoothing);
     }
     renew_normals(&mut work);
-    report.pairs = crossings(&work).len();
+    report.pairs = crossings(&work, stopped)?.len();
     after(&work, &mut report);
     report.faces_changed = changed(mesh, &work);
     Ok(Union {
@@ -103,22 +103,20 @@ pub fn union_stoppable(
     })
 }
 
-fn crossings(work: &Work) -> Vec<[u32; 2]> {
-    self_intersections(&work.positions(), &work.faces())
+fn crossings(work: &Work, stopped: &AtomicBool) -> Result<Vec<[u32; 2]>, UnionError> {
+    let search = search_self_intersections_stoppable(&work.positions(), &work.faces(), stopped);
+    if search.complete {
+        Ok(search.pairs)
+    } else if stopped.load(Ordering::Relaxed) {
+        Err(UnionError::Stopped)
+    } else {
+        Err(UnionError::TooMany(search.pairs.len()))
+    }
 }
 
 /// Crossings of faces that are not of the input: the others' were all cut.
 fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
     self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces())
-}
-
-fn first_pairs(work: &Work) -> Result<Vec<[u32; 2]>, UnionError> {
-    let search = search_self_intersections(&work.positions(), &work.faces());
-    if search.complete {
-        Ok(search.pairs)
-    } else {
-        Err(UnionError::TooMany(search.pairs.len()))
-    }
 }
 
 /// Rounds after which crossings are no longer cut only, but pressed apart too. Real cells need two at most.

@@ -9,7 +9,7 @@ use neurotess::mesh::{
     CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
 };
 use neurotess::refine::{CoarseSurface, Lod, Refinement};
-use neurotess::union::{Kin, Place, UnionOptions, UnionReport, union_stoppable};
+use neurotess::union::{Kin, Place, UnionError, UnionOptions, UnionReport, union_stoppable};
 use serde::Serialize;
 
 use super::options::{MeshLevels, MeshOptions};
@@ -50,8 +50,9 @@ impl<'m> CellSurface<'m> {
                 seconds: clock.elapsed().as_secs_f64(),
             });
         }
-        let whole = SurfaceMesh::collect(&*surface);
-        let merged = union_stoppable(&whole, &UnionOptions::default(), stopped);
+        let merged = SurfaceMesh::collect_stoppable(&*surface, stopped)
+            .ok_or(UnionError::Stopped)
+            .and_then(|whole| union_stoppable(&whole, &UnionOptions::default(), stopped));
         let merged = merged.map_err(|e| Failure(format!("what crosses cannot be merged: {e}")))?;
         if merged.report.pairs > 0 {
             let at = merged.report.places.first().map(|p| p.points);
