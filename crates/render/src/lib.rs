@@ -75,7 +75,7 @@ pub mod state {
 /// For our tests and benchmarks: not part of the interface, and may change at any time.
 #[doc(hidden)]
 pub mod testing {
-    pub use crate::output::still::SAMPLES;
+    pub use crate::output::options::SAMPLES;
     pub use crate::sources::adaptive::batch::{Batch, FramePlan};
     pub use crate::sources::adaptive::cull::decide;
     pub use crate::sources::adaptive::expand::{ExpandedVertex, GridPoint};
@@ -89,12 +89,10 @@ pub use gpu::device::Gpu;
 pub use gpu::error::DeviceError;
 pub use output::image::{Image, PngWriter};
 pub use output::meter::{FrameTime, Meter};
+pub use output::options::{LARGEST, Occlusion, PictureOptions, Viewpoint};
 pub use output::progressive::{ProgressiveRenderer, Steps, ViewParams};
 pub use output::static_picture::{KeyColors, StaticPicture, VisibleKey};
-pub use output::still::{
-    Cost, LARGEST, Occlusion, PictureError, PictureOptions, StaticError, StillRenderer, Viewpoint,
-    render_still,
-};
+pub use output::still::{Cost, PictureError, StaticError, StillRenderer, render_still};
 pub use output::watch::Watch;
 pub use scene::templates::{Template, Templates};
 pub use scene::{Instance, Placement, Scene, SceneError, TemplateId};

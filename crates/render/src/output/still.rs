@@ -12,85 +12,15 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
+use crate::output::options::{PictureOptions, Viewpoint};
 use crate::output::static_picture::StaticPicture;
 use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
-use crate::output::tiles::{Finishing, TileRenderer};
+use crate::output::tiles::TileRenderer;
+use crate::output::tiling::Tiling;
 use crate::output::watch::Watch;
-use crate::scene::color::{ColorTable, Rgb};
-use crate::shading::finish::BLUR;
-use crate::shading::shade::{GUARD, Look, PipelineKey};
+use crate::scene::color::ColorTable;
+use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
-use crate::view::camera::Camera;
-use crate::view::frame::{Frame, Tile};
-
-/// How a picture is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PictureOptions {
-    /// Width and height (pixels), from 1 on.
-    pub size: [u32; 2],
-    /// Samples of a pixel: 1, 4, 16, 36 or 64.
-    pub samples: u32,
-    /// Color behind everything; none: transparent.
-    pub background: Option<Rgb>,
-    /// Light and wireframe.
-    pub look: Look,
-    /// Ambient occlusion, which darkens corners.
-    pub occlusion: Occlusion,
-    /// Greatest width and height of a tile (sub-pixels).
-    pub tile: u32,
-}
-
-/// Ambient occlusion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Occlusion {
-    /// Within 8 % of the picture's height, at the distance of the camera's target.
-    #[default]
-    Fit,
-    /// Within this distance (µm), at most 9 % of the picture's height and 360 sub-pixels.
-    Within(f32),
-    /// None.
-    Off,
-}
-
-impl Occlusion {
-    /// Radius of occlusion in a picture of this height (sub-pixels): µm, and the most sub-pixels.
-    /// It does not depend on tiles, so that they fit together.
-    pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
-        let height = f64::from(height);
-        let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
-        let most = (0.09 * height).min(MOST_MARGIN).ceil();
-        let radius = match self {
-            Self::Fit => 0.08 * height * sub_pixel,
-            Self::Within(radius) => f64::from(radius),
-            Self::Off => 0.0,
-        };
-        (radius > 0.0).then_some((radius as f32, most as f32))
-    }
-}
-
-impl Default for PictureOptions {
-    fn default() -> Self {
-        Self {
-            size: [1280, 960],
-            samples: 16,
-            background: Some([255, 255, 255]),
-            look: Look::default(),
-            occlusion: Occlusion::Fit,
-            tile: TILE,
-        }
-    }
-}
-
-/// Greatest width and height of a tile by default: with four samples of a sub-pixel, which take 104
-/// bytes, 240 MiB.
-const TILE: u32 = 1536;
-/// Greatest reach (sub-pixels) of ambient occlusion: with more, margins would take up most of a
-/// tile.
-const MOST_MARGIN: f64 = 360.0;
-/// Numbers of samples that a pixel can have.
-pub const SAMPLES: [u32; 5] = [1, 4, 16, 36, 64];
-/// Greatest width or height of a picture: positions are f32 and keep 1/256 of a sub-pixel.
-pub const LARGEST: u32 = 32_768;
 
 /// Why a picture was not made.
 #[derive(Debug, Error)]
@@ -119,105 +49,6 @@ pub struct Cost {
     pub target_bytes: u64,
 }
 
-/// How a picture is divided into tiles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Parting {
-    /// Sub-pixels per pixel along a side.
-    scale: u32,
-    /// Samples of a sub-pixel.
-    samples: u32,
-    /// Sub-pixels around a tile.
-    margin: u32,
-    /// Pixels kept of a tile.
-    step: [u32; 2],
-    /// Radius of occlusion: µm, and most sub-pixels.
-    occlusion: Option<(f32, f32)>,
-}
-
-impl Parting {
-    fn finishing(&self, options: &PictureOptions) -> Finishing {
-        Finishing {
-            scale: self.scale,
-            margin: self.margin,
-            occlusion: self.occlusion,
-            background: options.background,
-        }
-    }
-
-    /// The frame of the tile whose upper left pixel is at `[left, top]` of a picture of this size.
-    fn frame(&self, view: &Viewpoint, size: [u32; 2], [left, top]: [u32; 2]) -> Frame {
-        let Self {
-            scale,
-            margin,
-            step,
-            ..
-        } = *self;
-        let place = |n: u32| (n * scale) as i32 - margin as i32;
-        Frame {
-            camera: view.camera,
-            near: view.near,
-            size: size.map(|n| n * scale),
-            tile: Tile {
-                x: place(left),
-                y: place(top),
-                width: step[0] * scale + 2 * margin,
-                height: step[1] * scale + 2 * margin,
-            },
-        }
-    }
-}
-
-impl PictureOptions {
-    /// Number of samples that a pixel gets: the greatest possible number that is not above
-    /// `samples`.
-    pub fn samples_taken(&self) -> u32 {
-        let most = SAMPLES.into_iter().rfind(|&n| n <= self.samples);
-        most.unwrap_or(1)
-    }
-
-    /// Number of sub-pixels along a pixel's side.
-    pub fn sub_pixels(&self, gpu: &Gpu) -> u32 {
-        let in_each = f64::from(samples_in_sub_pixel(gpu, self.samples_taken()));
-        ((f64::from(self.samples_taken()) / in_each).sqrt() as u32).max(1)
-    }
-
-    /// Number of tiles of a picture.
-    pub fn tiles(&self, gpu: &Gpu, camera: &Camera) -> usize {
-        let Parting { step, .. } = self.parting(gpu, camera);
-        let [across, down] = [0, 1].map(|k| self.size[k].max(1).div_ceil(step[k]));
-        across as usize * down as usize
-    }
-
-    fn parting(&self, gpu: &Gpu, camera: &Camera) -> Parting {
-        let samples = self.samples_taken();
-        let scale = self.sub_pixels(gpu);
-        let height = self.size[1] * scale;
-        let largest = self.tile.min(gpu.largest_texture() - 2 * GUARD as u32);
-        let occlusion = self.occlusion.reach(camera, height);
-        let margin = occlusion
-            .map_or(0, |(_, most)| most as u32 + BLUR + 2)
-            .next_multiple_of(scale);
-        let inner = (largest.saturating_sub(2 * margin) / scale).max(32);
-        Parting {
-            scale,
-            samples: samples_in_sub_pixel(gpu, samples),
-            margin,
-            step: self.size.map(|n| inner.min(n.max(1))),
-            occlusion,
-        }
-    }
-}
-
-/// Number of samples of a sub-pixel: four; or one if a pixel has only one sample, and on OpenGL,
-/// for which naga 30 translates sample masks wrongly.
-pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
-    if samples == 1 || gpu.adapter.backend == "gl" {
-        1
-    } else {
-        4
-    }
-}
-
 /// Draws one picture: see [`StillRenderer::render`].
 ///
 /// # Errors
@@ -231,15 +62,6 @@ pub fn render_still<E>(
     take: impl FnMut(u32, Image) -> Result<(), E>,
 ) -> Result<Cost, PictureError<E>> {
     StillRenderer::new().render(gpu, source, view, table, options, take)
-}
-
-/// The view that a picture is drawn from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewpoint {
-    /// The camera.
-    pub camera: Camera,
-    /// Depth (µm) of the near plane: [`Camera::near`].
-    pub near: f64,
 }
 
 /// Draws pictures one after the other. Keeps pipelines and targets, so that a series of pictures
@@ -274,9 +96,9 @@ impl StillRenderer {
         source: &dyn VertexSource,
         table: &ColorTable,
         options: &PictureOptions,
-        parting: &Parting,
+        tiling: &Tiling,
     ) -> Result<&mut TileRenderer, DeviceError> {
-        let key = PipelineKey::new(source.key(), parting.samples, table, &options.look);
+        let key = PipelineKey::new(source.key(), tiling.samples, table, &options.look);
         let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {
@@ -305,19 +127,19 @@ impl StillRenderer {
         mut take: impl FnMut(u32, Image) -> Result<(), E>,
     ) -> Result<Cost, PictureError<E>> {
         let clock = Instant::now();
-        let parting = options.parting(gpu, &view.camera);
-        let step = parting.step;
+        let tiling = Tiling::new(options, gpu, &view.camera);
+        let step = tiling.step;
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, table, options, &parting)?;
+        let renderer = self.renderer(gpu, source, table, options, &tiling)?;
         renderer.timer.reset();
-        let finishing = parting.finishing(options);
+        let finishing = tiling.finishing(options);
         let [width, height] = options.size.map(|n| n.max(1));
         let mut tiles = 0;
         for top in (0..height).step_by(step[1] as usize) {
             let rows = step[1].min(height - top);
             let mut band = Image::new(width, rows);
             for left in (0..width).step_by(step[0] as usize) {
-                let frame = parting.frame(view, [width, height], [left, top]);
+                let frame = tiling.frame(view, [width, height], [left, top]);
                 let watch = watch.as_ref();
                 if watch.is_some_and(Watch::is_stopped) {
                     return Err(PictureError::Stopped);
@@ -359,22 +181,22 @@ impl StillRenderer {
         if options.look.wire > 0.0 {
             return Err(StaticError::Wireframe);
         }
-        let parting = options.parting(gpu, &view.camera);
+        let tiling = Tiling::new(options, gpu, &view.camera);
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, table, options, &parting)?;
+        let renderer = self.renderer(gpu, source, table, options, &tiling)?;
         let collector = renderer.collector(gpu, source);
         let mut collector = collector.ok_or(StaticError::Source)?;
-        let finishing = parting.finishing(options);
+        let finishing = tiling.finishing(options);
         let size = options.size.map(|n| n.max(1));
-        let step = parting.step.map(|n| n as usize);
+        let step = tiling.step.map(|n| n as usize);
         let mut matrix = MatrixBuilder::default();
         for top in (0..size[1]).step_by(step[1]) {
-            let mut band = Weights::new([size[0], parting.step[1].min(size[1] - top)]);
+            let mut band = Weights::new([size[0], tiling.step[1].min(size[1] - top)]);
             for left in (0..size[0]).step_by(step[0]) {
                 if watch.as_ref().is_some_and(Watch::is_stopped) {
                     return Err(StaticError::Stopped);
                 }
-                let frame = parting.frame(view, size, [left, top]);
+                let frame = tiling.frame(view, size, [left, top]);
                 let look = &options.look;
                 let collected =
                     renderer.collect(gpu, source, &frame, look, &finishing, &mut collector)?;

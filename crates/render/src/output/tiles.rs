@@ -17,7 +17,7 @@ use crate::gpu::timing::{Pass, Timer};
 use crate::output::static_picture::collect::{Collected, Collector, Wanted};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb, linear};
-use crate::shading::finish::{Finish, Finisher, Last};
+use crate::shading::finish::{BLUR, Finish, Finisher, Last};
 use crate::shading::shade::{GUARD, Look, PipelineKey, Shade, Shader, TableSizes};
 use crate::shading::targets::Targets;
 use crate::sources::VertexSource;
@@ -186,15 +186,8 @@ impl TileRenderer {
         let Some(targets) = &self.targets else {
             return Ok(None);
         };
-        let over = |n: u32| n.div_ceil(8);
-        let pixels = [over(kept[0]), over(kept[1])];
-        self.compute(
-            &self.finisher.last,
-            &groups[1],
-            pixels,
-            Pass::Gather,
-            &mut encoder,
-        );
+        let gather = [(&self.finisher.last, kept)];
+        self.compute(&gather, &groups[1], Pass::Gather, &mut encoder);
         let bytes = 4 * u64::from(kept[0]) * u64::from(kept[1]);
         encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
         self.timer.resolve(&mut encoder);
@@ -284,12 +277,18 @@ impl TileRenderer {
             let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, encoder);
         }
-        let over = |n: u32| n.div_ceil(8);
         // Without occlusion the passes are empty, since their times are read.
-        let all = |n: u32| if radius > 0.0 { over(n) } else { 0 };
-        let (occlude, blur) = (&self.finisher.occlude, &self.finisher.blur);
-        for (pipeline, name) in [(occlude, Pass::Occlude), (blur, Pass::Blur)] {
-            self.compute(pipeline, &finish_group, size.map(all), name, encoder);
+        let [tile, reached] = match radius > 0.0 {
+            true => {
+                [0, finishing.margin.saturating_sub(BLUR)].map(|less| size.map(|n| n - 2 * less))
+            }
+            false => [[0; 2]; 2],
+        };
+        let [copy_depths, occlude, rows, columns] = self.finisher.occlusion();
+        let occlude = [(copy_depths, tile), (occlude, reached)];
+        let blur = [(rows, reached), (columns, reached)];
+        for (pipelines, name) in [(occlude, Pass::Occlude), (blur, Pass::Blur)] {
+            self.compute(&pipelines, &finish_group, name, encoder);
         }
         Ok(Drawn {
             groups: [shade_group, finish_group],
@@ -323,13 +322,8 @@ impl TileRenderer {
             self.draw(source, &part, targets, &shade_group, &mut encoder);
         }
         // Empty passes, since their times are read with the others'.
-        let idle = [
-            (&self.finisher.occlude, Pass::Occlude),
-            (&self.finisher.blur, Pass::Blur),
-            (&self.finisher.last, Pass::Gather),
-        ];
-        for (pipeline, name) in idle {
-            self.compute(pipeline, &finish_group, [0, 0], name, &mut encoder);
+        for name in [Pass::Occlude, Pass::Blur, Pass::Gather] {
+            self.compute(&[], &finish_group, name, &mut encoder);
         }
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
@@ -451,11 +445,11 @@ impl TileRenderer {
         }
     }
 
+    /// A pass of pipelines one after the other, each for so many sub-pixels or pixels.
     fn compute(
         &self,
-        pipeline: &wgpu::ComputePipeline,
+        pipelines: &[(&wgpu::ComputePipeline, [u32; 2])],
         group: &wgpu::BindGroup,
-        groups: [u32; 2],
         name: Pass,
         encoder: &mut wgpu::CommandEncoder,
     ) {
@@ -463,9 +457,12 @@ impl TileRenderer {
             label: None,
             timestamp_writes: self.timer.compute(name),
         });
-        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups(groups[0], groups[1], 1);
+        for (pipeline, size) in pipelines {
+            let groups = size.map(|n| n.div_ceil(8));
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(groups[0], groups[1], 1);
+        }
     }
 }
 

@@ -165,7 +165,7 @@ fn pictures_bind_what_their_shaders_have() {
     for samples in [1, 4] {
         for (last, entry) in [(Last::Gather, "gather"), (Last::Accumulate, "accumulate")] {
             let shader = finish_shader(samples, last);
-            for entry in ["occlude", "blur", entry] {
+            for entry in ["copy_depths", "occlude", "blur_rows", "blur_columns", entry] {
                 let groups = vec![finish::entries(samples > 1, last)];
                 assert_bindings(&shader, entry, &groups);
             }

@@ -61,13 +61,25 @@ pub(crate) enum Last {
 
 /// The passes after the drawing.
 pub(crate) struct Finisher {
+    pub(crate) copy_depths: wgpu::ComputePipeline,
     pub(crate) occlude: wgpu::ComputePipeline,
-    pub(crate) blur: wgpu::ComputePipeline,
+    pub(crate) blur_rows: wgpu::ComputePipeline,
+    pub(crate) blur_columns: wgpu::ComputePipeline,
     pub(crate) last: wgpu::ComputePipeline,
     pub(crate) layout: wgpu::BindGroupLayout,
 }
 
 impl Finisher {
+    /// What ambient occlusion takes, in this order.
+    pub(crate) fn occlusion(&self) -> [&wgpu::ComputePipeline; 4] {
+        [
+            &self.copy_depths,
+            &self.occlude,
+            &self.blur_rows,
+            &self.blur_columns,
+        ]
+    }
+
     pub(crate) fn new(gpu: &Gpu, samples: u32, last: Last) -> Self {
         let device = &gpu.device;
         let module = gpu.shader_module(&finish_shader(samples, last));
@@ -88,8 +100,10 @@ impl Finisher {
             })
         };
         Self {
+            copy_depths: pipeline("copy_depths"),
             occlude: pipeline("occlude"),
-            blur: pipeline("blur"),
+            blur_rows: pipeline("blur_rows"),
+            blur_columns: pipeline("blur_columns"),
             last: pipeline(match last {
                 Last::Gather => "gather",
                 Last::Accumulate => "accumulate",

@@ -38,16 +38,24 @@ struct Finish {
 @group(0) @binding(2) var normals: texture_2d<f32>;
 @group(0) @binding(3) var depths: texture_2d<f32>;
 #endif
-@group(0) @binding(4) var<storage, read_write> raw: array<f32>;
+// Of each sub-pixel: share of the light that reaches it, and depth (µm), 0 where nothing is. Depths are read many
+// times: in software, a texture of samples costs twice as much.
+@group(0) @binding(4) var<storage, read_write> raw: array<vec2<f32>>;
+// The first share, blurred along rows.
 @group(0) @binding(5) var<storage, read_write> blurred: array<f32>;
 @group(0) @binding(6) var<storage, read_write> pixels: array<u32>;
+
+// Index of a sub-pixel that is in the tile.
+fn index_of(p: vec2<i32>) -> u32 {
+    return u32(p.y) * finish.tile_size.x + u32(p.x);
+}
 
 // Depth (µm), 0 where nothing is.
 fn depth_at(p: vec2<i32>) -> f32 {
     if any(p < vec2(0)) || any(p >= vec2<i32>(finish.tile_size)) {
         return 0.0;
     }
-    return bitcast<f32>(pack4x8unorm(textureLoad(depths, p, 0)));
+    return raw[index_of(p)].y;
 }
 
 // Position in the view (µm): right, up, backward.
@@ -56,32 +64,10 @@ fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
     return vec3(place * vec2(1.0, -1.0) * finish.slope * depth, -depth);
 }
 
-// Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's
-// radius.
-fn alike(depth: f32, q: vec2<i32>) -> f32 {
-    let other = depth_at(q);
-    if other == 0.0 || depth == 0.0 {
-        return 0.0;
-    }
-    let reach = min(finish.radius, finish.most * finish.slope * depth);
-    return max(1.0 - abs(other - depth) / (0.3 * reach), 0.0);
-}
-
+// Share of the light that reaches what is drawn at a sub-pixel: all of it where occlusion has seen nothing,
+// since only other samples of the sub-pixel are covered, or those of a later step.
 fn occlusion_at(p: vec2<i32>) -> f32 {
-    let depth = depth_at(p);
-    if depth == 0.0 {
-        return 1.0;
-    }
-    var sum = 0.0;
-    var weights = 0.0;
-    for (var k = -BLUR; k <= BLUR; k++) {
-        let q = p + vec2(0, k);
-        let weight = alike(depth, q) * f32(BLUR + 1 - abs(k));
-        weights += weight;
-        let y = u32(clamp(q.y, 0, i32(finish.tile_size.y) - 1));
-        sum += weight * blurred[y * finish.tile_size.x + u32(q.x)];
-    }
-    return select(1.0, sum / weights, weights > 0.0);
+    return raw[index_of(p)].x;
 }
 
 @compute @workgroup_size(8, 8)

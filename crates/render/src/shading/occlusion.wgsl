@@ -3,18 +3,36 @@
 //
 // Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: samples on a spiral, each
 // weighted by how far it rises above the tangent plane, less with greater distance. The blur is
-// theirs too, along x here and along y in finish.wgsl; it stops where the depth jumps.
+// theirs too, along rows and then along columns; it stops where the depth jumps.
 
 #import finish.wgsl
 
+// The sub-pixel of an invocation: what is kept of the tile, and what the blur reads around it. Called for
+// as many in tiles.rs.
+fn place(id: vec2<u32>) -> vec2<i32> {
+    return vec2<i32>(id) + max(i32(finish.margin) - BLUR, 0);
+}
+
+// Of the whole tile: what is around a sub-pixel occludes it, too.
+@compute @workgroup_size(8, 8)
+fn copy_depths(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= finish.tile_size) {
+        return;
+    }
+    let p = vec2<i32>(id.xy);
+    // The bytes of an f32: see shade.wgsl.
+    let depth = bitcast<f32>(pack4x8unorm(textureLoad(depths, p, 0)));
+    raw[index_of(p)] = vec2(1.0, depth);
+}
+
 @compute @workgroup_size(8, 8)
 fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
-    let p = vec2<i32>(id.xy);
+    let p = place(id.xy);
     if any(p >= vec2<i32>(finish.tile_size)) {
         return;
     }
-    let at = id.y * finish.tile_size.x + id.x;
-    let depth = depth_at(p);
+    let at = index_of(p);
+    let depth = raw[at].y;
     if depth == 0.0 {
         return;
     }
@@ -44,12 +62,22 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
         let far = min(distance / (2.0 * radius), 1.0);
         sum += rise * (1.0 - far * far);
     }
-    raw[at] = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
+    raw[at].x = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
+}
+
+// Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's
+// radius.
+fn alike(depth: f32, other: f32) -> f32 {
+    if other == 0.0 {
+        return 0.0;
+    }
+    let reach = min(finish.radius, finish.most * finish.slope * depth);
+    return max(1.0 - abs(other - depth) / (0.3 * reach), 0.0);
 }
 
 @compute @workgroup_size(8, 8)
-fn blur(@builtin(global_invocation_id) id: vec3<u32>) {
-    let p = vec2<i32>(id.xy);
+fn blur_rows(@builtin(global_invocation_id) id: vec3<u32>) {
+    let p = place(id.xy);
     if any(p >= vec2<i32>(finish.tile_size)) {
         return;
     }
@@ -61,10 +89,34 @@ fn blur(@builtin(global_invocation_id) id: vec3<u32>) {
     var weights = 0.0;
     for (var k = -BLUR; k <= BLUR; k++) {
         let q = p + vec2(k, 0);
-        let weight = alike(depth, q) * f32(BLUR + 1 - abs(k));
-        weights += weight;
-        sum += weight * raw[u32(clamp(q.y, 0, i32(finish.tile_size.y) - 1)) * finish.tile_size.x
-            + u32(clamp(q.x, 0, i32(finish.tile_size.x) - 1))];
+        let weight = alike(depth, depth_at(q)) * f32(BLUR + 1 - abs(k));
+        if weight > 0.0 {
+            weights += weight;
+            sum += weight * raw[index_of(q)].x;
+        }
     }
-    blurred[id.y * finish.tile_size.x + id.x] = select(1.0, sum / weights, weights > 0.0);
+    blurred[index_of(p)] = sum / weights;
+}
+
+@compute @workgroup_size(8, 8)
+fn blur_columns(@builtin(global_invocation_id) id: vec3<u32>) {
+    let p = place(id.xy);
+    if any(p >= vec2<i32>(finish.tile_size)) {
+        return;
+    }
+    let depth = depth_at(p);
+    if depth == 0.0 {
+        return;
+    }
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var k = -BLUR; k <= BLUR; k++) {
+        let q = p + vec2(0, k);
+        let weight = alike(depth, depth_at(q)) * f32(BLUR + 1 - abs(k));
+        if weight > 0.0 {
+            weights += weight;
+            sum += weight * blurred[index_of(q)];
+        }
+    }
+    raw[index_of(p)].x = sum / weights;
 }

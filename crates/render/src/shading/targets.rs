@@ -41,7 +41,7 @@ impl Targets {
             normal,
             distance,
             depth,
-            raw: make(gpu, "occlusion", 4 * pixels, storage),
+            raw: make(gpu, "occlusion", 8 * pixels, storage),
             blurred: make(gpu, "occlusion", 4 * pixels, storage),
             pixels: make(
                 gpu,
@@ -51,7 +51,7 @@ impl Targets {
             ),
             read: make(gpu, "read back", 4 * pixels, read),
             size,
-            bytes: bytes + 16 * pixels,
+            bytes: bytes + 20 * pixels,
         }
     }
 }

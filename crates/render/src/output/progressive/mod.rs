@@ -25,8 +25,8 @@ use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::output::ids::Identifier;
+use crate::output::options::{Occlusion, samples_in_sub_pixel};
 use crate::output::static_picture::StaticPicture;
-use crate::output::still::{Occlusion, samples_in_sub_pixel};
 use crate::output::tiles::{TilePass, TileRenderer};
 use crate::scene::color::{ColorTable, InstanceValues};
 use crate::shading::finish::{Finish, Finisher, Last};
@@ -463,7 +463,7 @@ impl ProgressiveRenderer {
         pass.set_bind_group(0, &group, &[]);
         // Steps lie within the same pixel, so occlusion is computed once for all of them.
         if uniform.radius > 0.0 && *step == 0 {
-            for pipeline in [&finisher.occlude, &finisher.blur] {
+            for pipeline in finisher.occlusion() {
                 pass.set_pipeline(pipeline);
                 pass.dispatch_workgroups(over[0], over[1], 1);
             }

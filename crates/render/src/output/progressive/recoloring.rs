@@ -7,10 +7,10 @@
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::output::options::samples_in_sub_pixel;
 use crate::output::static_picture::collect::{Collector, Part, Wanted};
 use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
 use crate::output::static_picture::{KeyColors, StaticPicture};
-use crate::output::still::samples_in_sub_pixel;
 use crate::output::tiles::TilePass;
 use crate::shading::finish::{BLUR, Finish};
 use crate::sources::VertexSource;

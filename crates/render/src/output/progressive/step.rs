@@ -1,6 +1,6 @@
 //! What a picture shows, and what one step of it draws.
 
-use crate::output::still::Occlusion;
+use crate::output::options::Occlusion;
 use crate::output::tiles::TileRenderer;
 use crate::scene::color::{Rgb, linear};
 use crate::shading::finish::Finish;
