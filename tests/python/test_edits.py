@@ -44,6 +44,8 @@ def command(*words: object) -> subprocess.CompletedProcess[str]:
         ({"smooth": 8}, ["--smooth", "8"]),
         ({"resample": 2.5}, ["--resample", "2.5"]),
         ({"simplify": 1}, ["--simplify", "1"]),
+        ({"spines": 0.5}, ["--spines", "0.5"]),
+        ({"spines": (0.5, 7)}, ["--spines", "0.5,7"]),
         ({"recenter": True}, ["--recenter"]),
         ({"rotate": {"z": 90, "x": -30}}, ["--rotate", "z=90", "--rotate", "x=-30"]),
         ({"rotate": [("z", 1), ("y", 2), ("z", 3)]}, ["--rotate=z=1", "--rotate=y=2", "--rotate=z=3"]),

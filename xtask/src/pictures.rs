@@ -7,7 +7,7 @@ use anyhow::Context;
 use crate::demo::neurotess;
 use crate::steps::{self, Steps, cargo, root};
 
-/// Name, and arguments of `neurotess render`. Small: all together stay below 300 kB.
+/// Name, and arguments of `neurotess render`. Small: all together stay below 450 kB.
 const PICTURES: &[(&str, &str)] = &[
     ("types", "samples/pyramidal.swc --size 480x640 --scale-bar"),
     (
@@ -26,6 +26,10 @@ const PICTURES: &[(&str, &str)] = &[
         "synapses",
         "target/pictures/circuit --nodes 0 --synapses --marker-color-by conductance --size 480x360 \
          --eye=-57,1010,200 --target=-57,990,-37 --scale-bar --marker-size 1.8",
+    ),
+    (
+        "spines",
+        "target/pictures/spiny.swc --eye=-1.7,356.5,34.3 --target=-9.7,356.5,8.3 --size 480x360 --scale-bar --no-legend",
     ),
     (
         "order",
@@ -49,6 +53,11 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
         let made =
             "synth circuit -o target/pictures/circuit --neurons 20 --morphologies 2 --synapses 600";
         steps::run(&mut neurotess(&format!("{made} --reported 1 --force -q"))?)?;
+        Ok("in target/pictures".into())
+    })?;
+    steps.step("spines", || {
+        let made = "convert samples/pyramidal.swc -o target/pictures/spiny.swc --spines 2";
+        steps::run(&mut neurotess(&format!("{made} --force -q")))?;
         Ok("in target/pictures".into())
     })?;
     let mut bytes = 0;

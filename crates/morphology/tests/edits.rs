@@ -68,6 +68,10 @@ fn every_edit(morphology: &Morphology) -> Vec<Edit> {
         Edit::Smooth(SmoothingLength::Length(40.0)),
         Edit::Resample { spacing: 30.0 },
         Edit::Simplify { tolerance: 20.0 },
+        Edit::Spines {
+            density: 0.05,
+            seed: 1,
+        },
         Edit::Recenter,
         Edit::Rotate {
             axis: DVec3::new(1.0, 2.0, 3.0),
@@ -454,6 +458,10 @@ fn what_cannot_be_done_is_an_error() {
         Edit::Resample { spacing: f64::NAN },
         Edit::Resample { spacing: 1e-20 },
         Edit::Simplify { tolerance: -1.0 },
+        Edit::Spines {
+            density: 1e9,
+            seed: 1,
+        },
         Edit::Smooth(SmoothingLength::Length(0.0)),
         Edit::Join { distance: f64::NAN },
         Edit::MendRadii {

@@ -241,3 +241,29 @@ fn wrong_values_are_wrong_usage() {
     work.run("convert cell.swc").exits(2);
     assert_eq!(work.names("."), ["cell.swc"]);
 }
+
+#[neurotess_testing::test]
+fn spines_become_a_part_of_the_one_closed_membrane() {
+    let work = Work::new();
+    let granule = sample("granule.swc");
+    let json = work
+        .run(&format!(
+            "convert {granule} -o spiny.swc --spines 1,3 --json"
+        ))
+        .exits(0)
+        .json();
+    let sections = &json[0]["edits"][0]["sections"];
+    let grown = sections["after"].as_i64().zip(sections["before"].as_i64());
+    // Each adds itself and a piece of its dendrite.
+    let grown = grown.map(|(after, before)| (after - before) / 2);
+    assert!(grown.expect("numbers") > 500, "{grown:?}");
+    work.run("mesh spiny.swc -o spiny.ply --level 2").exits(0);
+    let judged = work.run("check spiny.ply --json").exits(0).json();
+    let judged = &judged[0];
+    assert_eq!(judged["closed"], true);
+    assert_eq!(
+        (&judged["components"], &judged["genus"]),
+        (&1.into(), &0.into())
+    );
+    assert_eq!(judged["self_intersections"], 0, "{judged}");
+}

@@ -30,6 +30,7 @@ def edit(
     smooth: float | Literal["auto"] | None = None,
     resample: float | None = None,
     simplify: float | None = None,
+    spines: float | tuple[float, int] | None = None,
     recenter: bool = False,
     rotate: Mapping[Axis, float] | Iterable[tuple[Axis, float]] | None = None,
     mirror: Axis | Iterable[Axis] | None = None,
@@ -52,6 +53,8 @@ def edit(
     - `smooth`: smooths noise away that is shorter than this length (µm), or ``"auto"``
     - `resample`: puts samples at this distance (µm) along each section, as nearly as equal parts allow
     - `simplify`: leaves out samples without which the membrane moves by no more than this tolerance (µm)
+    - `spines`: grows so many spines on each µm of basal and apical dendrites, as far as there is room, at random
+      places; ``(density, seed)`` for others than those of seed 1. They are of type 7, a neck and a head each
     - `recenter`: moves the soma, or without one the first root, to the origin
     - `rotate`: turns around axes through the origin, counterclockwise, by degrees: ``{"z": 90}``, or pairs where an
       axis comes twice
@@ -82,9 +85,11 @@ def edit(
             "smooth": smooth,
             "resample": resample,
             "simplify": simplify,
-            "recenter": recenter,
         }
     )
+    if spines is not None:
+        words += _words("spines", [",".join(map(_options.word, _several(spines)))])
+    words += _options.arguments({"recenter": recenter})
     words += _words("rotate", [_join([pair], "") for pair in pairs])
     words += _words("mirror", _several(mirror))
     edits = _neurotess.Edits(words)

@@ -1,4 +1,4 @@
-//! Edits of a tracing: units, places, types, spacing, noise, roots, pieces, radii.
+//! Edits of a tracing: units, places, types, spacing, noise, roots, pieces, radii, spines.
 //!
 //! An [`Edit`] says what to do, [`apply`] does several in the order given, each to what the one before made
 //! of the tracing, and an [`EditReport`] says what each has changed. The tracing itself stays as it is, so
@@ -44,11 +44,13 @@ mod resample;
 mod root;
 mod simplify;
 mod smooth;
+mod spines;
 
 use glam::DVec3;
 use thiserror::Error;
 
 pub use report::{BeforeAfter, EditReport};
+pub use spines::SPINE;
 
 use crate::smoothing::SmoothingLength;
 use crate::{BuildError, Morphology, NeuriteKind};
@@ -103,6 +105,14 @@ pub enum Edit {
         /// Greatest move of the membrane (µm).
         tolerance: f64,
     },
+    /// Grows spines on basal and apical dendrites, samples of type [`SPINE`]: see the module's page. How many had
+    /// no room is [`EditReport::left`].
+    Spines {
+        /// How many for each µm, at most: bases are at least two radii of the dendrite apart.
+        density: f64,
+        /// Another seed gives other places, directions and sizes.
+        seed: u64,
+    },
     /// Moves the soma's center, or without a soma the first root, to the origin.
     Recenter,
     /// Turns around an axis through the origin by an angle (radians), counterclockwise as seen from
@@ -133,6 +143,7 @@ impl Edit {
             Self::Smooth(_) => "smooth",
             Self::Resample { .. } => "resample",
             Self::Simplify { .. } => "simplify",
+            Self::Spines { .. } => "spines",
             Self::Recenter => "recenter",
             Self::Rotate { .. } => "rotate",
             Self::Mirror { .. } => "mirror",
@@ -197,6 +208,14 @@ pub enum EditError {
         /// How many there would be.
         samples: f64,
     },
+    /// More spines than a tracing should have.
+    #[error("{density} spines for each µm are {spines:.0} of them: take fewer")]
+    TooManySpines {
+        /// Spines for each µm.
+        density: f64,
+        /// How many there would be.
+        spines: f64,
+    },
     /// The result is no morphology: coordinates grew beyond [`Morphology::MAX_COORDINATE`].
     #[error("the edit makes numbers too large ({0}): check its factor")]
     Build(#[from] BuildError),
@@ -243,6 +262,7 @@ fn apply_one(morphology: &Morphology, nodes: &Nodes, edit: &Edit) -> Result<Edit
         Edit::Smooth(length) => smooth::smooth(morphology, nodes, length),
         Edit::Resample { spacing } => resample::resample(morphology, nodes, spacing),
         Edit::Simplify { tolerance } => simplify::simplify(morphology, nodes, tolerance),
+        Edit::Spines { density, seed } => spines::grow(morphology, nodes, density, seed),
         Edit::Recenter => Ok(place::recenter(morphology, nodes)),
         Edit::Rotate { axis, angle } => place::rotate(nodes, axis, angle),
         Edit::Mirror { axis } => place::mirror(nodes, axis),

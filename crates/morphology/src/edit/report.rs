@@ -35,7 +35,8 @@ pub struct EditReport {
     pub largest_move: f64,
     /// Greatest change of a sample's radius (µm), of samples that stay.
     pub largest_radius_change: f64,
-    /// What could not be mended: samples whose neurite has no good radius, pieces too far from others.
+    /// What could not be done: samples whose neurite has no good radius, pieces too far from others, spines
+    /// without room.
     pub left: usize,
     /// Whether samples have other numbers now.
     pub renumbered: bool,

@@ -1,0 +1,92 @@
+//! How large a spine is.
+//!
+//! | | mean | range |
+//! | --- | ---: | ---: |
+//! | length of the neck (µm) | 0.45 | 0.08–1.6 |
+//! | diameter of the neck (µm) | 0.15 | 0.04–0.46 |
+//! | volume of the head (µm³) | 0.051 | 0.003–0.55 |
+//!
+//! (Harris and Stevens 1989, stratum radiatum of CA1). Sizes are skewed, so logarithms are drawn from normal
+//! distributions with these means, and what is beyond the range is drawn to its end.
+
+use std::f64::consts::PI;
+
+use super::Random;
+use super::room::GAP;
+
+/// A twig with a head. Distances (µm) are from the center line of its dendrite.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Spine {
+    /// Distance and radius (µm) of its samples, outwards.
+    samples: Vec<(f64, f64)>,
+}
+
+/// Necks are at most this share of their dendrite's radius and of their head's.
+const NECK_OF_DENDRITE: f64 = 0.5;
+const NECK_OF_HEAD: f64 = 0.6;
+/// Samples nearer to one another than this share of the larger radius are left out by meshing.
+const SPACING: f64 = 0.5;
+
+impl Spine {
+    /// One for a dendrite of this radius (µm).
+    pub(super) fn new(dendrite: f64, random: &mut Random) -> Self {
+        let length = skewed(random, (0.45, 0.29), (0.08, 1.6));
+        let neck = skewed(random, (0.15, 0.06), (0.04, 0.46)) / 2.0;
+        let volume = skewed(random, (0.051, 0.08), (0.003, 0.55));
+        let head = (0.75 * volume / PI).cbrt();
+        let neck = neck
+            .min(NECK_OF_DENDRITE * dendrite)
+            .min(NECK_OF_HEAD * head);
+        let mut samples = vec![(dendrite + 0.5 * length, neck), (dendrite + length, neck)];
+        // The neck ends in the sphere of the head, whose far half is the round end of the twig.
+        let center = dendrite + length + (head * head - neck * neck).sqrt();
+        for before in [0.52_f64, 0.0] {
+            let radius = head * (1.0 - before * before).sqrt();
+            let distance = center - before * head;
+            let near = samples
+                .last()
+                .is_some_and(|&(last, _)| distance - last < SPACING * radius);
+            if before == 0.0 || (radius > neck && !near) {
+                samples.push((distance, radius));
+            }
+        }
+        Self { samples }
+    }
+
+    /// Distance and radius (µm) of its samples, outwards.
+    pub(super) fn samples(&self) -> &[(f64, f64)] {
+        &self.samples
+    }
+
+    /// Moves it outwards as far as a dendrite that is this thick (µm) close by needs.
+    pub(super) fn begin_outside(&mut self, dendrite: f64) {
+        let least = dendrite + self.samples[0].1 + 1.5 * GAP;
+        let more = (least - self.samples[0].0).max(0.0);
+        for (distance, _) in &mut self.samples {
+            *distance += more;
+        }
+    }
+
+    /// Spheres that cover it: distances and radii (µm). Those of the neck begin where it has left its dendrite.
+    pub(super) fn spheres(&self) -> Vec<(f64, f64)> {
+        let mut spheres = Vec::new();
+        for pair in self.samples.windows(2) {
+            let [(from, thin), (to, thick)] = [pair[0], pair[1]];
+            let steps = ((to - from) / thin.max(0.02)).ceil().clamp(1.0, 64.0);
+            for step in 0..steps as u32 {
+                let share = f64::from(step) / steps;
+                spheres.push((from + share * (to - from), thin + share * (thick - thin)));
+            }
+        }
+        spheres.extend(self.samples.last());
+        spheres
+    }
+}
+
+/// A number whose logarithm is normally distributed, by its own mean and standard deviation.
+fn skewed(random: &mut Random, (mean, deviation): (f64, f64), (least, most): (f64, f64)) -> f64 {
+    let ratio: f64 = deviation / mean;
+    let variance = libm::log(1.0 + ratio * ratio);
+    let drawn = libm::log(mean) - variance / 2.0 + variance.sqrt() * random.normal();
+    libm::exp(drawn).clamp(least, most)
+}

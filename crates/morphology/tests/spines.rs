@@ -1,0 +1,156 @@
+//! Spines are where they should be, and touch nothing.
+
+use glam::DVec3;
+use neurotess_morphology::edit::{self, Edit, EditReport, SPINE};
+use neurotess_morphology::{Morphology, NeuriteKind, Node, SectionId};
+
+/// A soma, and on it a straight dendrite of 100 µm that forks, and an axon.
+fn cell(radius: f64) -> Morphology {
+    let rows = [
+        (1, [0.0, 0.0, 0.0], 5.0, None),
+        (3, [0.0, 6.0, 0.0], radius, Some(0)),
+        (3, [0.0, 106.0, 0.0], radius, Some(1)),
+        (3, [50.0, 150.0, 0.0], radius, Some(2)),
+        (4, [-50.0, 150.0, 0.0], radius, Some(2)),
+        (2, [0.0, -6.0, 0.0], radius, Some(0)),
+        (2, [0.0, -106.0, 0.0], radius, Some(5)),
+    ];
+    let node =
+        |(id, &(kind, position, radius, parent)): (i64, &(i32, [f64; 3], f64, Option<u32>))| Node {
+            id,
+            kind: NeuriteKind(kind),
+            position: DVec3::from_array(position),
+            radius,
+            parent,
+        };
+    let nodes: Vec<Node> = (1..).zip(&rows).map(node).collect();
+    let built = Morphology::from_nodes("cell", Vec::new(), &nodes);
+    built.expect("a cell").morphology
+}
+
+fn grown(cell: &Morphology, density: f64, seed: u64) -> (Morphology, EditReport) {
+    let edited = edit::apply(cell, &[Edit::Spines { density, seed }]).expect("spines");
+    (edited.morphology, edited.reports[0].clone())
+}
+
+/// Spines: the dendrite's sample that each hangs on, and its own samples, as places (µm) and radii.
+fn spines(m: &Morphology) -> Vec<[Vec<(DVec3, f64)>; 2]> {
+    let there = |point: usize| {
+        let point = &m.points[point];
+        (
+            m.origin + point.position.as_dvec3(),
+            f64::from(point.radius),
+        )
+    };
+    let of = |id: usize| m.sections[id].range().map(there).collect::<Vec<_>>();
+    let is_spine = |&id: &usize| m.sections[id].kind == SPINE;
+    let all = (0..m.sections.len()).filter(is_spine);
+    let with_base = all.map(|id| {
+        let parent = m.sections[id].parent().expect("a dendrite");
+        [vec![of(parent.index()).pop().expect("points")], of(id)]
+    });
+    with_base.collect()
+}
+
+#[test]
+fn as_many_grow_as_were_asked_for_and_only_on_dendrites() {
+    let cell = cell(0.3);
+    for density in [0.1, 0.5, 1.0] {
+        let (spiny, report) = grown(&cell, density, 1);
+        let spines = spines(&spiny);
+        let asked = density * (100.0 + 2.0 * 50_f64.hypot(44.0));
+        let share = spines.len() as f64 / asked;
+        assert!(
+            (0.85..1.1).contains(&share),
+            "{density}: {} of {asked}",
+            spines.len()
+        );
+        assert!(report.left <= 2, "{}", report.left);
+        assert!(
+            spines.iter().all(|[base, _]| base[0].0.y > 6.0),
+            "none on the axon"
+        );
+        // Base samples are new, and each spine has two of its neck and one or two of its head.
+        assert!(report.samples.after - report.samples.before >= 4 * spines.len());
+        assert_eq!(report.pieces.before, report.pieces.after);
+    }
+}
+
+#[test]
+fn bases_keep_apart_and_necks_are_thinner_than_anything_traced() {
+    for radius in [0.2, 0.5, 2.0] {
+        let (spiny, _) = grown(&cell(radius), 2.0, 3);
+        let spines = spines(&spiny);
+        assert!(spines.len() > 20);
+        for [base, twig] in &spines {
+            let (base, thick) = base[0];
+            assert!((thick - radius).abs() < 1e-4);
+            let (neck, head) = (twig[0].1, twig.last().expect("a head").1);
+            assert!(neck <= 0.5 * radius + 1e-5 && neck < 0.6 * head + 1e-5);
+            assert!((0.089..0.51).contains(&head), "{head}");
+            // It points away from the dendrite, and begins outside of it.
+            let outwards = (twig[0].0 - base).normalize();
+            assert!(twig[0].0.distance(base) > radius);
+            let on_line = |(at, _): &(DVec3, f64)| (*at - base).normalize().dot(outwards) > 0.999;
+            assert!(twig.iter().all(on_line));
+        }
+        for [a, _] in &spines {
+            let near = |b: &&[Vec<(DVec3, f64)>; 2]| b[0][0].0.distance(a[0].0) < 1.99 * radius;
+            assert_eq!(spines.iter().filter(near).count(), 1, "itself");
+        }
+    }
+}
+
+#[test]
+fn heads_touch_neither_one_another_nor_neurites() {
+    // Two dendrites side by side, with a gap that few spines fit into.
+    let mut rows = Vec::new();
+    for (first, x) in [(0_u32, 0.0), (2, 1.6)] {
+        rows.push(([x, 0.0, 0.0], None));
+        rows.push(([x, 60.0, 0.0], Some(first)));
+    }
+    let node = |(id, (position, parent)): (i64, ([f64; 3], Option<u32>))| Node {
+        id,
+        kind: NeuriteKind(3),
+        position: DVec3::from_array(position),
+        radius: 0.4,
+        parent,
+    };
+    let nodes: Vec<Node> = (1..).zip(rows).map(node).collect();
+    let two = Morphology::from_nodes("two", Vec::new(), &nodes)
+        .expect("two")
+        .morphology;
+    let (spiny, _) = grown(&two, 1.0, 1);
+    let heads: Vec<(DVec3, f64)> = spines(&spiny)
+        .iter()
+        .map(|[_, twig]| twig[twig.len() - 1])
+        .collect();
+    assert!(heads.len() > 60, "{}", heads.len());
+    for (i, (a, r)) in heads.iter().enumerate() {
+        for x in [0.0, 1.6] {
+            assert!((a.x - x).hypot(a.z) > r + 0.4, "{a} is in a dendrite");
+        }
+        assert!(heads[..i].iter().all(|(b, s)| a.distance(*b) > r + s));
+    }
+}
+
+#[test]
+fn equal_seeds_give_equal_spines_and_traced_samples_stay() {
+    let cell = cell(0.4);
+    let (one, _) = grown(&cell, 0.7, 5);
+    assert_eq!(one, grown(&cell, 0.7, 5).0);
+    assert_ne!(one, grown(&cell, 0.7, 6).0);
+    for (point, &id) in cell.points.iter().zip(&cell.sample_ids) {
+        let place = one
+            .sample_ids
+            .iter()
+            .position(|&other| other == id)
+            .expect("stays");
+        assert_eq!(one.points[place].radius, point.radius);
+        let [a, b] = [(&cell, point), (&one, &one.points[place])]
+            .map(|(m, p)| m.origin + p.position.as_dvec3());
+        assert!(a.distance(b) < 1e-4);
+    }
+    let kinds = |m: &Morphology, id: u32| m.sections[SectionId(id).index()].kind;
+    assert_eq!(kinds(&one, 0), NeuriteKind(3));
+}
