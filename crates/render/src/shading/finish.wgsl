@@ -8,7 +8,7 @@ struct Finish {
     tile_origin: vec2<i32>,
     // Half the whole picture (sub-pixels).
     half_size: vec2<f32>,
-    // Size (µm) of a sub-pixel at unit depth.
+    // What each µm of depth adds to the size (µm) of a sub-pixel.
     slope: f32,
     // Sub-pixels per pixel, along one side.
     scale: u32,
@@ -27,6 +27,8 @@ struct Finish {
     empty: u32,
     // Linear color of the background.
     background: vec4<f32>,
+    // Size (µm) of a sub-pixel at every depth: 0 with perspective.
+    flat: f32,
 }
 
 @group(0) @binding(0) var<uniform> finish: Finish;
@@ -53,7 +55,8 @@ fn depth_at(p: vec2<i32>) -> f32 {
 // Position in the view (µm): right, up, backward.
 fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
     let place = vec2<f32>(p + finish.tile_origin) + 0.5 - finish.half_size;
-    return vec3(place * vec2(1.0, -1.0) * finish.slope * depth, -depth);
+    let across = place * vec2(1.0, -1.0);
+    return vec3(across * finish.slope * depth + across * finish.flat, -depth);
 }
 
 // Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's
@@ -63,7 +66,7 @@ fn alike(depth: f32, q: vec2<i32>) -> f32 {
     if other == 0.0 || depth == 0.0 {
         return 0.0;
     }
-    let reach = min(finish.radius, finish.most * finish.slope * depth);
+    let reach = min(finish.radius, finish.most * finish.slope * depth + finish.most * finish.flat);
     return max(1.0 - abs(other - depth) / (0.3 * reach), 0.0);
 }
 

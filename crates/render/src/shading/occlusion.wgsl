@@ -20,7 +20,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let center = view_at(p, depth);
     let n = normalize(textureLoad(normals, p, 0).xyz * 2.0 - 1.0);
-    let pixel = finish.slope * depth;
+    let pixel = finish.slope * depth + finish.flat;
     let reach = min(finish.radius / pixel, finish.most);
     let radius = reach * pixel;
     let whole = vec2<u32>(p + finish.tile_origin + 65536);

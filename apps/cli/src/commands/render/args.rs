@@ -183,6 +183,11 @@ pub(crate) struct RenderArgs {
         help_heading = "Camera"
     )]
     pub(crate) fov: f64,
+    /// Look without perspective: lengths are true at all depths. The picture is this high (µm), or
+    /// fits the scene; with --eye, it shows what --fov shows at the target
+    #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
+          help_heading = "Camera")]
+    pub(crate) orthographic: Option<Fit>,
     /// Go once around the scene, in --frames pictures
     #[arg(long, help_heading = "Camera")]
     pub(crate) turntable: bool,

@@ -173,6 +173,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Some((PLAIN, Key::Num4)),
                     Command::Look(Side::Iso),
                 ),
+                item(
+                    choose(
+                        now.orthographic,
+                        "Orthographic: no perspective (parallel projection, true scale bar)",
+                        "Perspective (projection): not orthographic, not parallel",
+                    ),
+                    Some((PLAIN, Key::O)),
+                    Command::SetOrthographic(!now.orthographic),
+                ),
                 item("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
                 item(
                     "Isolate selected",
@@ -292,6 +301,8 @@ const SAMPLE_TITLES: [&str; 6] = [
 /// What titles of commands depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Toggles {
+    /// Whether there is no perspective.
+    pub orthographic: bool,
     /// Whether y points down.
     pub y_down: bool,
     /// Whether neurons are side by side.

@@ -111,6 +111,8 @@ pub enum Command {
     Focus,
     /// Goes to a view.
     Go(View),
+    /// Shows the picture without perspective, or with it.
+    SetOrthographic(bool),
     /// Sets whether y points down.
     SetYDown(bool),
     /// Keeps the levels of the current view while the camera moves.
@@ -169,6 +171,7 @@ impl fmt::Debug for Command {
             Self::SetPace(value) => with("SetPace", value),
             Self::Look(value) => with("Look", value),
             Self::Go(value) => with("Go", value),
+            Self::SetOrthographic(value) => with("SetOrthographic", value),
             Self::SetYDown(value) => with("SetYDown", value),
             Self::SetFrozen(value) => with("SetFrozen", value),
             Self::SetMeasuring(value) => with("SetMeasuring", value),

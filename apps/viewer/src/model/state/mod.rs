@@ -159,6 +159,8 @@ pub enum Effect {
     Cancel,
     /// Move the camera to a view.
     Go(View),
+    /// Show the picture without perspective, or with it, also at the end of a flight.
+    Project(bool),
     /// Put a text on the clipboard.
     Copy(String),
     /// Quit.
@@ -212,6 +214,7 @@ impl State {
     /// What titles of commands depend on.
     pub fn toggles(&self) -> Toggles {
         Toggles {
+            orthographic: self.view.orthographic,
             y_down: self.settings.y_down,
             grid: self.document.grid,
             frozen: self.frozen.is_some(),
@@ -274,6 +277,7 @@ impl State {
                 self.effects.push(Effect::Go(view));
                 self.fitted = None;
             }
+            Command::SetOrthographic(on) => self.effects.push(Effect::Project(on)),
             Command::SetYDown(y_down) => {
                 self.settings.y_down = y_down;
                 self.run(Command::Home);

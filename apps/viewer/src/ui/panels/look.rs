@@ -33,6 +33,13 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     ui.checkbox(&mut look.legend, "Legend");
     ui.checkbox(&mut look.scale_bar, "Scale bar");
     ui.checkbox(&mut look.axes, "Axes");
+    let mut orthographic = state.view.orthographic;
+    let parallel = ui
+        .checkbox(&mut orthographic, "Orthographic")
+        .tip("No perspective: lengths are true at all depths, and so is the scale bar (O)");
+    if parallel.changed() {
+        state.requests.push(Command::SetOrthographic(orthographic));
+    }
     ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
     slider(ui, &mut look.least_width, 0.0..=8.0, Some(1), |slider| {

@@ -116,7 +116,7 @@ fn zoom(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
             .stage
             .hit_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
         match seen {
-            Some(seen) => view.at_depth(pixel, size, view.camera().depth(seen.place).max(1e-6)),
+            Some(seen) => view.at_depth(pixel, size, view.depth_in_front(seen.place)),
             None => view.under(pixel, size),
         }
     });
@@ -190,8 +190,8 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
         if let Some(seen) = seen {
             let view = screen.state.view;
             let camera = view.camera();
-            let near = camera.depth(seen.place) * 0.35;
-            let size = near * (camera.fov() / 2.0).tan();
+            // The height of what is seen there becomes 0.35 of it.
+            let size = 0.35 / 2.0 * camera.pixel_size(1.0).at(camera.depth(seen.place));
             screen
                 .state
                 .requests
@@ -366,7 +366,7 @@ fn set_off(state: &State, rect: Rect, ui: &Ui) {
 
 fn scale_bar(state: &State, rect: Rect, ui: &Ui) {
     let camera = state.view.camera();
-    let pixel = camera.pixel_slope(f64::from(rect.height())) * camera.depth(camera.target());
+    let pixel = camera.pixel_at_target(f64::from(rect.height()));
     let length = nice_length(0.18 * f64::from(rect.width()) * pixel);
     let width = (length / pixel) as f32;
     if !width.is_finite() || width > rect.width() {
