@@ -195,6 +195,8 @@ fn a_session_comes_back_as_it_was() {
     run(&mut window, Edit::Select(vec![1], false));
     run(&mut window, Edit::SetHidden(0, true));
     run(&mut window, Command::Look(Side::Iso));
+    run(&mut window, Command::SetOrthographic(true));
+    run(&mut window, Command::SaveView);
     run(&mut window, Command::AddKeyView);
     run(&mut window, Command::SaveSession(file.clone()));
     let (document, view) = (state(&mut window).document.clone(), state(&mut window).view);

@@ -146,6 +146,9 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, default_value_t = ViewSide::Front, value_name = "SIDE",
           help_heading = "Camera")]
     pub(crate) view: ViewSide,
+    /// Of a session: look from the view that the window saved under this name
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["view", "eye"], help_heading = "Camera")]
+    pub(crate) saved_view: Option<String>,
     /// Position of the eye (µm)
     #[arg(
         long,

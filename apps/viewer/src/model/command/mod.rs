@@ -113,6 +113,10 @@ pub enum Command {
     Go(View),
     /// Shows the picture without perspective, or with it.
     SetOrthographic(bool),
+    /// Saves the current view under a name.
+    SaveView,
+    /// Goes to a saved view.
+    GoSaved(usize),
     /// Sets whether y points down.
     SetYDown(bool),
     /// Keeps the levels of the current view while the camera moves.
@@ -172,6 +176,7 @@ impl fmt::Debug for Command {
             Self::Look(value) => with("Look", value),
             Self::Go(value) => with("Go", value),
             Self::SetOrthographic(value) => with("SetOrthographic", value),
+            Self::GoSaved(value) => with("GoSaved", value),
             Self::SetYDown(value) => with("SetYDown", value),
             Self::SetFrozen(value) => with("SetFrozen", value),
             Self::SetMeasuring(value) => with("SetMeasuring", value),
@@ -190,6 +195,7 @@ impl fmt::Debug for Command {
             Self::Redo => f.write_str("Redo"),
             Self::TogglePlay => f.write_str("TogglePlay"),
             Self::LeaveMeasuring => f.write_str("LeaveMeasuring"),
+            Self::SaveView => f.write_str("SaveView"),
             Self::Home => f.write_str("Home"),
             Self::Focus => f.write_str("Focus"),
             Self::ToggleKeys => f.write_str("ToggleKeys"),

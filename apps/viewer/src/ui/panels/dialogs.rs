@@ -1,9 +1,11 @@
 //! Dialogs: keys, commands, problems, files, questions.
 
+use std::borrow::Cow;
+
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use super::keys_text;
-use crate::model::command::{Command, FilePurpose, Listed, listed};
+use crate::model::command::{Command, FilePurpose, Listed};
 use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
 
@@ -124,15 +126,15 @@ fn keys_and_mouse(state: &State, ui: &mut Ui) {
             rows(
                 ui,
                 "mouse",
-                MOUSE.iter().map(|(a, b)| ((*a).to_owned(), *b)),
+                MOUSE.iter().map(|&(a, b)| (a.to_owned(), b.into())),
             );
-            for (name, items) in listed(&state.toggles()).into_iter().take(3) {
+            for (name, items) in state.menus().into_iter().take(3) {
                 menu(ui, name, items);
             }
         });
         ui.add_space(18.0);
         ui.vertical(|ui| {
-            for (name, items) in listed(&state.toggles()).into_iter().skip(3) {
+            for (name, items) in state.menus().into_iter().skip(3) {
                 menu(ui, name, items);
             }
         });
@@ -140,7 +142,7 @@ fn keys_and_mouse(state: &State, ui: &mut Ui) {
 }
 
 fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
-    let found: Vec<(String, &'static str)> = items
+    let found: Vec<(String, Cow<'static, str>)> = items
         .into_iter()
         .filter_map(|item| Some((keys_text(ui, &item.keys?), item.title)))
         .collect();
@@ -151,7 +153,7 @@ fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
     }
 }
 
-fn rows<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
+fn rows(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, Cow<'static, str>)>) {
     egui::Grid::new(("keys", id))
         .num_columns(2)
         .spacing([16.0, 1.0])
@@ -264,7 +266,7 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
 
 /// Commands whose titles contain all words, with their menus.
 fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
-    let all = listed(&state.toggles());
+    let all = state.menus();
     all.into_iter()
         .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
         .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), text))

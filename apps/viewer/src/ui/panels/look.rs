@@ -6,7 +6,7 @@ use neurotess::render::color::Palette;
 use super::number::{field, slider};
 use super::tip::Tip;
 use super::{color_map, heading};
-use super::{markers, own_colors};
+use super::{markers, own_colors, saved_views};
 use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
@@ -33,19 +33,13 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     ui.checkbox(&mut look.legend, "Legend");
     ui.checkbox(&mut look.scale_bar, "Scale bar");
     ui.checkbox(&mut look.axes, "Axes");
-    let mut orthographic = state.view.orthographic;
-    let parallel = ui
-        .checkbox(&mut orthographic, "Orthographic")
-        .tip("No perspective: lengths are true at all depths, and so is the scale bar (O)");
-    if parallel.changed() {
-        state.requests.push(Command::SetOrthographic(orthographic));
-    }
     ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
     slider(ui, &mut look.least_width, 0.0..=8.0, Some(1), |slider| {
         slider.text("least width (px)")
     })
     .tip("Thin neurites are drawn this wide, for figures; 0: as they are");
+    saved_views::show(state, ui);
     heading(ui, "Selection");
     ui.checkbox(&mut look.highlight_selected, "Color of its own");
     ui.checkbox(&mut look.ghost_others, "Fade the others");

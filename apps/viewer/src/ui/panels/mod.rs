@@ -17,6 +17,7 @@ mod number;
 mod own_colors;
 mod rings;
 mod save;
+mod saved_views;
 mod soma;
 mod status;
 mod timeline;

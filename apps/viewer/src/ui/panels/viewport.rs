@@ -266,6 +266,7 @@ fn menu(state: &mut State, ui: &mut Ui) {
         ("Show all", Edit::ShowAll.into()),
         ("Everything, from the front", Command::Home),
         ("Keep this view for a film", Command::AddKeyView),
+        ("Save this view under a name", Command::SaveView),
     ] {
         if ui.button(title).clicked() {
             state.requests.push(command);
