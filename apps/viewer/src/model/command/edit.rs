@@ -105,8 +105,9 @@ impl Edit {
     pub fn apply(self, document: &mut Document) {
         let neurons = &mut document.neurons;
         match self {
-            Self::Select(which, add) => {
-                let is = |i: usize| which.contains(&i);
+            Self::Select(mut which, add) => {
+                which.sort_unstable();
+                let is = |i: usize| which.binary_search(&i).is_ok();
                 // If all of them are selected already, they are unselected.
                 let all = which
                     .iter()

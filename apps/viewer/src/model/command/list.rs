@@ -178,8 +178,8 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 item(
                     choose(
                         now.orthographic,
-                        "Orthographic: no perspective (parallel projection, true scale bar)",
-                        "Perspective (projection): not orthographic, not parallel",
+                        "Orthographic: parallel projection, true scale bar",
+                        "Perspective projection (off: orthographic, parallel, true scale bar)",
                     ),
                     Some((PLAIN, Key::O)),
                     Command::SetOrthographic(!now.orthographic),

@@ -98,9 +98,12 @@ const MOUSE: [(&str, &str); 9] = [
     ("middle or right drag, Shift + left drag", "pan"),
     ("wheel, two fingers, pinch", "zoom in and out at the cursor"),
     ("click", "select; with Shift or Ctrl, select several"),
+    (
+        "Ctrl + left drag",
+        "select somata in a rectangle; with Shift, more",
+    ),
     ("double click", "zoom to what is under the cursor"),
-    ("W A S D", "fly forward, left, back, right"),
-    ("Q E", "fly down and up; Shift: faster"),
+    ("W A S D   Q E", "fly; down, up; Shift: faster"),
     ("arrows", "rotate"),
     ("+  −", "zoom in and out"),
 ];
@@ -119,7 +122,11 @@ fn keys(state: &State, ctx: &Context) -> Dialog {
     if open { Dialog::Keys } else { Dialog::Nothing }
 }
 
+/// Menus with many keys, which have a column of their own.
+const LONG: [&str; 2] = ["View", "Window"];
+
 fn keys_and_mouse(state: &State, ui: &mut Ui) {
+    let mut menus = state.menus();
     ui.horizontal_top(|ui| {
         ui.vertical(|ui| {
             ui.strong("In the picture");
@@ -128,13 +135,13 @@ fn keys_and_mouse(state: &State, ui: &mut Ui) {
                 "mouse",
                 MOUSE.iter().map(|&(a, b)| (a.to_owned(), b.into())),
             );
-            for (name, items) in state.menus().into_iter().take(3) {
+            for (name, items) in menus.extract_if(.., |(name, _)| !LONG.contains(name)) {
                 menu(ui, name, items);
             }
         });
         ui.add_space(18.0);
         ui.vertical(|ui| {
-            for (name, items) in state.menus().into_iter().skip(3) {
+            for (name, items) in menus {
                 menu(ui, name, items);
             }
         });

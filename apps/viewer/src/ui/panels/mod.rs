@@ -15,6 +15,7 @@ mod measuring;
 mod menu;
 mod number;
 mod own_colors;
+mod rectangle;
 mod rings;
 mod save;
 mod saved_views;

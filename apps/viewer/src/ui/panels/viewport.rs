@@ -8,7 +8,7 @@ use glam::DVec3;
 use neurotess::render::color::is_dark;
 use neurotess::render::overlay::{Legend, nice_length};
 
-use super::{Screen, marks, measuring, plate, tip};
+use super::{Screen, marks, measuring, plate, rectangle, tip};
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::markers::MarkerRef;
 use crate::model::state::{Picked, State};
@@ -52,6 +52,7 @@ pub(super) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
     over(screen, rect, ui);
+    rectangle::show(&response, &ui.painter().with_clip_rect(rect), ui);
     response.context_menu(|ui| menu(screen.state, ui));
 }
 
@@ -64,6 +65,7 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     } else {
         DVec3::Y
     };
+    let selects = rectangle::drag(screen.state, response, ui);
     let drag = response.drag_delta();
     let (dx, dy) = (f64::from(drag.x), f64::from(drag.y));
     let shift = ui.input(|i| i.modifiers.shift);
@@ -71,7 +73,7 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     let moves = response.dragged_by(PointerButton::Middle)
         || response.dragged_by(PointerButton::Secondary)
         || (left && shift);
-    if drag != egui::Vec2::ZERO {
+    if drag != egui::Vec2::ZERO && !selects {
         if moves {
             screen
                 .motion
