@@ -108,7 +108,7 @@ def test_no_option_of_the_command_is_missing() -> None:
     common = {"json", "quiet", "verbose", "no_progress", "color"}
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
     # In Python a palette may be a dictionary of colors.
-    drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color"}
+    drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color", "saved_view"}
     for command, function, other in [
         ("mesh", nt.mesh, files | circuit),
         ("render", nt.render, drawing),

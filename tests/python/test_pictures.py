@@ -45,6 +45,8 @@ def test_pictures_are_those_of_the_command(cell: nt.Morphology, tmp_path: Path) 
             {"eye": (0, 20, 200), "target": (0, 20, 0), "light": (-1, 1, 1), "ao": 0},
             ["--eye", "0,20,200", "--target", "0,20,0", "--light=-1,1,1", "--ao", "0"],
         ),
+        ({"orthographic": True, "lod": "static"}, ["--lod", "static", "--orthographic"]),
+        ({"orthographic": 90.0}, ["--orthographic", "90"]),
         ({"lod": "exploration", "budget": 500}, ["--lod", "exploration", "--budget", "500"]),
         ({"palette": "okabe-ito"}, ["--palette", "okabe-ito"]),
         ({"palette": tmp_path / "mine.toml"}, ["--palette", str(tmp_path / "mine.toml")]),
@@ -174,6 +176,14 @@ def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
     assert np.linalg.norm(up) == pytest.approx(1)
     assert np.dot(np.subtract(eye, target), up) == pytest.approx(0, abs=1e-6)
     view.handle_event({"type": "double_click", "x": 0, "y": 0})
+    assert (np.asarray(view.image()) == whole).all()
+
+    camera = view.camera
+    view.orthographic = True
+    assert view.camera == camera and (np.asarray(view.image()) != whole).any()
+    told = view.pick(x, y)
+    assert told is not None and told["name"] == cell.name
+    view.orthographic = False
     assert (np.asarray(view.image()) == whole).all()
 
     view.color_by = "radius"

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
-use neurotess::render::{Camera, Gpu, Image, PngWriter};
+use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
 use neurotess_cli::embed::{self, DrawError, DrawingInput};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyReadonlyArray3};
@@ -58,8 +58,9 @@ pub(crate) struct Drawing {
     pictures: usize,
 }
 
-/// Eye, target, direction upwards (µm) and vertical angle of view (radians).
-type View = ([f64; 3], [f64; 3], [f64; 3], f64);
+/// Eye, target, direction upwards (µm), vertical angle of view (radians), and whether there is no
+/// perspective.
+type View = ([f64; 3], [f64; 3], [f64; 3], f64, bool);
 
 #[pymethods]
 impl Drawing {
@@ -120,7 +121,8 @@ impl Drawing {
         let camera = drawing.1.camera(picture).ok_or_else(missing)?;
         let [_, up, _] = camera.axes();
         let (eye, target) = (camera.eye().to_array(), camera.target().to_array());
-        Ok((eye, target, up.to_array(), camera.fov()))
+        let orthographic = camera.is_orthographic();
+        Ok((eye, target, up.to_array(), camera.fov(), orthographic))
     }
 
     /// What is at a pixel, or near it; none if nothing is.
@@ -231,9 +233,13 @@ impl Write for Bytes {
     }
 }
 
-fn camera((eye, target, up, fov): View) -> PyResult<Camera> {
+fn camera((eye, target, up, fov, orthographic): View) -> PyResult<Camera> {
     let [eye, target, up] = [eye, target, up].map(DVec3::from);
-    let camera = Camera::new(eye, target, up, fov);
+    let lens = match orthographic {
+        true => Lens::orthographic(fov),
+        false => Lens::from(fov),
+    };
+    let camera = Camera::new(eye, target, up, lens);
     camera.map_err(|e| PyValueError::new_err(e.to_string()))
 }
 

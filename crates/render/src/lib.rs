@@ -110,3 +110,4 @@ pub use view::camera::{Camera, CameraError};
 pub use view::frame::{Frame, Tile};
 pub use view::framing::{DEFAULT_FOV, Side};
 pub use view::frustum::BoundingSphere;
+pub use view::lens::{Lens, PixelSize, Projection};

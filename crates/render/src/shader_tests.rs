@@ -185,7 +185,8 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
                     jitter,
                     batch,
                     least_half_width,
-                    edge
+                    edge,
+                    flat
                 ]
             );
             assert_layout!(
@@ -220,7 +221,8 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
                 kept,
                 spare,
                 empty,
-                background
+                background,
+                flat
             ]
         );
     }
@@ -284,7 +286,7 @@ fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
         "Eye",
         Eye,
         [
-            planes, cell, slope, offset, near, forward, error, budget, instances, pad
+            planes, cell, slope, offset, near, forward, error, budget, instances, flat, pad
         ]
     );
     assert_layout!(

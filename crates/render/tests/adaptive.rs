@@ -12,7 +12,7 @@ use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_render::color::{ColorTable, Palette, category};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Gpu, Image, Instance, Occlusion, PictureOptions, Placement,
-    Prerefined, PrerefinedSurface, Scene, SceneError, Template, TemplateId, Templates,
+    Prerefined, PrerefinedSurface, Projection, Scene, SceneError, Template, TemplateId, Templates,
     VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
@@ -34,7 +34,7 @@ fn picture(gpu: &Gpu, source: &mut dyn VertexSource, camera: &Camera, size: [u32
         source,
         &Viewpoint {
             camera: *camera,
-            near: 0.1,
+            near: if camera.is_orthographic() { -1e3 } else { 0.1 },
         },
         &table,
         &options,
@@ -91,21 +91,28 @@ fn a_picture_is_that_of_the_stored_surface() {
     let gpu = device();
     let mesh = smooth_cell(1);
     let camera = before(&mesh, 2.5);
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        compare_with_stored(&gpu, &mesh, &camera.with_projection(projection));
+    }
+}
+
+fn compare_with_stored(gpu: &Gpu, mesh: &CoarseMesh, camera: &Camera) {
     let mut stored = Prerefined::new(
-        &gpu,
+        gpu,
         &[PrerefinedSurface {
-            mesh: &mesh,
-            color_keys: &color_keys(&mesh),
+            mesh,
+            color_keys: &color_keys(mesh),
         }],
         |_| LodCriterion::Homogeneous(4).into(),
         &RefineOptions::default(),
         false,
     )
     .expect("stored");
-    let expected = picture(&gpu, &mut stored, &camera, [320, 240]);
+    let expected = picture(gpu, &mut stored, camera, [320, 240]);
     let instance = Instance::new(TemplateId(0));
-    let mut source = adaptive(&gpu, &[mesh], &[instance], LodCriterion::Homogeneous(4));
-    let found = picture(&gpu, &mut source, &camera, [320, 240]);
+    let meshes = std::slice::from_ref(mesh);
+    let mut source = adaptive(gpu, meshes, &[instance], LodCriterion::Homogeneous(4));
+    let found = picture(gpu, &mut source, camera, [320, 240]);
     let differing = expected
         .pixels
         .chunks(4)
@@ -179,7 +186,7 @@ fn a_soma_alone_is_a_disk_and_a_point_alone_a_short_tube() {
             .count();
         // A sphere of radius r at distance d looks as large as a disk of r / (1 - (r / d)^2)^0.5.
         let away = camera.eye().distance(extent(&mesh).0);
-        let pixel = camera.pixel_slope(f64::from(size)) * away;
+        let pixel = camera.pixel_size(f64::from(size)).at(away);
         let disk =
             std::f64::consts::PI * (radius / pixel).powi(2) / (1.0 - (radius / away).powi(2));
         // A point that is no soma goes on for a little way.

@@ -14,14 +14,16 @@ use neurotess_render::color::ColorTable;
 use neurotess_render::testing::{LodRequest, lod_requests};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Exploration, ExplorationError, Frame, Gpu, Image, Instance,
-    MOST_BUDGET, Occlusion, PictureOptions, Placement, Proxy, Scene, Template, TemplateId,
-    Templates, VertexSource, Viewpoint, render_still,
+    MOST_BUDGET, Occlusion, PictureOptions, Placement, Projection, Proxy, Scene, Template,
+    TemplateId, Templates, VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh};
 
 fn frame(camera: Camera, width: u32, height: u32) -> Frame {
-    Frame::whole(camera, 1e-2, [width, height])
+    // Without perspective everything is in front.
+    let near = if camera.is_orthographic() { -1e6 } else { 1e-2 };
+    Frame::whole(camera, near, [width, height])
 }
 
 /// Instances of so many templates in a box of this edge (µm).
@@ -97,8 +99,9 @@ fn what_is_drawn_is_what_is_worth_most() {
     let (mut compared, mut off) = (0, 0);
     for budget in [500, 5000, 60_000, MOST_BUDGET] {
         source.set_budget(budget);
-        for _ in 0..4 {
-            let frame = frame(any_camera(&mut random, 300.0), 500, 300);
+        for projection in [Projection::Perspective, Projection::Orthographic].repeat(3) {
+            let camera = any_camera(&mut random, 300.0).with_projection(projection);
+            let frame = frame(camera, 500, 300);
             source.prepare(&gpu, &frame).expect("prepared");
             let shown = source.shown(&gpu).expect("read back");
             let mut shown = shown

@@ -83,10 +83,7 @@ fn markers_are_drawn_in_their_colors_and_leave_the_cells_as_they_are() {
     let without = drawn(&gpu, &mut cells, &view, &table);
     let empty = drawn(&gpu, &mut WithMarkers::new(&mut cells, None), &view, &table);
     assert_eq!(without, empty);
-    let radius = 6.0
-        * view.camera.pixel_slope(f64::from(SIZE[1]))
-        * 0.7
-        * view.camera.depth(view.camera.target());
+    let radius = 6.0 * 0.7 * view.camera.pixel_at_target(f64::from(SIZE[1]));
     let settings = MarkerSettings {
         radius,
         ..MarkerSettings::default()
@@ -115,8 +112,7 @@ fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
     let (_, key) = table(&mesh);
     let view = viewpoint(&mesh);
     let [right, up, _] = view.camera.axes();
-    let slope = view.camera.pixel_slope(f64::from(SIZE[1]));
-    let pixel = slope * view.camera.depth(view.camera.target());
+    let pixel = view.camera.pixel_at_target(f64::from(SIZE[1]));
     // 100,000 within 60 by 60 pixels.
     let all: Vec<Marker> = (0..100_000_u32)
         .map(|i| {

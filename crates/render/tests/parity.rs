@@ -10,7 +10,7 @@ use neurotess_refine::LodCriterion;
 use neurotess_refine::{Caps, Lod, Path, Refinement, dequantized, pack};
 use neurotess_render::testing::{ExpandedVertex, GridPoint, Refiner, SelectedPatch, decide};
 use neurotess_render::{
-    AdaptiveSettings, CullView, Gpu, Instance, Placement, Scene, Template, Templates,
+    AdaptiveSettings, CullView, Gpu, Instance, Placement, Projection, Scene, Template, Templates,
 };
 use neurotess_testing::note;
 
@@ -88,13 +88,20 @@ fn decisions_are_the_reference_s() {
         });
         let scene = scene(&gpu, &mesh, &values, &placements);
         for lod in CHOICES {
-            for distance in [0.1, 0.5, 3.0, 200.0] {
+            for (distance, projection) in [
+                (0.1, Projection::Perspective),
+                (0.5, Projection::Perspective),
+                (3.0, Projection::Perspective),
+                (200.0, Projection::Perspective),
+                (0.4, Projection::Orthographic),
+                (4.0, Projection::Orthographic),
+            ] {
                 let settings = AdaptiveSettings {
                     lod,
                     smallest: if random.whole(2) == 0 { 0.0 } else { 2.0 },
                     ..AdaptiveSettings::default()
                 };
-                let camera = look(&mesh, &mut random, distance);
+                let camera = look(&mesh, &mut random, distance).with_projection(projection);
                 let cull_view = cull_view(&camera, 640, 480);
                 let all = select(&gpu, &mut refiner, &scene, &cull_view, &settings, |_| {
                     Vec::new()

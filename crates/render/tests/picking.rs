@@ -8,9 +8,11 @@ use glam::{DQuat, DVec3};
 use neurotess_mesh::{CoarseMesh, PatchKind, Role, SectionNumber};
 use neurotess_render::pick::{PickHit, PickTarget, ProxyPickTargets};
 use neurotess_render::state::{WITHOUT_NEURITES, WITHOUT_SOMA};
-use neurotess_render::{Clip, Exploration, Instance, Placement, Proxy, Template};
+use neurotess_render::{
+    Clip, Exploration, Instance, Placement, Projection, Proxy, Template, ViewParams,
+};
 use neurotess_testing::note;
-use pictured::{CELL, by_type, mesh};
+use pictured::{CELL, by_type, mesh, spheres};
 use renderer::{SIZE, picks, renderer, source, view};
 
 /// Whether it is a soma.
@@ -37,15 +39,23 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
     };
     let mut source = source(&gpu, &mesh, &[Placement::default(), aside]);
     let mut renderer = renderer(&gpu, &mesh);
-    let view = view(&mesh);
-    let hits = picks(&gpu, &mut renderer, &mut source, &view);
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        let mut view = view(&mesh);
+        view.camera = view.camera.with_projection(projection);
+        view.near = view.camera.near(&spheres(&mesh));
+        let hits = picks(&gpu, &mut renderer, &mut source, &view);
+        check_ids(&mesh, &view, &hits);
+    }
+}
+
+fn check_ids(mesh: &CoarseMesh, view: &ViewParams, hits: &[Option<PickHit>]) {
     let at = |position: DVec3| {
         let [x, y] = view.camera.pixel_of(position, SIZE).expect("in front");
         hits[y as usize * SIZE[0] as usize + x as usize]
     };
     let soma = at(DVec3::new(-1.0, 0.0, 0.0)).expect("the first soma");
     assert_eq!(soma.instance, 0);
-    assert!(is_soma(&mesh, &soma));
+    assert!(is_soma(mesh, &soma));
     assert_eq!(at(DVec3::X * 15.0).expect("the second soma").instance, 1);
     assert_eq!(hits[0], None);
     // Every pixel of a tube lies near the corners of the patch that its id names.
@@ -54,7 +64,7 @@ fn ids_name_the_instance_and_the_patch_at_a_pixel() {
         let Some(hit) = hit.filter(|hit| hit.instance == 0) else {
             continue;
         };
-        if is_soma(&mesh, &hit) {
+        if is_soma(mesh, &hit) {
             continue;
         }
         tubes += 1;

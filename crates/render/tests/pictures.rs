@@ -7,7 +7,7 @@ use adapter::{device, gpu};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::testing::SAMPLES;
-use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions};
+use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, Projection};
 use pictured::{CELL, by_type, camera, mesh, picture};
 
 fn small(size: [u32; 2]) -> PictureOptions {
@@ -49,7 +49,8 @@ fn tiles_fit_together() {
             ..lit
         };
         let camera = camera(&mesh, lit.size);
-        for whole in [clear, lit] {
+        let parallel = camera.with_projection(Projection::Orthographic);
+        for (whole, camera) in [(clear, camera), (lit, camera), (lit, parallel)] {
             let one = picture(&gpu, &mesh, &camera, &whole);
             assert!(drawn(&one, WHITE) > 2000);
             for tile in [97, 160, 333] {

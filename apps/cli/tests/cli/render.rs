@@ -114,6 +114,9 @@ fn every_option_of_the_contract_draws() {
         "--view iso",
         "--eye 0,-10,90 --target 0,10,0",
         "--eye 0,-10,90 --target 0,10,0 --up 1,0,0 --fov 40",
+        "--orthographic --view iso",
+        "--orthographic 60",
+        "--eye 0,-10,90 --target 0,10,0 --orthographic",
         "--types axon",
         "--soma sphere",
     ] {
@@ -325,6 +328,8 @@ fn wrong_usage_of_render_exits_with_2() {
         "render cell.swc -o cell.png --eye nan,2,3 --target 0,0,0",
         "render cell.swc -o cell.png --eye 0,9,0 --target 0,0,0 --up 0,1,0",
         "render cell.swc -o cell.png --fov 200",
+        "render cell.swc -o cell.png --orthographic 0",
+        "render cell.swc -o cell.png --orthographic -5",
         "render cell.swc -o cell.png --frames 3",
         "render cell.swc -o cell.png --light dim",
         "render cell.swc -o cell.png --ao -3",

@@ -1,7 +1,7 @@
 //! Views, and how they are moved. Angles are radians, lengths µm.
 
 use glam::{DMat3, DQuat, DVec3};
-use neurotess::render::{BoundingSphere, Camera, DEFAULT_FOV, Side};
+use neurotess::render::{BoundingSphere, Camera, DEFAULT_FOV, Lens, Side};
 use serde::{Deserialize, Serialize};
 
 /// Margin around a scene that is fitted into the picture, as a share of its width and height: the
@@ -20,6 +20,10 @@ pub struct View {
     pub up: [f64; 3],
     /// Vertical angle of view (degrees).
     pub fov: f64,
+    /// Whether there is no perspective. Things at the target's depth have the same size with it and
+    /// without.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub orthographic: bool,
 }
 
 impl Default for View {
@@ -29,6 +33,7 @@ impl Default for View {
             target: [0.0; 3],
             up: [0.0, 1.0, 0.0],
             fov: DEFAULT_FOV.to_degrees(),
+            orthographic: false,
         }
     }
 }
@@ -40,6 +45,7 @@ impl From<Camera> for View {
             target: camera.target().to_array(),
             up: camera.axes()[1].to_array(),
             fov: camera.fov().to_degrees(),
+            orthographic: camera.is_orthographic(),
         }
     }
 }
@@ -48,10 +54,18 @@ impl View {
     /// The camera; a default one if the numbers are invalid.
     pub fn camera(&self) -> Camera {
         let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from_array);
-        let made = Camera::new(eye, target, up, self.fov.to_radians());
+        let made = Camera::new(eye, target, up, self.lens());
         let usual = || Camera::fit(Side::Front, DEFAULT_FOV, 1.0, 0.1, &[]);
         made.or_else(|_| usual())
             .unwrap_or_else(|_| unreachable!("a fixed camera"))
+    }
+
+    fn lens(&self) -> Lens {
+        let fov = self.fov.to_radians();
+        match self.orthographic {
+            true => Lens::orthographic(fov),
+            false => fov.into(),
+        }
     }
 
     fn with(&self, eye: DVec3, target: DVec3, up: DVec3) -> Self {
@@ -63,7 +77,7 @@ impl View {
             eye: eye.to_array(),
             target: target.to_array(),
             up: up.to_array(),
-            fov: self.fov,
+            ..*self
         }
     }
 
@@ -86,7 +100,7 @@ impl View {
     pub fn panned(&self, right: f64, down: f64, height: f64) -> Self {
         let camera = self.camera();
         let [side, up, _] = camera.axes();
-        let pixel = camera.pixel_slope(height) * camera.depth(camera.target());
+        let pixel = camera.pixel_at_target(height);
         let way = (up * down - side * right) * pixel;
         self.with(camera.eye() + way, camera.target() + way, up)
     }
@@ -105,12 +119,19 @@ impl View {
         )
     }
 
-    /// Moves the eye and the target right, up and forward (µm).
+    /// Moves the eye and the target right, up and forward (µm). Without perspective, moving forward
+    /// would change nothing: it enlarges instead.
     #[must_use]
     pub fn flown(&self, right: f64, up: f64, forward: f64) -> Self {
         let camera = self.camera();
         let [side, upwards, backward] = camera.axes();
-        let way = side * right + upwards * up - backward * forward;
+        let across = side * right + upwards * up;
+        if self.orthographic {
+            let moved = self.with(camera.eye() + across, camera.target() + across, upwards);
+            let distance = camera.eye().distance(camera.target());
+            return moved.zoomed((-forward / distance).exp(), camera.target() + across);
+        }
+        let way = across - backward * forward;
         self.with(camera.eye() + way, camera.target() + way, upwards)
     }
 
@@ -132,9 +153,9 @@ impl View {
         aspect: f64,
         spheres: &[BoundingSphere],
     ) -> Self {
-        let fov = self.camera().fov();
+        let lens = self.camera().lens();
         let side = if y_down { below(side) } else { side };
-        let Ok(camera) = Camera::fit(side, fov, aspect.max(1e-3), MARGIN, spheres) else {
+        let Ok(camera) = Camera::fit(side, lens, aspect.max(1e-3), MARGIN, spheres) else {
             return *self;
         };
         let up = camera.axes()[1] * if y_down { -1.0 } else { 1.0 };
@@ -156,17 +177,23 @@ impl View {
         self.at_depth([x, y], size, depth)
     }
 
+    /// Depth (µm) of a point that is seen: positive, unless there is no perspective.
+    pub fn depth_in_front(&self, point: DVec3) -> f64 {
+        let depth = self.camera().depth(point);
+        depth.max(if self.orthographic { depth } else { 1e-6 })
+    }
+
     /// The point at this depth that is at this position in the picture (pixels).
     pub fn at_depth(&self, [x, y]: [f64; 2], size: [f64; 2], depth: f64) -> DVec3 {
         let camera = self.camera();
         let [side, up, backward] = camera.axes();
-        let pixel = camera.pixel_slope(size[1]) * depth;
+        let pixel = camera.pixel_size(size[1]).at(depth);
         let (right, above) = (x - size[0] / 2.0, size[1] / 2.0 - y);
         camera.eye() + (side * right + up * above) * pixel - backward * depth
     }
 
     /// A view between two: this one at 0, the other at 1. Target and direction are interpolated
-    /// evenly.
+    /// evenly; the projection is that of the nearer end.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
         let (a, b) = (self.camera(), other.camera());
@@ -185,6 +212,7 @@ impl View {
             turned * DVec3::Y,
         );
         view.fov = self.fov + (other.fov - self.fov) * t;
+        view.orthographic = if t < 0.5 { self } else { other }.orthographic;
         view
     }
 }
@@ -201,8 +229,11 @@ fn below(side: Side) -> Side {
 }
 
 /// The target of a fitted camera: the middle of all spheres along its direction, not the nearest
-/// sphere.
+/// sphere. Without perspective it is there already, and its distance is the picture's size.
 fn middle(camera: &Camera, spheres: &[BoundingSphere]) -> DVec3 {
+    if camera.is_orthographic() {
+        return camera.target();
+    }
     let depths = spheres
         .iter()
         .map(|&(c, r)| (camera.depth(c) - r, camera.depth(c) + r));
@@ -234,6 +265,37 @@ mod tests {
         let camera = turned.camera();
         assert!((camera.eye().distance(camera.target()) - 300.0).abs() < 1e-6);
         assert!(camera.axes()[1].y > 0.0, "never upside down");
+    }
+
+    #[test]
+    fn without_perspective_zooming_and_moving_keep_to_pixels() {
+        let view = View {
+            orthographic: true,
+            ..View::default().orbited(0.4, 0.2, DVec3::Y)
+        };
+        let seen = |view: &View, p: DVec3| view.camera().pixel_of(p, [400, 300]).expect("seen");
+        let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6;
+        // Far in front of the target and far behind it, even behind the eye.
+        for depth in [-900.0, 20.0, 5000.0] {
+            let place = view.at_depth([100.0, 80.0], SIZE, depth);
+            assert!(near(seen(&view, place), [100.0, 80.0]));
+            assert!((view.camera().depth(place) - depth).abs() < 1e-6);
+            assert!(near(seen(&view.zoomed(0.3, place), place), [100.0, 80.0]));
+            let panned = view.panned(30.0, -20.0, 300.0);
+            assert!(near(seen(&panned, place), [130.0, 60.0]));
+        }
+        // Flying forward enlarges.
+        let nearer = view.flown(0.0, 0.0, 30.0).camera();
+        assert!(nearer.height() < 0.95 * view.camera().height());
+        assert_eq!(nearer.target(), view.camera().target());
+        // What is looked at stays as large with perspective and without.
+        let other = View {
+            orthographic: false,
+            ..view
+        };
+        let place = view.under([320.0, 40.0], SIZE);
+        assert!(near(seen(&other, place), seen(&view, place)));
+        assert!(!view.between(&other, 0.7).orthographic);
     }
 
     #[test]
@@ -279,10 +341,16 @@ mod tests {
             (DVec3::new(0.0, 50.0, 0.0), 1.0),
             (DVec3::new(0.0, -50.0, 9.0), 1.0),
         ];
+        let parallel = View {
+            orthographic: true,
+            ..View::default()
+        };
         for side in [Side::Front, Side::Top, Side::Iso] {
             let up = View::default().fitted(side, false, 1.3, &spheres).camera();
             let down = View::default().fitted(side, true, 1.3, &spheres).camera();
-            for camera in [up, down] {
+            let fitted = parallel.fitted(side, false, 1.3, &spheres);
+            assert!(fitted.orthographic);
+            for camera in [up, down, fitted.camera()] {
                 assert!(
                     spheres
                         .iter()

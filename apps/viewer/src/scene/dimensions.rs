@@ -128,7 +128,8 @@ impl Projection<'_> {
     /// Size (µm) of a pixel at a point.
     fn pixel(&self, point: DVec3) -> Option<f64> {
         let depth = self.camera.depth(point);
-        (depth > 1e-9).then(|| self.camera.pixel_slope(self.size[1]) * depth)
+        let pixel = self.camera.pixel_size(self.size[1]).at(depth);
+        (depth > 1e-9 || self.camera.is_orthographic()).then_some(pixel)
     }
 
     fn distance(&self, ends: [DVec3; 2], path: &[DVec3]) -> Option<Lines> {
@@ -178,7 +179,10 @@ impl Projection<'_> {
 
     fn diameter(&self, center: DVec3, along: DVec3, radius: f64) -> Option<Lines> {
         let [right, ..] = self.camera.axes();
-        let towards_eye = self.camera.eye() - center;
+        let towards_eye = match self.camera.is_orthographic() {
+            true => self.camera.axes()[2],
+            false => self.camera.eye() - center,
+        };
         // Across the neurite, seen in its true length. Of a soma, or along the view: to the right.
         let across_axis = along.cross(towards_eye).try_normalize().unwrap_or(right);
         let ends = [-1.0, 1.0].map(|side| self.at(center + side * radius * across_axis));
@@ -311,7 +315,7 @@ mod tests {
         };
         let drawn = shown(shape).expect("in front");
         let [a, b] = [drawn.lines[0].points[0], drawn.lines[0].points[1]];
-        let pixel = camera().pixel_slope(300.0) * 100.0;
+        let pixel = camera().pixel_size(300.0).at(100.0);
         assert!(((b[0] - a[0]).abs() * pixel - 12.0).abs() < 1e-6);
         assert!((a[1] - 150.0).abs() < 1e-9 && (b[1] - a[1]).abs() < 1e-9);
         assert!(drawn.label_at[0] > 200.0 + 6.0 / pixel, "beside it");

@@ -30,7 +30,8 @@ pub struct SessionPicture {
     pub failures: Vec<(String, String)>,
 }
 
-/// Draws a session as the window would save it.
+/// Draws a session as the window would save it, from its own view or from the saved `view` of this
+/// name.
 ///
 /// # Errors
 /// A message that says what is wrong with the session, the adapter or the file to write, and what
@@ -38,9 +39,14 @@ pub struct SessionPicture {
 pub fn draw_session(
     file: &Path,
     picture: &PictureFile,
+    view: Option<&str>,
     adapter: Option<&str>,
 ) -> Result<SessionPicture, String> {
     let session = Session::read(file).map_err(|e| e.of(file))?;
+    let view = match view {
+        Some(name) => session.view_named(name).map_err(|e| e.of(file))?,
+        None => session.view,
+    };
     let mut state = State::new(Settings::default());
     let mut drawn = SessionPicture::default();
     let mut ids = Vec::new();
@@ -88,7 +94,7 @@ pub fn draw_session(
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
     let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
     let film_frame = FilmFrame {
-        view: session.view,
+        view,
         time: Some(session.playback.time),
     };
     pictures(

@@ -69,6 +69,15 @@ impl Motion {
         }
     }
 
+    /// Changes the projection, also of a flight. What is at the target's depth keeps its size.
+    pub(crate) fn project(&mut self, state: &mut State, orthographic: bool) {
+        state.view.orthographic = orthographic;
+        if let Some(flight) = &mut self.flight {
+            flight.from.orthographic = orthographic;
+            flight.to.orthographic = orthographic;
+        }
+    }
+
     /// Goes to a view at once.
     pub(crate) fn jump(&mut self, state: &mut State, to: View) {
         state.view = to;

@@ -12,7 +12,9 @@ use neurotess_viewer::document::{RestChoice, SourceId};
 use neurotess_viewer::state::{CellPart, Lowered};
 use neurotess_viewer::view::View;
 
-use crate::common::{SIZE, Window, gpu, rest, run, settle, state, viewer, with_samples};
+use crate::common::{
+    SIZE, Window, click, gpu, hit_at, picture, rest, run, settle, state, viewer, with_samples,
+};
 
 /// After some frames it asks for no more.
 fn assert_idle(window: &mut Window) {
@@ -141,6 +143,68 @@ fn mouse_and_keys_move_the_camera() {
         let backward = view(&mut window).camera().axes()[2];
         assert!(backward[axis] > 0.99, "{key:?}: {backward}");
     }
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn without_perspective_things_keep_their_size_and_their_names() {
+    let mut window = with_samples(&[Kind::Star]);
+    let view = |window: &mut Window| -> View { state(window).view };
+    let first = view(&mut window);
+    window.key_press(Key::O);
+    window.step();
+    settle(&mut window);
+    let parallel = view(&mut window);
+    assert!(parallel.orthographic);
+    assert_eq!(
+        View {
+            orthographic: false,
+            ..parallel
+        },
+        first,
+        "nothing else has changed"
+    );
+    // What is drawn where the soma is can be picked, and a double click comes nearer to it.
+    let soma = state(&mut window).sources.iter().next().expect("a cell").1;
+    let soma = soma.morphology.soma().expect("a soma").center.as_dvec3();
+    let at = hit_at(&mut window, soma);
+    click(&mut window, at, Modifiers::NONE);
+    assert!(state(&mut window).picked.is_some());
+    let height = |view: View| view.camera().height();
+    // At once: the window handles them in their order, as one double click.
+    let button = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let events = &mut window.input_mut().events;
+    events.push(Event::PointerMoved(at));
+    events.extend([true, false, true, false].map(button));
+    for _ in 0..12 {
+        let time = window.ctx.input(|input| input.time) + 0.5;
+        window.input_mut().time = Some(time);
+        window.step();
+    }
+    settle(&mut window);
+    let near = view(&mut window);
+    assert!(height(near) < 0.6 * height(parallel), "{}", height(near));
+    assert!(
+        near.orthographic && hit_at(&mut window, soma).distance(picture(&window).center()) < 90.0
+    );
+    // From the other side, behind the eye of before, all is still there.
+    run(&mut window, Command::SaveView);
+    run(&mut window, Command::Look(Side::Back));
+    state(&mut window).picked = None;
+    let at = hit_at(&mut window, soma);
+    click(&mut window, at, Modifiers::NONE);
+    assert!(state(&mut window).picked.is_some(), "seen from behind");
+    window.key_press(Key::Num5);
+    window.step();
+    settle(&mut window);
+    assert_eq!(view(&mut window), near, "the saved view");
+    window.key_press(Key::O);
+    window.step();
+    assert!(!view(&mut window).orthographic);
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -11,7 +11,7 @@ use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
 use neurotess_viewer::state::CellPart;
 
-use crate::common::{Window, gpu, run, settle, snapshot, state, viewer, with_samples};
+use crate::common::{Window, gpu, hit_at, run, settle, snapshot, state, viewer, with_samples};
 
 /// Middle of the rail of the n-th slider of the panel.
 fn slider(window: &mut Window, n: usize) -> egui::Rect {
@@ -183,6 +183,55 @@ fn the_surface_follows_the_soma_editor() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
+fn a_rectangle_selects_the_cells_whose_somata_are_inside() {
+    let mut window = with_samples(&[Kind::Star, Kind::Granule, Kind::Basket]);
+    run(&mut window, Edit::SetGrid(true));
+    run(&mut window, Command::Home);
+    let view = state(&mut window).view;
+    let somata: Vec<Pos2> = (0..3)
+        .map(|neuron| {
+            let place = state(&mut window).placements()[neuron];
+            let source = state(&mut window).source_of(neuron).expect("open");
+            let soma = source.morphology.soma().expect("a soma").center;
+            let soma = place.world_from_cell(source.morphology.origin + soma.as_dvec3());
+            hit_at(&mut window, soma)
+        })
+        .collect();
+    let mut select = |from: Pos2, to: Pos2, shift: bool| {
+        let modifiers = Modifiers {
+            shift,
+            ..Modifiers::COMMAND
+        };
+        for (pressed, to) in [(Some(true), from), (None, to), (Some(false), to)] {
+            window.event_modifiers(Event::PointerMoved(to), modifiers);
+            window.step();
+            if let Some(pressed) = pressed {
+                let event = Event::PointerButton {
+                    pos: to,
+                    button: PointerButton::Primary,
+                    pressed,
+                    modifiers,
+                };
+                window.event_modifiers(event, modifiers);
+                window.step();
+            }
+        }
+        settle(&mut window);
+        let state = state(&mut window);
+        assert_eq!(state.view, view, "the camera stays");
+        state.document.neurons.selected().to_vec()
+    };
+    let around = Vec2::new(20.0, 20.0);
+    assert_eq!(select(somata[1] - around, somata[1] + around, false), [1]);
+    // From any corner to the other.
+    assert_eq!(select(somata[0] + around, somata[0] - around, true), [0, 1]);
+    assert_eq!(select(somata[2] - around, somata[2] + around, false), [2]);
+    run(&mut window, Edit::Isolate);
+    let hidden = state(&mut window).document.neurons.iter().map(|n| n.hidden);
+    assert!(hidden.eq([true, true, false]));
+}
+
+#[neurotess_testing::test(needs(gpu))]
 fn a_session_comes_back_as_it_was() {
     let mut window = with_samples(&[Kind::Star, Kind::Granule]);
     let folder = tempfile::tempdir().expect("a folder");
@@ -195,6 +244,8 @@ fn a_session_comes_back_as_it_was() {
     run(&mut window, Edit::Select(vec![1], false));
     run(&mut window, Edit::SetHidden(0, true));
     run(&mut window, Command::Look(Side::Iso));
+    run(&mut window, Command::SetOrthographic(true));
+    run(&mut window, Command::SaveView);
     run(&mut window, Command::AddKeyView);
     run(&mut window, Command::SaveSession(file.clone()));
     let (document, view) = (state(&mut window).document.clone(), state(&mut window).view);

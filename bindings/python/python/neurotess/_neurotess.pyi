@@ -196,7 +196,7 @@ class Report:
         self, population: int, frames: tuple[int, int], compartments: list[int] | None
     ) -> NDArray[np.float32]: ...
 
-_View = tuple[list[float], list[float], list[float], float]
+_View = tuple[list[float], list[float], list[float], float, bool]
 
 @final
 class Drawing:

@@ -150,6 +150,7 @@ def render(
     target: Sequence[float] | None = None,
     up: Sequence[float] | None = None,
     fov: float | None = None,
+    orthographic: bool | float = False,
     wireframe: bool = False,
     least_width: float | None = None,
     synapses: bool | str | Sequence[str] = False,
@@ -186,7 +187,8 @@ def render(
     of a type or of anything else in the legend, as in ``{"axon": "#ff8800", "L5_PC": "#2ca02c"}``, over those of the
     palette called ``"base"``.
 
-    Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees).
+    Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees). `orthographic`: without
+    perspective, so that lengths are true at all depths (True, or the height of the picture in µm).
 
     Look: `wireframe`, `least_width` (pixels, of neurites), `light` (``"soft"``, ``"flat"`` or a direction), `ao`
     (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
@@ -220,6 +222,7 @@ def render(
         "target": target,
         "up": up,
         "fov": fov,
+        "orthographic": orthographic,
         "wireframe": wireframe,
         "least_width": least_width,
         "synapses": synapses,

@@ -65,6 +65,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         color_by: str | None = None,
         report: str | None = None,
         time: float | None = None,
+        orthographic: bool | float = False,
         adapter: str | None = None,
         **options: Any,
     ) -> None:
@@ -78,7 +79,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._samples = samples
         self._adapter = adapter
         self._budget = budget
-        self._options = dict(options)
+        self._options = {**options, "orthographic": orthographic}
         self._size = size
         self._ratio = 1.0
         self._moving = False
@@ -139,6 +140,16 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._camera = ([*map(float, eye)], [*map(float, target)], [*map(float, up)], float(fov))
         self._draw()
 
+    @property
+    def orthographic(self) -> bool:
+        """Whether there is no perspective. What the camera looks at keeps its size when this changes."""
+        return self._orthographic
+
+    @orthographic.setter
+    def orthographic(self, on: bool) -> None:
+        self._orthographic = bool(on)
+        self._draw()
+
     def image(self) -> Image:
         """The full picture as it is now."""
         return Image(self._pixels(self._full, self._samples))
@@ -181,8 +192,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._drawings = made
         self._shown_colors = color_by
         if first:
-            self._home = full.camera(0)
-            self._camera = self._home
+            *camera, self._orthographic = full.camera(0)
+            self._home = self._camera = tuple(camera)
 
     def _drop(self) -> None:
         for drawing in self._drawings or ():
@@ -201,9 +212,11 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         return [max(16, round(n * self._ratio)) for n in self._size]
 
     def _pixels(self, drawing: _neurotess.Drawing, samples: int) -> Any:
+        return drawing.draw_from(self._picture, self._seen_from(), self._pixel_size(), samples)
+
+    def _seen_from(self) -> Any:
         eye, target, up, fov = self._camera
-        view = (list(eye), list(target), list(up), fov)
-        return drawing.draw_from(self._picture, view, self._pixel_size(), samples)
+        return list(eye), list(target), list(up), fov, self._orthographic
 
     def get_frame(self) -> Any:
         """Draws what the browser asks for."""
@@ -273,10 +286,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
 
     def pick(self, x: float, y: float) -> dict[str, Any] | None:
         """What is at a point of the view, or within three pixels of it; None if nothing is."""
-        eye, target, up, fov = self._camera
-        view = (list(eye), list(target), list(up), fov)
         place = [x * self._ratio, y * self._ratio]
-        return self._full.pick(view, self._pixel_size(), place, REACH * self._ratio)
+        return self._full.pick(self._seen_from(), self._pixel_size(), place, REACH * self._ratio)
 
     def _axes(self) -> tuple[Any, Any, Any]:
         import numpy as np

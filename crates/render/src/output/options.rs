@@ -48,7 +48,7 @@ impl Occlusion {
     /// It does not depend on tiles, so that they fit together.
     pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
         let height = f64::from(height);
-        let sub_pixel = camera.pixel_slope(height) * camera.depth(camera.target());
+        let sub_pixel = camera.pixel_at_target(height);
         let most = (0.09 * height).min(MOST_MARGIN).ceil();
         let radius = match self {
             Self::Fit => 0.08 * height * sub_pixel,

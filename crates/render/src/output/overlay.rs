@@ -151,7 +151,7 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
 
 /// A scale bar of this length (µm; 0: as long as fits).
 fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Image {
-    let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(camera.target());
+    let pixel = camera.pixel_at_target(f64::from(size[1]));
     let length = match length {
         0.0 => nice_length(0.2 * f64::from(size[0]) * pixel),
         length => length,
@@ -213,7 +213,9 @@ impl Seen {
             .flat_map(|c| spheres.iter().map(move |b| (c, b)));
         let places = pairs.step_by(step);
         let places = places.filter_map(|(camera, &(center, radius))| {
-            let pixel = camera.pixel_slope(f64::from(size[1])) * camera.depth(center);
+            let pixel = camera
+                .pixel_size(f64::from(size[1]))
+                .at(camera.depth(center));
             Some((camera.pixel_of(center, size)?, radius / pixel))
         });
         Self {

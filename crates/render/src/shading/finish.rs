@@ -25,6 +25,8 @@ pub(crate) struct Finish {
     pub(crate) spare: u32,
     pub(crate) empty: u32,
     pub(crate) background: [f32; 4],
+    pub(crate) flat: f32,
+    pub(crate) pad: [f32; 3],
 }
 
 impl Finish {
@@ -34,7 +36,8 @@ impl Finish {
             tile_size: [frame.tile.width, frame.tile.height],
             tile_origin: [frame.tile.x, frame.tile.y],
             half_size: frame.size.map(|n| n as f32 / 2.0),
-            slope: frame.slope() as f32,
+            slope: frame.pixel().slope as f32,
+            flat: frame.pixel().flat as f32,
             ..Self::default()
         }
     }

@@ -8,7 +8,7 @@ struct Finish {
     tile_origin: vec2<i32>,
     // Half the whole picture (sub-pixels).
     half_size: vec2<f32>,
-    // Size (µm) of a sub-pixel at unit depth.
+    // What each µm of depth adds to the size (µm) of a sub-pixel.
     slope: f32,
     // Sub-pixels per pixel, along one side.
     scale: u32,
@@ -27,6 +27,8 @@ struct Finish {
     empty: u32,
     // Linear color of the background.
     background: vec4<f32>,
+    // Size (µm) of a sub-pixel at every depth: 0 with perspective.
+    flat: f32,
 }
 
 @group(0) @binding(0) var<uniform> finish: Finish;
@@ -61,7 +63,8 @@ fn depth_at(p: vec2<i32>) -> f32 {
 // Position in the view (µm): right, up, backward.
 fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
     let place = vec2<f32>(p + finish.tile_origin) + 0.5 - finish.half_size;
-    return vec3(place * vec2(1.0, -1.0) * finish.slope * depth, -depth);
+    let across = place * vec2(1.0, -1.0);
+    return vec3(across * finish.slope * depth + across * finish.flat, -depth);
 }
 
 // Share of the light that reaches what is drawn at a sub-pixel: all of it where occlusion has seen nothing,

@@ -38,7 +38,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let center = view_at(p, depth);
     let n = normalize(textureLoad(normals, p, 0).xyz * 2.0 - 1.0);
-    let pixel = finish.slope * depth;
+    let pixel = finish.slope * depth + finish.flat;
     let reach = min(finish.radius / pixel, finish.most);
     let radius = reach * pixel;
     let whole = vec2<u32>(p + finish.tile_origin + 65536);
@@ -71,7 +71,7 @@ fn alike(depth: f32, other: f32) -> f32 {
     if other == 0.0 {
         return 0.0;
     }
-    let reach = min(finish.radius, finish.most * finish.slope * depth);
+    let reach = min(finish.radius, finish.most * finish.slope * depth + finish.most * finish.flat);
     return max(1.0 - abs(other - depth) / (0.3 * reach), 0.0);
 }
 

@@ -129,6 +129,8 @@ pub(crate) struct Shade {
     pub(crate) batch: u32,
     pub(crate) least_half_width: f32,
     pub(crate) edge: [f32; 4],
+    pub(crate) flat: f32,
+    pub(crate) pad: [f32; 3],
 }
 
 /// Sizes of a color table, for shaders.
@@ -161,7 +163,7 @@ impl Shade {
             right,
             near: frame.near as f32,
             up,
-            slope: frame.slope() as f32,
+            slope: frame.pixel().slope as f32,
             backward,
             half_width: HALF_WIDTH * scale as f32,
             key: key.normalize_or(KEY).to_array(),
@@ -182,6 +184,8 @@ impl Shade {
             batch: 0,
             least_half_width: 0.5 * look.least_width.max(0.0) * scale as f32,
             edge: edge_color(look),
+            flat: frame.pixel().flat as f32,
+            pad: [0.0; 3],
         }
         .within(&frame.tile)
     }

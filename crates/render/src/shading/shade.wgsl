@@ -9,7 +9,7 @@ struct Shade {
     right: vec3<f32>,
     near: f32,
     up: vec3<f32>,
-    // Size (µm) of a sub-pixel at unit depth.
+    // What each µm of depth adds to the size (µm) of a sub-pixel.
     slope: f32,
     backward: vec3<f32>,
     // Half the width (sub-pixels) of the thinnest line drawn.
@@ -48,6 +48,8 @@ struct Shade {
     // Linear color of edges, and luminance of the background, against which they make colors of the
     // scale stand out.
     edge: vec4<f32>,
+    // Size (µm) of a sub-pixel at every depth: 0 with perspective.
+    flat: f32,
 }
 
 @group(1) @binding(0) var<uniform> shade: Shade;
@@ -180,9 +182,9 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
         let depth = max(-dot(v.axis, shade.backward), shade.near);
         // The width does not depend on values, so that another frame of a recording changes colors
         // only.
-        let narrowest = shade.half_width * shade.slope * depth;
+        let narrowest = shade.half_width * shade.slope * depth + shade.half_width * shade.flat;
         thin = max(1.0 - 0.5 * v.radius / narrowest, 0.0);
-        let least = shade.least_half_width * shade.slope * depth;
+        let least = shade.least_half_width * shade.slope * depth + shade.least_half_width * shade.flat;
         let widened = max(narrowest, least);
         if v.radius < widened {
             let offset = v.position - v.axis;
@@ -233,7 +235,7 @@ struct Sample {
     // Normal in the view, mapped from -1..1 to 0..1, and a byte with the bits of the outlines'
     // mask.
     @location(1) normal: vec4<f32>,
-    // Depth (µm), as the bytes of an f32: OpenGL cannot load from depth textures, and cannot always
+    // Depth (µm), not 0, as the bytes of an f32: OpenGL cannot load from depth textures, and cannot always
     // draw to floating-point ones.
     @location(2) depth: vec4<f32>,
 #ifdef MULTISAMPLED
@@ -318,7 +320,7 @@ fn facet(world_normal: vec3<f32>, relative: vec3<f32>, coverage: f32, thin: f32,
     // filled.
     let world = select(-shade.clip.xyz, normalize(world_normal), front);
     let axes = mat3x3(shade.right, shade.up, shade.backward);
-    let to_eye = -normalize(relative) * axes;
+    let to_eye = select(-normalize(relative) * axes, vec3(0.0, 0.0, 1.0), shade.flat > 0.0);
     // A thin line is lit like a surface that faces the viewer, so that it has the color of the
     // legend. With the mean over all its sides it was a third darker, and thin neurites looked
     // gray.
@@ -355,7 +357,9 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     var out: Sample;
     out.color = vec4(color, 1.0);
     out.normal = vec4(f.normal * 0.5 + 0.5, f32(in.outline) / 255.0);
-    out.depth = unpack4x8unorm(bitcast<u32>(-dot(in.relative, shade.backward)));
+    // Without perspective it may be negative, and 0 where the eye is.
+    let depth = -dot(in.relative, shade.backward);
+    out.depth = unpack4x8unorm(bitcast<u32>(select(depth, 1e-20, depth == 0.0)));
 #ifdef MULTISAMPLED
     out.mask = mask_of(f.coverage, in.position);
 #else

@@ -52,7 +52,7 @@ pub fn any_shows(spheres: &[BoundingSphere], frame: &Frame) -> bool {
         let center = (center - eye).as_vec3();
         // Half a pixel is at most four sub-pixels; twice that, since sub-pixels are larger in the
         // picture's corners.
-        let pixels = 8.0 * (f64::from(center.length()) + radius) * frame.slope();
+        let pixels = 8.0 * frame.pixel().at(f64::from(center.length()) + radius);
         shows(&planes, center, (radius + pixels) as f32)
     })
 }

@@ -3,6 +3,7 @@
 use glam::{DVec3, Mat4, Vec4};
 
 use crate::view::camera::Camera;
+use crate::view::lens::PixelSize;
 
 /// A rectangle of a picture in sub-pixels, from its upper left corner. It may reach over the
 /// border.
@@ -27,7 +28,7 @@ pub struct Tile {
 pub struct Frame {
     /// The camera.
     pub camera: Camera,
-    /// Depth (µm) of the near plane.
+    /// Depth (µm) of the near plane: [`Camera::near`]'s.
     pub near: f64,
     /// Width and height of the whole picture (sub-pixels).
     pub size: [u32; 2],
@@ -56,9 +57,9 @@ impl Frame {
         f64::from(self.size[0]) / f64::from(self.size[1])
     }
 
-    /// Size (µm) of a sub-pixel at unit depth.
-    pub fn slope(&self) -> f64 {
-        self.camera.pixel_slope(f64::from(self.size[1]))
+    /// Size (µm) of a sub-pixel by depth.
+    pub fn pixel(&self) -> PixelSize {
+        self.camera.pixel_size(f64::from(self.size[1]))
     }
 
     /// Clip space of the whole picture, from positions relative to the eye.
@@ -69,21 +70,26 @@ impl Frame {
     /// Planes around what the tile shows, relative to the eye, as [`Camera::frustum`]'s.
     pub fn frustum(&self) -> [Vec4; 5] {
         let [right, up, backward] = self.camera.axes();
-        let slope = self.slope();
+        // Tangents with perspective, else lengths.
+        let unit = self.pixel().at(1.0);
+        let orthographic = self.camera.is_orthographic();
         let [w, h] = self.size.map(f64::from);
         let Tile { x, y, .. } = self.tile;
-        // Tangents of the tile's sides; y runs down in a picture, up in the view.
-        let left = (f64::from(x) - w / 2.0) * slope;
-        let top = (h / 2.0 - f64::from(y)) * slope;
+        // Of the tile's sides; y runs down in a picture, up in the view.
+        let left = (f64::from(x) - w / 2.0) * unit;
+        let top = (h / 2.0 - f64::from(y)) * unit;
         let (width, height) = (f64::from(self.tile.width), f64::from(self.tile.height));
         let side = |axis: DVec3, tan: f64, sign: f64| {
+            if orthographic {
+                return (axis * sign).as_vec3().extend((-sign * tan) as f32);
+            }
             let normal = (axis + backward * tan) * (sign / tan.hypot(1.0));
             normal.as_vec3().extend(0.0)
         };
         [
             side(right, left, 1.0),
-            side(right, left + width * slope, -1.0),
-            side(up, top - height * slope, 1.0),
+            side(right, left + width * unit, -1.0),
+            side(up, top - height * unit, 1.0),
             side(up, top, -1.0),
             (-backward).as_vec3().extend(-self.near as f32),
         ]
@@ -94,15 +100,23 @@ impl Frame {
 mod tests {
     use super::*;
     use crate::view::frustum::shows;
+    use crate::view::lens::Lens;
     use glam::Vec3;
 
     #[test]
     fn tiles_part_the_frustum_of_the_picture() {
-        let camera =
-            Camera::new(DVec3::new(1.0, 2.0, 30.0), DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
+        let eye = DVec3::new(1.0, 2.0, 30.0);
+        for lens in [Lens::from(0.7), Lens::orthographic(0.7)] {
+            let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, lens).expect("a camera");
+            parts(camera);
+        }
+    }
+
+    fn parts(camera: Camera) {
+        let near = if camera.is_orthographic() { -90.0 } else { 0.1 };
         let frame = |x: i32, y: i32, width: u32, height: u32| Frame {
             camera,
-            near: 0.1,
+            near,
             size: [200, 100],
             tile: Tile {
                 x,
@@ -112,7 +126,7 @@ mod tests {
             },
         };
         let whole = frame(0, 0, 200, 100).frustum();
-        for (a, b) in whole.iter().zip(camera.frustum(2.0, 0.1)) {
+        for (a, b) in whole.iter().zip(camera.frustum(2.0, near)) {
             assert!((*a - b).length() < 1e-6, "{a} {b}");
         }
         let quarters = [(0, 0), (100, 0), (0, 50), (100, 50)];

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::BoundingSphere;
+use crate::view::lens::{Lens, Projection};
 
 /// Sides to look from. Cells are upright along y; x points right, z towards the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,19 +46,20 @@ impl Side {
 
 impl Camera {
     /// The nearest camera on this side that has all spheres in the picture, with a `margin` (share
-    /// of its width and height) free on each side. `aspect` is width by height. Without spheres it
-    /// looks at the origin from 100 µm away.
+    /// of its width and height) free on each side. `lens`: a [`Lens`], or the vertical angle of view
+    /// (radians) of a perspective one. `aspect` is width by height. Without spheres it looks at the
+    /// origin from 100 µm away.
     ///
     /// # Errors
     /// As [`Camera::new`].
     pub fn fit(
         side: Side,
-        fov: f64,
+        lens: impl Into<Lens>,
         aspect: f64,
         margin: f64,
         spheres: &[BoundingSphere],
     ) -> Result<Self, CameraError> {
-        Self::fit_within(side, fov, aspect, [margin; 4], spheres)
+        Self::fit_within(side, lens, aspect, [margin; 4], spheres)
     }
 
     /// Like [`Camera::fit`], with a margin for each side: left, right, top, bottom.
@@ -66,18 +68,28 @@ impl Camera {
     /// As [`Camera::new`].
     pub fn fit_within(
         side: Side,
-        fov: f64,
+        lens: impl Into<Lens>,
         aspect: f64,
         margins: [f64; 4],
         spheres: &[BoundingSphere],
     ) -> Result<Self, CameraError> {
+        let lens = lens.into();
         let (backward, up) = side.axes();
-        let start = Self::new(backward, DVec3::ZERO, up, fov)?;
+        let start = Self::new(backward, DVec3::ZERO, up, lens)?;
         if spheres.is_empty() {
-            return Self::new(backward * 100.0, DVec3::ZERO, up, fov);
+            return Self::new(backward * 100.0, DVec3::ZERO, up, lens);
         }
         let (tan_x, tan_y) = start.tangents(aspect, 0.0);
         let [left, right, top, bottom] = margins.map(|m| 1.0 - 2.0 * m.clamp(0.0, 0.45));
+        if lens.projection == Projection::Orthographic {
+            let (low, high) = start.extent(spheres);
+            let size = high - low;
+            let height =
+                (2.0 * size.y / (top + bottom)).max(2.0 * size.x / (left + right) / aspect);
+            let middle = (low + high) / 2.0
+                - DVec3::new((right - left) * aspect, top - bottom, 0.0) * height / 4.0;
+            return start.at(middle, height);
+        }
         // Position of the eye along an axis, and its distance, at which the planes on both sides
         // touch the spheres.
         let touch = |axis: usize, low_tan: f64, high_tan: f64| {
@@ -109,7 +121,7 @@ impl Camera {
         let eye = DVec3::new(x, y, depth);
         let target = DVec3::new(x, y, middle.z.min(nearest - 1e-6).min(depth - 1e-3));
         let world = start.view_from_world.transpose();
-        Self::new(world * eye, world * target, up, fov)
+        Self::new(world * eye, world * target, up, lens)
     }
 
     /// The nearest camera that has all spheres in the picture at any angle of [`Camera::turned`].
@@ -118,24 +130,31 @@ impl Camera {
     /// As [`Camera::new`].
     pub fn fit_turning(
         side: Side,
-        fov: f64,
+        lens: impl Into<Lens>,
         aspect: f64,
         margin: f64,
         spheres: &[BoundingSphere],
     ) -> Result<Self, CameraError> {
-        let still = Self::fit(side, fov, aspect, margin, spheres)?;
+        let lens = lens.into();
+        let still = Self::fit(side, lens, aspect, margin, spheres)?;
         let (tan_x, tan_y) = still.tangents(aspect, margin);
         let [right, up, backward] = still.axes();
-        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
-        for &(center, radius) in spheres {
-            let v = still.view_from_world * center;
-            low = low.min(v - radius);
-            high = high.max(v + radius);
-        }
         if spheres.is_empty() {
             return Ok(still);
         }
+        let (low, high) = still.extent(spheres);
         let middle = (low + high) / 2.0;
+        if lens.projection == Projection::Orthographic {
+            let mut half: f64 = 0.0;
+            for &(center, radius) in spheres {
+                let v = still.view_from_world * center - middle;
+                half = half
+                    .max((v.x.hypot(v.z) + radius) / aspect)
+                    .max(v.y.abs() + radius);
+            }
+            let free = 1.0 - 2.0 * margin.clamp(0.0, 0.49);
+            return still.at(middle, 2.0 * half / free);
+        }
         let mut distance: f64 = 0.0;
         for &(center, radius) in spheres {
             let v = still.view_from_world * center - middle;
@@ -146,7 +165,27 @@ impl Camera {
                 .max(around + (v.y.abs() + radius * tan_y.hypot(1.0)) / tan_y);
         }
         let target = right * middle.x + up * middle.y + backward * middle.z;
-        Self::new(target + backward * distance.max(1e-3), target, up, fov)
+        Self::new(target + backward * distance.max(1e-3), target, up, lens)
+    }
+
+    /// The least and the greatest coordinates of spheres in the view: right, up, backward.
+    fn extent(&self, spheres: &[BoundingSphere]) -> (DVec3, DVec3) {
+        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        for &(center, radius) in spheres {
+            let v = self.view_from_world * center;
+            low = low.min(v - radius);
+            high = high.max(v + radius);
+        }
+        (low, high)
+    }
+
+    /// A camera in the same direction with a target (in the view) that is as far away as makes the
+    /// picture this high (µm) there.
+    fn at(&self, target: DVec3, height: f64) -> Result<Self, CameraError> {
+        let distance = (height / 2.0).max(1e-3) / (self.fov() / 2.0).tan();
+        let [_, up, backward] = self.axes();
+        let target = self.view_from_world.transpose() * target;
+        Self::new(target + backward * distance, target, up, self.lens())
     }
 }
 
@@ -167,6 +206,17 @@ mod tests {
         Side::Top,
         Side::Bottom,
         Side::Iso,
+    ];
+
+    const LENSES: [Lens; 2] = [
+        Lens {
+            fov: 0.5,
+            projection: Projection::Perspective,
+        },
+        Lens {
+            fov: 0.5,
+            projection: Projection::Orthographic,
+        },
     ];
 
     fn spheres() -> Vec<BoundingSphere> {
@@ -196,9 +246,11 @@ mod tests {
     fn fitted_spheres_touch_the_frustum_from_within() {
         for side in SIDES {
             for aspect in [0.3, 1.0, 2.5] {
-                let camera = Camera::fit(side, 0.5, aspect, 0.0, &spheres()).expect("fits");
-                let most = reach(&camera, aspect, &spheres());
-                assert!(most.abs() < 0.01, "{side:?} {aspect}: {most}");
+                for lens in LENSES {
+                    let camera = Camera::fit(side, lens, aspect, 0.0, &spheres()).expect("fits");
+                    let most = reach(&camera, aspect, &spheres());
+                    assert!(most.abs() < 0.01, "{side:?} {aspect}: {most}");
+                }
             }
         }
     }
@@ -206,8 +258,8 @@ mod tests {
     #[test]
     fn margins_stay_free() {
         let margins = [0.3, 0.05, 0.02, 0.1];
-        for aspect in [0.5, 2.0] {
-            let camera = Camera::fit_within(Side::Iso, 0.4, aspect, margins, &spheres());
+        for (aspect, lens) in [0.5, 2.0].into_iter().flat_map(|a| LENSES.map(|l| (a, l))) {
+            let camera = Camera::fit_within(Side::Iso, lens, aspect, margins, &spheres());
             let camera = camera.expect("fits");
             let size = [(4000.0 * aspect) as u32, 4000];
             let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
@@ -235,8 +287,8 @@ mod tests {
 
     #[test]
     fn turning_keeps_everything_in_the_picture() {
-        for side in SIDES {
-            let camera = Camera::fit_turning(side, 0.4, 1.5, 0.0, &spheres()).expect("fits");
+        for (side, lens) in SIDES.into_iter().flat_map(|s| LENSES.map(|l| (s, l))) {
+            let camera = Camera::fit_turning(side, lens, 1.5, 0.0, &spheres()).expect("fits");
             for step in 0..24 {
                 let turned = camera.turned(f64::from(step) * 0.3);
                 assert!(reach(&turned, 1.5, &spheres()) < 0.01, "{side:?} {step}");
@@ -249,10 +301,12 @@ mod tests {
     #[test]
     fn scenes_without_extent_have_a_camera() {
         for side in SIDES {
-            assert!(Camera::fit(side, 0.5, 1.0, 0.1, &[]).is_ok());
             let point = [(DVec3::new(1.0, 2.0, 3.0), 0.0)];
-            assert!(Camera::fit(side, 0.5, 1.0, 0.1, &point).is_ok());
-            assert!(Camera::fit_turning(side, 0.5, 1.0, 0.1, &point).is_ok());
+            for lens in LENSES {
+                assert!(Camera::fit(side, lens, 1.0, 0.1, &[]).is_ok());
+                assert!(Camera::fit(side, lens, 1.0, 0.1, &point).is_ok());
+                assert!(Camera::fit_turning(side, lens, 1.0, 0.1, &point).is_ok());
+            }
         }
     }
 }

@@ -170,5 +170,7 @@ pub(crate) fn look(mesh: &CoarseMesh, random: &mut Random, distance: f64) -> Cam
 }
 
 pub(crate) fn cull_view(camera: &Camera, width: u32, height: u32) -> CullView {
-    CullView::new(camera, width, height, 1e-3)
+    // Without perspective everything is in front.
+    let near = if camera.is_orthographic() { -1e5 } else { 1e-3 };
+    CullView::new(camera, width, height, near)
 }

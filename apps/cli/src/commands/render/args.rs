@@ -146,6 +146,9 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, default_value_t = ViewSide::Front, value_name = "SIDE",
           help_heading = "Camera")]
     pub(crate) view: ViewSide,
+    /// Of a session: look from the view that the window saved under this name
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["view", "eye"], help_heading = "Camera")]
+    pub(crate) saved_view: Option<String>,
     /// Position of the eye (µm)
     #[arg(
         long,
@@ -183,6 +186,11 @@ pub(crate) struct RenderArgs {
         help_heading = "Camera"
     )]
     pub(crate) fov: f64,
+    /// Look without perspective: lengths are true at all depths. The picture is this high (µm), or
+    /// fits the scene; with --eye, it shows what --fov shows at the target
+    #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
+          help_heading = "Camera")]
+    pub(crate) orthographic: Option<Fit>,
     /// Go once around the scene, in --frames pictures
     #[arg(long, help_heading = "Camera")]
     pub(crate) turntable: bool,

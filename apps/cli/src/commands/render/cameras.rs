@@ -1,8 +1,9 @@
 //! The cameras that follow from the options.
 
-use neurotess::render::{BoundingSphere, Camera, CameraError, Side};
+use neurotess::render::{BoundingSphere, Camera, CameraError, Lens, Side};
 
 use super::args::{RenderArgs, ViewSide};
+use super::values::Fit;
 use crate::report::usage;
 
 /// Share of the picture that stays free on each side.
@@ -33,9 +34,10 @@ pub(crate) fn cameras(
 }
 
 /// The camera that leaves a share of the width free for the legend, on the left (negative) or the
-/// right; none if that is too much, or if --eye sets the camera.
+/// right; none if that is too much, or if --eye or a height sets the camera.
 pub(crate) fn beside(args: &RenderArgs, spheres: &[BoundingSphere], share: f64) -> Option<Camera> {
-    if args.eye.is_some() || args.turntable || share.abs() > MOST_BESIDE {
+    let set = args.eye.is_some() || matches!(args.orthographic, Some(Fit::Length(_)));
+    if set || args.turntable || share.abs() > MOST_BESIDE {
         return None;
     }
     let free = share.abs() + MARGIN;
@@ -53,10 +55,25 @@ fn camera(
     margins: [f64; 4],
 ) -> Result<Camera, CameraError> {
     let fov = args.fov.to_radians();
+    match args.orthographic {
+        None => fitted(args, fov.into(), spheres, margins),
+        Some(Fit::Auto) => fitted(args, Lens::orthographic(fov), spheres, margins),
+        Some(Fit::Length(height)) => {
+            fitted(args, Lens::orthographic(fov), spheres, margins)?.with_height(height)
+        }
+    }
+}
+
+fn fitted(
+    args: &RenderArgs,
+    lens: Lens,
+    spheres: &[BoundingSphere],
+    margins: [f64; 4],
+) -> Result<Camera, CameraError> {
     let [width, height] = args.size.0.map(f64::from);
     let aspect = width / height;
     if let (Some(eye), Some(target)) = (args.eye, args.target) {
-        return Camera::new(eye.0, target.0, args.up.0, fov);
+        return Camera::new(eye.0, target.0, args.up.0, lens);
     }
     let side = match args.view {
         ViewSide::Front => Side::Front,
@@ -68,7 +85,7 @@ fn camera(
         ViewSide::Iso => Side::Iso,
     };
     if args.turntable {
-        return Camera::fit_turning(side, fov, aspect, MARGIN, spheres);
+        return Camera::fit_turning(side, lens, aspect, MARGIN, spheres);
     }
-    Camera::fit_within(side, fov, aspect, margins, spheres)
+    Camera::fit_within(side, lens, aspect, margins, spheres)
 }

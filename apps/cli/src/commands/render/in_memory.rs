@@ -322,7 +322,7 @@ impl Drawing {
         reach: f64,
     ) -> Option<Picked> {
         let cursor = DVec2::from(at);
-        let slope = camera.pixel_slope(f64::from(size[1]));
+        let pixel = camera.pixel_size(f64::from(size[1]));
         // Depth, and whether the cursor is on a ball between two traced ones.
         let hit = |a: (DVec3, f64), b: (DVec3, f64)| {
             let (p, q) = (camera.pixel_of(a.0, size)?, camera.pixel_of(b.0, size)?);
@@ -332,9 +332,9 @@ impl Drawing {
             let center = a.0.lerp(b.0, along);
             let radius = a.1 + along * (b.1 - a.1);
             let depth = camera.depth(center);
-            let pixels = radius / (slope * depth);
+            let pixels = radius / pixel.at(depth);
             let near = cursor.distance(p.lerp(q, along)) <= pixels + reach;
-            (near && depth > 0.0).then_some((depth - radius, along, center))
+            (near && pixel.at(depth) > 0.0).then_some((depth - radius, along, center))
         };
         let of_instance = |(instance, &(cell, placement)): (usize, &(usize, Placement))| {
             let morphology = &self.cells[cell].morphology;

@@ -30,7 +30,7 @@ use neurotess::coloring::MarkerSet;
 use neurotess::render::Gpu;
 
 use crate::io::output;
-use crate::report::{Entry, Reporter};
+use crate::report::{Entry, Reporter, usage};
 pub(crate) use args::RenderArgs;
 use cells::MeshedCell;
 pub use in_memory::{DrawError, Drawing, DrawingInput, Picked};
@@ -50,6 +50,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         && session::is_session(path)
     {
         return session::draw(path, &files, args, reporter);
+    }
+    if args.saved_view.is_some() {
+        return usage("--saved-view is of a session: give the session's file");
     }
     checks::check_value(args)?;
     let mut stages = Stages::begin();

@@ -9,7 +9,7 @@ use super::stats;
 use crate::report::{Failure, count};
 use crate::report::{Reporter, usage};
 
-/// Draws a session of the window in its own view and look, with the size and samples of the
+/// Draws a session of the window in its own or a saved view and in its look, with the size and samples of the
 /// options.
 #[cfg(feature = "view")]
 pub(super) fn draw(
@@ -28,7 +28,12 @@ pub(super) fn draw(
         transparent: args.transparent,
         replace: args.force,
     };
-    let drawn = neurotess_viewer::draw_session(session, &picture, args.adapter.as_deref());
+    let drawn = neurotess_viewer::draw_session(
+        session,
+        &picture,
+        args.saved_view.as_deref(),
+        args.adapter.as_deref(),
+    );
     let drawn = drawn.map_err(anyhow::Error::msg)?;
     for (file, why) in &drawn.failures {
         reporter.failure(&Failure(format!("{file}: {why}")));

@@ -296,7 +296,7 @@ fn levels(
         ),
         (None, _) => {
             let error =
-                |camera: &Camera| camera.pixel_slope(height) * nearest(camera) * args.error();
+                |camera: &Camera| camera.pixel_size(height).at(nearest(camera)) * args.error();
             let least = cameras.iter().map(error).fold(f64::MAX, f64::min);
             LodCriterion::MaxError(least as f32).into()
         }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::model::document::{
-    Detail, Dimension, Document, Look, MarkerOptions, SomaEdit, SourceId,
+    Detail, Dimension, Document, Look, MarkerOptions, SavedView, SomaEdit, SourceId,
 };
 
 /// A change of the document.
@@ -54,6 +54,12 @@ pub enum Edit {
     RemoveDimension(usize),
     /// Removes all dimensions.
     ClearDimensions,
+    /// Saves a view under its name.
+    SaveView(SavedView),
+    /// Renames a saved view.
+    RenameView(usize, String),
+    /// Forgets a saved view.
+    RemoveView(usize),
 }
 
 impl Edit {
@@ -76,6 +82,9 @@ impl Edit {
             }
             Self::AddDimension(_) => "Dimension",
             Self::RemoveDimension(_) | Self::ClearDimensions => "Remove dimension",
+            Self::SaveView(_) => "Save view",
+            Self::RenameView(..) => "Rename view",
+            Self::RemoveView(_) => "Forget view",
         }
     }
 
@@ -88,6 +97,7 @@ impl Edit {
                 | Self::SetLook(_)
                 | Self::SetDetail(_)
                 | Self::SetMarkers(_)
+                | Self::RenameView(..)
         )
     }
 
@@ -95,8 +105,9 @@ impl Edit {
     pub fn apply(self, document: &mut Document) {
         let neurons = &mut document.neurons;
         match self {
-            Self::Select(which, add) => {
-                let is = |i: usize| which.contains(&i);
+            Self::Select(mut which, add) => {
+                which.sort_unstable();
+                let is = |i: usize| which.binary_search(&i).is_ok();
                 // If all of them are selected already, they are unselected.
                 let all = which
                     .iter()
@@ -165,6 +176,16 @@ impl Edit {
             }
             Self::RemoveDimension(_) => {}
             Self::ClearDimensions => document.dimensions.clear(),
+            Self::SaveView(view) => document.saved_views.push(view),
+            Self::RenameView(which, name) => {
+                if let Some(view) = document.saved_views.get_mut(which) {
+                    view.name = name;
+                }
+            }
+            Self::RemoveView(which) if which < document.saved_views.len() => {
+                document.saved_views.remove(which);
+            }
+            Self::RemoveView(_) => {}
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The commands of the menus and the palette.
 
+use std::borrow::Cow;
+
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use neurotess::render::Side;
 use neurotess::synth::Kind;
@@ -9,7 +11,7 @@ use super::{Command, Edit, FilePurpose, Tab};
 /// A command of the menus and the palette.
 pub struct Listed {
     /// Its title.
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     /// Its shortcut.
     pub keys: Option<KeyboardShortcut>,
     /// The command.
@@ -25,8 +27,8 @@ const CTRL_SHIFT: Modifiers = Modifiers {
 
 /// All commands that need no further input, by menu. `now`: the state that titles depend on.
 pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
-    let item = |title, keys: Option<(Modifiers, Key)>, command| Listed {
-        title,
+    let item = |title: &'static str, keys: Option<(Modifiers, Key)>, command| Listed {
+        title: title.into(),
         keys: keys.map(|(modifiers, key)| KeyboardShortcut::new(modifiers, key)),
         command,
     };
@@ -139,7 +141,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
         ),
         (
             "View",
-            vec![
+            [
                 item(
                     "Home: everything, from the front",
                     Some((PLAIN, Key::Home)),
@@ -172,6 +174,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     "From a corner",
                     Some((PLAIN, Key::Num4)),
                     Command::Look(Side::Iso),
+                ),
+                item(
+                    choose(
+                        now.orthographic,
+                        "Orthographic: parallel projection, true scale bar",
+                        "Perspective projection (off: orthographic, parallel, true scale bar)",
+                    ),
+                    Some((PLAIN, Key::O)),
+                    Command::SetOrthographic(!now.orthographic),
                 ),
                 item("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
                 item(
@@ -228,7 +239,17 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Some((PLAIN, Key::K)),
                     Command::AddKeyView,
                 ),
-            ],
+                item(
+                    "Save this view under a name (5 to 9 go to the first)",
+                    Some((PLAIN, Key::V)),
+                    Command::SaveView,
+                ),
+            ]
+            .into_iter()
+            .chain((0..).zip(SAVED_VIEWS).map(|(index, (title, key))| {
+                item(title, Some((PLAIN, key)), Command::GoSaved(index))
+            }))
+            .collect(),
         ),
         (
             "Window",
@@ -280,6 +301,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
     ]
 }
 
+/// Saved views that have a key. Menus show those that there are, by their names.
+const SAVED_VIEWS: [(&str, Key); 5] = [
+    ("Saved view 1", Key::Num5),
+    ("Saved view 2", Key::Num6),
+    ("Saved view 3", Key::Num7),
+    ("Saved view 4", Key::Num8),
+    ("Saved view 5", Key::Num9),
+];
+
 const SAMPLE_TITLES: [&str; 6] = [
     "Pyramidal cell",
     "Purkinje cell",
@@ -292,6 +322,8 @@ const SAMPLE_TITLES: [&str; 6] = [
 /// What titles of commands depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Toggles {
+    /// Whether there is no perspective.
+    pub orthographic: bool,
     /// Whether y points down.
     pub y_down: bool,
     /// Whether neurons are side by side.

@@ -111,6 +111,12 @@ pub enum Command {
     Focus,
     /// Goes to a view.
     Go(View),
+    /// Shows the picture without perspective, or with it.
+    SetOrthographic(bool),
+    /// Saves the current view under a name.
+    SaveView,
+    /// Goes to a saved view.
+    GoSaved(usize),
     /// Sets whether y points down.
     SetYDown(bool),
     /// Keeps the levels of the current view while the camera moves.
@@ -169,6 +175,8 @@ impl fmt::Debug for Command {
             Self::SetPace(value) => with("SetPace", value),
             Self::Look(value) => with("Look", value),
             Self::Go(value) => with("Go", value),
+            Self::SetOrthographic(value) => with("SetOrthographic", value),
+            Self::GoSaved(value) => with("GoSaved", value),
             Self::SetYDown(value) => with("SetYDown", value),
             Self::SetFrozen(value) => with("SetFrozen", value),
             Self::SetMeasuring(value) => with("SetMeasuring", value),
@@ -187,6 +195,7 @@ impl fmt::Debug for Command {
             Self::Redo => f.write_str("Redo"),
             Self::TogglePlay => f.write_str("TogglePlay"),
             Self::LeaveMeasuring => f.write_str("LeaveMeasuring"),
+            Self::SaveView => f.write_str("SaveView"),
             Self::Home => f.write_str("Home"),
             Self::Focus => f.write_str("Focus"),
             Self::ToggleKeys => f.write_str("ToggleKeys"),

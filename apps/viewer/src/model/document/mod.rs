@@ -6,6 +6,7 @@ mod look;
 mod markers;
 mod neurons;
 mod placement;
+mod saved_view;
 mod soma;
 
 use std::path::PathBuf;
@@ -22,6 +23,7 @@ pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 pub use markers::MarkerOptions;
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
+pub use saved_view::SavedView;
 pub use soma::{Method, SomaEdit};
 
 /// All that edits change.
@@ -43,6 +45,8 @@ pub struct Document {
     pub markers: MarkerOptions,
     /// What was measured and is kept on the picture.
     pub dimensions: Tracked<Vec<Dimension>>,
+    /// Views that were saved under a name.
+    pub saved_views: Vec<SavedView>,
 }
 
 /// A neuron: a tracing with a placement.

@@ -5,6 +5,7 @@ mod derived;
 mod dimension_table;
 mod dimensions;
 mod markers;
+mod views;
 
 use std::path::PathBuf;
 
@@ -19,7 +20,7 @@ use crate::model::measuring::Measuring;
 use crate::model::playback::Playback;
 use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
-use crate::model::sources::{self, Source, Sources, extent};
+use crate::model::sources::{self, Source, Sources};
 use crate::model::view::View;
 
 pub use counters::{Counters, Draft, Lowered, Rebuilds, StaticFigures};
@@ -159,6 +160,8 @@ pub enum Effect {
     Cancel,
     /// Move the camera to a view.
     Go(View),
+    /// Show the picture without perspective, or with it, also at the end of a flight.
+    Project(bool),
     /// Put a text on the clipboard.
     Copy(String),
     /// Quit.
@@ -212,6 +215,7 @@ impl State {
     /// What titles of commands depend on.
     pub fn toggles(&self) -> Toggles {
         Toggles {
+            orthographic: self.view.orthographic,
             y_down: self.settings.y_down,
             grid: self.document.grid,
             frozen: self.frozen.is_some(),
@@ -261,19 +265,14 @@ impl State {
                 self.fitted = Some(side);
             }
             Command::Home => self.run(Command::Look(Side::Front)),
-            Command::Focus => {
-                let any = self.document.selected().next().is_some();
-                let spheres = self.outline(|n| n.selected || !any);
-                let (low, high) = extent(&spheres);
-                if !spheres.is_empty() {
-                    let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);
-                    self.run(Command::Go(self.view.focused(sphere)));
-                }
-            }
+            Command::Focus => self.focus(),
             Command::Go(view) => {
                 self.effects.push(Effect::Go(view));
                 self.fitted = None;
             }
+            Command::SaveView => self.save_view(),
+            Command::GoSaved(index) => self.go_to_saved(index),
+            Command::SetOrthographic(on) => self.effects.push(Effect::Project(on)),
             Command::SetYDown(y_down) => {
                 self.settings.y_down = y_down;
                 self.run(Command::Home);
@@ -344,27 +343,6 @@ impl State {
 
     fn save(&mut self, request: SaveRequest) {
         self.effects.push(Effect::Save(request));
-    }
-
-    /// The view of everything from a side.
-    fn fit(&self, side: Side) -> View {
-        let mut spheres = self.outline(|_| true);
-        spheres.extend(self.sphere_of_points());
-        self.view
-            .fitted(side, self.settings.y_down, self.aspect, &spheres)
-    }
-
-    /// Adapts the view to another aspect ratio, so that the same things stay in the picture.
-    /// Returns the view if it has changed.
-    pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
-        let before = std::mem::replace(&mut self.aspect, aspect);
-        if before == aspect || self.document.neurons.is_empty() {
-            return None;
-        }
-        Some(match self.fitted {
-            Some(side) => self.fit(side),
-            None => self.view.reshaped(before, aspect),
-        })
     }
 
     fn toggle(&mut self, dialog: Dialog) {

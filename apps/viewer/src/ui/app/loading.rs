@@ -89,6 +89,7 @@ impl Viewer {
         state.playback.pace = session.playback;
         (state.view, state.fitted) = (session.view, None);
         state.key_views = session.key_view.clone();
+        state.document.saved_views = session.saved_view.clone();
         state.session = Some(file.to_path_buf());
         self.motion.stop();
     }

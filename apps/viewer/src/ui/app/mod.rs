@@ -220,6 +220,9 @@ impl Viewer {
                 self.stop_markers();
             }
             Effect::Go(view) => self.motion.fly(&mut self.state, view),
+            Effect::Project(orthographic) => {
+                self.motion.project(&mut self.state, orthographic);
+            }
             Effect::Quit => self.quits = true,
             Effect::Copy(text) => self.copied = Some(text),
             Effect::Save(request) => self.save(request),

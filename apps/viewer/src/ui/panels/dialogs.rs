@@ -1,9 +1,11 @@
 //! Dialogs: keys, commands, problems, files, questions.
 
+use std::borrow::Cow;
+
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use super::keys_text;
-use crate::model::command::{Command, FilePurpose, Listed, listed};
+use crate::model::command::{Command, FilePurpose, Listed};
 use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
 
@@ -96,9 +98,12 @@ const MOUSE: [(&str, &str); 9] = [
     ("middle or right drag, Shift + left drag", "pan"),
     ("wheel, two fingers, pinch", "zoom in and out at the cursor"),
     ("click", "select; with Shift or Ctrl, select several"),
+    (
+        "Ctrl + left drag",
+        "select somata in a rectangle; with Shift, more",
+    ),
     ("double click", "zoom to what is under the cursor"),
-    ("W A S D", "fly forward, left, back, right"),
-    ("Q E", "fly down and up; Shift: faster"),
+    ("W A S D   Q E", "fly; down, up; Shift: faster"),
     ("arrows", "rotate"),
     ("+  −", "zoom in and out"),
 ];
@@ -117,22 +122,26 @@ fn keys(state: &State, ctx: &Context) -> Dialog {
     if open { Dialog::Keys } else { Dialog::Nothing }
 }
 
+/// Menus with many keys, which have a column of their own.
+const LONG: [&str; 2] = ["View", "Window"];
+
 fn keys_and_mouse(state: &State, ui: &mut Ui) {
+    let mut menus = state.menus();
     ui.horizontal_top(|ui| {
         ui.vertical(|ui| {
             ui.strong("In the picture");
             rows(
                 ui,
                 "mouse",
-                MOUSE.iter().map(|(a, b)| ((*a).to_owned(), *b)),
+                MOUSE.iter().map(|&(a, b)| (a.to_owned(), b.into())),
             );
-            for (name, items) in listed(&state.toggles()).into_iter().take(3) {
+            for (name, items) in menus.extract_if(.., |(name, _)| !LONG.contains(name)) {
                 menu(ui, name, items);
             }
         });
         ui.add_space(18.0);
         ui.vertical(|ui| {
-            for (name, items) in listed(&state.toggles()).into_iter().skip(3) {
+            for (name, items) in menus {
                 menu(ui, name, items);
             }
         });
@@ -140,7 +149,7 @@ fn keys_and_mouse(state: &State, ui: &mut Ui) {
 }
 
 fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
-    let found: Vec<(String, &'static str)> = items
+    let found: Vec<(String, Cow<'static, str>)> = items
         .into_iter()
         .filter_map(|item| Some((keys_text(ui, &item.keys?), item.title)))
         .collect();
@@ -151,7 +160,7 @@ fn menu(ui: &mut Ui, name: &str, items: Vec<Listed>) {
     }
 }
 
-fn rows<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
+fn rows(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, Cow<'static, str>)>) {
     egui::Grid::new(("keys", id))
         .num_columns(2)
         .spacing([16.0, 1.0])
@@ -264,7 +273,7 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
 
 /// Commands whose titles contain all words, with their menus.
 fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
-    let all = listed(&state.toggles());
+    let all = state.menus();
     all.into_iter()
         .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
         .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), text))

@@ -6,7 +6,7 @@ use neurotess::render::color::Palette;
 use super::number::{field, slider};
 use super::tip::Tip;
 use super::{color_map, heading};
-use super::{markers, own_colors};
+use super::{markers, own_colors, saved_views};
 use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
@@ -39,6 +39,7 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
         slider.text("least width (px)")
     })
     .tip("Thin neurites are drawn this wide, for figures; 0: as they are");
+    saved_views::show(state, ui);
     heading(ui, "Selection");
     ui.checkbox(&mut look.highlight_selected, "Color of its own");
     ui.checkbox(&mut look.ghost_others, "Fade the others");

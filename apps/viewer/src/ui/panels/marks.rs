@@ -34,9 +34,9 @@ impl Projection<'_> {
     /// Length in points of the window of a length (µm) at a position.
     fn wide(&self, point: DVec3, length: f64) -> f32 {
         let place = self.placement.world_from_cell(self.origin + point);
-        let slope = self.camera.pixel_slope(f64::from(self.rect.height()));
-        let depth = self.camera.depth(place);
-        (self.placement.scale * length / (slope * depth.max(1e-9))) as f32
+        let pixel = self.camera.pixel_size(f64::from(self.rect.height()));
+        let pixel = pixel.at(self.camera.depth(place).max(1e-9));
+        (self.placement.scale * length / pixel) as f32
     }
 }
 

@@ -37,12 +37,15 @@ fn ray_at(state: &State, seen: &CursorHit, at: Pos2, rect: Rect) -> (Ray, f64) {
     let offset = at - rect.min;
     let pixel = [f64::from(offset.x), f64::from(offset.y)];
     let size = [f64::from(rect.width()), f64::from(rect.height())];
-    let depth = camera.depth(seen.place).max(1e-6);
-    let ray = Ray {
-        eye: camera.eye(),
-        through: state.view.at_depth(pixel, size, depth),
+    let depth = state.view.depth_in_front(seen.place);
+    let through = state.view.at_depth(pixel, size, depth);
+    // Without perspective, all rays are parallel.
+    let eye = match camera.is_orthographic() {
+        true => through + camera.axes()[2] * camera.eye().distance(camera.target()),
+        false => camera.eye(),
     };
-    (ray, camera.pixel_slope(size[1]) * depth)
+    let ray = Ray { eye, through };
+    (ray, camera.pixel_size(size[1]).at(depth))
 }
 
 /// Handles a click: the first one begins a distance, the second one keeps it. Two at the same place

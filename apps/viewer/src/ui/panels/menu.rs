@@ -2,19 +2,19 @@
 
 use eframe::egui::{self, Button, MenuBar};
 
-use crate::model::command::{Command, Edit, listed};
+use crate::model::command::{Command, Edit};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     let [undo, redo] = state.history.names();
     MenuBar::new().ui(ui, |ui| {
-        for (name, items) in listed(&state.toggles()) {
+        for (name, items) in state.menus() {
             ui.menu_button(name, |ui| {
                 for item in items {
                     let title = match (&item.command, undo, redo) {
                         (Command::Undo, Some(what), _) => format!("Undo: {}", what.to_lowercase()),
                         (Command::Redo, _, Some(what)) => format!("Redo: {}", what.to_lowercase()),
-                        _ => item.title.to_owned(),
+                        _ => item.title.into_owned(),
                     };
                     let enabled = match item.command {
                         Command::Undo => undo.is_some(),

@@ -79,6 +79,10 @@ fn lowered(state: &State, ui: &mut Ui) {
         ui.colored_label(warn, "detail frozen")
             .on_hover_text("The triangles are those of another view (Ctrl F)");
     }
+    if state.view.orthographic {
+        ui.weak("orthographic")
+            .on_hover_text("No perspective: lengths are true at all depths (O)");
+    }
     if state.document.detail.smallest > 0.0 {
         let text = format!("hidden below {:.1} px", state.document.detail.smallest);
         ui.colored_label(warn, text).on_hover_text("Set in Detail");

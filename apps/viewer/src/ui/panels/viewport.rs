@@ -8,7 +8,7 @@ use glam::DVec3;
 use neurotess::render::color::is_dark;
 use neurotess::render::overlay::{Legend, nice_length};
 
-use super::{Screen, marks, measuring, plate, tip};
+use super::{Screen, marks, measuring, plate, rectangle, tip};
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::markers::MarkerRef;
 use crate::model::state::{Picked, State};
@@ -52,6 +52,7 @@ pub(super) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
     over(screen, rect, ui);
+    rectangle::show(&response, &ui.painter().with_clip_rect(rect), ui);
     response.context_menu(|ui| menu(screen.state, ui));
 }
 
@@ -64,6 +65,7 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     } else {
         DVec3::Y
     };
+    let selects = rectangle::drag(screen.state, response, ui);
     let drag = response.drag_delta();
     let (dx, dy) = (f64::from(drag.x), f64::from(drag.y));
     let shift = ui.input(|i| i.modifiers.shift);
@@ -71,7 +73,7 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     let moves = response.dragged_by(PointerButton::Middle)
         || response.dragged_by(PointerButton::Secondary)
         || (left && shift);
-    if drag != egui::Vec2::ZERO {
+    if drag != egui::Vec2::ZERO && !selects {
         if moves {
             screen
                 .motion
@@ -116,7 +118,7 @@ fn zoom(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
             .stage
             .hit_at((pixel[0] * points) as f32, (pixel[1] * points) as f32);
         match seen {
-            Some(seen) => view.at_depth(pixel, size, view.camera().depth(seen.place).max(1e-6)),
+            Some(seen) => view.at_depth(pixel, size, view.depth_in_front(seen.place)),
             None => view.under(pixel, size),
         }
     });
@@ -190,8 +192,8 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
         if let Some(seen) = seen {
             let view = screen.state.view;
             let camera = view.camera();
-            let near = camera.depth(seen.place) * 0.35;
-            let size = near * (camera.fov() / 2.0).tan();
+            // The height of what is seen there becomes 0.35 of it.
+            let size = 0.35 / 2.0 * camera.pixel_size(1.0).at(camera.depth(seen.place));
             screen
                 .state
                 .requests
@@ -266,6 +268,7 @@ fn menu(state: &mut State, ui: &mut Ui) {
         ("Show all", Edit::ShowAll.into()),
         ("Everything, from the front", Command::Home),
         ("Keep this view for a film", Command::AddKeyView),
+        ("Save this view under a name", Command::SaveView),
     ] {
         if ui.button(title).clicked() {
             state.requests.push(command);
@@ -366,7 +369,7 @@ fn set_off(state: &State, rect: Rect, ui: &Ui) {
 
 fn scale_bar(state: &State, rect: Rect, ui: &Ui) {
     let camera = state.view.camera();
-    let pixel = camera.pixel_slope(f64::from(rect.height())) * camera.depth(camera.target());
+    let pixel = camera.pixel_at_target(f64::from(rect.height()));
     let length = nice_length(0.18 * f64::from(rect.width()) * pixel);
     let width = (length / pixel) as f32;
     if !width.is_finite() || width > rect.width() {

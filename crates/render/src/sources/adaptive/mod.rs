@@ -158,7 +158,7 @@ impl Adaptive {
             eye: frame.camera.eye(),
             forward: -frame.camera.axes()[2],
             planes: frame.frustum(),
-            slope: frame.slope() * self.sub_pixels,
+            pixel: frame.pixel().times(self.sub_pixels),
             near: frame.near,
         };
         let requested = Some((view, self.settings, keyed));

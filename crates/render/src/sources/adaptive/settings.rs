@@ -13,6 +13,7 @@ use crate::sources::adaptive::grids::{
     INDEX_PATCH_SHIFT, INDEX_PLACE_MASK, INDEX_ROW_SHIFT,
 };
 use crate::view::camera::Camera;
+use crate::view::lens::PixelSize;
 
 /// Number of slots that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
@@ -40,8 +41,8 @@ pub struct CullView {
     /// Planes of the frustum relative to the eye, unit normals inwards. Those of the tile if a
     /// picture is drawn in tiles.
     pub planes: [Vec4; 5],
-    /// Size (µm) of a pixel at unit depth.
-    pub slope: f64,
+    /// Size (µm) of a pixel by depth.
+    pub pixel: PixelSize,
     /// Depth (µm) of the near plane.
     pub near: f64,
 }
@@ -54,7 +55,7 @@ impl CullView {
             eye: camera.eye(),
             forward: -camera.axes()[2],
             planes: camera.frustum(aspect, near),
-            slope: camera.pixel_slope(f64::from(height.max(1))),
+            pixel: camera.pixel_size(f64::from(height.max(1))),
             near,
         }
     }
@@ -64,8 +65,8 @@ impl CullView {
         LodView {
             eye: (placement.cell_from_world(self.eye) - origin).as_vec3(),
             forward: (placement.rotation.inverse() * self.forward).as_vec3(),
-            slope: self.slope as f32,
-            flat: 0.0,
+            slope: self.pixel.slope as f32,
+            flat: self.pixel.flat as f32 / placement.scale as f32,
             near: (self.near / placement.scale) as f32,
         }
     }
@@ -132,8 +133,8 @@ impl FrameUniforms {
     pub(crate) fn new(view: &CullView, settings: &AdaptiveSettings, flat: FlatIndices) -> Self {
         Self {
             planes: view.planes.map(|plane| plane.to_array()),
-            slope: view.slope as f32,
-            flat: 0.0,
+            slope: view.pixel.slope as f32,
+            flat: view.pixel.flat as f32,
             smallest: settings.smallest.max(0.0),
             flat_indices: flat as u32,
             first_explicit: 0,

@@ -14,7 +14,8 @@ struct Eye {
     error: f32,
     budget: u32,
     instances: u32,
-    pad: vec2<u32>,
+    flat: f32,
+    pad: u32,
 }
 
 struct Chunk {
@@ -71,11 +72,16 @@ fn relative(place: GpuInstance, p: vec3<f32>) -> vec3<f32> {
     return cells + (place.offset - eye.offset) + place.scale * turn(place.rotation, p);
 }
 
+// Size (micrometers) of a pixel at a depth.
+fn pixel_at(depth: f32) -> f32 {
+    return eye.slope * depth + eye.flat;
+}
+
 // Whether a sphere, relative to the eye, reaches into the frustum. It may reach a pixel further,
 // since thin tubes are drawn a pixel wide.
 fn in_sight(p: vec3<f32>, reach: f32) -> bool {
     let depth = max(dot(eye.forward, p) + reach, eye.near);
-    let most = reach + eye.slope * depth;
+    let most = reach + pixel_at(depth);
     for (var k = 0u; k < 5u; k += 1u) {
         // Written so that a position that is not a number is outside.
         if (!(dot(eye.planes[k].xyz, p) + eye.planes[k].w >= -most)) {
@@ -179,7 +185,7 @@ fn seen_part(chunk: Chunk, place: GpuInstance) -> Seen {
     for (var i = 1u; i <= segments(chunk, level); i += 1u) {
         let b = relative(place, stored(chunk, level, i).position);
         let depths = vec2<f32>(dot(eye.forward, a), dot(eye.forward, b));
-        let reach = margin + eye.slope * max(max(depths.x, depths.y), eye.near);
+        let reach = margin + pixel_at(max(max(depths.x, depths.y), eye.near));
         var from_a = 0.0;
         var to_b = 1.0;
         for (var k = 0u; k < 5u; k += 1u) {
@@ -321,18 +327,19 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     let depth = dot(eye.forward, center);
     if ((chunk.flags & CHUNK_SOMA) != 0u) {
         let near = max(depth - reach, eye.near);
-        let radius = chunk.radius * place.scale / (eye.slope * max(depth, near));
+        let radius = chunk.radius * place.scale / pixel_at(max(depth, near));
         return soma_offers(chunk, radius, chance_factor(instance));
     }
     var seen = Seen(depth - reach, depth, 1.0);
-    if (!(depth > 4.0 * reach) || !enclosed(center, reach)) {
+    let distant = eye.flat > 0.0 || depth > 4.0 * reach;
+    if (!distant || !enclosed(center, reach)) {
         seen = seen_part(chunk, place);
         if (!(seen.share > 0.0)) {
             return no_offers();
         }
     }
-    let nearest = eye.slope * max(seen.nearest, eye.near);
-    let pixel = max(eye.slope * seen.middle, nearest);
+    let nearest = pixel_at(max(seen.nearest, eye.near));
+    let pixel = max(pixel_at(seen.middle), nearest);
     // Size of a pixel in the template's coordinates: errors and lengths are given in those.
     let near_pixel = nearest / place.scale;
     let far_pixel = pixel / place.scale;

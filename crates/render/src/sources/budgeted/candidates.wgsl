@@ -51,7 +51,7 @@ fn cull_instances(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
         let reach = shape.reach * place.scale;
         if (in_sight(center, reach)) {
             let depth = max(dot(eye.forward, center) - reach, eye.near);
-            count = chunks_above_floor(shape, eye.slope * depth / place.scale);
+            count = chunks_above_floor(shape, pixel_at(depth) / place.scale);
         }
     }
     book.extents[instance].chunks = count;

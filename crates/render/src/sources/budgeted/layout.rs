@@ -140,7 +140,7 @@ pub(crate) struct Eye {
     /// Planes of the frustum, relative to the eye.
     pub(crate) planes: [[f32; 4]; 5],
     pub(crate) cell: [i32; 3],
-    /// Size (µm) of a pixel at unit depth.
+    /// What each µm of depth adds to the size (µm) of a pixel.
     pub(crate) slope: f32,
     pub(crate) offset: [f32; 3],
     pub(crate) near: f32,
@@ -150,7 +150,9 @@ pub(crate) struct Eye {
     /// Most quads of the frame.
     pub(crate) budget: u32,
     pub(crate) instances: u32,
-    pub(crate) pad: [u32; 2],
+    /// Size (µm) of a pixel at every depth: 0 with perspective.
+    pub(crate) flat: f32,
+    pub(crate) pad: u32,
 }
 
 /// Sums of a frame.

@@ -12,6 +12,7 @@ use super::proxy::Proxy;
 use crate::scene::Placement;
 use crate::view::camera::Camera;
 use crate::view::frame::Frame;
+use crate::view::lens::PixelSize;
 
 const DISC_QUADS: u32 = 4;
 const DOME_QUADS: u32 = 18;
@@ -39,7 +40,7 @@ pub fn lod_requests(
     let view = View {
         camera: frame.camera,
         frame: *frame,
-        slope: frame.slope() * f64::from(sub_pixels),
+        pixel: frame.pixel().times(f64::from(sub_pixels)),
     };
     let whole = placed(proxy.center, proxy.reach, proxy, placement);
     let chunks = proxy.chunks.iter();
@@ -75,7 +76,7 @@ fn placed(center: Vec3, reach: f32, proxy: &Proxy, placement: &Placement) -> (DV
 struct View {
     camera: Camera,
     frame: Frame,
-    slope: f64,
+    pixel: PixelSize,
 }
 
 impl View {
@@ -84,7 +85,7 @@ impl View {
         let p = center - self.camera.eye();
         self.frame.frustum().iter().all(|plane| {
             let n = plane.truncate().as_dvec3();
-            n.dot(p) + f64::from(plane.w) >= -(reach + self.slope * depth)
+            n.dot(p) + f64::from(plane.w) >= -(reach + self.pixel.at(depth))
         })
     }
 
@@ -103,7 +104,8 @@ impl View {
         let planes = self.frame.frustum();
         let planes = planes.map(|p| (p.truncate().as_dvec3(), f64::from(p.w)));
         let off = |p: DVec3| planes.map(|(normal, w)| normal.dot(p - self.camera.eye()) + w);
-        if depth > 4.0 * reach && off(center).iter().all(|&off| off >= reach) {
+        let distant = self.camera.is_orthographic() || depth > 4.0 * reach;
+        if distant && off(center).iter().all(|&off| off >= reach) {
             return Some([depth - reach, depth, 1.0]);
         }
         let finest = (0..LEVELS).find(|&k| (1..=LOOKED_AT).contains(&lod(chunk, k).0));
@@ -114,7 +116,7 @@ impl View {
             let span = pair[0].distance(pair[1]);
             all += span;
             let [a, b] = [pair[0], pair[1]].map(|p| self.camera.depth(p));
-            let reach = margin + self.slope * a.max(b).max(near);
+            let reach = margin + self.pixel.at(a.max(b).max(near));
             let Some([from, to]) = between(off(pair[0]), off(pair[1]), reach) else {
                 continue;
             };
@@ -135,8 +137,8 @@ impl View {
         chance: f64,
     ) -> Vec<LodRequest> {
         let [nearest, middle, share] = seen;
-        let nearest = self.slope * nearest.max(self.frame.near);
-        let pixel = (self.slope * middle).max(nearest);
+        let nearest = self.pixel.at(nearest.max(self.frame.near));
+        let pixel = self.pixel.at(middle).max(nearest);
         let mut steps = Steps::default();
         if chunk.flags & CHUNK_SOMA != 0 {
             let radius = f64::from(chunk.radius) * scale / pixel;

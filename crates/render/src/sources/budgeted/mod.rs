@@ -187,14 +187,16 @@ impl Exploration {
             ..*frame
         };
         let (cell, offset) = in_cells(frame.camera.eye());
+        let pixel = frame.pixel().times(self.sub_pixels);
         Eye {
             planes: around.frustum().map(|plane| plane.to_array()),
             cell,
-            slope: (frame.slope() * self.sub_pixels) as f32,
+            slope: pixel.slope as f32,
             offset,
             near: frame.near as f32,
             forward: (-frame.camera.axes()[2]).as_vec3().to_array(),
             error: ERROR,
+            flat: pixel.flat as f32,
             budget: self.budget / 2,
             instances: self.instances.len() as u32,
             ..Eye::default()
@@ -219,7 +221,7 @@ impl VertexSource for Exploration {
             let center = (instance.placement.world_from_cell(center) - eye).as_vec3();
             let reach = f64::from(known.reach) * instance.placement.scale;
             // A margin of 8 sub-pixels, since thin tubes are drawn a pixel wide.
-            let pixels = 8.0 * (f64::from(center.length()) + reach) * frame.slope();
+            let pixels = 8.0 * frame.pixel().at(f64::from(center.length()) + reach);
             !instance.hidden && shows(&planes, center, (reach + pixels) as f32)
         })
     }

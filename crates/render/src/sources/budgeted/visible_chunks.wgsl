@@ -57,6 +57,14 @@ fn color_key_at(chunk: Chunk, point: u32) -> u32 {
     return color_keys[chunk.color_keys + point];
 }
 
+// Unit direction from a point, relative to the eye, to whoever looks.
+fn towards_eye(p: vec3<f32>) -> vec3<f32> {
+    if (eye.flat > 0.0) {
+        return -eye.forward;
+    }
+    return normalize_or(-p, -eye.forward);
+}
+
 fn across(v: vec3<f32>) -> vec3<f32> {
     let axis = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(v.y) > 0.7);
     return normalize(cross(axis, v));
@@ -146,7 +154,7 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
 
     let axis = relative(instance_pose, there.center);
     let way = turn(instance_pose.rotation, there.direction);
-    let to_eye = normalize_or(-axis, -eye.forward);
+    let to_eye = towards_eye(axis);
     let side = cross(way, to_eye);
     let square = dot(side, side) > 1e-8;
     let plain = select(across(way), normalize(side), square);
@@ -199,7 +207,7 @@ fn cap_vertex(visible_chunk: VisibleChunk, chunk: Chunk, instance_pose: GpuInsta
 
 // A sphere seen from the front.
 fn sphere_vertex(center: vec3<f32>, radius: f32, what: u32, index: u32, corner: u32) -> SurfaceVertex {
-    let front = normalize_or(-center, -eye.forward);
+    let front = towards_eye(center);
     let right = across(front);
     let up = cross(front, right);
     let grid = corner_grid(corner);
@@ -207,7 +215,7 @@ fn sphere_vertex(center: vec3<f32>, radius: f32, what: u32, index: u32, corner: 
     var offset = vec3<f32>(0.0);
     if (what == WHAT_DOT) {
         // A square with the area of the sphere's disc, at least a pixel wide.
-        let pixel = eye.slope * max(dot(eye.forward, center), eye.near);
+        let pixel = pixel_at(max(dot(eye.forward, center), eye.near));
         let half = max(0.886 * radius, HALF_PIXEL * pixel) / radius;
         offset = (right * (2.0 * grid.x - 1.0) + up * (2.0 * grid.y - 1.0)) * half;
     } else if (what == WHAT_DISC) {

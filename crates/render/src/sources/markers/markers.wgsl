@@ -12,11 +12,12 @@ struct StoredMarker {
 
 struct MarkerFrame {
     relative_from_block: vec3<f32>,
+    // Radius (µm), at least the least one without perspective.
     radius: f32,
     right: vec3<f32>,
     near: f32,
     up: vec3<f32>,
-    // Least radius (µm) at unit depth.
+    // Least radius (µm) at unit depth; 0 without perspective.
     least: f32,
     backward: vec3<f32>,
     // Index of the block's first marker among all.

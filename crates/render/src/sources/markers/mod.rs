@@ -222,14 +222,15 @@ impl Markers {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) {
         self.select(frame);
         let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
+        let least = frame.pixel().times(self.settings.least);
         for (index, block) in self.blocks.iter().enumerate() {
             let uniforms = MarkerFrame {
                 relative_from_block: (block.origin - frame.camera.eye()).as_vec3().to_array(),
-                radius: self.settings.radius as f32,
+                radius: self.settings.radius.max(least.flat) as f32,
                 right,
                 near: frame.near as f32,
                 up,
-                least: (self.settings.least * frame.slope()) as f32,
+                least: least.slope as f32,
                 backward,
                 first: block.first,
             };
@@ -244,7 +245,8 @@ impl Markers {
         let (planes, eye) = (frame.frustum(), frame.camera.eye());
         let reach = |chunk: &Chunk| {
             let center = chunk.relative(eye);
-            let least = self.settings.least * frame.slope() * f64::from(center.length());
+            let least = frame.pixel().times(self.settings.least);
+            let least = least.at(f64::from(center.length()));
             (chunk.reach + self.settings.radius.max(least)) as f32
         };
         let mut chunks = self.chunks.iter();
@@ -262,13 +264,13 @@ impl Markers {
             ..*frame
         };
         // What lies just outside the picture occludes what is inside.
-        let margin = 0.1 * f64::from(frame.size[1]) * frame.slope();
+        let margin = frame.pixel().times(0.1 * f64::from(frame.size[1]));
         let (planes, tile_planes) = (whole.frustum(), frame.frustum());
-        let (eye, slope) = (frame.camera.eye(), frame.slope());
+        let (eye, pixel) = (frame.camera.eye(), frame.pixel());
         let seen = |chunk: &Chunk, planes: &[glam::Vec4; 5]| {
             let center = chunk.relative(eye);
             let reach = chunk.reach + self.settings.radius;
-            let around = (f64::from(center.length()) + reach) * margin;
+            let around = margin.at(f64::from(center.length()) + reach);
             shows(planes, center, (reach + around) as f32)
         };
         let wanted: Vec<(Chunk, usize, u32)> = self
@@ -278,11 +280,11 @@ impl Markers {
             .map(|chunk| {
                 let depth = frame.camera.depth(chunk.center);
                 let nearest = (depth - chunk.reach).max(frame.near);
-                let radius = (self.settings.radius / (slope * nearest)).max(self.settings.least);
+                let radius = (self.settings.radius / pixel.at(nearest)).max(self.settings.least);
                 (
                     *chunk,
                     Shapes::of_radius(radius as f32),
-                    fitting(chunk, slope * depth.max(frame.near)),
+                    fitting(chunk, pixel.at(depth.max(frame.near))),
                 )
             })
             .collect();

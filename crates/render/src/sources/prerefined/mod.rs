@@ -352,7 +352,8 @@ impl VertexSource for Prerefined {
                 for run in &mut chunk.runs {
                     // A margin of 8 sub-pixels, since thin tubes are drawn a pixel wide.
                     let center = run.center + offset;
-                    let pixels = 8.0 * (center.length() + run.radius) * frame.slope() as f32;
+                    let pixels =
+                        8.0 * frame.pixel().at(f64::from(center.length() + run.radius)) as f32;
                     if !shows(&planes, center, run.radius + pixels) {
                         continue;
                     }

@@ -1,5 +1,7 @@
 //! Sessions: a file that people can read and change.
 
+mod entries;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,13 +11,13 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{
-    Detail, Dimension, Look, MarkerOptions, Neuron, PlacementEntry, SomaEdit,
-};
-use crate::model::ids::{CircuitId, CircuitNode, SourceId};
+use crate::model::document::{Detail, Dimension, Look, MarkerOptions, SavedView, SomaEdit};
+use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::playback::Pace;
 use crate::model::state::State;
 use crate::model::view::View;
+
+pub use entries::{CircuitEntry, FileEntry, NeuronEntry, NodeEntry};
 
 /// Extension of sessions.
 pub const EXTENSION: &str = "neurotess";
@@ -63,6 +65,9 @@ pub struct Session {
     /// Views of a film.
     #[serde(default)]
     pub key_view: Vec<View>,
+    /// Views with names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub saved_view: Vec<SavedView>,
     /// The recording whose values can be shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<PathBuf>,
@@ -86,77 +91,8 @@ pub struct Session {
     pub dimension: Vec<Dimension>,
 }
 
-/// A circuit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CircuitEntry {
-    /// Relative to the session's folder where it can be.
-    pub path: PathBuf,
-}
-
-/// A node of a circuit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NodeEntry {
-    /// Index of the circuit in the list, from 0.
-    pub circuit: usize,
-    /// The population's name.
-    pub population: String,
-    /// The node's id in its population.
-    pub id: u64,
-}
-
-/// A tracing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FileEntry {
-    /// Relative to the session's folder where it can be.
-    pub path: PathBuf,
-    /// How its soma is generated; none: in the default way.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub soma: Option<SomaEdit>,
-}
-
-/// A neuron.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NeuronEntry {
-    /// Name in the list.
-    pub name: String,
-    /// Index of its tracing in the list of files, from 0.
-    pub file: usize,
-    /// Whether it is hidden.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub hidden: bool,
-    /// Whether it is selected.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub selected: bool,
-    /// Its node, if it belongs to a circuit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub node: Option<NodeEntry>,
-    /// Its placement; none: where it was traced.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) place: Option<PlacementEntry>,
-}
-
-impl NeuronEntry {
-    /// The neuron of this entry, whose tracing is `source`.
-    pub(crate) fn neuron(&self, source: SourceId) -> Neuron {
-        Neuron {
-            placement: self.place.map(Into::into).unwrap_or_default(),
-            hidden: self.hidden,
-            selected: self.selected && !self.hidden,
-            ..Neuron::new(source, self.name.clone())
-        }
-    }
-}
-
 fn is_default(markers: &MarkerOptions) -> bool {
     *markers == MarkerOptions::default()
-}
-
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// Whether a file has the extension of sessions.
@@ -216,6 +152,7 @@ impl Session {
             look: document.look.clone(),
             detail: document.detail,
             key_view: state.key_views.clone(),
+            saved_view: document.saved_views.clone(),
             report: document.report.as_ref().map(|file| relative(file, folder)),
             markers: MarkerOptions {
                 points: document
@@ -271,6 +208,27 @@ impl Session {
             )));
         }
         Ok(session)
+    }
+
+    /// The view of this name.
+    ///
+    /// # Errors
+    /// There is none: a message that names those that there are.
+    pub fn view_named(&self, name: &str) -> Result<View, SessionError> {
+        let found = self.saved_view.iter().find(|saved| saved.name == name);
+        found.map(|saved| saved.view).ok_or_else(|| {
+            let names = self
+                .saved_view
+                .iter()
+                .map(|saved| format!("'{}'", saved.name));
+            let names: Vec<String> = names.collect();
+            let instead = match names.is_empty() {
+                true => "save one in the window (V)".to_owned(),
+                false => format!("choose one of {}", names.join(", ")),
+            };
+            let why = format!("no view is saved as '{name}': {instead}");
+            SessionError { line: None, why }
+        })
     }
 
     /// The dimensions whose neurons could be opened. `opened`: by neuron of the session, its index
@@ -332,7 +290,7 @@ mod tests {
     use super::*;
     use crate::io::load;
     use crate::model::command::{Command, Edit};
-    use crate::model::document::{ColorBy, Cut, Lighting};
+    use crate::model::document::{ColorBy, Cut, Lighting, Neuron};
     use crate::model::settings::Settings;
     use crate::model::sources;
 
@@ -370,6 +328,9 @@ mod tests {
         });
         state.run(Edit::SetLook(Box::new(look)));
         state.run(Command::AddKeyView);
+        state.view.orthographic = true;
+        state.run(Command::SaveView);
+        state.run(Edit::RenameView(0, "of the \"tuft\"".into()));
         state
     }
 
@@ -379,8 +340,12 @@ mod tests {
         let file = folder.path().join("a.neurotess");
         let session = Session::of(&state(), folder.path());
         session.write(&file).expect("written");
-        assert_eq!(Session::read(&file).expect("read"), session);
-        assert!(is_session(&file));
+        let read = Session::read(&file).expect("read");
+        assert_eq!(read, session);
+        assert!(is_session(&file) && read.view.orthographic);
+        assert_eq!(read.view_named("of the \"tuft\""), Ok(read.view));
+        let error = read.view_named("tuft").expect_err("none").to_string();
+        assert!(error.contains("choose one of 'of the"), "{error}");
     }
 
     #[test]

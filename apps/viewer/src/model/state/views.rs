@@ -1,0 +1,137 @@
+//! Views: of everything, of the selection, and saved ones, with their commands in the menus.
+
+use neurotess::render::Side;
+
+use super::{Effect, State};
+use crate::model::command::{Command, Edit, Listed, listed};
+use crate::model::document::SavedView;
+use crate::model::sources::extent;
+use crate::model::view::View;
+
+impl State {
+    /// The view of everything from a side.
+    pub(super) fn fit(&self, side: Side) -> View {
+        let mut spheres = self.outline(|_| true);
+        spheres.extend(self.sphere_of_points());
+        self.view
+            .fitted(side, self.settings.y_down, self.aspect, &spheres)
+    }
+
+    /// Adapts the view to another aspect ratio, so that the same things stay in the picture.
+    /// Returns the view if it has changed.
+    pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
+        let before = std::mem::replace(&mut self.aspect, aspect);
+        if before == aspect || self.document.neurons.is_empty() {
+            return None;
+        }
+        Some(match self.fitted {
+            Some(side) => self.fit(side),
+            None => self.view.reshaped(before, aspect),
+        })
+    }
+
+    /// Looks at the selection, or at everything if nothing is selected.
+    pub(super) fn focus(&mut self) {
+        let any = self.document.selected().next().is_some();
+        let spheres = self.outline(|n| n.selected || !any);
+        let (low, high) = extent(&spheres);
+        if !spheres.is_empty() {
+            let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);
+            self.run(Command::Go(self.view.focused(sphere)));
+        }
+    }
+
+    /// Saves the current view under a name of its own.
+    pub(super) fn save_view(&mut self) {
+        let saved = SavedView::new(self.view, &self.document.saved_views);
+        let name = saved.name.clone();
+        self.run(Edit::SaveView(saved));
+        self.status = format!("Saved as '{name}' (Look, View)");
+    }
+
+    /// Goes to a saved view.
+    pub(super) fn go_to_saved(&mut self, index: usize) {
+        match self.document.saved_views.get(index) {
+            Some(saved) => {
+                self.status = format!("View '{}'", saved.name);
+                self.effects.push(Effect::Go(saved.view));
+                self.fitted = None;
+            }
+            None => self.status = "No view is saved there: V saves this one".into(),
+        }
+    }
+
+    /// All commands that need no further input, by menu, with the saved views by their names.
+    pub fn menus(&self) -> Vec<(&'static str, Vec<Listed>)> {
+        let mut menus = listed(&self.toggles());
+        for (_, items) in &mut menus {
+            let is_saved = |item: &Listed| matches!(item.command, Command::GoSaved(_));
+            let Some(first) = items.iter().position(is_saved) else {
+                continue;
+            };
+            let keys: Vec<_> = items.extract_if(.., |item| is_saved(item)).collect();
+            let views = self.document.saved_views.iter().enumerate();
+            let views = views.map(|(index, saved)| Listed {
+                title: format!("{} (saved view)", saved.name).into(),
+                keys: keys.get(index).and_then(|item| item.keys),
+                command: Command::GoSaved(index),
+            });
+            items.splice(first..first, views);
+        }
+        menus
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::model::settings::Settings;
+
+    fn saved(state: &State) -> Vec<(String, bool)> {
+        let menus = state.menus().into_iter().flat_map(|(_, items)| items);
+        let saved = menus.filter(|item| matches!(item.command, Command::GoSaved(_)));
+        saved
+            .map(|item| (item.title.into_owned(), item.keys.is_some()))
+            .collect()
+    }
+
+    #[test]
+    fn views_are_saved_named_found_and_forgotten() {
+        let mut state = State::new(Settings::default());
+        assert_eq!(saved(&state), []);
+        let first = state.view;
+        state.run(Command::SaveView);
+        state.view = first.orbited(1.0, 0.2, DVec3::Y);
+        state.view.orthographic = true;
+        state.run(Command::SaveView);
+        for name in ["T", "Tu", "Tuft"] {
+            state.run(Edit::RenameView(1, name.into()));
+        }
+        let titles = ["View 1 (saved view)", "Tuft (saved view)"];
+        assert_eq!(saved(&state), titles.map(|title| (title.to_owned(), true)));
+        let there = state.view;
+        state.view = first;
+        state.run(Command::GoSaved(1));
+        assert_eq!(state.effects.pop(), Some(Effect::Go(there)));
+        state.run(Command::GoSaved(7));
+        assert!(state.effects.is_empty() && state.status.contains("No view"));
+        // A name that was typed is undone at once; then a saved view of the same name comes back.
+        state.run(Command::Undo);
+        assert_eq!(state.document.saved_views[1].name, "View 2");
+        state.run(Edit::RemoveView(0));
+        state.run(Command::SaveView);
+        let names: Vec<_> = state
+            .document
+            .saved_views
+            .iter()
+            .map(|v| &*v.name)
+            .collect();
+        assert_eq!(names, ["View 2", "View 1"]);
+        // The keys are those of the first five.
+        (0..6).for_each(|_| state.run(Command::SaveView));
+        let keys: Vec<bool> = saved(&state).into_iter().map(|(_, keys)| keys).collect();
+        assert_eq!(keys, [true, true, true, true, true, false, false, false]);
+    }
+}
