@@ -6,7 +6,7 @@ use crate::{Axis, Data, Plot, Series};
 
 impl Plot {
     /// Its numbers as CSV, heading first. Lines have a column each beside one of x, which has all their x, and nothing
-    /// where a line has no number; bars have a column each beside their ends; segments have a row each. If there are
+    /// where a line has no number; bars have a column each beside their ends; spans and ticks have a row each. If there are
     /// different kinds, their tables follow one another.
     pub fn csv(&self) -> String {
         let mut text = String::new();
@@ -18,7 +18,8 @@ impl Plot {
             self.line_table(&lines, &mut text);
         }
         self.bar_table(&mut text);
-        self.segment_table(&mut text);
+        self.span_table(&mut text);
+        self.tick_table(&mut text);
         text
     }
 
@@ -70,10 +71,7 @@ impl Plot {
         let Some(most) = all.iter().map(|(_, bars)| bars.len()).max() else {
             return;
         };
-        let ends = ["from", "to"].map(|end| {
-            let label = format!("{} {end}", self.x.label);
-            column(&Axis::new(label, self.x.unit.as_str()))
-        });
+        let ends = ["from", "to"].map(|end| self.x_end(end));
         let headings = all.iter().map(|(series, _)| self.heading(series));
         row(text, ends.into_iter().chain(headings));
         for i in 0..most {
@@ -90,32 +88,44 @@ impl Plot {
         }
     }
 
-    fn segment_table(&self, text: &mut String) {
+    fn span_table(&self, text: &mut String) {
         let all = self.of_kind(|data| match data {
-            Data::Segments(segments) => Some(segments),
+            Data::Spans(spans) => Some(spans),
             _ => None,
         });
         if all.is_empty() {
             return;
         }
-        let of = |axis: &Axis, end: &str| {
-            let label = format!("{} {end}", axis.label);
-            column(&Axis::new(label, axis.unit.as_str()))
-        };
-        let headings = [
-            "series".into(),
-            of(&self.x, "from"),
-            of(&self.x, "to"),
-            of(&self.y, "from"),
-            of(&self.y, "to"),
-        ];
-        row(text, headings);
-        for (series, segments) in all {
-            for [from, to] in segments {
-                let ends = [from[0], to[0], from[1], to[1]].map(number);
-                row(text, [series.name.clone()].into_iter().chain(ends));
+        let headings = ["series".into(), self.x_end("from"), self.x_end("to")];
+        row(text, headings.into_iter().chain([column(&self.y)]));
+        for (series, spans) in all {
+            for span in spans {
+                let numbers = [span.from, span.to, span.y].map(number);
+                row(text, [series.name.clone()].into_iter().chain(numbers));
             }
         }
+    }
+
+    fn tick_table(&self, text: &mut String) {
+        let all = self.of_kind(|data| match data {
+            Data::Ticks { x, .. } => Some(x),
+            _ => None,
+        });
+        if all.is_empty() {
+            return;
+        }
+        row(text, ["series".into(), column(&self.x)]);
+        for (series, x) in all {
+            for &x in x {
+                row(text, [series.name.clone(), number(x)]);
+            }
+        }
+    }
+
+    /// The heading of an end on the horizontal axis.
+    fn x_end(&self, end: &str) -> String {
+        let label = format!("{} {end}", self.x.label);
+        column(&Axis::new(label, self.x.unit.as_str()))
     }
 }
 
@@ -179,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_and_segments_have_their_ends() {
+    fn bars_spans_and_ticks_have_their_ends() {
         let bar = |from: f64, height| Bar {
             from,
             to: from + 5.0,
@@ -189,8 +199,21 @@ mod tests {
         let text = plot(vec![Series::new("", 0, bars)]).csv();
         let expected = "path_distance_from_um,path_distance_to_um,value (mV)\n0,5,3\n5,10,1\n";
         assert_eq!(text, expected);
-        let segments = Data::Segments(vec![[[0.0, 1.0], [9.5, 1.0]]]);
-        let text = plot(vec![Series::new("n", 0, segments)]).csv();
-        assert!(text.ends_with("value_to_mV\nn,0,9.5,1,1\n"), "{text}");
+        let span = crate::Span {
+            from: 0.0,
+            to: 9.5,
+            y: 1.0,
+        };
+        let text = plot(vec![Series::new("n", 0, Data::Spans(vec![span]))]).csv();
+        assert!(
+            text.ends_with("distance_to_um,value_mV\nn,0,9.5,1\n"),
+            "{text}"
+        );
+        let ticks = Data::Ticks {
+            x: vec![0.1, 7.0],
+            y: 1.0,
+        };
+        let text = plot(vec![Series::new("n", 0, ticks)]).csv();
+        assert_eq!(text, "series,path_distance_um\nn,0.1\nn,7\n");
     }
 }

@@ -1,4 +1,4 @@
-//! Plots of numbers: lines, bars and segments over two axes.
+//! Plots of numbers: lines, bars, spans and ticks over two axes.
 //!
 //! A [`Plot`] is plain data. A window draws it, and files get the same one: [`Plot::svg`] for figures,
 //! [`Plot::csv`] with all its numbers. [`of_measure`] makes the plots of what
@@ -81,9 +81,30 @@ pub enum Data {
     Line(Vec<[f64; 2]>),
     /// Bars that stand on 0.
     Bars(Vec<Bar>),
-    /// Straight lines, each from a point to another.
-    Segments(Vec<[[f64; 2]; 2]>),
+    /// Level lines.
+    Spans(Vec<Span>),
+    /// Short upright lines around a y, as of a raster of spikes.
+    Ticks {
+        /// Where they are, ascending.
+        x: Vec<f64>,
+        /// Their middle; they are 0.8 high.
+        y: f64,
+    },
 }
+
+/// A level line, as of a barcode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Where it begins on the horizontal axis.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Its place on the vertical axis.
+    pub y: f64,
+}
+
+/// Half of the height of ticks.
+pub const TICK: f64 = 0.4;
 
 /// A bar of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,7 +150,8 @@ impl Data {
         match self {
             Self::Line(points) => points.is_empty(),
             Self::Bars(bars) => bars.is_empty(),
-            Self::Segments(segments) => segments.is_empty(),
+            Self::Spans(spans) => spans.is_empty(),
+            Self::Ticks { x, .. } => x.is_empty(),
         }
     }
 
@@ -140,7 +162,14 @@ impl Data {
                 of([bar.from, 0.0]);
                 of([bar.to, bar.height]);
             }),
-            Self::Segments(segments) => segments.iter().flatten().for_each(|&point| of(point)),
+            Self::Spans(spans) => spans.iter().for_each(|span| {
+                of([span.from, span.y]);
+                of([span.to, span.y]);
+            }),
+            Self::Ticks { x, y } => x.iter().for_each(|&x| {
+                of([x, y - TICK]);
+                of([x, y + TICK]);
+            }),
         }
     }
 }

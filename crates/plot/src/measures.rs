@@ -4,7 +4,7 @@ use neurotess_morphology::barcode::barcode;
 use neurotess_morphology::sholl::{self, TooManySpheres};
 use neurotess_morphology::{Morphology, shape};
 
-use crate::{Axis, Bar, Data, Plot, Series, step};
+use crate::{Axis, Bar, Data, Plot, Series, Span, step};
 
 /// Usual distance (µm) of the spheres of a Sholl profile.
 pub const SHOLL_STEP: f64 = 10.0;
@@ -176,11 +176,12 @@ fn bars<'a>(cells: impl Iterator<Item = &'a Morphology>) -> Series {
     let mut ends: Vec<[f64; 2]> = bars.map(|b| [b.fork_distance, b.end_distance]).collect();
     let length = |ends: &[f64; 2]| (ends[1] - ends[0]).abs();
     ends.sort_by(|a, b| length(b).total_cmp(&length(a)).then(a[0].total_cmp(&b[0])));
-    let segments = (1..).zip(ends).map(|(bar, [fork, end])| {
-        let y = f64::from(bar);
-        [[fork, y], [end, y]]
+    let spans = (1..).zip(ends).map(|(bar, [from, to])| Span {
+        from,
+        to,
+        y: f64::from(bar),
     });
-    Series::new("", 0, Data::Segments(segments.collect()))
+    Series::new("", 0, Data::Spans(spans.collect()))
 }
 
 #[cfg(test)]
@@ -243,10 +244,10 @@ mod tests {
             heights(&data(Measure::Diameters)[0]),
             [[1.0, 3.0], [4.0, 1.0]]
         );
-        let [Data::Segments(bars)] = &data(Measure::Barcode)[..] else {
+        let [Data::Spans(bars)] = &data(Measure::Barcode)[..] else {
             panic!("bars");
         };
-        assert_eq!(bars[0], [[0.0, 1.0], [30.0, 1.0]]);
+        assert_eq!([bars[0].from, bars[0].to, bars[0].y], [0.0, 30.0, 1.0]);
         assert_eq!(bars.len(), 2);
     }
 

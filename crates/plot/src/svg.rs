@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::{Data, Plot, Series, digits, step, thinned, ticks};
+use crate::{Data, Plot, Series, TICK, digits, step, thinned, ticks};
 
 /// Room (pixels) around the plot: above, right, below, left.
 const MARGIN: [f64; 4] = [14.0, 16.0, 46.0, 64.0];
@@ -215,22 +215,36 @@ fn drawn(series: &Series, frame: &Frame, text: &mut String) {
                 );
             }
         }
-        Data::Segments(segments) => {
-            let mut path = String::new();
-            for [from, to] in segments {
-                let ([x, y], [u, v]) = (*from, *to);
-                let _ = write!(
-                    path,
-                    "M{:.2} {:.2}L{:.2} {:.2}",
-                    frame.x(x),
-                    frame.y(y),
-                    frame.x(u),
-                    frame.y(v)
-                );
-            }
-            let _ = writeln!(text, "<path d=\"{path}\" stroke=\"{color}\"/>");
+        Data::Spans(spans) => {
+            let lines = spans.iter().map(|s| [[s.from, s.y], [s.to, s.y]]);
+            separate(lines, &color, frame, text);
+        }
+        Data::Ticks { x, y } => {
+            let lines = x.iter().map(|&x| [[x, y - TICK], [x, y + TICK]]);
+            separate(lines, &color, frame, text);
         }
     }
+}
+
+/// Lines from a point to another.
+fn separate(
+    lines: impl Iterator<Item = [[f64; 2]; 2]>,
+    color: &str,
+    frame: &Frame,
+    text: &mut String,
+) {
+    let mut path = String::new();
+    for [[x, y], [u, v]] in lines {
+        let _ = write!(
+            path,
+            "M{:.2} {:.2}L{:.2} {:.2}",
+            frame.x(x),
+            frame.y(y),
+            frame.x(u),
+            frame.y(v)
+        );
+    }
+    let _ = writeln!(text, "<path d=\"{path}\" stroke=\"{color}\"/>");
 }
 
 /// A text without what has a meaning in XML, and without what XML cannot have at all.

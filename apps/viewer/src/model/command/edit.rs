@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::model::document::{
-    Detail, Dimension, Document, Look, MarkerOptions, SomaEdit, SourceId,
+    Detail, Dimension, Document, Look, MarkerOptions, SomaEdit, SourceId, TracePlace,
 };
 
 /// A change of the document.
@@ -54,6 +54,15 @@ pub enum Edit {
     RemoveDimension(usize),
     /// Removes all dimensions.
     ClearDimensions,
+    /// Plots the values of a place over time: alone, or with `true` beside the others, from which it is taken away if it is
+    /// there.
+    Plot(TracePlace, bool),
+    /// Removes a trace from the plot, by its index.
+    RemoveTrace(usize),
+    /// Sets the color of a trace, by its index.
+    SetTraceColor(usize, [u8; 3]),
+    /// Removes all traces.
+    ClearTraces,
 }
 
 impl Edit {
@@ -76,6 +85,9 @@ impl Edit {
             }
             Self::AddDimension(_) => "Dimension",
             Self::RemoveDimension(_) | Self::ClearDimensions => "Remove dimension",
+            Self::Plot(..) => "Trace",
+            Self::RemoveTrace(_) | Self::ClearTraces => "Remove trace",
+            Self::SetTraceColor(..) => "Trace color",
         }
     }
 
@@ -88,6 +100,7 @@ impl Edit {
                 | Self::SetLook(_)
                 | Self::SetDetail(_)
                 | Self::SetMarkers(_)
+                | Self::SetTraceColor(..)
         )
     }
 
@@ -165,6 +178,17 @@ impl Edit {
             }
             Self::RemoveDimension(_) => {}
             Self::ClearDimensions => document.dimensions.clear(),
+            Self::Plot(place, add) => document.plot(place, add),
+            Self::RemoveTrace(which) if which < document.traces.len() => {
+                document.traces.remove(which);
+            }
+            Self::RemoveTrace(_) => {}
+            Self::SetTraceColor(which, color) => {
+                if let Some(trace) = document.traces.get_mut(which) {
+                    trace.color = color;
+                }
+            }
+            Self::ClearTraces => document.traces.clear(),
         }
     }
 }

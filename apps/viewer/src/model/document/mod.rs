@@ -7,6 +7,7 @@ mod markers;
 mod neurons;
 mod placement;
 mod soma;
+mod traces;
 
 use std::path::PathBuf;
 
@@ -23,6 +24,7 @@ pub use markers::MarkerOptions;
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use soma::{Method, SomaEdit};
+pub use traces::{Trace, TracePlace};
 
 /// All that edits change.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +45,8 @@ pub struct Document {
     pub markers: MarkerOptions,
     /// What was measured and is kept on the picture.
     pub dimensions: Tracked<Vec<Dimension>>,
+    /// Compartments whose values are plotted over time.
+    pub traces: Tracked<Vec<Trace>>,
 }
 
 /// A neuron: a tracing with a placement.
@@ -105,7 +109,7 @@ impl Document {
         self.report = report;
     }
 
-    /// Removes the selected neurons, and dimensions that refer to them.
+    /// Removes the selected neurons, and the dimensions and traces that refer to them.
     pub(crate) fn remove_selected(&mut self) {
         let mut kept = 0;
         let number = |neuron: &Neuron| {
@@ -114,12 +118,18 @@ impl Document {
         };
         let numbers: Vec<Option<usize>> = self.neurons.iter().map(number).collect();
         self.neurons.retain(|neuron| !neuron.selected);
-        if self.dimensions.is_empty() || kept == numbers.len() {
+        if kept == numbers.len() {
             return;
         }
         let number = |neuron: usize| numbers.get(neuron).copied().flatten();
-        let dimensions = self.dimensions.iter();
-        *self.dimensions = dimensions.filter_map(|d| d.renumbered(number)).collect();
+        if !self.dimensions.is_empty() {
+            let dimensions = self.dimensions.iter();
+            *self.dimensions = dimensions.filter_map(|d| d.renumbered(number)).collect();
+        }
+        if !self.traces.is_empty() {
+            let traces = self.traces.iter();
+            *self.traces = traces.filter_map(|t| t.renumbered(number)).collect();
+        }
     }
 
     /// Indices of the selected neurons.
