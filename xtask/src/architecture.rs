@@ -36,6 +36,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-union", &["neurotess-mesh"]),
     ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
     ("neurotess-output", &[]),
+    ("neurotess-plot", &["neurotess-morphology"]),
     (
         "neurotess-color",
         &[
@@ -58,6 +59,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-render",
             "neurotess-color",
             "neurotess-output",
+            "neurotess-plot",
             "neurotess-union",
         ],
     ),

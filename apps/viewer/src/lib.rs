@@ -18,7 +18,8 @@ mod ui;
 
 pub use model::command::Command;
 pub use model::{
-    command, document, markers, measuring, playback, save, session, settings, sources, state, view,
+    command, document, markers, measuring, playback, plots, save, session, settings, sources,
+    state, traces, view,
 };
 pub use scene::headless::{SessionPicture, draw_session};
 pub use scene::stage::Stage;

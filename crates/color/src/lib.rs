@@ -30,6 +30,8 @@ mod recording;
 mod report_frame;
 mod scheme;
 #[cfg(feature = "circuit")]
+mod traces;
+#[cfg(feature = "circuit")]
 mod visible;
 mod vision;
 
@@ -53,6 +55,8 @@ pub use recording::{DECAY, Recording, RecordingError};
 #[cfg(feature = "circuit")]
 pub use report_frame::ReportFrame;
 pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};
+#[cfg(feature = "circuit")]
+pub use traces::TracedCompartment;
 #[cfg(feature = "circuit")]
 pub use visible::{VisibleValues, fractions};
 pub use vision::{ClosestColors, LEAST_DIFFERENCE, Vision, closest, difference};

@@ -133,6 +133,7 @@ impl Recording {
                 part.compartments
                     .extend(compartments.iter().map(|&k| first + k as u64));
                 part.spans.push((instance, start..part.compartments.len()));
+                part.rows.push(row);
                 has_values[instance] = true;
             }
             parts.push(part);

@@ -19,6 +19,8 @@ pub(crate) struct PopulationMatch {
     pub(crate) compartments: Vec<u64>,
     /// Instances, each with the range of its compartments in the list.
     pub(crate) spans: Vec<(usize, Range<usize>)>,
+    /// Of each of these instances its place among the population's nodes.
+    pub(crate) rows: Vec<usize>,
 }
 
 impl ReportFrame {

@@ -67,6 +67,7 @@
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files | |
 //! | [`output`] | files that are there whole or not at all | |
+//! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
 //! All features are on by default. Without any, the crate meshes SWC files and needs neither wgpu nor HDF5.
 #![forbid(unsafe_code)]
@@ -80,6 +81,7 @@ pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
 pub use neurotess_output as output;
+pub use neurotess_plot as plot;
 pub use neurotess_refine as refine;
 #[cfg(feature = "render")]
 pub use neurotess_render as render;

@@ -202,3 +202,35 @@ fn a_table_of_nodes_is_a_circuit_again() {
     let json = work.run("info cells.csv --json").exits(0).json();
     assert_eq!(json[0]["n_neurons"], 40);
 }
+
+#[neurotess_testing::test]
+fn values_and_spikes_are_drawn() {
+    let (work, _) = made();
+    let report = Report::open(work.path("c/reports/voltage.h5")).expect("a report");
+    let population = &report.populations[0];
+    let (node, count) = (population.nodes[1], population.compartment_range(1).count());
+    let drawn = |options: &str| {
+        let figure = work
+            .run(&format!("report c {options} --svg -"))
+            .exits(0)
+            .stdout();
+        assert!(
+            figure.starts_with("<svg") && figure.ends_with("</svg>\n"),
+            "{figure}"
+        );
+        figure.matches("stroke=\"#").count() - figure.matches("stroke=\"#e4e4e4\"").count()
+    };
+    assert_eq!(drawn(&format!("--report voltage --nodes {node}")), count);
+    let some = format!("--report voltage --nodes {node} --per node --time 0:50");
+    assert_eq!(drawn(&some), 1);
+    let spikes = Spikes::open(work.path("c/spikes.h5")).expect("spikes");
+    let mut firing = spikes.populations[0].nodes.clone();
+    firing.sort_unstable();
+    firing.dedup();
+    assert_eq!(drawn("--report spikes"), firing.len());
+    let many = work.run("report c --report voltage --svg v.svg").exits(2);
+    assert!(many.stderr().contains("--per node"), "{}", many.stderr());
+    assert!(!work.path("v.svg").exists());
+    let both = work.run("report c --report voltage --svg v.svg --csv v.csv");
+    both.exits(2);
+}

@@ -6,5 +6,7 @@ pub(crate) mod load;
 pub(crate) mod markers;
 pub(crate) mod paths;
 pub(crate) mod save;
+pub(crate) mod single;
 pub(crate) mod task;
+pub(crate) mod traces;
 pub(crate) mod worker;

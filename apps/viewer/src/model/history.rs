@@ -1,6 +1,6 @@
 //! Undo and redo: earlier and later documents. They are small, since meshes are not part of them.
 
-use crate::model::document::{Dimension, Document, Neuron};
+use crate::model::document::{Dimension, Document, Neuron, Trace};
 
 /// Most edits that are kept.
 const MOST: usize = 200;
@@ -56,6 +56,13 @@ impl History {
     pub fn opened(&mut self, neuron: &Neuron) {
         for (_, document) in self.before.iter_mut().chain(&mut self.after) {
             document.neurons.push(neuron.clone());
+        }
+    }
+
+    /// Adds traces of a session that was opened to all documents.
+    pub fn opened_traces(&mut self, traces: &[Trace]) {
+        for (_, document) in self.before.iter_mut().chain(&mut self.after) {
+            document.traces.extend_from_slice(traces);
         }
     }
 

@@ -1,8 +1,10 @@
 //! Options of saving meshes, pictures and films.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use neurotess::mesh::Format;
+use neurotess::plot::Plot;
 use neurotess::refine::LodCriterion;
 
 use crate::model::settings::Settings;
@@ -28,6 +30,8 @@ pub enum SaveRequest {
     Picture(PictureFile),
     /// Pictures along views or through time.
     Film(FilmOptions),
+    /// A plot: as SVG, or its numbers as CSV if the file is called so.
+    Plot(PathBuf, Arc<Plot>),
 }
 
 /// How meshes are written.

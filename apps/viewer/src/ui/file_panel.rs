@@ -8,7 +8,7 @@ use eframe::egui::{self, Key, RichText, ScrollArea};
 
 use crate::io::find;
 use crate::io::paths::{self, Name, completed, goes_on, parted};
-use crate::model::command::{Command, Edit, FilePurpose};
+use crate::model::command::{Command, Edit, FilePurpose, PlotOf};
 use crate::model::session;
 use crate::ui::path_line;
 
@@ -44,6 +44,13 @@ impl FilePanel {
                 folder.join(name).display().to_string()
             }
             (FilePurpose::SavePalette, _) => folder.join("palette.toml").display().to_string(),
+            (FilePurpose::SavePlot(of, extension), _) => {
+                let name = plot_name(of);
+                folder
+                    .join(format!("{name}.{extension}"))
+                    .display()
+                    .to_string()
+            }
             (
                 FilePurpose::Open
                 | FilePurpose::Report
@@ -110,6 +117,7 @@ impl FilePanel {
             FilePurpose::Points => is_folder || is("csv") || is("tsv"),
             FilePurpose::SaveSession => is_folder || session::is_session(path),
             FilePurpose::OpenPalette | FilePurpose::SavePalette => is_folder || is("toml"),
+            FilePurpose::SavePlot(_, extension) => is_folder || is(extension),
         };
         wanted.then(|| Entry {
             path: path.to_path_buf(),
@@ -131,6 +139,8 @@ impl FilePanel {
             FilePurpose::SaveSession => "Save the session",
             FilePurpose::OpenPalette => "Open a palette",
             FilePurpose::SavePalette => "Save the palette",
+            FilePurpose::SavePlot(_, "csv") => "Save the numbers of the plot",
+            FilePurpose::SavePlot(..) => "Save the plot",
         };
         let mut done = None;
         let mut stays = *open;
@@ -218,6 +228,7 @@ impl FilePanel {
                 (false, _) => "No name here begins like that",
                 (true, FilePurpose::SaveSession) => "No folder and no session here yet",
                 (true, FilePurpose::SavePalette) => "No folder and no palette here yet",
+                (true, FilePurpose::SavePlot(..)) => "No folder and no plot here yet",
                 (true, _) => "No folder and no file to open here",
             };
             ui.allocate_ui([ui.available_width(), height].into(), |ui| {
@@ -331,12 +342,36 @@ impl FilePanel {
                     None => path.with_extension("toml"),
                 })
             }
+            FilePurpose::SavePlot(of, extension) => {
+                let path = paths.pop().unwrap_or_default();
+                let is = |known: &&str| {
+                    path.extension()
+                        .is_some_and(|e| e.eq_ignore_ascii_case(known))
+                };
+                let path = match ["svg", "csv"].iter().any(|known| is(&known)) {
+                    true => path,
+                    // A dot may be part of the name: it is not replaced.
+                    false => PathBuf::from(format!("{}.{extension}", path.display())),
+                };
+                Command::SavePlot(of, path)
+            }
         }
     }
 }
 
 fn saves(purpose: FilePurpose) -> bool {
-    matches!(purpose, FilePurpose::SaveSession | FilePurpose::SavePalette)
+    matches!(
+        purpose,
+        FilePurpose::SaveSession | FilePurpose::SavePalette | FilePurpose::SavePlot(..)
+    )
+}
+
+/// Name of a plot's file, without its extension.
+fn plot_name(of: PlotOf) -> &'static str {
+    match of {
+        PlotOf::Traces => "traces",
+        PlotOf::Measure => "measure",
+    }
 }
 
 fn choose(chosen: &mut Vec<PathBuf>, path: &Path, adds: bool) {

@@ -6,4 +6,5 @@ mod input;
 mod motion;
 mod panels;
 mod path_line;
+mod plot;
 pub(crate) mod window;

@@ -7,7 +7,8 @@ use neurotess::circuit::TimeAxis;
 use neurotess::circuit::write::{self, ReportLayout};
 use neurotess::formats::swc;
 use neurotess::synth::circuit::{
-    CIRCUIT, CircuitOptions, EDGES, POPULATION, circuit, circuit_config, synapses, voltages,
+    CIRCUIT, CircuitOptions, EDGES, POPULATION, SyntheticCircuit, circuit, circuit_config,
+    synapses, voltages,
 };
 use neurotess::synth::grow;
 use neurotess_viewer::Command;
@@ -32,22 +33,12 @@ pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, 
     write::nodes(std::slice::from_ref(&made.population), create("nodes.h5")).expect("written");
     fs::write(folder.join(CIRCUIT), circuit_config(false).to_string()).expect("written");
     write::spikes(std::slice::from_ref(&made.spikes), create("spikes.h5")).expect("written");
-    let of_node = |node: &u64| {
-        let names = &made.population.attributes["morphology"];
-        let name = names.text(*node as usize);
-        let cell = made.morphologies.iter().find(|m| Some(&*m.name) == name);
-        voltages(
-            &grow(&cell.expect("a morphology").options),
-            *node,
-            &made.spikes,
-        )
-    };
     let nodes: Vec<u64> = (0..reported as u64).collect();
-    let cells: Vec<_> = nodes.iter().map(of_node).collect();
+    let cells: Vec<_> = nodes.iter().map(|node| of_node(&made, *node)).collect();
     let frames = 20;
     let data = (0..frames).flat_map(|frame| {
-        cells.iter().flat_map(move |cell| {
-            let n = cell.sections.len();
+        cells.iter().flat_map(move |(sections, _)| {
+            let n = sections.len();
             // Every cell brightens with time, a node later than the one before.
             let of = move |k: usize| -80.0 + 5.0 * frame as f32 + k as f32 / n as f32;
             (0..n).map(of)
@@ -58,12 +49,48 @@ pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, 
         time: TimeAxis::of_frames(0.0, 0.5, frames as u64).expect("an axis"),
         units: "mV".into(),
         nodes,
-        sections: cells.iter().map(|cell| cell.sections.clone()).collect(),
+        sections: cells.iter().map(|(sections, _)| sections.clone()).collect(),
         chunk: [4, 64],
         compressed: true,
     };
     let data: Vec<f32> = data.collect();
     write::report(&layout, &data, create("voltage.h5")).expect("written");
+}
+
+/// Sections of the compartments of a node of a circuit that was made, and their voltages.
+fn of_node(made: &SyntheticCircuit, node: u64) -> (Vec<u32>, Vec<f32>) {
+    let names = &made.population.attributes["morphology"];
+    let name = names.text(node as usize);
+    let cell = made.morphologies.iter().find(|m| Some(&*m.name) == name);
+    let cell = grow(&cell.expect("a morphology").options);
+    let voltages = voltages(&cell, node, &made.spikes);
+    (voltages.sections, voltages.values)
+}
+
+/// Writes `firing.h5` beside the circuit of [`with_circuit`]: action potentials of the first cell that fires, 200 frames
+/// of 0.5 ms. Returns that cell.
+pub(crate) fn write_firing(folder: &Path) -> usize {
+    let made = circuit(&CircuitOptions {
+        neurons: 9,
+        morphologies: 3,
+        seed: 3,
+        points: Some(120),
+        reported: 7,
+    });
+    let node = made.spikes.nodes[0];
+    let (sections, values) = of_node(&made, node);
+    let layout = ReportLayout {
+        population: POPULATION.into(),
+        time: TimeAxis::of_frames(0.0, 0.5, 200).expect("an axis"),
+        units: "mV".into(),
+        nodes: vec![node],
+        sections: vec![sections],
+        chunk: [16, 64],
+        compressed: true,
+    };
+    let file = File::create(folder.join("firing.h5")).expect("a file");
+    write::report(&layout, &values, file).expect("written");
+    node as usize
 }
 
 /// Makes all cells of a circuit a ball and a stick of two points, and writes `stick.h5`: the first cell has a

@@ -75,8 +75,9 @@ pub(crate) fn settle(window: &mut Window) {
         // Usually a second or two; two tests at a time on two busy cores took 120 once.
         assert!(
             begun.elapsed() < Duration::from_secs(240),
-            "never settles: {}",
-            viewer(window).stage.unsettled()
+            "never settles: {}; {:?}",
+            viewer(window).stage.unsettled(),
+            viewer(window).state.problems
         );
         window.step();
         quiet = if viewer(window).is_settled() {

@@ -5,9 +5,12 @@
 //! bytes) that hold wanted compartments are read. Filters other than deflate and shuffle, and kinds of
 //! index that cannot be listed, are left to hdf5-pure, whole rows at a time.
 
+mod filters;
+mod series;
+
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -17,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::hdf5::{Store, hdf5};
 use crate::{CircuitError, Fault};
+use filters::{inflate, unshuffle};
 
 /// A table of numbers, `rows × columns`.
 pub(crate) struct Table {
@@ -219,8 +223,24 @@ impl Table {
         Ok(values)
     }
 
-    /// The numbers of a chunk as they are in memory; `None` if it was never written.
+    /// The numbers of a chunk as they are in memory; `None` if it was never written. It is kept for the frames that
+    /// follow.
     fn chunk(&self, at: [u64; 2]) -> Result<Option<Arc<Vec<u8>>>, CircuitError> {
+        let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = lock().get(at) {
+            return Ok(Some(known));
+        }
+        let Some(bytes) = self.stored(at)?.map(Arc::new) else {
+            return Ok(None);
+        };
+        if matches!(self.access, Access::Chunked { shape, .. } if shape[0] > 1) {
+            lock().put(at, &bytes);
+        }
+        Ok(Some(bytes))
+    }
+
+    /// The numbers of a chunk from the file.
+    fn stored(&self, at: [u64; 2]) -> Result<Option<Vec<u8>>, CircuitError> {
         let Access::Chunked {
             shape,
             filters,
@@ -232,10 +252,6 @@ impl Table {
         let Some(stored) = chunks.get(&at) else {
             return Ok(None);
         };
-        let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = lock().get(at) {
-            return Ok(Some(known));
-        }
         let size = self.number.map_or(0, |n| n.size);
         let whole = shape[0] * shape[1] * size as u64;
         let mut bytes = self.bytes_at(stored.address, stored.size)?;
@@ -254,10 +270,6 @@ impl Table {
         if bytes.len() as u64 != whole {
             let reason = format!("chunk {at:?} has {} bytes instead of {whole}", bytes.len());
             return Err(self.fault(Fault::Hdf5 { reason }));
-        }
-        let bytes = Arc::new(bytes);
-        if shape[0] > 1 {
-            lock().put(at, &bytes);
         }
         Ok(Some(bytes))
     }
@@ -373,23 +385,4 @@ fn access(dataset: &Dataset, number: Number) -> Result<Access, hdf5_pure::Error>
         filters,
         chunks,
     })
-}
-
-fn inflate(bytes: &[u8], whole: u64) -> io::Result<Vec<u8>> {
-    let mut inflated = Vec::new();
-    let decoder = flate2::read::ZlibDecoder::new(bytes);
-    decoder.take(whole + 1).read_to_end(&mut inflated)?;
-    Ok(inflated)
-}
-
-/// Undoes HDF5's shuffle: first bytes of all numbers, then second bytes, …
-fn unshuffle(bytes: &[u8], size: usize) -> Vec<u8> {
-    let count = bytes.len() / size.max(1);
-    let mut numbers = bytes.to_vec();
-    for (k, plane) in bytes[..count * size].chunks_exact(count.max(1)).enumerate() {
-        for (i, &byte) in plane.iter().enumerate() {
-            numbers[i * size + k] = byte;
-        }
-    }
-    numbers
 }

@@ -246,6 +246,25 @@ impl ReportPopulation {
         self.table.pick(frame, compartments)
     }
 
+    /// Values of compartments in these frames, frame by frame. Reads what holds them and nothing else; of frames that are
+    /// stored together, all at once ([`Self::frames_together`]).
+    ///
+    /// # Errors
+    /// As [`Self::values`].
+    pub fn series(
+        &self,
+        frames: Range<u64>,
+        compartments: &[u64],
+    ) -> Result<Vec<f32>, CircuitError> {
+        self.table.pick_rows(frames, compartments)
+    }
+
+    /// How many frames are stored together: many calls of [`Self::series`] read everything once if each begins at a multiple
+    /// of it.
+    pub fn frames_together(&self) -> u64 {
+        self.table.rows_together()
+    }
+
     /// The nodes of a circuit that the report is about, in the order of [`Self::nodes`].
     ///
     /// # Errors

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use neurotess::circuit::{
-    Circuit, NodeRef, RecordingFile, Report, ReportPopulation, Spikes, TimeAxis,
-};
+use neurotess::circuit::{Circuit, NodeRef, RecordingFile, ReportPopulation, Spikes, TimeAxis};
 use serde::Serialize;
 
+use super::figure;
+use super::places::{Chosen, NodePlaces, Places, chosen, frames, mean};
 use crate::io::circuits;
 use crate::io::output::{is_standard, reserve_standard};
 use crate::io::table::{self, Rows, TableArgs};
@@ -20,6 +20,7 @@ use crate::report::{Failure, Reporter, usage};
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   neurotess report circuit/ --report voltage --nodes 0-9 --time 0:100:0.5 --csv voltage.csv
+  neurotess report circuit/ --report voltage --nodes 3 --per node --svg voltage.svg
   neurotess report circuit/ --report spikes.h5 --csv -")]
 pub(crate) struct ReportArgs {
     /// A circuit: SONATA, or a scene of your own
@@ -34,6 +35,9 @@ pub(crate) struct ReportArgs {
     /// Rows of a time: each compartment, or the mean of each node's
     #[arg(long, value_name = "WHAT", default_value = "compartment")]
     per: Per,
+    /// Draw the values over time, or a raster of spikes, as SVG, instead of writing a table; - for standard output
+    #[arg(long, value_name = "FILE", conflicts_with = "csv")]
+    svg: Option<PathBuf>,
     #[command(flatten)]
     table: TableArgs,
     #[command(flatten)]
@@ -61,7 +65,8 @@ struct Written {
 
 /// Runs the command.
 pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    reserve_standard(&args.table.csv, reporter)?;
+    let out = args.svg.as_ref().unwrap_or(&args.table.csv);
+    reserve_standard(out, reporter)?;
     let circuit =
         circuits::open(&args.circuit, reporter).map_err(|Failure(why)| anyhow::anyhow!(why))?;
     let selected = args
@@ -74,24 +79,50 @@ pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> 
         RecordingFile::Report(report) => {
             let chosen = chosen(&report, &circuit, &selected)?;
             let nodes = chosen.iter().map(|(_, nodes)| nodes.len()).sum();
-            let rows = table::write(&args.table, |rows| values(rows, &chosen, args))?;
+            let rows = match &args.svg {
+                Some(svg) => {
+                    let per_compartment = args.per == Per::Compartment;
+                    let plot = figure::values(&chosen, args.time, per_compartment)?;
+                    figure::write(&plot, svg, args.table.force)?;
+                    plot.series.len() as u64
+                }
+                None => table::write(&args.table, |rows| values(rows, &chosen, args))?,
+            };
             (rows, nodes)
         }
-        RecordingFile::Spikes(spikes) => table::write(&args.table, |rows| {
-            firing(rows, &spikes, &circuit, &selected, args.time)
-        })?,
+        RecordingFile::Spikes(spikes) => match &args.svg {
+            Some(svg) => {
+                let within = |at| is_within(at, args.time);
+                let plot = figure::raster(&spikes, &circuit, &selected, within)?;
+                figure::write(&plot, svg, args.table.force)?;
+                (plot.series.len() as u64, plot.series.len())
+            }
+            None => table::write(&args.table, |rows| {
+                firing(rows, &spikes, &circuit, &selected, args.time)
+            })?,
+        },
     };
     if nodes == 0 {
-        reporter.warning("none of the selected cells is in the report: the table is empty");
+        let what = if args.svg.is_some() {
+            "figure"
+        } else {
+            "table"
+        };
+        reporter.warning(&format!(
+            "none of the selected cells is in the report: the {what} is empty"
+        ));
     }
-    if !is_standard(&args.table.csv) {
-        let out = args.table.csv.display();
-        reporter.result(&format!("{out}: {rows} rows of {nodes} nodes"));
+    if !is_standard(out) {
+        let (file, what) = (
+            out.display(),
+            if args.svg.is_some() { "lines" } else { "rows" },
+        );
+        reporter.result(&format!("{file}: {rows} {what} of {nodes} nodes"));
     }
     reporter.document(&Written {
         file: circuit.file.clone(),
         report: path.display().to_string(),
-        out: args.table.csv.display().to_string(),
+        out: out.display().to_string(),
         rows,
         nodes,
     })
@@ -120,48 +151,6 @@ fn path_of(circuit: &Circuit, wanted: Option<&std::path::Path>) -> anyhow::Resul
     }
 }
 
-/// A population of a report, and the indices of its nodes that are selected.
-type Chosen<'a> = (&'a ReportPopulation, Vec<usize>);
-
-fn chosen<'a>(
-    report: &'a Report,
-    circuit: &Circuit,
-    selected: &BTreeSet<NodeRef>,
-) -> anyhow::Result<Vec<Chosen<'a>>> {
-    let mut all = Vec::new();
-    for population in &report.populations {
-        let nodes = population.nodes_in(circuit)?;
-        let indices = nodes.iter().enumerate();
-        let indices = indices.filter(|(_, node)| selected.contains(node));
-        all.push((population, indices.map(|(index, _)| index).collect()));
-    }
-    Ok(all)
-}
-
-/// Frames of an axis at the times that are asked for.
-fn frames(axis: &TimeAxis, time: Option<Time>) -> Vec<u64> {
-    let every = |from: f64, to: f64| -> Vec<u64> {
-        let margin = 1e-6 * axis.step;
-        let within = |time: f64| time > from - margin && time < to - margin;
-        let frames = 0..axis.frames;
-        frames.filter(|&f| within(axis.time_of(f))).collect()
-    };
-    match time {
-        None => (0..axis.frames).collect(),
-        Some(Time::At(time)) => axis.frame_at(time).into_iter().collect(),
-        Some(Time::Series(from, to, None)) => every(from, to),
-        Some(Time::Series(from, to, Some(step))) => {
-            let count = ((to - from) / step - 1e-6).ceil().max(1.0) as u64;
-            let mut frames: Vec<u64> = (0..count)
-                .map_while(|k| Some(from + k as f64 * step).filter(|&time| time < axis.end))
-                .filter_map(|time| axis.frame_at(time))
-                .collect();
-            frames.dedup();
-            frames
-        }
-    }
-}
-
 /// Writes a report's rows, time by time; returns how many there are.
 fn values(rows: &mut Rows, chosen: &[Chosen<'_>], args: &ReportArgs) -> anyhow::Result<u64> {
     let per_compartment = args.per == Per::Compartment;
@@ -178,9 +167,9 @@ fn values(rows: &mut Rows, chosen: &[Chosen<'_>], args: &ReportArgs) -> anyhow::
         let frames = frames(&population.time, args.time);
         any |= !frames.is_empty();
         for frame in frames {
-            let values = population.values(frame, &places.compartments)?;
+            let values = population.values(frame, places.compartments())?;
             let time = rounded(population.time.time_of(frame));
-            count += places.write(rows, population, &time, &values)?;
+            count += write_rows(&places, rows, population, &time, &values)?;
         }
     }
     if let (false, Some((population, _))) = (any, chosen.first()) {
@@ -190,83 +179,12 @@ fn values(rows: &mut Rows, chosen: &[Chosen<'_>], args: &ReportArgs) -> anyhow::
     Ok(count)
 }
 
-/// Compartments that are read, and the node of each.
-struct Places {
-    compartments: Vec<u64>,
-    nodes: Vec<NodePlaces>,
-}
-
-/// Compartments of a node.
-struct NodePlaces {
-    id: u64,
-    count: usize,
-    /// Section and place along it of each; empty if only their mean is written.
-    along: Vec<(u64, f32)>,
-}
-
-impl Places {
-    fn of(
-        population: &ReportPopulation,
-        nodes: &[usize],
-        per_compartment: bool,
-    ) -> anyhow::Result<Self> {
-        let mut places = Self {
-            compartments: Vec::new(),
-            nodes: Vec::new(),
-        };
-        for &index in nodes {
-            let range = population.compartment_range(index);
-            let count = (range.end - range.start) as usize;
-            places.compartments.extend(range);
-            let along = match per_compartment {
-                true => population.compartments(index)?,
-                false => Vec::new(),
-            };
-            let along = along.iter().map(|c| (c.section, c.along)).collect();
-            places.nodes.push(NodePlaces {
-                id: population.nodes[index],
-                count,
-                along,
-            });
-        }
-        Ok(places)
-    }
-
-    /// Writes the rows of a time.
-    fn write(
-        &self,
-        rows: &mut Rows,
-        population: &ReportPopulation,
-        time: &str,
-        values: &[f32],
-    ) -> anyhow::Result<u64> {
-        let mut count = 0;
-        let mut rest = values;
-        for NodePlaces {
-            id,
-            count: own,
-            along,
-        } in &self.nodes
-        {
-            let (own, others) = rest.split_at((*own).min(rest.len()));
-            rest = others;
-            let node = id.to_string();
-            if along.is_empty() {
-                let mean = own.iter().map(|&v| f64::from(v)).sum::<f64>() / own.len() as f64;
-                let mean = table::cell(mean);
-                rows.write_record([time, &population.name, &node, &mean])?;
-                count += 1;
-                continue;
-            }
-            for ((section, position), value) in along.iter().zip(own) {
-                let (section, position) = (section.to_string(), position.to_string());
-                let value = table::cell(f64::from(*value));
-                let name = &population.name;
-                rows.write_record([time, name, &node, &section, &position, &value])?;
-                count += 1;
-            }
-        }
-        Ok(count)
+/// Whether a spike is within the times that are asked for.
+fn is_within(at: f64, time: Option<Time>) -> bool {
+    match time {
+        None => true,
+        Some(Time::At(time)) => at == time,
+        Some(Time::Series(from, to, _)) => (from..to).contains(&at),
     }
 }
 
@@ -278,11 +196,6 @@ fn firing(
     selected: &BTreeSet<NodeRef>,
     time: Option<Time>,
 ) -> anyhow::Result<(u64, usize)> {
-    let within = |at: f64| match time {
-        None => true,
-        Some(Time::At(time)) => at == time,
-        Some(Time::Series(from, to, _)) => (from..to).contains(&at),
-    };
     rows.write_record(["time_ms", "population", "node_id"])?;
     let mut fired = BTreeSet::new();
     let mut count = 0;
@@ -290,7 +203,7 @@ fn firing(
         let nodes = population.nodes_in(circuit, &spikes.file)?;
         let spikes = population.times.iter().zip(&population.nodes).zip(nodes);
         for ((&at, id), node) in spikes {
-            if within(at) && selected.contains(&node) {
+            if is_within(at, time) && selected.contains(&node) {
                 rows.write_record([&rounded(at), &population.name, &id.to_string()])?;
                 fired.insert(node);
                 count += 1;
@@ -298,6 +211,42 @@ fn firing(
         }
     }
     Ok((count, fired.len()))
+}
+
+/// Writes the rows of a time.
+fn write_rows(
+    places: &Places,
+    rows: &mut Rows,
+    population: &ReportPopulation,
+    time: &str,
+    values: &[f32],
+) -> anyhow::Result<u64> {
+    let mut count = 0;
+    let mut rest = values;
+    for NodePlaces {
+        id,
+        count: own,
+        along,
+    } in &places.nodes
+    {
+        let (own, others) = rest.split_at((*own).min(rest.len()));
+        rest = others;
+        let node = id.to_string();
+        if along.is_empty() {
+            let mean = table::cell(mean(own));
+            rows.write_record([time, &population.name, &node, &mean])?;
+            count += 1;
+            continue;
+        }
+        for ((section, position), value) in along.iter().zip(own) {
+            let (section, position) = (section.to_string(), position.to_string());
+            let value = table::cell(f64::from(*value));
+            let name = &population.name;
+            rows.write_record([time, name, &node, &section, &position, &value])?;
+            count += 1;
+        }
+    }
+    Ok(count)
 }
 
 /// A time (ms) without the digits that its sum of steps made.
@@ -310,20 +259,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_those_of_frames() {
-        let axis = TimeAxis {
-            start: 10.0,
-            end: 12.0,
-            step: 0.5,
-            frames: 4,
-        };
-        let found = |text: &str| frames(&axis, Some(text.parse().expect("a time")));
-        assert_eq!(frames(&axis, None), [0, 1, 2, 3]);
-        assert_eq!(found("10.7"), [1]);
-        assert_eq!(found("10.5:11.5"), [1, 2]);
-        assert_eq!(found("0:100:1"), [0, 2]);
-        assert_eq!(found("10:12:0.1"), [0, 1, 2, 3], "each frame once");
-        assert!(found("3").is_empty());
+    fn times_have_no_digits_of_sums() {
         assert_eq!(rounded(0.1 + 0.2), "0.3");
     }
 }

@@ -1,11 +1,13 @@
-//! Writes meshes, and videos of numbered pictures.
+//! Writes meshes, plots, and videos of numbered pictures.
 
 mod meshes;
+mod plots;
 pub(crate) mod video;
 
 use neurotess::output::Existing;
 
 pub(crate) use meshes::{MeshPlan, meshes};
+pub(crate) use plots::plot;
 
 pub(crate) fn existing(replace: bool) -> Existing {
     match replace {

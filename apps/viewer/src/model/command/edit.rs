@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::model::document::{
-    Detail, Dimension, Document, Look, MarkerOptions, SavedView, SomaEdit, SourceId,
+    Detail, Dimension, Document, Look, MarkerOptions, SavedView, SomaEdit, SourceId, TracePlace,
 };
 
 /// A change of the document.
@@ -60,6 +60,15 @@ pub enum Edit {
     RenameView(usize, String),
     /// Forgets a saved view.
     RemoveView(usize),
+    /// Plots the values of a place over time: alone, or with `true` beside the others, from which it is taken away if it is
+    /// there.
+    Plot(TracePlace, bool),
+    /// Removes a trace from the plot, by its index.
+    RemoveTrace(usize),
+    /// Sets the color of a trace, by its index.
+    SetTraceColor(usize, [u8; 3]),
+    /// Removes all traces.
+    ClearTraces,
 }
 
 impl Edit {
@@ -85,6 +94,9 @@ impl Edit {
             Self::SaveView(_) => "Save view",
             Self::RenameView(..) => "Rename view",
             Self::RemoveView(_) => "Forget view",
+            Self::Plot(..) => "Trace",
+            Self::RemoveTrace(_) | Self::ClearTraces => "Remove trace",
+            Self::SetTraceColor(..) => "Trace color",
         }
     }
 
@@ -98,6 +110,7 @@ impl Edit {
                 | Self::SetDetail(_)
                 | Self::SetMarkers(_)
                 | Self::RenameView(..)
+                | Self::SetTraceColor(..)
         )
     }
 
@@ -186,6 +199,17 @@ impl Edit {
                 document.saved_views.remove(which);
             }
             Self::RemoveView(_) => {}
+            Self::Plot(place, add) => document.plot(place, add),
+            Self::RemoveTrace(which) if which < document.traces.len() => {
+                document.traces.remove(which);
+            }
+            Self::RemoveTrace(_) => {}
+            Self::SetTraceColor(which, color) => {
+                if let Some(trace) = document.traces.get_mut(which) {
+                    trace.color = color;
+                }
+            }
+            Self::ClearTraces => document.traces.clear(),
         }
     }
 }

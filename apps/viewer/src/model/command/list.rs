@@ -6,7 +6,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use neurotess::render::Side;
 use neurotess::synth::Kind;
 
-use super::{Command, Edit, FilePurpose, Tab};
+use super::{Command, Edit, FilePurpose, PlotOf, Tab};
 
 /// A command of the menus and the palette.
 pub struct Listed {
@@ -77,6 +77,16 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::AskFiles(FilePurpose::SavePalette),
                 ),
                 item(
+                    "Save the plot of traces (SVG)…",
+                    None,
+                    Command::AskFiles(FilePurpose::SavePlot(PlotOf::Traces, "svg")),
+                ),
+                item(
+                    "Save the values of traces (CSV)…",
+                    None,
+                    Command::AskFiles(FilePurpose::SavePlot(PlotOf::Traces, "csv")),
+                ),
+                item(
                     "Save mesh, picture or film…",
                     Some((CTRL, Key::E)),
                     Command::Show(Tab::Save),
@@ -128,6 +138,11 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::CopyDimensions(None),
                 ),
                 item("Remove all dimensions", None, Edit::ClearDimensions.into()),
+                item(
+                    "Remove all traces of the plot",
+                    None,
+                    Edit::ClearTraces.into(),
+                ),
             ]
             .into_iter()
             .chain(now.measuring.then(|| {
@@ -235,6 +250,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::StepTime(1),
                 ),
                 item(
+                    choose(
+                        now.traces,
+                        "Plot values over time (traces, voltage, time course)",
+                        "Close the plot of values over time (traces, voltage)",
+                    ),
+                    Some((PLAIN, Key::T)),
+                    Command::ShowTraces(!now.traces),
+                ),
+                item(
                     "Keep this view for a film",
                     Some((PLAIN, Key::K)),
                     Command::AddKeyView,
@@ -338,6 +362,8 @@ pub struct Toggles {
     pub measuring: bool,
     /// Whether synapses are shown.
     pub synapses: bool,
+    /// Whether values over time are plotted.
+    pub traces: bool,
 }
 
 #[cfg(test)]

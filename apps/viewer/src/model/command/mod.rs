@@ -12,6 +12,7 @@ use neurotess::synth::Kind;
 
 use crate::model::document::Anchor;
 use crate::model::playback::Pace;
+use crate::model::plots::MeasureForm;
 use crate::model::save::{FilmOptions, MeshOptions, PictureFile};
 use crate::model::view::View;
 
@@ -60,6 +61,17 @@ pub enum FilePurpose {
     OpenPalette,
     /// Saving a palette.
     SavePalette,
+    /// Saving a plot in a format: `svg` or `csv`.
+    SavePlot(PlotOf, &'static str),
+}
+
+/// A plot of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlotOf {
+    /// Values over time of the compartments that were clicked.
+    Traces,
+    /// A measure of the selected cells.
+    Measure,
 }
 
 /// A command: an edit of the document, or a request to the window.
@@ -84,6 +96,8 @@ pub enum Command {
     OpenPalette(PathBuf),
     /// Writes the palette, with the colors that were chosen.
     SavePalette(PathBuf),
+    /// Writes a plot, as a figure or as a table by its extension.
+    SavePlot(PlotOf, PathBuf),
     /// Cancels reading or saving.
     Cancel,
     /// Quits the program.
@@ -102,6 +116,11 @@ pub enum Command {
     StepTime(i64),
     /// Sets how the recording is played.
     SetPace(Pace),
+
+    /// Shows or hides the plot of values over time.
+    ShowTraces(bool),
+    /// Sets what *Inspect* plots of the selected cells.
+    PlotMeasure(MeasureForm),
 
     /// Looks at everything from a side.
     Look(Side),
@@ -170,6 +189,12 @@ impl fmt::Debug for Command {
             Self::OpenPoints(value) => with("OpenPoints", value),
             Self::OpenPalette(value) => with("OpenPalette", value),
             Self::SavePalette(value) => with("SavePalette", value),
+            Self::SavePlot(of, value) => {
+                let mut tuple = f.debug_tuple("SavePlot");
+                tuple.field(of).field(value).finish()
+            }
+            Self::ShowTraces(value) => with("ShowTraces", value),
+            Self::PlotMeasure(value) => with("PlotMeasure", value),
             Self::Seek(value) => with("Seek", value),
             Self::StepTime(value) => with("StepTime", value),
             Self::SetPace(value) => with("SetPace", value),

@@ -8,6 +8,7 @@ mod neurons;
 mod placement;
 mod saved_view;
 mod soma;
+mod traces;
 
 use std::path::PathBuf;
 
@@ -25,6 +26,7 @@ pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use saved_view::SavedView;
 pub use soma::{Method, SomaEdit};
+pub use traces::{Trace, TracePlace};
 
 /// All that edits change.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,6 +49,8 @@ pub struct Document {
     pub dimensions: Tracked<Vec<Dimension>>,
     /// Views that were saved under a name.
     pub saved_views: Vec<SavedView>,
+    /// Compartments whose values are plotted over time.
+    pub traces: Tracked<Vec<Trace>>,
 }
 
 /// A neuron: a tracing with a placement.
@@ -109,7 +113,7 @@ impl Document {
         self.report = report;
     }
 
-    /// Removes the selected neurons, and dimensions that refer to them.
+    /// Removes the selected neurons, and the dimensions and traces that refer to them.
     pub(crate) fn remove_selected(&mut self) {
         let mut kept = 0;
         let number = |neuron: &Neuron| {
@@ -118,12 +122,18 @@ impl Document {
         };
         let numbers: Vec<Option<usize>> = self.neurons.iter().map(number).collect();
         self.neurons.retain(|neuron| !neuron.selected);
-        if self.dimensions.is_empty() || kept == numbers.len() {
+        if kept == numbers.len() {
             return;
         }
         let number = |neuron: usize| numbers.get(neuron).copied().flatten();
-        let dimensions = self.dimensions.iter();
-        *self.dimensions = dimensions.filter_map(|d| d.renumbered(number)).collect();
+        if !self.dimensions.is_empty() {
+            let dimensions = self.dimensions.iter();
+            *self.dimensions = dimensions.filter_map(|d| d.renumbered(number)).collect();
+        }
+        if !self.traces.is_empty() {
+            let traces = self.traces.iter();
+            *self.traces = traces.filter_map(|t| t.renumbered(number)).collect();
+        }
     }
 
     /// Indices of the selected neurons.

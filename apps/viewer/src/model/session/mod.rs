@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{Detail, Dimension, Look, MarkerOptions, SavedView, SomaEdit};
+use crate::model::document::{Detail, Dimension, Look, MarkerOptions, SavedView, SomaEdit, Trace};
 use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::playback::Pace;
 use crate::model::state::State;
@@ -89,6 +89,9 @@ pub struct Session {
     /// Dimensions on the picture; they name neurons by their index in the list, from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub dimension: Vec<Dimension>,
+    /// Compartments that are plotted over time, by neurons as dimensions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trace: Vec<Trace>,
 }
 
 fn is_default(markers: &MarkerOptions) -> bool {
@@ -167,6 +170,7 @@ impl Session {
             file: file.collect(),
             neuron: neuron.collect(),
             dimension: document.dimensions.to_vec(),
+            trace: document.traces.to_vec(),
         }
     }
 
@@ -237,6 +241,13 @@ impl Session {
         let index = |neuron: usize| opened.get(neuron).copied().flatten();
         let dimensions = self.dimension.iter();
         dimensions.filter_map(|d| d.renumbered(index)).collect()
+    }
+
+    /// The traces whose neurons could be opened, as [`Self::dimensions`].
+    pub(crate) fn traces(&self, opened: &[Option<usize>]) -> Vec<Trace> {
+        let index = |neuron: usize| opened.get(neuron).copied().flatten();
+        let traces = self.trace.iter();
+        traces.filter_map(|t| t.renumbered(index)).collect()
     }
 
     /// The node of a neuron, if its circuit is open.

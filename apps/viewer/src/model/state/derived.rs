@@ -4,9 +4,11 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use neurotess::plot::Plot;
 use neurotess::render::{BoundingSphere, Placement};
 
 use super::State;
+use super::traces::PlotKey;
 use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
 use crate::model::ids::CircuitId;
 use crate::model::measuring::Figure;
@@ -46,6 +48,7 @@ pub(super) struct Derived {
     kinds: Memo<Revision, BTreeSet<i32>>,
     pub(super) circuits: Memo<Revision, Vec<CircuitId>>,
     pub(super) figures: Memo<FiguresKey, Vec<Option<Figure>>>,
+    pub(super) traces: Memo<PlotKey, Plot>,
 }
 
 /// Revisions that figures of dimensions depend on: of the dimensions, placements and tracings.

@@ -5,6 +5,8 @@ mod derived;
 mod dimension_table;
 mod dimensions;
 mod markers;
+mod plots;
+mod traces;
 mod views;
 
 use std::path::PathBuf;
@@ -18,14 +20,17 @@ use crate::model::history::History;
 use crate::model::markers::{MarkerData, MarkerRef};
 use crate::model::measuring::Measuring;
 use crate::model::playback::Playback;
+use crate::model::plots::MeasurePlot;
 use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources};
+use crate::model::traces::TraceData;
 use crate::model::view::View;
 
 pub use counters::{Counters, Draft, Lowered, Rebuilds, StaticFigures};
 use derived::Derived;
 pub(crate) use derived::{PlacementsKey, SpheresKey};
+pub(crate) use traces::part_name;
 
 /// A part of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -70,6 +75,10 @@ pub struct State {
     pub marker_data: MarkerData,
     /// Playback of the recording.
     pub playback: Playback,
+    /// What was read for the plot of values over time.
+    pub traces: TraceData,
+    /// What *Inspect* plots of the selected cells.
+    pub measures: MeasurePlot,
     /// The camera's view.
     pub view: View,
     /// The side from which the view shows everything, until it is moved by hand.
@@ -182,6 +191,8 @@ impl State {
             circuits: Circuits::default(),
             marker_data: MarkerData::default(),
             playback: Playback::default(),
+            traces: TraceData::default(),
+            measures: MeasurePlot::default(),
             view: View::default(),
             fitted: None,
             key_views: Vec::new(),
@@ -223,6 +234,7 @@ impl State {
             playing: self.playback.playing,
             measuring: self.measuring.is_some(),
             synapses: self.document.markers.synapses,
+            traces: self.traces.open,
         }
     }
 
@@ -277,6 +289,8 @@ impl State {
                 self.settings.y_down = y_down;
                 self.run(Command::Home);
             }
+            Command::ShowTraces(open) => self.traces.open = open,
+            Command::PlotMeasure(form) => self.measures.form = form,
             Command::TogglePlay => self.playback.play(!self.playback.playing),
             Command::Seek(time) => self.playback.seek(time),
             Command::StepTime(frames) => self.playback.step(frames),
@@ -323,6 +337,7 @@ impl State {
             Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(options)),
             Command::SavePicture(options) => self.save(SaveRequest::Picture(options)),
             Command::SaveFilm(options) => self.save(SaveRequest::Film(options)),
+            Command::SavePlot(of, path) => self.save_plot(of, path),
         }
     }
 

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui;
+use neurotess::coloring::Recording;
 use neurotess::render::color::ColorTable;
 
 use super::Stage;
 use crate::io::frames::{FrameReader, FrameValues, ValueInputs, ValuesOf};
+use crate::model::document::Document;
 use crate::model::playback::Facts;
 use crate::model::state::State;
 use crate::scene::colors::{ColorInputs, color_scheme};
@@ -32,6 +34,13 @@ impl Stage {
             self.find_visible();
         }
         self.tell(state);
+    }
+
+    /// The recording that shows, if it was matched with the document's neurons.
+    pub(crate) fn recording_of(&self, document: &Document) -> Option<&Arc<Recording>> {
+        let (recording, _) = self.content.recording.as_ref()?;
+        let colors = self.colors.as_ref()?;
+        (colors.subject == ColorInputs::new(document).subject).then_some(recording)
     }
 
     /// Passes what is known of the recording to the window's state.

@@ -78,6 +78,7 @@ impl Viewer {
         let (adapter, aspect) = (state.adapter.clone(), state.aspect);
         // What is being read belongs to circuits that are closed now.
         self.worker.stop_markers();
+        self.plots.cancel();
         *state = State::new(settings);
         (state.adapter, state.aspect) = (adapter, aspect);
         state.settings.y_down = session.y_down;
@@ -211,6 +212,12 @@ impl Viewer {
                 if !dimensions.is_empty() {
                     self.state.history.opened_dimensions(&dimensions);
                     self.state.document.dimensions.extend(dimensions);
+                }
+                let traces = session.traces(&opened);
+                if !traces.is_empty() {
+                    self.state.history.opened_traces(&traces);
+                    self.state.document.traces.extend(traces);
+                    self.state.traces.open = true;
                 }
             }
             None => {

@@ -3,9 +3,11 @@
 mod loading;
 mod messages;
 mod palettes;
+mod plots;
 mod saving;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use eframe::egui;
@@ -24,6 +26,7 @@ use crate::ui::input::Input;
 use crate::ui::motion::Motion;
 use crate::ui::panels::{self, Screen};
 use loading::Loading;
+use plots::PlotWork;
 
 /// The whole program, without the desktop's window.
 pub struct Viewer {
@@ -32,6 +35,7 @@ pub struct Viewer {
     /// The stage, which draws the picture.
     pub stage: Stage,
     worker: Worker,
+    plots: PlotWork,
     /// A loading: what was found, and its cells by file.
     loading: Option<Loading>,
     /// Paths to be opened after it.
@@ -73,12 +77,14 @@ impl Viewer {
         ctx.add_plugin(Input::new());
         let stage = Stage::new(render)?;
         let mut state = State::new(settings.clone());
+        let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || waker.request_repaint());
         let adapter = &stage.gpu().adapter;
         state.adapter = (adapter.to_string(), adapter.software);
         Ok(Self {
             state,
             stage,
-            worker: Worker::new(move || waker.request_repaint()),
+            plots: PlotWork::new(&wake),
+            worker: Worker::new(move || wake()),
             loading: None,
             waiting: Vec::new(),
             motion: Motion::new(),
@@ -124,7 +130,8 @@ impl Viewer {
     /// Whether no task is running and everything is drawn.
     pub fn is_settled(&self) -> bool {
         let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
-        !self.worker.is_busy() && !self.motion.is_flying() && self.loading.is_none() && drawn
+        let busy = self.worker.is_busy() || self.plots.is_busy();
+        !busy && !self.motion.is_flying() && self.loading.is_none() && drawn
     }
 
     /// One frame.
@@ -148,6 +155,7 @@ impl Viewer {
         self.do_effects(&ctx);
         self.request_somata();
         self.request_markers();
+        self.update_plots();
         self.note_settings();
         self.end_input(&ctx);
         if self.quits {
@@ -157,12 +165,13 @@ impl Viewer {
 
     /// Shows all panels; keeps an error that ends the program in `fatal`.
     fn show_panels(&mut self, ui: &mut egui::Ui) {
+        let [reading, saving, marking] = self.worker.progress();
         let mut screen = Screen {
             state: &mut self.state,
             stage: &mut self.stage,
             motion: &mut self.motion,
             files: &mut self.files,
-            tasks: self.worker.progress(),
+            tasks: [reading, saving, marking, self.plots.progress()],
             failed: None,
         };
         panels::show(&mut screen, ui);
@@ -213,7 +222,12 @@ impl Viewer {
             Effect::Reload => self.reload(),
             Effect::Cancel => {
                 self.waiting.clear();
-                for progress in self.worker.progress().into_iter().flatten() {
+                let all = self
+                    .worker
+                    .progress()
+                    .into_iter()
+                    .chain([self.plots.progress()]);
+                for progress in all.flatten() {
                     progress.cancel();
                     self.state.status = format!("Stopped {}", progress.what);
                 }

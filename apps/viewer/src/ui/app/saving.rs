@@ -67,6 +67,11 @@ impl Viewer {
             SaveRequest::Film(film) => {
                 self.save_film(film);
             }
+            SaveRequest::Plot(path, plot) => {
+                let progress = Progress::new("writing the plot", "files", 1);
+                let work = move |_: &Progress| save::plot(&path, &plot);
+                self.worker.save(progress, work);
+            }
         }
     }
 

@@ -53,6 +53,10 @@ fn files(
             let save = Command::SavePalette(path.clone());
             return Dialog::Replace(path, Box::new(save));
         }
+        Some(Command::SavePlot(of, path)) if path.exists() => {
+            let save = Command::SavePlot(of, path.clone());
+            return Dialog::Replace(path, Box::new(save));
+        }
         command => state.requests.extend(command),
     }
     if !open {

@@ -5,7 +5,7 @@ use neurotess::morphology::{Measures, NeuriteKind};
 
 use super::cells::{count, kind_name};
 use super::tip::Tip;
-use super::{dimension_list, figures, grouped, heading, markers, measured};
+use super::{dimension_list, figures, grouped, heading, markers, measured, measures};
 use crate::model::command::{Command, Edit};
 use crate::model::sources::Source;
 use crate::model::state::{CellPart, State};
@@ -28,6 +28,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                 ui.weak(source.file.display().to_string());
             }
             buttons(state, ui);
+            measures::show(state, ui);
             part(state, one, ui);
             if let Some(source) = state.source_of(one) {
                 cell(source, ui);
@@ -37,6 +38,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
             let many = state.document.neurons.selected().len();
             ui.label(RichText::new(count(many, "neuron")).size(16.0).strong());
             buttons(state, ui);
+            measures::show(state, ui);
             sums(state, ui);
         }
     }
@@ -254,9 +256,10 @@ fn sums(state: &State, ui: &mut egui::Ui) {
     );
 }
 
-fn all(state: &State, ui: &mut egui::Ui) {
+fn all(state: &mut State, ui: &mut egui::Ui) {
     let neurons = state.document.neurons.len();
     if neurons == 1 {
+        measures::show(state, ui);
         if let Some(source) = state.source_of(0) {
             cell(source, ui);
         }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::{dimensions, plate};
 use crate::model::command::Command;
-use crate::model::document::{Anchor, Dimension};
+use crate::model::document::{Anchor, Dimension, TracePlace};
 use crate::model::measuring::{Measured, Measuring, Pointed, degrees};
 use crate::model::numbers::measured;
 use crate::model::state::State;
@@ -29,6 +29,21 @@ pub(super) fn point(state: &mut State, seen: Option<CursorHit>, response: &Respo
     if response.hovered() {
         response.ctx.set_cursor_icon(CursorIcon::Crosshair);
     }
+}
+
+/// The place on a neuron's tracing that the cursor is at.
+pub(super) fn trace_place(
+    state: &State,
+    seen: Option<CursorHit>,
+    response: &Response,
+) -> Option<TracePlace> {
+    let (at, seen) = response.hover_pos().zip(seen)?;
+    let (ray, _) = ray_at(state, &seen, at, response.rect);
+    let Anchor {
+        neuron, location, ..
+    } = pointed(state, &seen, ray, 0.0)?.at;
+    let morphology = &state.source_of(neuron)?.morphology;
+    Some(TracePlace::of(neuron, location, morphology))
 }
 
 /// The ray from the eye through the cursor, and the size (µm) of a point of the window at what was hit.

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Button, MenuBar};
 
-use crate::model::command::{Command, Edit};
+use crate::model::command::{Command, Edit, FilePurpose, PlotOf};
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
@@ -23,6 +23,8 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                         Command::CopyDimensions(_) | Command::Edit(Edit::ClearDimensions) => {
                             !state.document.dimensions.is_empty()
                         }
+                        Command::AskFiles(FilePurpose::SavePlot(PlotOf::Traces, _))
+                        | Command::Edit(Edit::ClearTraces) => !state.document.traces.is_empty(),
                         _ => true,
                     };
                     let mut button = Button::new(title);

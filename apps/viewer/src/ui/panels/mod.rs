@@ -1,5 +1,6 @@
 //! Panels: plain functions of the state that request commands.
 
+mod cell_tip;
 mod cells;
 mod color_map;
 mod detail;
@@ -11,6 +12,7 @@ mod inspect;
 mod look;
 mod markers;
 mod marks;
+mod measures;
 mod measuring;
 mod menu;
 mod number;
@@ -23,6 +25,7 @@ mod soma;
 mod status;
 mod timeline;
 mod tip;
+mod traces;
 mod viewport;
 
 use eframe::egui::{
@@ -46,11 +49,14 @@ pub(crate) struct Screen<'a> {
     pub(crate) motion: &'a mut Motion,
     /// The file dialog, while it is open.
     pub(crate) files: &'a mut Option<FilePanel>,
-    /// Progress of reading, of saving, and of reading synapses or points, while they run.
-    pub(crate) tasks: [Option<Progress>; 3],
+    /// Progress of reading, of saving, of reading synapses or points, and of reading traces, while they run.
+    pub(crate) tasks: [Option<Progress>; 4],
     /// The error, if the picture could not be drawn.
     pub(crate) failed: Option<DeviceError>,
 }
+
+/// Usual height of the plot of traces.
+const TRACES: f32 = 230.0;
 
 /// Shows all panels.
 pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
@@ -58,6 +64,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let before = screen.state.hovered.take();
     let marker_before = screen.state.hovered_marker.take();
     screen.state.touched = None;
+    screen.state.traces.pointed = None;
     screen.state.pointed_dimension = None;
     Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
     let progress = screen.stage.progress();
@@ -67,6 +74,17 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let any = !screen.state.document.neurons.is_empty();
     if let Some(facts) = screen.state.playback.facts.clone().filter(|_| any) {
         Panel::bottom("time").show(ui, |ui| timeline::show(screen.state, &facts, ui));
+    }
+    if screen.state.traces.open && any {
+        // A part of the picture always stays.
+        let most = (0.7 * ui.available_height()).max(80.0);
+        let sized = Panel::bottom("traces")
+            .resizable(true)
+            .default_size(TRACES.min(most));
+        sized.size_range(80.0_f32.min(most)..=most).show(ui, |ui| {
+            let reading = screen.tasks[3].clone();
+            kept_in(ui, |ui| traces::show(screen.state, reading.as_ref(), ui));
+        });
     }
     if screen.state.panels && any {
         // Also in a narrow window, a third is left for the picture.

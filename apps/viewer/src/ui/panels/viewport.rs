@@ -8,8 +8,9 @@ use glam::DVec3;
 use neurotess::render::color::is_dark;
 use neurotess::render::overlay::{Legend, nice_length};
 
-use super::{Screen, marks, measuring, plate, rectangle, tip};
+use super::{Screen, cell_tip, marks, measuring, plate, rectangle, tip, traces};
 use crate::model::command::{Command, Edit, Tab};
+use crate::model::document::TracePlace;
 use crate::model::markers::MarkerRef;
 use crate::model::state::{Picked, State};
 
@@ -183,6 +184,11 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
             false => before,
         };
     }
+    let place = match (&screen.state.playback.facts, screen.stage.can_pick()) {
+        (Some(_), true) => measuring::trace_place(screen.state, seen, response),
+        _ => None,
+    };
+    screen.state.traces.pointed = place;
     if screen.state.measuring.is_some() {
         measuring::point(screen.state, seen, response);
         if response.clicked() {
@@ -202,7 +208,12 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
     } else if response.clicked() {
         match seen.and_then(|s| s.marker()) {
             Some(marker) => click_marker(screen.state, marker),
-            None => click(screen.state, seen.and_then(|s| s.picked()), response),
+            None => {
+                let picked = seen.and_then(|s| s.picked());
+                let place = place.filter(|_| screen.state.traces.open);
+                let place = place.filter(|place| has_values(screen, place.neuron));
+                click(screen.state, picked, place, response);
+            }
         }
     }
 }
@@ -223,7 +234,23 @@ fn click_marker(state: &mut State, marker: MarkerRef) {
     }
 }
 
-fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
+/// Whether the recording has values of a neuron; else the window says that it has none.
+fn has_values(screen: &mut Screen<'_>, neuron: usize) -> bool {
+    let recording = screen.stage.recording_of(&screen.state.document);
+    let has = recording.is_some_and(|recording| recording.has_values_of(neuron));
+    if let (false, Some(of)) = (has, screen.state.document.neurons.get(neuron)) {
+        screen.state.status = format!("The report has no values of {}", of.name);
+    }
+    has
+}
+
+/// Selects what was clicked. `place`: its values are plotted.
+fn click(
+    state: &mut State,
+    picked: Option<Picked>,
+    place: Option<TracePlace>,
+    response: &Response,
+) {
     let adds = response
         .ctx
         .input(|i| i.modifiers.shift || i.modifiers.command);
@@ -232,6 +259,11 @@ fn click(state: &mut State, picked: Option<Picked>, response: &Response) {
         Some(picked) => {
             state.picked = Some(picked);
             state.reveal = Some(picked);
+            if let Some(place) = place {
+                let place = state.middle_of_compartment(place);
+                state.requests.push(Edit::Plot(place, adds).into());
+                return;
+            }
             let already = state
                 .document
                 .neurons
@@ -300,7 +332,11 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     }
     let painter = ui.painter().with_clip_rect(rect);
     marks::rings(screen.state, rect, &painter);
+    traces::marks(screen.state, rect, &painter);
     measuring::show(screen.state, rect, ui);
+    if screen.state.measuring.is_none() {
+        cell_tip::show(screen.state, rect, ui);
+    }
     if !screen.stage.can_pick() {
         marks::hovered(screen.state, rect, &painter);
     }
