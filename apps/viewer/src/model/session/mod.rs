@@ -1,5 +1,7 @@
 //! Sessions: a file that people can read and change.
 
+mod entries;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,13 +11,13 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{
-    Detail, Dimension, Look, MarkerOptions, Neuron, PlacementEntry, SomaEdit, Trace,
-};
-use crate::model::ids::{CircuitId, CircuitNode, SourceId};
+use crate::model::document::{Detail, Dimension, Look, MarkerOptions, SomaEdit, Trace};
+use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::playback::Pace;
 use crate::model::state::State;
 use crate::model::view::View;
+
+pub use entries::{CircuitEntry, FileEntry, NeuronEntry, NodeEntry};
 
 /// Extension of sessions.
 pub const EXTENSION: &str = "neurotess";
@@ -89,77 +91,8 @@ pub struct Session {
     pub trace: Vec<Trace>,
 }
 
-/// A circuit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CircuitEntry {
-    /// Relative to the session's folder where it can be.
-    pub path: PathBuf,
-}
-
-/// A node of a circuit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NodeEntry {
-    /// Index of the circuit in the list, from 0.
-    pub circuit: usize,
-    /// The population's name.
-    pub population: String,
-    /// The node's id in its population.
-    pub id: u64,
-}
-
-/// A tracing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FileEntry {
-    /// Relative to the session's folder where it can be.
-    pub path: PathBuf,
-    /// How its soma is generated; none: in the default way.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub soma: Option<SomaEdit>,
-}
-
-/// A neuron.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NeuronEntry {
-    /// Name in the list.
-    pub name: String,
-    /// Index of its tracing in the list of files, from 0.
-    pub file: usize,
-    /// Whether it is hidden.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub hidden: bool,
-    /// Whether it is selected.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub selected: bool,
-    /// Its node, if it belongs to a circuit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub node: Option<NodeEntry>,
-    /// Its placement; none: where it was traced.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) place: Option<PlacementEntry>,
-}
-
-impl NeuronEntry {
-    /// The neuron of this entry, whose tracing is `source`.
-    pub(crate) fn neuron(&self, source: SourceId) -> Neuron {
-        Neuron {
-            placement: self.place.map(Into::into).unwrap_or_default(),
-            hidden: self.hidden,
-            selected: self.selected && !self.hidden,
-            ..Neuron::new(source, self.name.clone())
-        }
-    }
-}
-
 fn is_default(markers: &MarkerOptions) -> bool {
     *markers == MarkerOptions::default()
-}
-
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// Whether a file has the extension of sessions.
@@ -343,7 +276,7 @@ mod tests {
     use super::*;
     use crate::io::load;
     use crate::model::command::{Command, Edit};
-    use crate::model::document::{ColorBy, Cut, Lighting};
+    use crate::model::document::{ColorBy, Cut, Lighting, Neuron};
     use crate::model::settings::Settings;
     use crate::model::sources;
 
