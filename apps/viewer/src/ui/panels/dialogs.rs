@@ -122,6 +122,10 @@ fn keys(state: &State, ctx: &Context) -> Dialog {
 }
 
 fn keys_and_mouse(state: &State, ui: &mut Ui) {
+    // Both columns are about as long.
+    let menus = listed(&state.toggles()).into_iter();
+    let (right, left): (Vec<_>, Vec<_>) =
+        menus.partition(|(name, _)| ["View", "Window"].contains(name));
     ui.horizontal_top(|ui| {
         ui.vertical(|ui| {
             ui.strong("In the picture");
@@ -130,13 +134,13 @@ fn keys_and_mouse(state: &State, ui: &mut Ui) {
                 "mouse",
                 MOUSE.iter().map(|(a, b)| ((*a).to_owned(), *b)),
             );
-            for (name, items) in listed(&state.toggles()).into_iter().take(3) {
+            for (name, items) in left {
                 menu(ui, name, items);
             }
         });
         ui.add_space(18.0);
         ui.vertical(|ui| {
-            for (name, items) in listed(&state.toggles()).into_iter().skip(3) {
+            for (name, items) in right {
                 menu(ui, name, items);
             }
         });
