@@ -344,11 +344,11 @@ impl FilePanel {
             }
             FilePurpose::SavePlot(of, extension) => {
                 let path = paths.pop().unwrap_or_default();
-                let is = |known: &&str| {
+                let named = |known| {
                     path.extension()
                         .is_some_and(|e| e.eq_ignore_ascii_case(known))
                 };
-                let path = match ["svg", "csv"].iter().any(|known| is(&known)) {
+                let path = match named("svg") || named("csv") {
                     true => path,
                     // A dot may be part of the name: it is not replaced.
                     false => PathBuf::from(format!("{}.{extension}", path.display())),

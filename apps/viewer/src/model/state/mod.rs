@@ -4,7 +4,9 @@ mod counters;
 mod derived;
 mod dimension_table;
 mod dimensions;
+mod effect;
 mod markers;
+mod picked;
 mod plots;
 mod traces;
 mod views;
@@ -14,7 +16,7 @@ use std::path::PathBuf;
 use neurotess::render::Side;
 
 use crate::model::circuits::Circuits;
-use crate::model::command::{Command, Edit, FilePurpose, Tab, Toggles};
+use crate::model::command::{Command, Edit, Tab, Toggles};
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
 use crate::model::markers::{MarkerData, MarkerRef};
@@ -30,27 +32,9 @@ use crate::model::view::View;
 pub use counters::{Counters, Draft, Lowered, Rebuilds, StaticFigures};
 use derived::Derived;
 pub(crate) use derived::{PlacementsKey, SpheresKey};
+pub use effect::{Dialog, Effect};
+pub use picked::{CellPart, Picked};
 pub(crate) use traces::part_name;
-
-/// A part of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum CellPart {
-    /// The soma, of which a cell may have several.
-    Soma,
-    /// A neurite, from 0.
-    Neurite(u32),
-    /// A section, as in the morphology.
-    Section(u32),
-}
-
-/// The part of a neuron that is under the cursor or was clicked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Picked {
-    /// Index among the neurons.
-    pub neuron: usize,
-    /// The part of it.
-    pub part: CellPart,
-}
 
 /// Something that went wrong or is shown with reduced quality, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -132,49 +116,6 @@ pub struct State {
     /// A part that the tree must scroll to.
     pub reveal: Option<Picked>,
     derived: Derived,
-}
-
-/// A dialog over the window.
-#[derive(Clone, Debug, Default)]
-pub enum Dialog {
-    /// None.
-    #[default]
-    Nothing,
-    /// The list of keys and mouse actions.
-    Keys,
-    /// The palette of commands, with the search text and the index of the highlighted command.
-    Palette(String, usize),
-    /// The list of problems.
-    Problems,
-    /// The file dialog.
-    Files(FilePurpose),
-    /// Asks whether an existing file may be replaced; the command to run if so.
-    Replace(PathBuf, Box<Command>),
-}
-
-/// What a command makes the program do outside the state.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Effect {
-    /// Read files.
-    Load(Vec<PathBuf>),
-    /// Read changed files again.
-    Reload,
-    /// Write files.
-    Save(SaveRequest),
-    /// Take the colors of a palette's file.
-    OpenPalette(PathBuf),
-    /// Write the palette.
-    SavePalette(PathBuf),
-    /// Cancel running tasks.
-    Cancel,
-    /// Move the camera to a view.
-    Go(View),
-    /// Show the picture without perspective, or with it, also at the end of a flight.
-    Project(bool),
-    /// Put a text on the clipboard.
-    Copy(String),
-    /// Quit.
-    Quit,
 }
 
 impl State {

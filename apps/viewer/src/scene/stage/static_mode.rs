@@ -57,7 +57,9 @@ impl Stage {
             RestPhase::Waits => self.moved.elapsed() >= super::rest::REST,
             _ => false,
         };
-        rests && self.drafted && self.shape == Some(StaticKey::new(inputs))
+        // What stands must have been drawn: the scene may have been replaced since the draft.
+        let stands = self.drafted && self.drawn.is_some();
+        rests && stands && self.shape == Some(StaticKey::new(inputs))
     }
 
     /// Makes the next part of the static picture.

@@ -16,6 +16,7 @@ mod measures;
 mod measuring;
 mod menu;
 mod number;
+mod overlay;
 mod own_colors;
 mod rectangle;
 mod rings;
