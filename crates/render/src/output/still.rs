@@ -238,7 +238,7 @@ pub fn render_still<E>(
 pub struct Viewpoint {
     /// The camera.
     pub camera: Camera,
-    /// Depth (µm) of the near plane: [`Camera::near`].
+    /// Depth (µm) of the near plane: [`Camera::near`]'s, which without perspective is negative.
     pub near: f64,
 }
 
