@@ -39,7 +39,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
     it is drawn within a `budget` of triangles; at rest the full picture follows, with `samples` a pixel. A double click
     shows all again.
 
-    `what` and the options are those of `render`, without those of the camera. With a `report`, `time` can be set.
+    `what` and the options are those of `render`, without those of the camera, of which there are `camera` and
+    `orthographic` (no perspective): both can be set. With a `report`, `time` can be set.
     `on_pick` is called with a dictionary when a neurite or a soma is clicked: ``name``, ``node_id``, ``section``,
     ``sample`` and ``position``; with None beside them.
 

@@ -27,7 +27,7 @@ pub struct PictureOptions {
 pub struct Viewpoint {
     /// The camera.
     pub camera: Camera,
-    /// Depth (µm) of the near plane: [`Camera::near`].
+    /// Depth (µm) of the near plane: [`Camera::near`]'s, which without perspective is negative.
     pub near: f64,
 }
 

@@ -13,7 +13,7 @@ use crate::view::frame::Frame;
 pub struct ViewParams {
     /// The camera.
     pub camera: Camera,
-    /// Depth (µm) of the near plane.
+    /// Depth (µm) of the near plane: [`Camera::near`]'s, which without perspective is negative.
     pub near: f64,
     /// Width and height (pixels), from 1 on.
     pub size: [u32; 2],
