@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Color32, CursorIcon, Id, Role, Stroke, Ui, WidgetInfo, vec2};
+use eframe::egui::{Color32, CursorIcon, Id, Rangef, Role, Stroke, Ui, WidgetInfo, vec2};
 use egui_plot::{
-    Bar, BarChart, GridMark, HoverPosition, Line, PlotMemory, PlotPoint, PlotPoints, PlotUi, VLine,
+    AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, PlotMemory, PlotPoint, PlotPoints,
+    PlotUi, VLine,
 };
 use neurotess::plot::{Axis, Data, Plot, Series, TICK, digits, step, thinned, ticks};
 
@@ -16,6 +17,8 @@ const NEAR: f32 = 7.0;
 const WHEEL: f32 = 0.004;
 /// Least distances (points of the window) of ticks, along and up.
 const TICKS: [f32; 2] = [64.0, 32.0];
+/// Distances of ticks from which on their texts begin to show, and show fully.
+const LABELS: [[f32; 2]; 2] = [[20.0, 32.0], [10.0, 16.0]];
 /// Room at the right.
 const RIGHT: f32 = 12.0;
 /// Thickness of a bar of a barcode.
@@ -55,8 +58,6 @@ pub(crate) fn show(plot: &Arc<Plot>, view: &PlotView, ui: &mut Ui) -> Pointed {
         .height(view.height)
         // Half of the last tick's text is beside the plot.
         .width(ui.available_width() - RIGHT)
-        .x_axis_label(plot.x.title())
-        .y_axis_label(plot.y.title())
         .allow_drag(moves)
         .allow_zoom(view.moves)
         .allow_axis_zoom_drag(view.moves)
@@ -64,10 +65,10 @@ pub(crate) fn show(plot: &Arc<Plot>, view: &PlotView, ui: &mut Ui) -> Pointed {
         .allow_double_click_reset(view.moves)
         .allow_scroll(false)
         .set_margin_fraction(vec2(0.01, 0.06))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), &plot.x, LABELS[0])])
+        .custom_y_axes(vec![axis(AxisHints::new_y(), &plot.y, LABELS[1])])
         .x_grid_spacer(|input| marks(input.bounds, across))
         .y_grid_spacer(|input| marks(input.bounds, up))
-        .x_axis_formatter(|mark, _| tick(mark.value, mark.step_size))
-        .y_axis_formatter(|mark, _| tick(mark.value, mark.step_size))
         .grid_color(grid)
         .grid_fade(0.0)
         .label_formatter(move |at| Some(label(at, &told.0, &told.1)))
@@ -204,6 +205,14 @@ fn label(at: &HoverPosition<'_>, x: &Axis, y: &Axis) -> String {
     };
     let [x, y] = [number(at.x, &x.unit), number(at.y, &y.unit)];
     format!("{}{x}\n{y}", name.trim_start_matches('\n'))
+}
+
+/// An axis with its title; `few`, `all`: see [`LABELS`].
+fn axis<'a>(hints: AxisHints<'a>, of: &Axis, [few, all]: [f32; 2]) -> AxisHints<'a> {
+    hints
+        .label(of.title())
+        .formatter(|mark, _| tick(mark.value, mark.step_size))
+        .label_spacing(Rangef::new(few, all))
 }
 
 /// Ticks at round numbers, at most so many.

@@ -152,13 +152,6 @@ fn clicked_compartments_are_plotted_and_the_line_is_the_time() {
     // While the cursor rests, its compartment's value is told.
     wait_for_tip(&mut window);
     assert_eq!(window.query_all_by_label("compartment").count(), 1);
-    if let Ok(path) = std::env::var("TIP") {
-        window
-            .render()
-            .expect("a picture")
-            .save(path)
-            .expect("saved");
-    }
     // The line is dragged; elsewhere a drag moves the plot, and the time stays.
     run(&mut window, Command::Home);
     let rect = window.get_by_label("Plot of traces").rect();
