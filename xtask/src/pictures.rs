@@ -57,7 +57,7 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
     })?;
     steps.step("spines", || {
         let made = "convert samples/pyramidal.swc -o target/pictures/spiny.swc --spines 2";
-        steps::run(&mut neurotess(&format!("{made} --force -q")))?;
+        steps::run(&mut neurotess(&format!("{made} --force -q"))?)?;
         Ok("in target/pictures".into())
     })?;
     let mut bytes = 0;
