@@ -67,10 +67,24 @@ fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
     return vec3(across * finish.slope * depth + across * finish.flat, -depth);
 }
 
-// Share of the light that reaches what is drawn at a sub-pixel: all of it where occlusion has seen nothing,
-// since only other samples of the sub-pixel are covered, or those of a later step.
+// Share of the light that reaches what is drawn at a sub-pixel.
 fn occlusion_at(p: vec2<i32>) -> f32 {
-    return raw[index_of(p)].x;
+    let here = raw[index_of(p)];
+    // A tile of a saved picture has a margin, and occlusion for each of its sub-pixels. Progressive pictures have that of
+    // their first step, which may have seen nothing here: then it is as at the neighbors.
+    if here.y != 0.0 || finish.margin > 0u {
+        return here.x;
+    }
+    var sum = vec2(0.0);
+    for (var y = -1; y <= 1; y++) {
+        for (var x = -1; x <= 1; x++) {
+            let q = p + vec2(x, y);
+            if depth_at(q) != 0.0 {
+                sum += vec2(raw[index_of(q)].x, 1.0);
+            }
+        }
+    }
+    return select(1.0, sum.x / sum.y, sum.y > 0.0);
 }
 
 @compute @workgroup_size(8, 8)
