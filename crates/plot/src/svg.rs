@@ -95,7 +95,7 @@ impl Plot {
         for (i, series) in named.iter().enumerate() {
             let y = top + LINE * (i as f64 + 0.5);
             let (x, [r, g, b]) = (right + 12.0, series.color);
-            let letters = ((legend - 30.0) / LETTER).max(4.0) as usize;
+            let letters = ((legend - 30.0) / LETTER).round().max(4.0) as usize;
             let name = escaped(&shortened(&series.name, letters));
             let _ = writeln!(
                 text,
@@ -302,6 +302,21 @@ mod tests {
         let path = path.expect("a line");
         assert_eq!(path.matches('M').count(), 2, "{path}");
         assert!(!text.contains("NaN") && text.ends_with("</svg>\n"));
+    }
+
+    #[test]
+    fn legends_have_whole_names_where_there_is_room() {
+        let names = (1..40).map(|letters| "n".repeat(letters));
+        for name in names {
+            let line = || Data::Line(vec![[0.0, 1.0], [1.0, 2.0]]);
+            let both = [name.as_str(), "n"].map(|name| Series::new(name, 0, line()));
+            let plot = Plot {
+                series: both.into(),
+                ..Plot::default()
+            };
+            let text = plot.svg([900, 480]);
+            assert!(text.contains(&format!(">{name}<")), "{name}");
+        }
     }
 
     #[test]

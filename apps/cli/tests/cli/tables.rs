@@ -205,7 +205,7 @@ fn a_table_of_nodes_is_a_circuit_again() {
 
 #[neurotess_testing::test]
 fn values_and_spikes_are_drawn() {
-    let (work, _) = made();
+    let (work, circuit) = made();
     let report = Report::open(work.path("c/reports/voltage.h5")).expect("a report");
     let population = &report.populations[0];
     let (node, count) = (population.nodes[1], population.compartment_range(1).count());
@@ -223,7 +223,7 @@ fn values_and_spikes_are_drawn() {
     assert_eq!(drawn(&format!("--report voltage --nodes {node}")), count);
     let some = format!("--report voltage --nodes {node} --per node --time 0:50");
     assert_eq!(drawn(&some), 1);
-    let spikes = Spikes::open(work.path("c/spikes.h5")).expect("spikes");
+    let spikes = Spikes::open(&circuit.reports["spikes"]).expect("spikes");
     let mut firing = spikes.populations[0].nodes.clone();
     firing.sort_unstable();
     firing.dedup();
