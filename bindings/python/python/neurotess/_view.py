@@ -193,8 +193,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._drawings = made
         self._shown_colors = color_by
         if first:
-            *camera, self._orthographic = full.camera(0)
-            self._home = self._camera = tuple(camera)
+            eye, target, up, fov, self._orthographic = full.camera(0)
+            self._home = self._camera = (eye, target, up, fov)
 
     def _drop(self) -> None:
         for drawing in self._drawings or ():
