@@ -56,12 +56,14 @@ def batch(cells: int) -> None:
             nt.synth("granule", seed=seed, points=POINTS).save(path)
             paths.append(path)
         before, start = most_memory(), time.perf_counter()
-        largest = 0
+        largest = done = 0
         for result in nt.mesh_many(paths, threads=THREADS, level=LEVEL):
             assert result.mesh is not None, result.error
             arrays = (result.mesh.vertices, result.mesh.normals, result.mesh.faces)
             largest = max(largest, sum(array.nbytes for array in arrays) + 16 * len(arrays[0]))
+            done += 1
         ours = time.perf_counter() - start
+        assert done == cells
         grown = most_memory() - before
         command = [sys.executable, "-m", "neurotess", "mesh", str(folder / "cells"), "--json", "--quiet"]
         command += ["-o", str(folder / "meshes"), "--threads", str(THREADS), "--level", str(LEVEL)]

@@ -48,6 +48,7 @@ mod kind;
 mod measures;
 mod model;
 pub mod paths;
+pub mod random;
 pub mod shape;
 pub mod sholl;
 pub mod smoothing;

@@ -14,11 +14,11 @@ use neurotess_render::color::ColorTable;
 use neurotess_render::testing::{LodRequest, lod_requests};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Exploration, ExplorationError, Frame, Gpu, Image, Instance,
-    MOST_BUDGET, Occlusion, PictureOptions, Placement, Projection, Proxy, Scene, Template,
-    TemplateId, Templates, VertexSource, Viewpoint, render_still,
+    MOST_BUDGET, Occlusion, PictureOptions, Placement, Projection, Proxy, Scene, TemplateId,
+    VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
-use pictured::{CELL, by_type, mesh};
+use pictured::{CELL, by_type, mesh, one_template};
 
 fn frame(camera: Camera, width: u32, height: u32) -> Frame {
     // Without perspective everything is in front.
@@ -251,13 +251,7 @@ fn ink(image: &Image) -> Vec<f64> {
 /// Both sources of one scene.
 fn both(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Instance]) -> (Adaptive, Exploration) {
     let (color_keys, _) = by_type(mesh);
-    let mut templates = Templates::new();
-    let template = Template {
-        mesh,
-        color_keys: &color_keys,
-        values: &[],
-    };
-    templates.add(gpu, &[template]).expect("uploaded");
+    let (templates, _) = one_template(gpu, mesh);
     let scene = Scene::new(templates, instances.to_vec()).expect("a scene");
     let adaptive = Adaptive::new(gpu, scene, AdaptiveSettings::default(), 2).expect("a source");
     let mut source = explored(gpu, &[Proxy::new(mesh, &color_keys)], instances.to_vec());

@@ -14,11 +14,10 @@ use neurotess_render::overlay::{Overlay, OverlayOptions};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Lens,
     Marker, MarkerSettings, Markers, Occlusion, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Side, Template, Templates, VertexSource, Viewpoint,
-    WithMarkers, render_still,
+    PrerefinedSurface, Proxy, Scene, Side, VertexSource, Viewpoint, WithMarkers, render_still,
 };
 use neurotess_testing::note;
-use pictured::{CELL, by_type, mesh, spheres};
+use pictured::{CELL, by_type, mesh, one_template, spheres};
 
 const SIZE: [u32; 2] = [240, 320];
 
@@ -67,14 +66,8 @@ fn moved(camera: &Camera, backward: f64) -> Camera {
 /// Every source of a mesh at some placements; exploration in full detail.
 fn sources(gpu: &Gpu, mesh: &CoarseMesh) -> Vec<(&'static str, Box<dyn VertexSource>)> {
     let (color_keys, _) = by_type(mesh);
-    let mut templates = Templates::new();
-    let template = Template {
-        mesh,
-        color_keys: &color_keys,
-        values: &[],
-    };
-    let ids = templates.add(gpu, &[template]).expect("uploaded");
-    let scene = Scene::new(templates, vec![Instance::new(ids[0])]).expect("a scene");
+    let (templates, id) = one_template(gpu, mesh);
+    let scene = Scene::new(templates, vec![Instance::new(id)]).expect("a scene");
     let settings = AdaptiveSettings {
         lod: LodCriterion::PixelError(0.25),
         ..AdaptiveSettings::default()
@@ -236,13 +229,7 @@ fn spheres_and_tubes_have_one_size_and_the_scale_bar_is_theirs() {
         let mut explored = Exploration::new(&gpu, 1).expect("a source");
         let proxies = [Proxy::new(&tube, &color_keys)];
         let ids = explored.add(&gpu, &proxies).expect("uploaded");
-        let mut templates = Templates::new();
-        let template = Template {
-            mesh: &tube,
-            color_keys: &color_keys,
-            values: &[],
-        };
-        let template = templates.add(&gpu, &[template]).expect("uploaded");
+        let (templates, template) = one_template(&gpu, &tube);
         let copies = |id| {
             [(100.3, 300.0), (-99.7, -300.0)].map(|(y, z)| Instance {
                 placement: Placement {
@@ -254,7 +241,7 @@ fn spheres_and_tubes_have_one_size_and_the_scale_bar_is_theirs() {
         };
         let instances = copies(ids[0]).to_vec();
         explored.set_instances(&gpu, instances).expect("placed");
-        let scene = Scene::new(templates, copies(template[0]).to_vec()).expect("a scene");
+        let scene = Scene::new(templates, copies(template).to_vec()).expect("a scene");
         let settings = AdaptiveSettings::default();
         let adaptive = Adaptive::new(&gpu, scene, settings, 1).expect("a source");
         let both: [Box<dyn VertexSource>; 2] = [Box::new(explored), Box::new(adaptive)];

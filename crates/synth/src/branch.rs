@@ -9,9 +9,9 @@
 use glam::DVec3;
 use neurotess_morphology::Node;
 
-use crate::random::Random;
 use crate::spec::{Spec, Tree, Tropism, Trunk};
 use crate::stems;
+use neurotess_morphology::random::Random;
 
 /// Fewest points of a section: two so that it has a direction of its own.
 const SHORTEST: usize = 3;

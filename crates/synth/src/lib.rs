@@ -30,7 +30,6 @@ mod branch;
 pub mod circuit;
 mod kind;
 mod kinds;
-mod random;
 mod soma;
 mod spec;
 mod stems;
@@ -38,6 +37,7 @@ mod stems;
 use std::ops::RangeInclusive;
 
 use neurotess_morphology::Morphology;
+use neurotess_morphology::random::Random;
 
 pub use kind::{Kind, UnknownKind};
 
@@ -91,7 +91,7 @@ pub fn grow(options: &Options) -> Morphology {
     let spec = kinds::spec(options.kind);
     let points = options.points.unwrap_or(spec.points);
     let points = points.clamp(*POINTS.start(), *POINTS.end());
-    let mut random = random::Random::new(options.seed, options.kind as u64);
+    let mut random = Random::new(options.seed, options.kind as u64);
     let mut nodes = soma::samples(&spec, &mut random);
     branch::grow_all(&spec, points, &mut random, &mut nodes);
 

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use neurotess_morphology::{NeuriteKind, Node};
 
-use crate::random::Random;
 use crate::spec::Spec;
+use neurotess_morphology::random::Random;
 
 /// One sample, or NeuroMorpho.Org's three, around the origin.
 pub(crate) fn samples(spec: &Spec, random: &mut Random) -> Vec<Node> {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::random::Random;
 use crate::spec::Tree;
+use neurotess_morphology::random::Random;
 
 /// Directions tried for a stem; the one farthest from the other stems is taken.
 const TRIES: u32 = 24;

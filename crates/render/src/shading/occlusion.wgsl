@@ -28,11 +28,7 @@ fn copy_depths(@builtin(global_invocation_id) id: vec3<u32>) {
 @compute @workgroup_size(8, 8)
 fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let p = place(id.xy);
-    if any(p >= vec2<i32>(finish.tile_size)) {
-        return;
-    }
-    let at = index_of(p);
-    let depth = raw[at].y;
+    let depth = depth_at(p);
     if depth == 0.0 {
         return;
     }
@@ -62,7 +58,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
         let far = min(distance / (2.0 * radius), 1.0);
         sum += rise * (1.0 - far * far);
     }
-    raw[at].x = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
+    raw[index_of(p)].x = max(1.0 - STRENGTH * sum / f32(TAPS), 0.0);
 }
 
 // Weight of a neighbor in the blur: 1 at the same depth, falling to 0 at 0.3 of the occlusion's
@@ -75,48 +71,40 @@ fn alike(depth: f32, other: f32) -> f32 {
     return max(1.0 - abs(other - depth) / (0.3 * reach), 0.0);
 }
 
-@compute @workgroup_size(8, 8)
-fn blur_rows(@builtin(global_invocation_id) id: vec3<u32>) {
-    let p = place(id.xy);
-    if any(p >= vec2<i32>(finish.tile_size)) {
-        return;
-    }
-    let depth = depth_at(p);
-    if depth == 0.0 {
-        return;
-    }
+// What the blur makes of a sub-pixel and its neighbors in one direction: of the shares that occlusion gave, or
+// with `columns` of those that are blurred along rows already.
+fn blur(p: vec2<i32>, depth: f32, direction: vec2<i32>, columns: bool) -> f32 {
     var sum = 0.0;
     var weights = 0.0;
     for (var k = -BLUR; k <= BLUR; k++) {
-        let q = p + vec2(k, 0);
+        let q = p + k * direction;
         let weight = alike(depth, depth_at(q)) * f32(BLUR + 1 - abs(k));
         if weight > 0.0 {
             weights += weight;
-            sum += weight * raw[index_of(q)].x;
+            if columns {
+                sum += weight * blurred[index_of(q)];
+            } else {
+                sum += weight * raw[index_of(q)].x;
+            }
         }
     }
-    blurred[index_of(p)] = sum / weights;
+    return sum / weights;
+}
+
+@compute @workgroup_size(8, 8)
+fn blur_rows(@builtin(global_invocation_id) id: vec3<u32>) {
+    let p = place(id.xy);
+    let depth = depth_at(p);
+    if depth != 0.0 {
+        blurred[index_of(p)] = blur(p, depth, vec2(1, 0), false);
+    }
 }
 
 @compute @workgroup_size(8, 8)
 fn blur_columns(@builtin(global_invocation_id) id: vec3<u32>) {
     let p = place(id.xy);
-    if any(p >= vec2<i32>(finish.tile_size)) {
-        return;
-    }
     let depth = depth_at(p);
-    if depth == 0.0 {
-        return;
+    if depth != 0.0 {
+        raw[index_of(p)].x = blur(p, depth, vec2(0, 1), true);
     }
-    var sum = 0.0;
-    var weights = 0.0;
-    for (var k = -BLUR; k <= BLUR; k++) {
-        let q = p + vec2(0, k);
-        let weight = alike(depth, depth_at(q)) * f32(BLUR + 1 - abs(k));
-        if weight > 0.0 {
-            weights += weight;
-            sum += weight * blurred[index_of(q)];
-        }
-    }
-    raw[index_of(p)].x = sum / weights;
 }

@@ -9,7 +9,8 @@ use neurotess_refine::{LodCriterion, RefineOptions};
 use neurotess_render::color::{ColorTable, Palette, Rgb, category};
 use neurotess_render::{
     BoundingSphere, Camera, DEFAULT_FOV, Exploration, Gpu, Image, Instance, PictureOptions,
-    Placement, Prerefined, PrerefinedSurface, Proxy, Side, VertexSource, Viewpoint, render_still,
+    Placement, Prerefined, PrerefinedSurface, Proxy, Side, Template, TemplateId, Templates,
+    VertexSource, Viewpoint, render_still,
 };
 
 /// A soma, an axon, and a dendrite that forks.
@@ -48,6 +49,19 @@ pub(crate) fn spheres(mesh: &CoarseMesh) -> Vec<BoundingSphere> {
 pub(crate) fn camera(mesh: &CoarseMesh, size: [u32; 2]) -> Camera {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     Camera::fit(Side::Front, DEFAULT_FOV, aspect, 0.05, &spheres(mesh)).expect("fits")
+}
+
+/// One cell, colored by type.
+pub(crate) fn one_template(gpu: &Gpu, mesh: &CoarseMesh) -> (Templates, TemplateId) {
+    let (color_keys, _) = by_type(mesh);
+    let template = Template {
+        mesh,
+        color_keys: &color_keys,
+        values: &[],
+    };
+    let mut templates = Templates::new();
+    let ids = templates.add(gpu, &[template]).expect("uploaded");
+    (templates, ids[0])
 }
 
 /// Color keys and table by type.

@@ -5,25 +5,18 @@ use neurotess_mesh::CoarseMesh;
 use neurotess_render::pick::PickHit;
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Gpu, Image, Instance, Look, Occlusion, Placement,
-    ProgressiveRenderer, Scene, Steps, Template, Templates, ViewParams,
+    ProgressiveRenderer, Scene, Steps, ViewParams,
 };
 
-use crate::pictured::{by_type, camera, spheres};
+use crate::pictured::{by_type, camera, one_template, spheres};
 
 pub(crate) const SIZE: [u32; 2] = [200, 260];
 
 pub(crate) fn source(gpu: &Gpu, mesh: &CoarseMesh, instances: &[Placement]) -> Adaptive {
-    let (color_keys, _) = by_type(mesh);
-    let mut templates = Templates::new();
-    let template = Template {
-        mesh,
-        color_keys: &color_keys,
-        values: &[],
-    };
-    let ids = templates.add(gpu, &[template]).expect("uploaded");
+    let (templates, id) = one_template(gpu, mesh);
     let instances = instances.iter().map(|&placement| Instance {
         placement,
-        ..Instance::new(ids[0])
+        ..Instance::new(id)
     });
     let scene = Scene::new(templates, instances.collect()).expect("a scene");
     Adaptive::new(gpu, scene, AdaptiveSettings::default(), 1).expect("a source")

@@ -17,9 +17,9 @@ use std::collections::BTreeMap;
 use glam::{DQuat, DVec3};
 use neurotess_circuit::{Attribute, Population, SpikePopulation};
 
-use crate::random::Random;
 use crate::{Kind, Options};
 pub use configs::{CIRCUIT, EDGES, SIMULATION, circuit_config, node_sets, simulation_config};
+use neurotess_morphology::random::Random;
 pub use synapses::{SyntheticSynapses, synapses};
 pub use voltage::{DURATION, STEP, voltages};
 

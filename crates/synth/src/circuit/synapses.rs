@@ -7,7 +7,7 @@ use neurotess_circuit::Synapses;
 use neurotess_morphology::{Morphology, NeuriteKind};
 
 use super::SyntheticCircuit;
-use crate::random::Random;
+use neurotess_morphology::random::Random;
 
 /// Speed (µm/ms) of a spike along an axon, as of thin axons without myelin.
 const SPEED: f64 = 300.0;

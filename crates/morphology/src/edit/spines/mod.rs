@@ -20,11 +20,10 @@ mod room;
 mod shape;
 
 use glam::DVec3;
-use rand_pcg::Pcg32;
-use rand_pcg::rand_core::Rng;
 
 use super::nodes::{Edits, Nodes};
 use super::{EditError, positive};
+use crate::random::Random;
 use crate::{Morphology, NeuriteKind, Node, SectionId};
 use room::Room;
 use shape::Spine;
@@ -73,7 +72,7 @@ pub(super) fn grow(
     let mut left = 0;
     for id in dendrites() {
         // A stream for each section, so that one that is edited leaves the others' spines as they are.
-        let mut random = Random(Pcg32::new(seed, u64::from(id.0)));
+        let mut random = Random::new(seed, u64::from(id.0));
         let line = nodes.of_section(morphology, id);
         left += grow_on(nodes, &line, density, &mut random, &mut room, &mut bases);
     }
@@ -223,21 +222,5 @@ impl Made {
         });
         self.next_id = self.next_id.saturating_add(1);
         self.nodes.len() as u32 - 1
-    }
-}
-
-/// Random numbers that are the same on every platform.
-struct Random(Pcg32);
-
-impl Random {
-    /// In [0, 1), 32 bits of it.
-    fn unit(&mut self) -> f64 {
-        f64::from(self.0.next_u32()) / 4_294_967_296.0
-    }
-
-    /// Normally distributed, mean 0 and variance 1 (Box and Muller, 1958).
-    fn normal(&mut self) -> f64 {
-        let distance = (-2.0 * libm::log(1.0 - self.unit())).sqrt();
-        distance * libm::cos(std::f64::consts::TAU * self.unit())
     }
 }

@@ -11,8 +11,8 @@
 
 use std::f64::consts::PI;
 
-use super::Random;
 use super::room::GAP;
+use crate::random::Random;
 
 /// A twig with a head. Distances (µm) are from the center line of its dendrite.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +87,6 @@ impl Spine {
 fn skewed(random: &mut Random, (mean, deviation): (f64, f64), (least, most): (f64, f64)) -> f64 {
     let ratio: f64 = deviation / mean;
     let variance = libm::log(1.0 + ratio * ratio);
-    let drawn = libm::log(mean) - variance / 2.0 + variance.sqrt() * random.normal();
+    let drawn = libm::log(mean) - variance / 2.0 + variance.sqrt() * random.normal_pair().0;
     libm::exp(drawn).clamp(least, most)
 }
