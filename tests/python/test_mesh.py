@@ -52,6 +52,7 @@ def test_a_mesh_is_closed_and_has_attributes(cell: nt.Morphology, mesh: nt.Mesh)
         {"soma_sphere": "octahedron", "soma_level": 3, "poisson": 0.1},
         {"ring": {1: 0.5, 2: 1.5}},
         {"smooth": "auto"},
+        {"radius_factor": 2.5},
         {"smooth": 2},
         {"types": "dendrite,2"},
         {"level": np.int64(2), "poisson": np.float32(0.25)},

@@ -70,6 +70,7 @@ fn read(circuit: &Path, report: &Path) {
             name: "",
             morphology,
             mesh,
+            radius_factor: 1.0,
         })
         .collect();
     let clock = Instant::now();

@@ -83,6 +83,23 @@ fn only_what_a_change_concerns_is_made_again() {
     let last = rebuilds(&mut window);
     window.run_steps(20);
     assert_eq!(rebuilds(&mut window), last, "nothing changes any more");
+    // Larger radii need other meshes, once: not again for other colors.
+    set_look(&mut window, |look| look.radius_factor = 3.0);
+    let thicker = rebuilds(&mut window);
+    assert!(thicker.templates > last.templates && thicker.spheres > last.spheres);
+    set_look(&mut window, |look| look.color_map = ColorMap::ALL[1]);
+    let recolored = rebuilds(&mut window);
+    assert!(recolored.colors > thicker.colors);
+    assert_eq!(
+        Rebuilds {
+            colors: thicker.colors,
+            ..recolored
+        },
+        thicker,
+        "a color map"
+    );
+    set_look(&mut window, |look| look.radius_factor = 1.0);
+    assert!(rebuilds(&mut window).templates > thicker.templates);
 }
 
 neurotess_testing::main!();

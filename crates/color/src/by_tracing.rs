@@ -236,7 +236,8 @@ fn branch_orders(cell: &Cell<'_>) -> Vec<Option<f32>> {
 }
 
 fn radii(cell: &Cell<'_>) -> Vec<Option<f32>> {
-    let radius = |point: &TracingPoint| (point.role != Role::Soma).then_some(point.radius);
+    let traced = |radius: f32| (f64::from(radius) / cell.radius_factor) as f32;
+    let radius = |point: &TracingPoint| (point.role != Role::Soma).then(|| traced(point.radius));
     cell.mesh.tracing.iter().map(radius).collect()
 }
 
@@ -261,6 +262,7 @@ mod tests {
             name: "",
             morphology: &morphology,
             mesh: &generated.expect("meshed").mesh,
+            radius_factor: 1.0,
         };
         let scheme = ColorScheme {
             palette: Palette::NeuroM,

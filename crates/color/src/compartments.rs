@@ -104,6 +104,7 @@ mod tests {
             name: "",
             morphology: &morphology,
             mesh: &mesh,
+            radius_factor: 1.0,
         };
         let at = |section, along| Compartment { section, along };
         let compartments = [at(0, 0.5), at(1, 0.5), at(2, 0.25), at(2, 0.75)];

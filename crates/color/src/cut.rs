@@ -186,6 +186,7 @@ mod tests {
             name: "",
             morphology: &morphology,
             mesh: &mesh,
+            radius_factor: 1.0,
         };
         assert!(
             path_distances(&cell)

@@ -16,6 +16,8 @@ pub struct Cell<'c> {
     pub morphology: &'c Morphology,
     /// Its coarse mesh.
     pub mesh: &'c CoarseMesh,
+    /// Factor on the traced radii with which the mesh was made: 1 unless for figures.
+    pub radius_factor: f64,
 }
 
 /// Colors of all cells.

@@ -143,6 +143,11 @@ pub fn generate_stoppable(
     let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
+    if options.radius_factor != 1.0 {
+        // After smoothing, which is to take away the noise of the radii that were traced.
+        prepare::scale_radii(&mut skeleton, options.radius_factor);
+        error::check_coordinates(morphology, &skeleton, &mut Warnings::default())?;
+    }
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
     stop.check()?;
     let start = clock();

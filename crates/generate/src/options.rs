@@ -67,6 +67,12 @@ pub struct GenerateOptions {
     pub poisson: f64,
     /// Factor on the soma's radius, greater than 0.
     pub soma_scale: f64,
+    /// Factor on the radii of neurites, greater than 0, as for figures in which thin ones must be seen, or
+    /// for printing in three dimensions. Paths and somata stay; [`TracingPoint::radius`] is that of the
+    /// surface.
+    ///
+    /// [`TracingPoint::radius`]: neurotess_mesh::TracingPoint::radius
+    pub radius_factor: f64,
     /// Type of the sphere.
     pub sphere: SphereKind,
     /// Resolution of the sphere: octahedron 3 to 5, cube 4 to 32; `None`: what fits the neurites.
@@ -91,6 +97,7 @@ impl Default for GenerateOptions {
             soma: SomaMethod::Fem,
             poisson: 0.3,
             soma_scale: 1.0,
+            radius_factor: 1.0,
             sphere: SphereKind::Cube,
             sphere_level: None,
             rings: BTreeMap::new(),

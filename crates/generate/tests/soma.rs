@@ -144,6 +144,35 @@ fn soma_scale_scales_the_soma() {
 }
 
 #[test]
+fn radius_factor_thickens_neurites_alone() {
+    let meshed = |radius_factor| {
+        let options = GenerateOptions {
+            radius_factor,
+            ..GenerateOptions::default()
+        };
+        generate(&cell(&five(), 6.5, 0.5), &options).expect("meshed")
+    };
+    let radius = |of: &Generated| {
+        let points = of.mesh.tracing.iter();
+        let ends = points.filter(|t| t.role == Role::End);
+        ends.map(|t| t.radius).fold(0.0, f32::max)
+    };
+    let (traced, thick) = (meshed(1.0), meshed(2.5));
+    assert!(thick.mesh.topology().closed);
+    assert!((radius(&thick) / radius(&traced) - 2.5).abs() < 1e-6);
+    assert_eq!(
+        thick.somata[0].sphere_volume,
+        traced.somata[0].sphere_volume
+    );
+    // Radii that coordinates of 32 bits cannot hold are refused like those of a tracing.
+    let huge = GenerateOptions {
+        radius_factor: 1e30,
+        ..GenerateOptions::default()
+    };
+    assert!(generate(&cell(&five(), 6.5, 0.5), &huge).is_err());
+}
+
+#[test]
 fn alternatives_differ_as_they_should() {
     let volume = |soma| {
         let options = GenerateOptions {

@@ -6,3 +6,11 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
         _ => Err("a number above 0 is needed".into()),
     }
 }
+
+/// A factor on radii. Far beyond these bounds there is nothing to recognize.
+pub(crate) fn radius_factor(text: &str) -> Result<f64, String> {
+    match positive(text) {
+        Ok(factor) if (0.01..=1000.0).contains(&factor) => Ok(factor),
+        _ => Err("a number from 0.01 to 1000 is needed".into()),
+    }
+}

@@ -79,6 +79,21 @@ fn a_cell_becomes_a_picture_in_the_colors_of_its_types() {
     assert!(other.count(2) < picture.count(2) && other.pixels != picture.pixels);
 }
 
+/// Cells are as thick as the factor says, in the same colors.
+#[neurotess_testing::test(needs(gpu))]
+fn radii_are_drawn_larger_by_a_factor() {
+    let [traced, thick] = ["1", "3"].map(|factor| {
+        let look = "--color-by radius --no-legend --types axon --soma none --range 0,3";
+        picture(&format!("{look} --radius-factor {factor}"))
+    });
+    let ink = |picture: &Picture| picture.pixels().filter(|p| p[..3] != [255; 3]).count();
+    let ratio = ink(&thick) as f64 / ink(&traced) as f64;
+    assert!((1.5..4.0).contains(&ratio), "{ratio}");
+    // Radii of 0.8 to 1 µm are blue in this range, those of 2.4 to 3 µm would be yellow.
+    assert!(thick.count(2) > traced.count(2));
+    assert_eq!(thick.count(0), 0, "colors of the traced radii");
+}
+
 #[neurotess_testing::test(needs(gpu))]
 fn every_option_of_the_contract_draws() {
     let plain = picture("").pixels;

@@ -11,7 +11,7 @@ use neurotess::morphology::{Measures, Morphology, shape};
 use neurotess::synth::{self, Kind};
 
 use crate::model::document::SomaEdit;
-use crate::model::sources::{Remark, SAMPLE, SectionFacts, Source, Stale, spheres};
+use crate::model::sources::{Remark, SAMPLE, SectionFacts, Source, Stale, spheres, thickest};
 
 /// Reads a file, or grows a sample, and meshes it.
 ///
@@ -77,6 +77,7 @@ fn source(
         sections: Arc::new(section_facts(&morphology)),
         spheres: all,
         few_spheres,
+        thickest: thickest(&generated.mesh),
         morphology: Arc::new(morphology),
         generated: Arc::new(generated),
         soma,

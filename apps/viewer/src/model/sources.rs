@@ -7,7 +7,7 @@ use std::time::SystemTime;
 
 use glam::DVec3;
 use neurotess::generate::Generated;
-use neurotess::mesh::CoarseMesh;
+use neurotess::mesh::{CoarseMesh, Role};
 use neurotess::morphology::{Measures, Morphology};
 use neurotess::render::BoundingSphere;
 use neurotess::render::bounds::{bounds, merged};
@@ -47,6 +47,8 @@ pub struct Source {
     pub spheres: Vec<BoundingSphere>,
     /// A few spheres that hold them, for scenes of many neurons.
     pub few_spheres: Vec<BoundingSphere>,
+    /// Radius (µm) of the thickest point of its neurites.
+    pub thickest: f64,
     /// Whether its file was changed or removed since.
     pub stale: Option<Stale>,
     /// By section: length (µm) and branch order.
@@ -122,6 +124,12 @@ pub struct Sources {
     geometry: Revision,
 }
 
+/// Radius (µm) of the thickest point of a mesh's neurites.
+pub(crate) fn thickest(mesh: &CoarseMesh) -> f64 {
+    let neurites = mesh.tracing.iter().filter(|p| p.role != Role::Soma);
+    neurites.map(|p| f64::from(p.radius)).fold(0.0, f64::max)
+}
+
 /// The bounding spheres of a mesh, and a few spheres that hold them.
 pub(crate) fn spheres(mesh: &CoarseMesh) -> (Vec<BoundingSphere>, Vec<BoundingSphere>) {
     let all = bounds(mesh);
@@ -175,6 +183,7 @@ impl Sources {
         source.soma = edit;
         if let Some(generated) = generated {
             (source.spheres, source.few_spheres) = spheres(&generated.mesh);
+            source.thickest = thickest(&generated.mesh);
             source.generated = Arc::new(generated);
         }
         self.geometry = Revision::next();

@@ -1,9 +1,10 @@
 //! Colors in the window: by tracings, by a circuit's nodes, by a recording.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use neurotess::circuit::{Circuit, NodeRef};
+use neurotess::circuit::{Circuit, Compartment, NodeRef};
 use neurotess::coloring::{
     self, Cell, ColorScheme, Coloring, Node, OwnColors, Recording, RecordingError,
 };
@@ -141,15 +142,49 @@ impl ColorRequest {
         }
     }
 
-    /// The templates with a point at the middle of each compartment of the report, if its values
-    /// are shown, so that also a dendrite of two traced points shows all its compartments. A
-    /// template that cannot be meshed like this stays as it is.
-    pub(crate) fn cut(&self, mut sources: Vec<SceneTemplate>) -> Vec<SceneTemplate> {
+    /// The templates meshed as they are drawn: with larger radii, and with a point at the middle of each
+    /// compartment of the report, if its values are shown, so that also a dendrite of two traced points
+    /// shows all its compartments. A template that cannot be meshed like this stays as it is. `before`:
+    /// templates whose meshes are taken where they are the same.
+    pub(crate) fn meshed(
+        &self,
+        mut sources: Vec<SceneTemplate>,
+        before: &[SceneTemplate],
+    ) -> Vec<SceneTemplate> {
+        let cuts = self.cuts();
+        let places = sources.par_iter_mut().enumerate();
+        places.for_each(|(place, source)| {
+            let elements = cuts.get(&place);
+            if source.is_as_traced() && elements.is_none() {
+                return;
+            }
+            let same = |other: &&SceneTemplate| {
+                source.same_as(other) && Arc::ptr_eq(&source.morphology, &other.morphology)
+            };
+            if elements.is_none()
+                && let Some(before) = before.get(place).filter(same)
+            {
+                source.generated = Arc::clone(&before.generated);
+                return;
+            }
+            let morphology = match elements {
+                Some(elements) => Arc::new(coloring::with_middles(&source.morphology, elements)),
+                None => Arc::clone(&source.morphology),
+            };
+            if let Ok(generated) = generate(&morphology, &source.options) {
+                source.morphology = morphology;
+                source.generated = Arc::new(generated);
+            }
+        });
+        sources
+    }
+
+    /// The compartments of the report on each template, if its values are shown.
+    fn cuts(&self) -> HashMap<usize, Vec<Compartment>> {
         let report = self.report.as_ref();
         let Some(report) = report.filter(|_| self.look.color_by == ColorBy::Value) else {
-            return sources;
+            return HashMap::new();
         };
-        let mut cuts = std::collections::HashMap::new();
         for (id, circuit) in self.circuits_newest_first() {
             let nodes_of_cells = self.neurons.iter().filter_map(|(source, _, of)| {
                 let node = of.filter(|of| of.circuit == id)?.node;
@@ -157,25 +192,12 @@ impl ColorRequest {
             });
             let nodes_of_cells: Vec<_> = nodes_of_cells.collect();
             // Errors of the report are noted when its colors are computed.
-            cuts = coloring::cuts(report, circuit, &nodes_of_cells).unwrap_or_default();
+            let cuts = coloring::cuts(report, circuit, &nodes_of_cells).unwrap_or_default();
             if !cuts.is_empty() {
-                break;
+                return cuts;
             }
         }
-        sources
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(place, source)| {
-                let Some(elements) = cuts.get(&place) else {
-                    return;
-                };
-                let morphology = coloring::with_middles(&source.morphology, elements);
-                if let Ok(generated) = generate(&morphology, &source.options) {
-                    source.morphology = Arc::new(morphology);
-                    source.generated = Arc::new(generated);
-                }
-            });
-        sources
+        HashMap::new()
     }
 
     /// Circuits of the neurons, the one opened last first.
@@ -196,6 +218,7 @@ impl ColorRequest {
                 name: &s.name,
                 morphology: &s.morphology,
                 mesh: &s.generated.mesh,
+                radius_factor: s.options.radius_factor,
             })
             .collect();
         let color_scheme = color_scheme(&self.look);

@@ -126,7 +126,7 @@ fn read_markers(state: &mut State, drawn: &mut SessionPicture) {
 fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> StillScene {
     let sources = templates::templates(state);
     let request = ColorRequest::new(state, &sources);
-    let sources = request.cut(sources);
+    let sources = request.meshed(sources, &[]);
     let mut colored = request.colors(&sources);
     drawn.failures.extend(colored.problem.take());
     let instances = content::instances(state, &sources);

@@ -54,7 +54,7 @@ impl StillScene {
     /// Legend of a picture, with the time of the recording if there is one.
     pub(super) fn legend(&self, time: Option<f64>) -> Legend {
         let legend = self.content.legend.clone();
-        let legend = legend.with_least_width(self.look.least_width);
+        let legend = legend.with_widths(self.look.least_width, self.look.radius_factor());
         match (&self.content.recording, time) {
             (Some((recording, _)), Some(time)) => {
                 let time = recording.time.nearest(time);

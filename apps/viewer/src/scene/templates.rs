@@ -16,10 +16,22 @@ pub(crate) struct SceneTemplate {
     pub(crate) morphology: Arc<Morphology>,
     pub(crate) generated: Arc<Generated>,
     /// The mesh of the tracing itself; it differs from `generated` if points were inserted for a
-    /// report's values.
+    /// report's values, or radii are drawn larger.
     pub(crate) traced: Arc<Generated>,
     /// Options of its mesh.
     pub(crate) options: GenerateOptions,
+}
+
+impl SceneTemplate {
+    /// Whether another one was made from the same mesh, in the same way but for a report's values.
+    pub(crate) fn same_as(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.traced, &other.traced) && self.options == other.options
+    }
+
+    /// Whether its mesh is that of the tracing itself.
+    pub(crate) fn is_as_traced(&self) -> bool {
+        self.options.radius_factor == 1.0
+    }
 }
 
 /// Templates of the neurons in the list, by the ids of their tracings.
@@ -33,7 +45,10 @@ pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
             morphology: Arc::clone(&source.morphology),
             generated: Arc::clone(&source.generated),
             traced: Arc::clone(&source.generated),
-            options: source.soma.options(),
+            options: GenerateOptions {
+                radius_factor: state.document.look.radius_factor(),
+                ..source.soma.options()
+            },
         })
     });
     templates.collect()

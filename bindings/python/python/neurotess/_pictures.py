@@ -153,6 +153,7 @@ def render(
     orthographic: bool | float = False,
     wireframe: bool = False,
     least_width: float | None = None,
+    radius_factor: float | None = None,
     synapses: bool | str | Sequence[str] = False,
     synapse_side: Literal["afferent", "efferent"] | None = None,
     points: str | os.PathLike[str] | None = None,
@@ -190,8 +191,8 @@ def render(
     Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees). `orthographic`: without
     perspective, so that lengths are true at all depths (True, or the height of the picture in µm).
 
-    Look: `wireframe`, `least_width` (pixels, of neurites), `light` (``"soft"``, ``"flat"`` or a direction), `ao`
-    (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
+    Look: `wireframe`; of neurites `least_width` (pixels) and `radius_factor`; `light` (``"soft"``, ``"flat"`` or a
+    direction), `ao` (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
 
     Synapses of a circuit's cells: `synapses` (True, or names of `Circuit.edges`), `synapse_side`; or the `points` of
     a CSV file with columns x, y and z (µm). `marker_color_by` is a number that each has; `marker_size` the diameter
@@ -225,6 +226,7 @@ def render(
         "orthographic": orthographic,
         "wireframe": wireframe,
         "least_width": least_width,
+        "radius_factor": radius_factor,
         "synapses": synapses,
         "synapse_side": synapse_side,
         "points": points,

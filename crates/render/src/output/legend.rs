@@ -75,13 +75,17 @@ impl Legend {
         self
     }
 
-    /// Says that neurites are drawn at least so many pixels wide, below all else; 0: nothing. See
-    /// [`Look::least_width`](crate::Look::least_width).
+    /// Says below all else how neurites differ from what was traced: drawn at least so many pixels wide (see
+    /// [`Look::least_width`](crate::Look::least_width); 0: not), with radii times a factor (1: not).
     #[must_use]
-    pub fn with_least_width(mut self, pixels: f32) -> Self {
-        self.widths = match pixels > 0.0 {
-            true => format!("neurites at least {pixels} px wide"),
-            false => String::new(),
+    pub fn with_widths(mut self, least: f32, radius_factor: f64) -> Self {
+        let least = (least > 0.0).then(|| format!("at least {least} px wide"));
+        let thicker = (radius_factor != 1.0).then(|| format!("radii × {radius_factor}"));
+        self.widths = match (thicker, least) {
+            (Some(thicker), Some(least)) => format!("neurites: {thicker}, {least}"),
+            (Some(thicker), None) => format!("neurites: {thicker}"),
+            (None, Some(least)) => format!("neurites {least}"),
+            (None, None) => String::new(),
         };
         self
     }
@@ -286,6 +290,18 @@ mod tests {
         );
         assert_eq!(number(0.5, 0.1), "0.5");
         assert_eq!(number(100.0, 50.0), "100");
+    }
+
+    #[test]
+    fn what_differs_from_the_tracing_is_told() {
+        let told = |least, factor| Legend::swatches("", []).with_widths(least, factor).widths;
+        assert_eq!(told(0.0, 1.0), "");
+        assert_eq!(told(2.0, 1.0), "neurites at least 2 px wide");
+        assert_eq!(told(0.0, 3.0), "neurites: radii × 3");
+        assert_eq!(
+            told(1.5, 0.5),
+            "neurites: radii × 0.5, at least 1.5 px wide"
+        );
     }
 
     #[test]

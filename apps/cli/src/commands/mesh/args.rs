@@ -79,6 +79,11 @@ pub(crate) struct MeshArgs {
     /// separate]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Crossings")]
     pub(crate) crossings: Option<CrossingsArg>,
+    /// Factor on the radii of neurites, as for printing in three dimensions
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR",
+          value_parser = crate::options::numbers::radius_factor, allow_negative_numbers = true,
+          help_heading = "Surface")]
+    pub(crate) radius_factor: f64,
     /// A mesh that solvers take: --crossings separate --isotropic, or an error that says where it
     /// fails
     #[arg(long, conflicts_with_all = ["level", "level_along", "max_error", "quads"],

@@ -223,6 +223,7 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         soma: args.soma.method(),
         poisson: args.poisson,
         soma_scale: args.soma_scale,
+        radius_factor: args.radius_factor,
         sphere,
         sphere_level: args.soma_level,
         rings: args.rings.positions(),
@@ -259,7 +260,7 @@ mod tests {
         };
         assert_eq!(
             options.fingerprint(),
-            "Level(4) GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, sphere: Cube, \
+            "Level(4) GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, radius_factor: 1.0, sphere: Cube, \
              sphere_level: None, rings: {}, kinds: None } \
              RefineOptions { path: Hermite, caps: Round, quads: false } Ply"
         );
@@ -269,7 +270,7 @@ mod tests {
         options.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
         assert_eq!(
             options.fingerprint(),
-            "Coarse GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, sphere: Cube, \
+            "Coarse GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, radius_factor: 1.0, sphere: Cube, \
              sphere_level: None, rings: {1: 0.5}, kinds: Some([NeuriteKind(2)]) } \
              RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
         );

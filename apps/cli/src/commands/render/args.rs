@@ -126,6 +126,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "PX", value_parser = crate::options::numbers::positive,
           allow_negative_numbers = true, help_heading = "Picture")]
     pub(crate) least_width: Option<f64>,
+    /// Draw neurites with their radii times this factor, so that thin ones can be seen in a figure; the
+    /// legend says so
+    #[arg(long, value_name = "FACTOR", value_parser = crate::options::numbers::radius_factor,
+          allow_negative_numbers = true, help_heading = "Picture")]
+    pub(crate) radius_factor: Option<f64>,
     /// How vertices are made [default: adaptive; homogeneous where --level is given]
     #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
     pub(crate) lod: Option<LodMode>,
@@ -263,6 +268,11 @@ impl RenderArgs {
     /// Least width (pixels) of neurites; 0: as wide as they are.
     pub(crate) fn least_width(&self) -> f32 {
         self.least_width.unwrap_or(0.0) as f32
+    }
+
+    /// Factor on the radii of neurites.
+    pub(crate) fn radius_factor(&self) -> f64 {
+        self.radius_factor.unwrap_or(1.0)
     }
 
     /// Greatest error (pixels): one that cannot be seen; with a wireframe a larger one, so that its

@@ -58,6 +58,7 @@ pub(super) fn options(args: &RenderArgs) -> GenerateOptions {
     GenerateOptions {
         soma: args.soma.method(),
         rings: args.rings.positions(),
+        radius_factor: args.radius_factor(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
         ..GenerateOptions::default()
     }

@@ -27,8 +27,8 @@ pub(crate) struct PictureColors {
     pub(crate) markers: Option<MarkerSet>,
     /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
-    /// Least width (pixels) of neurites, which the legend tells; 0: none.
-    least_width: f32,
+    /// Least width (pixels; 0: none) and factor on the radii of neurites, which the legend tells.
+    widths: (f32, f64),
     /// The colors of the legend that are closest to one another.
     pub(crate) closest: Option<ClosestColors>,
 }
@@ -68,7 +68,8 @@ impl PictureColors {
     /// Legend of a picture.
     pub(crate) fn legend(&self, number: usize) -> Legend {
         let legend = self.coloring.legend.clone();
-        let legend = legend.with_least_width(self.least_width);
+        let (least, factor) = self.widths;
+        let legend = legend.with_widths(least, factor);
         let series = self.series.as_ref();
         match series.and_then(|series| Some((series, *series.times.get(number)?))) {
             Some((series, time)) => legend.noted(&time_text(&series.times, time)),
@@ -131,6 +132,7 @@ pub(crate) fn of_pictures(
             name,
             morphology: &cell.morphology,
             mesh: &cell.mesh,
+            radius_factor: args.radius_factor(),
         })
         .collect();
     let mut colored = match (&args.report, instances) {
@@ -153,7 +155,7 @@ pub(crate) fn of_pictures(
                 coloring,
                 markers: None,
                 series: None,
-                least_width: args.least_width(),
+                widths: (args.least_width(), args.radius_factor()),
             }
         }
     };
@@ -226,7 +228,7 @@ fn over_time(
         coloring,
         markers: None,
         series,
-        least_width: args.least_width(),
+        widths: (args.least_width(), args.radius_factor()),
         closest: None,
     };
     let (table, legend) = colored.picture(0)?;

@@ -56,6 +56,8 @@ pub struct Look {
     pub ghost_opacity: f32,
     /// Least width (pixels) of neurites; 0: as they are.
     pub least_width: f32,
+    /// Factor on the radii of neurites in the picture; 1: as they were traced.
+    pub radius_factor: f64,
     /// Which parts of cells are drawn.
     pub parts: VisibleParts,
     /// Colors that are not the palette's.
@@ -216,6 +218,7 @@ impl Default for Look {
             ghost_others: false,
             ghost_opacity: 0.25,
             least_width: 0.0,
+            radius_factor: 1.0,
             parts: VisibleParts::All,
             own_colors: OwnColors::default(),
             cut: None,
@@ -224,6 +227,14 @@ impl Default for Look {
 }
 
 impl Look {
+    /// Factor on the radii of neurites, within bounds whatever a session says.
+    pub(crate) fn radius_factor(&self) -> f64 {
+        match self.radius_factor.is_finite() {
+            true => self.radius_factor.clamp(0.1, 100.0),
+            false => 1.0,
+        }
+    }
+
     /// Color of a type of SWC.
     pub(crate) fn type_color(&self, kind: i32) -> Rgb {
         let own = self.own_colors.types.get(&kind).copied();

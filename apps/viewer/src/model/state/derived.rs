@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use neurotess::mesh::Role;
 use neurotess::plot::Plot;
 use neurotess::render::{BoundingSphere, Placement};
 
@@ -29,13 +30,14 @@ pub(crate) struct PlacementsKey {
 }
 
 /// What the bounding spheres of the neurons that are shown depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SpheresKey {
     placements: PlacementsKey,
     hidden: Revision,
     geometry: Revision,
     /// Revision of what was read, if points are shown.
     points: Option<Revision>,
+    radius_factor: f64,
 }
 
 /// Derived values.
@@ -63,7 +65,7 @@ impl State {
                 return neurons.iter().map(|n| n.placement).collect();
             }
             let extents = neurons.iter().map(|neuron| {
-                let (low, high) = extent(&self.spheres_of(neuron.source, neuron.placement));
+                let (low, high) = extent(&self.spheres_of(neuron.source, neuron.placement, 1.0));
                 ((low + high) / 2.0, high - low)
             });
             document::grid(neurons, &extents.collect::<Vec<_>>())
@@ -80,15 +82,26 @@ impl State {
         }
     }
 
-    fn spheres_of(&self, source: SourceId, placement: Placement) -> Vec<BoundingSphere> {
+    /// Spheres around a neuron whose neurites' radii are multiplied by a factor.
+    fn spheres_of(
+        &self,
+        source: SourceId,
+        placement: Placement,
+        factor: f64,
+    ) -> Vec<BoundingSphere> {
         let many = self.document.neurons.len() >= MANY;
-        let spheres = self.sources.get(source).map_or(&[][..], |s| match many {
-            true => &s.few_spheres,
-            false => &s.spheres,
-        });
+        let Some(source) = self.sources.get(source) else {
+            return Vec::new();
+        };
+        let spheres = match many {
+            true => &source.few_spheres,
+            false => &source.spheres,
+        };
+        // A sphere holds many points: it grows by what the thickest grows.
+        let grown = (factor - 1.0).max(0.0) * source.thickest;
         spheres
             .iter()
-            .map(|&(c, r)| (placement.world_from_cell(c), r * placement.scale))
+            .map(|&(c, r)| (placement.world_from_cell(c), (r + grown) * placement.scale))
             .collect()
     }
 
@@ -109,15 +122,17 @@ impl State {
             hidden: self.document.neurons.revisions().hidden,
             geometry: self.sources.geometry(),
             points: self.shows_points().then(|| self.marker_data.revision()),
+            radius_factor: self.document.look.radius_factor(),
         }
     }
 
     fn spheres_where(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+        let factor = self.document.look.radius_factor();
         let placements = self.placements();
         let neurons = self.document.neurons.iter().zip(placements.iter());
         neurons
             .filter(|(n, _)| !n.hidden && fits(n))
-            .flat_map(|(n, placement)| self.spheres_of(n.source, *placement))
+            .flat_map(|(n, placement)| self.spheres_of(n.source, *placement, factor))
             .collect()
     }
 
@@ -130,11 +145,16 @@ impl State {
         if shown.len() >= MANY {
             return self.spheres_where(fits);
         }
+        let factor = self.document.look.radius_factor();
         let spheres = |(neuron, placement): (&Neuron, &Placement)| {
             let mesh = self.sources.get(neuron.source).map(|s| &s.generated.mesh);
             let points = mesh.into_iter().flat_map(|mesh| {
                 let points = mesh.tracing.iter();
-                points.map(|p| (mesh.origin + p.center.as_dvec3(), f64::from(p.radius)))
+                points.map(|p| {
+                    let center = mesh.origin + p.center.as_dvec3();
+                    let grown = if p.role == Role::Soma { 1.0 } else { factor };
+                    (center, grown * f64::from(p.radius))
+                })
             });
             let placed = points.map(|(c, r)| (placement.world_from_cell(c), r * placement.scale));
             placed.collect::<Vec<_>>()

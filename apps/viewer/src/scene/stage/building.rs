@@ -91,7 +91,12 @@ impl Stage {
         }
         let colors = ColorInputs::new(&state.document);
         let members = state.document.neurons.revisions().members;
-        let checked = (members, state.sources.geometry(), colors);
+        let checked = (
+            members,
+            state.sources.geometry(),
+            colors,
+            state.document.look.radius_factor(),
+        );
         if self.checked.as_ref() == Some(&checked) {
             return Ok(());
         }
@@ -105,7 +110,7 @@ impl Stage {
         let changed: Vec<usize> = if same_sources {
             let pairs = sources.iter().zip(&self.content.sources).enumerate();
             pairs
-                .filter(|(_, (a, b))| !Arc::ptr_eq(&a.traced, &b.traced))
+                .filter(|(_, (a, b))| !a.same_as(b))
                 .map(|(i, _)| i)
                 .collect()
         } else {
@@ -123,7 +128,8 @@ impl Stage {
             self.checked = Some(checked);
             return Ok(());
         }
-        if same_sources && !recolored && !records && sources.len() <= QUICK {
+        let as_traced = sources.iter().all(SceneTemplate::is_as_traced);
+        if same_sources && !recolored && !records && as_traced && sources.len() <= QUICK {
             let request = ColorRequest::new(state, &sources);
             self.checked = Some(checked);
             return self.replace(sources, &changed, &request);
@@ -177,8 +183,9 @@ impl Stage {
         let instances_key = InstancesKey::new(state, self.content.revision);
         let before = Before::of(&self.content);
         let colors = of.2.clone();
+        let drawn = self.content.sources.clone();
         let work = move |_: &Progress| {
-            let sources = request.cut(sources);
+            let sources = request.meshed(sources, &drawn);
             let mut colored = request.colors(&sources);
             let problem = colored.problem.take();
             let content = SceneContent::new(sources, instances, colored);

@@ -109,8 +109,8 @@ pub struct Stage {
     timed: bool,
 }
 
-/// What templates on the device depend on: neurons, meshes, colors.
-type Checked = (Revision, Revision, ColorInputs);
+/// What templates on the device depend on: neurons, meshes, colors, the factor on radii.
+type Checked = (Revision, Revision, ColorInputs, f64);
 
 /// What a picture depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]

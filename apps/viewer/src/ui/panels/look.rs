@@ -39,6 +39,14 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
         slider.text("least width (px)")
     })
     .tip("Thin neurites are drawn this wide, for figures; 0: as they are");
+    slider(
+        ui,
+        &mut look.radius_factor,
+        0.1..=100.0,
+        Some(1),
+        |slider| slider.logarithmic(true).text("radius factor"),
+    )
+    .tip("Neurites are drawn with their radii times this, for figures; meshes are saved as traced");
     saved_views::show(state, ui);
     heading(ui, "Selection");
     ui.checkbox(&mut look.highlight_selected, "Color of its own");

@@ -312,7 +312,12 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     let look = &screen.state.document.look;
     if look.legend {
         let told = screen.stage.legend().clone();
-        overlay::legend(told.with_least_width(look.least_width), screen, rect, ui);
+        overlay::legend(
+            told.with_widths(look.least_width, look.radius_factor()),
+            screen,
+            rect,
+            ui,
+        );
     }
     if look.scale_bar {
         overlay::scale_bar(screen.state, rect, ui);
