@@ -6,9 +6,9 @@
 
 struct PickHit {
     @invariant @builtin(position) position: vec4<f32>,
-    @location(0) coverage: f32,
-    @location(1) relative: vec3<f32>,
-    @location(2) @interpolate(flat) id: vec2<u32>,
+    // Position relative to the eye, coverage.
+    @location(0) relative: vec4<f32>,
+    @location(1) @interpolate(flat) id: vec2<u32>,
 }
 
 @vertex
@@ -19,12 +19,12 @@ fn vertex_id(
     let v = shaded_vertex(vertex_index, instance_index);
     let id = surface_id(vertex_index, instance_index);
     let first = 1u + (shade.batch << BATCH_SHIFT) + id.x;
-    return PickHit(v.position, v.coverage, v.relative, vec2<u32>(first, id.y));
+    return PickHit(v.position, vec4(v.relative, v.coverage), vec2<u32>(first, id.y));
 }
 
 @fragment
 fn fragment_id(in: PickHit) -> @location(0) vec2<u32> {
-    if left_by_clip(in.relative, in.coverage) <= 0.0 {
+    if left_by_clip(in.relative.xyz, in.relative.w) <= 0.0 {
         discard;
     }
     return in.id;

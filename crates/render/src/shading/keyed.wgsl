@@ -10,13 +10,13 @@
 
 struct KeyedVarying {
     @invariant @builtin(position) position: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) relative: vec3<f32>,
-    @location(2) coverage: f32,
-    @location(3) thin: f32,
-    @location(4) @interpolate(flat) keys: vec4<u32>,
-    @location(5) @interpolate(perspective, centroid) shares: vec4<f32>,
-    @location(6) @interpolate(flat) instance: u32,
+    // Normal, coverage.
+    @location(0) normal: vec4<f32>,
+    // Position relative to the eye, thinness.
+    @location(1) relative: vec4<f32>,
+    @location(2) @interpolate(flat) keys: vec4<u32>,
+    @location(3) @interpolate(perspective, centroid) shares: vec4<f32>,
+    @location(4) @interpolate(flat) instance: u32,
 }
 
 struct KeyedSample {
@@ -40,12 +40,14 @@ fn vertex_keyed(
     let v = shaded_vertex(vertex_index, instance_index);
     let k = surface_keys(vertex_index, instance_index);
     let shares = vec4<f32>(vec4(k.corner) == vec4(0u, 1u, 2u, 3u));
-    return KeyedVarying(v.position, v.normal, v.relative, v.coverage, v.thin, k.keys, shares, k.instance);
+    let normal = vec4(v.normal, v.coverage);
+    let relative = vec4(v.relative, v.thin);
+    return KeyedVarying(v.position, normal, relative, k.keys, shares, k.instance);
 }
 
 @fragment
 fn fragment_keyed(in: KeyedVarying, @builtin(front_facing) front: bool) -> KeyedSample {
-    let f = facet(in.normal, in.relative, in.coverage, in.thin, front);
+    let f = facet(in.normal.xyz, in.relative.xyz, in.normal.w, in.relative.w, front);
     var weights = vec3(0.5, 0.0, 0.0);
     if shade.lit > 0.0 {
         let l = lights(f.normal, f.to_eye);

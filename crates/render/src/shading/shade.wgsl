@@ -58,22 +58,37 @@ struct Shade {
 // State of each instance; instances beyond the end have 0.
 @group(1) @binding(2) var<storage, read> states: array<u32>;
 
-struct Varying {
-    @invariant @builtin(position) position: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    // Where a pixel is covered in part, colors are those of the part: not extrapolated.
-    @location(1) @interpolate(perspective, centroid) color: vec3<f32>,
-    @location(2) relative: vec3<f32>,
-    @location(3) grid: vec2<f32>,
-    @location(4) coverage: f32,
-    // From 0 for tubes at least two pixels wide to 1 for width 0.
-    @location(5) thin: f32,
-    // 1: the instance has an outline.
-    @location(6) @interpolate(flat) outline: u32,
-#ifdef EDGED
+// What a fragment needs to know of a vertex.
+struct ShadedVertex {
+    position: vec4<f32>,
+    normal: vec3<f32>,
+    relative: vec3<f32>,
+    color: vec3<f32>,
     // Share of the edge's color at edges, and before it the color times that share: so what is
     // interpolated is what corners would look like, and linear in their colors.
-    @location(7) @interpolate(perspective, centroid) edge: vec4<f32>,
+    edge: vec4<f32>,
+    grid: vec2<f32>,
+    coverage: f32,
+    // From 0 for tubes at least two pixels wide to 1 for width 0.
+    thin: f32,
+    // 1: the instance has an outline.
+    outline: f32,
+}
+
+// The same, packed: software prepares four numbers of a triangle in the time of one, and the triangles
+// here are small.
+struct Varying {
+    @invariant @builtin(position) position: vec4<f32>,
+    // Normal, coverage.
+    @location(0) normal: vec4<f32>,
+    // Position relative to the eye, thinness.
+    @location(1) relative: vec4<f32>,
+    // Grid, outline.
+    @location(2) grid: vec3<f32>,
+    // Where a pixel is covered in part, colors are those of the part: not extrapolated.
+    @location(3) @interpolate(perspective, centroid) color: vec3<f32>,
+#ifdef EDGED
+    @location(4) @interpolate(perspective, centroid) edge: vec4<f32>,
 #endif
 }
 
@@ -168,7 +183,7 @@ fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {
     return coverage;
 }
 
-fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
+fn shaded_vertex(vertex_index: u32, instance_index: u32) -> ShadedVertex {
     var v = surface_vertex(vertex_index, instance_index);
     v.position += shade.shift;
     v.axis += shade.shift;
@@ -194,7 +209,7 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
         }
     }
     let clip = shade.clip_from_relative * vec4(relative, 1.0);
-    var out: Varying;
+    var out: ShadedVertex;
     if clip.w > shade.near {
         out.position = snapped(clip);
     } else {
@@ -217,7 +232,7 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> Varying {
     out.grid = v.grid;
     out.coverage = coverage;
     out.thin = thin;
-    out.outline = select(0u, 1u, (state & OUTLINED) != 0u);
+    out.outline = select(0.0, 1.0, (state & OUTLINED) != 0u);
     return out;
 }
 
@@ -226,7 +241,17 @@ fn vertex(
     @builtin(vertex_index) vertex_index: u32,
     @builtin(instance_index) instance_index: u32,
 ) -> Varying {
-    return shaded_vertex(vertex_index, instance_index);
+    let v = shaded_vertex(vertex_index, instance_index);
+    var out: Varying;
+    out.position = v.position;
+    out.normal = vec4(v.normal, v.coverage);
+    out.relative = vec4(v.relative, v.thin);
+    out.grid = vec3(v.grid, v.outline);
+    out.color = v.color;
+#ifdef EDGED
+    out.edge = v.edge;
+#endif
+    return out;
 }
 
 struct Sample {
@@ -332,14 +357,15 @@ fn facet(world_normal: vec3<f32>, relative: vec3<f32>, coverage: f32, thin: f32,
 
 @fragment
 fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
-    let f = facet(in.normal, in.relative, in.coverage, in.thin, front);
+    let thin = in.relative.w;
+    let f = facet(in.normal.xyz, in.relative.xyz, in.normal.w, thin, front);
     var color = in.color;
 #ifdef EDGED
     var edged = in.edge;
 #endif
     if shade.wire > 0.0 {
         let line = select(vec3(0.22), color * 0.06, luminance(color) > 0.06);
-        color = mix(color, line, wireframe(in.grid) * (1.0 - in.thin));
+        color = mix(color, line, wireframe(in.grid.xy) * (1.0 - thin));
 #ifdef EDGED
         edged = vec4(color * edged.a, edged.a);
 #endif
@@ -356,9 +382,9 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
 #endif
     var out: Sample;
     out.color = vec4(color, 1.0);
-    out.normal = vec4(f.normal * 0.5 + 0.5, f32(in.outline) / 255.0);
+    out.normal = vec4(f.normal * 0.5 + 0.5, in.grid.z / 255.0);
     // Without perspective it may be negative, and 0 where the eye is.
-    let depth = -dot(in.relative, shade.backward);
+    let depth = -dot(in.relative.xyz, shade.backward);
     out.depth = unpack4x8unorm(bitcast<u32>(select(depth, 1e-20, depth == 0.0)));
 #ifdef MULTISAMPLED
     out.mask = mask_of(f.coverage, in.position);
