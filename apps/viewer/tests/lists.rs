@@ -14,7 +14,8 @@ use neurotess_viewer::document::{ColorBy, Look};
 use neurotess_viewer::state::{CellPart, Picked};
 
 use common::{
-    SIZE, Window, click, gpu, hit_at, picture, run, settle, state, viewer, window, with_samples,
+    SIZE, Window, click, gpu, hit_at, picture, run, settle, snapshot, state, viewer, window,
+    with_samples,
 };
 
 /// A window with so many cells of three neurites, `cell_00` and so on.
@@ -242,6 +243,59 @@ fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
     run(&mut window, Command::AskFiles(FilePurpose::SaveSession));
     window.run_steps(3);
     window.get_by_label("No folder and no session here yet");
+}
+
+/// Two dendrites through one another beside a third neuron without any crossing.
+#[neurotess_testing::test(needs(gpu))]
+fn crossings_are_listed_and_flown_to() {
+    let mut window = window();
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    let crossing = "1 1 0 0 0 6 -1\n2 3 10 0 0 1 1\n3 3 40 0 0 1 2\n4 3 60 30 0 1 3\n5 3 20 60 0 1 4\n\
+                    6 3 0 10 0 1 1\n7 3 0 30 0 1 6\n8 3 40 50 0 1 7\n9 3 60 65 0 1 8\n";
+    let plain = "1 1 90 0 0 6 -1\n2 3 90 9 0 1 1\n3 3 90 40 0 1 2\n";
+    fs::write(folder.path().join("a.swc"), crossing).expect("written");
+    fs::write(folder.path().join("b.swc"), plain).expect("written");
+    let folder = folder.path().to_path_buf();
+    run(&mut window, Command::Open(vec![folder]));
+    run(&mut window, Command::ListCrossings(true));
+    assert!(
+        state(&mut window).crossing_list().is_none(),
+        "of the selection only"
+    );
+    run(&mut window, Edit::Select(vec![0], false));
+    let list = |window: &mut Window| {
+        let (list, current) = state(window).crossing_list().expect("searched");
+        assert!(current);
+        list.expect("searched").to_vec()
+    };
+    let found = list(&mut window);
+    let [only] = &found[..] else {
+        panic!("{found:?}");
+    };
+    assert_eq!(only.place.kin, neurotess::union::Kin::Apart);
+    assert_eq!(only.place.points, [5, 8]);
+    let where_it_is = glam::DVec3::new(36.0, 48.0, 0.0);
+    assert!(only.place.position.distance(where_it_is) < 3.0, "{only:?}");
+    let line = "2.00 µm, branches (5, 8)";
+    let line = window.get_by_label(line).rect().center();
+    click(&mut window, line, Modifiers::NONE);
+    settle(&mut window);
+    let target = glam::DVec3::from(state(&mut window).view.target);
+    assert!(target.distance(only.place.position) < 1e-6, "{target}");
+    // A neuron without any; then none.
+    run(&mut window, Edit::Select(vec![1], false));
+    assert!(list(&mut window).is_empty());
+    window.get_by_label("None: the surface crosses itself nowhere.");
+    run(&mut window, Command::ListCrossings(false));
+    assert!(state(&mut window).crossing_list().is_none());
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn crossings_are_marked_in_the_picture() {
+    let mut window = with_samples(&[Kind::Purkinje]);
+    run(&mut window, Command::ListCrossings(true));
+    snapshot(&mut window, "crossings");
 }
 
 neurotess_testing::main!();

@@ -54,6 +54,6 @@ mod touch;
 mod winding;
 mod work;
 
-pub use merge::{Union, union, union_stoppable};
+pub use merge::{Union, crossing_places, union, union_stoppable};
 pub use options::{UnionError, UnionOptions};
 pub use report::{Kin, Part, Place, UnionReport, Why};

@@ -11,7 +11,7 @@ use crate::options::{UnionError, UnionOptions};
 use crate::parts::{drop_hidden, drop_splinters, least_volume};
 use crate::places::places;
 use crate::region::around;
-use crate::report::UnionReport;
+use crate::report::{Place, UnionReport};
 use crate::smooth::{renew_normals, smooth};
 use crate::splice::{Fault, splice};
 use crate::tidy::tidy;
@@ -101,6 +101,15 @@ pub fn union_stoppable(
         mesh: work.finish(),
         report,
     })
+}
+
+/// Where a surface crosses itself, as [`union`] reports it, without merging anything.
+///
+/// # Errors
+/// If it crosses itself in too many places, is no mesh, or another thread has set `stopped`.
+pub fn crossing_places(mesh: &SurfaceMesh, stopped: &AtomicBool) -> Result<Vec<Place>, UnionError> {
+    let work = Work::new(mesh)?;
+    Ok(places(&work, &crossings(&work, stopped)?))
 }
 
 fn crossings(work: &Work, stopped: &AtomicBool) -> Result<Vec<[u32; 2]>, UnionError> {

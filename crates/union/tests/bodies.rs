@@ -6,7 +6,9 @@ use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
 use neurotess_mesh::{SurfaceMesh, SurfaceVertex};
-use neurotess_union::{Kin, UnionError, UnionOptions, Why, union, union_stoppable};
+use neurotess_union::{
+    Kin, UnionError, UnionOptions, Why, crossing_places, union, union_stoppable,
+};
 use shapes::{BARE, assert_near, brick, inverted, merged, straight, together, tube};
 
 fn default() -> UnionOptions {
@@ -46,6 +48,10 @@ fn another_thread_can_stop_it() {
 #[test]
 fn the_place_of_a_crossing_names_both_samples() {
     let places = merged(&crossing_tubes(), &default()).0.report.places;
+    let searched = crossing_places(&crossing_tubes(), &AtomicBool::new(false));
+    assert_eq!(searched.expect("searched"), places);
+    let stopped = crossing_places(&crossing_tubes(), &AtomicBool::new(true));
+    assert!(matches!(stopped, Err(UnionError::Stopped)));
     assert_eq!(places.len(), 1, "{places:?}");
     let place = &places[0];
     assert!(place.position.length() < 0.5, "{place:?}");

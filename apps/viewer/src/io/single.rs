@@ -24,6 +24,14 @@ impl<K, T: Send + 'static> Single<K, T> {
         self.running.is_some()
     }
 
+    /// Whether work for this is running.
+    pub(crate) fn is_of(&self, of: &K) -> bool
+    where
+        K: PartialEq,
+    {
+        self.running.as_ref().is_some_and(|(key, _)| key == of)
+    }
+
     /// The progress of what is running.
     pub(crate) fn progress(&self) -> Option<Progress> {
         let running = self.running.as_ref();

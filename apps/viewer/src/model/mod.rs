@@ -3,6 +3,7 @@
 
 pub(crate) mod circuits;
 pub mod command;
+pub mod crossings;
 pub mod document;
 pub(crate) mod film;
 pub(crate) mod history;

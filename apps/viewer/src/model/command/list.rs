@@ -259,6 +259,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::ShowTraces(!now.traces),
                 ),
                 item(
+                    choose(
+                        now.crossings,
+                        "List crossings (self-intersections of the surface)",
+                        "Close the list of crossings (self-intersections)",
+                    ),
+                    None,
+                    Command::ListCrossings(!now.crossings),
+                ),
+                item(
                     "Keep this view for a film",
                     Some((PLAIN, Key::K)),
                     Command::AddKeyView,
@@ -364,6 +373,8 @@ pub struct Toggles {
     pub synapses: bool,
     /// Whether values over time are plotted.
     pub traces: bool,
+    /// Whether places where surfaces cross themselves are listed.
+    pub crossings: bool,
 }
 
 #[cfg(test)]

@@ -121,6 +121,10 @@ pub enum Command {
     ShowTraces(bool),
     /// Sets what *Inspect* plots of the selected cells.
     PlotMeasure(MeasureForm),
+    /// Lists where the selected cells' surfaces cross themselves, or no longer.
+    ListCrossings(bool),
+    /// Goes to a place of that list.
+    GoCrossing(usize),
 
     /// Looks at everything from a side.
     Look(Side),
@@ -195,6 +199,8 @@ impl fmt::Debug for Command {
             }
             Self::ShowTraces(value) => with("ShowTraces", value),
             Self::PlotMeasure(value) => with("PlotMeasure", value),
+            Self::ListCrossings(value) => with("ListCrossings", value),
+            Self::GoCrossing(value) => with("GoCrossing", value),
             Self::Seek(value) => with("Seek", value),
             Self::StepTime(value) => with("StepTime", value),
             Self::SetPace(value) => with("SetPace", value),

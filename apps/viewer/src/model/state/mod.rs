@@ -1,6 +1,7 @@
 //! The state: all that the window shows. Panels are functions of it.
 
 mod counters;
+mod crossings;
 mod derived;
 mod dimension_table;
 mod dimensions;
@@ -17,6 +18,7 @@ use neurotess::render::Side;
 
 use crate::model::circuits::Circuits;
 use crate::model::command::{Command, Edit, Tab, Toggles};
+use crate::model::crossings::CrossingList;
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
 use crate::model::markers::{MarkerData, MarkerRef};
@@ -63,6 +65,8 @@ pub struct State {
     pub traces: TraceData,
     /// What *Inspect* plots of the selected cells.
     pub measures: MeasurePlot,
+    /// Where the selected cells' surfaces cross themselves.
+    pub crossings: CrossingList,
     /// The camera's view.
     pub view: View,
     /// The side from which the view shows everything, until it is moved by hand.
@@ -134,6 +138,7 @@ impl State {
             playback: Playback::default(),
             traces: TraceData::default(),
             measures: MeasurePlot::default(),
+            crossings: CrossingList::default(),
             view: View::default(),
             fitted: None,
             key_views: Vec::new(),
@@ -176,6 +181,7 @@ impl State {
             measuring: self.measuring.is_some(),
             synapses: self.document.markers.synapses,
             traces: self.traces.open,
+            crossings: self.crossings.open,
         }
     }
 
@@ -232,6 +238,8 @@ impl State {
             }
             Command::ShowTraces(open) => self.traces.open = open,
             Command::PlotMeasure(form) => self.measures.form = form,
+            Command::ListCrossings(open) => self.list_crossings(open),
+            Command::GoCrossing(index) => self.go_to_crossing(index),
             Command::TogglePlay => self.playback.play(!self.playback.playing),
             Command::Seek(time) => self.playback.seek(time),
             Command::StepTime(frames) => self.playback.step(frames),

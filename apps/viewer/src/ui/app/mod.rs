@@ -1,5 +1,6 @@
 //! The window: state, workers and stage together.
 
+mod crossings;
 mod loading;
 mod messages;
 mod palettes;
@@ -14,8 +15,10 @@ use eframe::egui;
 use egui_wgpu::RenderState;
 use neurotess::render::DeviceError;
 
+use crate::io::single::Single;
 use crate::io::worker::Worker;
 use crate::model::command::{Command, listed};
+use crate::model::crossings::{Crossing, CrossingKey};
 use crate::model::document::SomaEdit;
 use crate::model::revision::Revision;
 use crate::model::settings::Settings;
@@ -36,6 +39,7 @@ pub struct Viewer {
     pub stage: Stage,
     worker: Worker,
     plots: PlotWork,
+    crossing_search: Single<CrossingKey, Vec<Crossing>>,
     /// A loading: what was found, and its cells by file.
     loading: Option<Loading>,
     /// Paths to be opened after it.
@@ -84,6 +88,7 @@ impl Viewer {
             state,
             stage,
             plots: PlotWork::new(&wake),
+            crossing_search: Single::new(&wake),
             worker: Worker::new(move || wake()),
             loading: None,
             waiting: Vec::new(),
@@ -130,7 +135,8 @@ impl Viewer {
     /// Whether no task is running and everything is drawn.
     pub fn is_settled(&self) -> bool {
         let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
-        let busy = self.worker.is_busy() || self.plots.is_busy();
+        let reads = self.worker.is_busy() || self.plots.is_busy();
+        let busy = reads || self.crossing_search.is_busy();
         !busy && !self.motion.is_flying() && self.loading.is_none() && drawn
     }
 
@@ -156,6 +162,7 @@ impl Viewer {
         self.request_somata();
         self.request_markers();
         self.update_plots();
+        self.update_crossings();
         self.note_settings();
         self.end_input(&ctx);
         if self.quits {
@@ -166,12 +173,13 @@ impl Viewer {
     /// Shows all panels; keeps an error that ends the program in `fatal`.
     fn show_panels(&mut self, ui: &mut egui::Ui) {
         let [reading, saving, marking] = self.worker.progress();
+        let searching = self.crossing_search.progress();
         let mut screen = Screen {
             state: &mut self.state,
             stage: &mut self.stage,
             motion: &mut self.motion,
             files: &mut self.files,
-            tasks: [reading, saving, marking, self.plots.progress()],
+            tasks: [reading, saving, marking, self.plots.progress(), searching],
             failed: None,
         };
         panels::show(&mut screen, ui);
@@ -226,7 +234,7 @@ impl Viewer {
                     .worker
                     .progress()
                     .into_iter()
-                    .chain([self.plots.progress()]);
+                    .chain([self.plots.progress(), self.crossing_search.progress()]);
                 for progress in all.flatten() {
                     progress.cancel();
                     self.state.status = format!("Stopped {}", progress.what);

@@ -5,7 +5,7 @@ use neurotess::morphology::{Measures, NeuriteKind};
 
 use super::cells::{count, kind_name};
 use super::tip::Tip;
-use super::{dimension_list, figures, grouped, heading, markers, measured, measures};
+use super::{crossings, dimension_list, figures, grouped, heading, markers, measured, measures};
 use crate::model::command::{Command, Edit};
 use crate::model::sources::Source;
 use crate::model::state::{CellPart, State};
@@ -29,6 +29,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
             }
             buttons(state, ui);
             measures::show(state, ui);
+            crossings::show(state, ui);
             part(state, one, ui);
             if let Some(source) = state.source_of(one) {
                 cell(source, ui);
@@ -39,6 +40,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
             ui.label(RichText::new(count(many, "neuron")).size(16.0).strong());
             buttons(state, ui);
             measures::show(state, ui);
+            crossings::show(state, ui);
             sums(state, ui);
         }
     }
@@ -260,6 +262,7 @@ fn all(state: &mut State, ui: &mut egui::Ui) {
     let neurons = state.document.neurons.len();
     if neurons == 1 {
         measures::show(state, ui);
+        crossings::show(state, ui);
         if let Some(source) = state.source_of(0) {
             cell(source, ui);
         }

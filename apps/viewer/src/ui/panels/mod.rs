@@ -3,6 +3,7 @@
 mod cell_tip;
 mod cells;
 mod color_map;
+mod crossings;
 mod detail;
 mod dialogs;
 mod dimension_list;
@@ -51,7 +52,7 @@ pub(crate) struct Screen<'a> {
     /// The file dialog, while it is open.
     pub(crate) files: &'a mut Option<FilePanel>,
     /// Progress of reading, of saving, of reading synapses or points, and of reading traces, while they run.
-    pub(crate) tasks: [Option<Progress>; 4],
+    pub(crate) tasks: [Option<Progress>; 5],
     /// The error, if the picture could not be drawn.
     pub(crate) failed: Option<DeviceError>,
 }

@@ -10,7 +10,7 @@ use crate::model::state::{Lowered, State};
 
 pub(super) fn show(
     state: &mut State,
-    tasks: &[Option<Progress>; 4],
+    tasks: &[Option<Progress>; 5],
     drawing: Option<f32>,
     ui: &mut Ui,
 ) {

@@ -6,7 +6,9 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use super::{Screen, cell_tip, marks, measuring, overlay, plate, rectangle, tip, traces};
+use super::{
+    Screen, cell_tip, crossings, marks, measuring, overlay, plate, rectangle, tip, traces,
+};
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
 use crate::model::markers::MarkerRef;
@@ -327,6 +329,7 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     }
     let painter = ui.painter().with_clip_rect(rect);
     marks::rings(screen.state, rect, &painter);
+    crossings::marks(screen.state, rect, &painter);
     traces::marks(screen.state, rect, &painter);
     measuring::show(screen.state, rect, ui);
     if screen.state.measuring.is_none() {
