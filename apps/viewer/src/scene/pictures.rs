@@ -9,8 +9,8 @@ use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
 use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    AdaptiveSettings, Gpu, Image, MarkerSettings, Markers, Occlusion, PictureError, PictureOptions,
-    PngWriter, StaticError, StillRenderer, Viewpoint, Watch, WithMarkers,
+    AdaptiveSettings, Combined, Gpu, Image, MarkerSettings, Markers, Occlusion, PictureError,
+    PictureOptions, PngWriter, StaticError, StillRenderer, Viewpoint, Watch,
 };
 
 use crate::io::save::existing;
@@ -98,7 +98,7 @@ pub(crate) fn pictures(
         };
         let mut drawn = Ok(());
         if number == 0 && film::is_static(still_scene, film_frames, options) {
-            let mut source = WithMarkers::new(&mut adaptive, markers.as_mut());
+            let mut source = Combined::new(&mut adaptive).with_markers(markers.as_mut());
             match renderer.render_static(gpu, &mut source, &view, &table, &picture) {
                 Ok(picture) => film = film::film(still_scene, picture),
                 Err(StaticError::Wireframe | StaticError::Source) => {}
@@ -113,7 +113,7 @@ pub(crate) fn pictures(
         if let Some(image) = recolored {
             drawn = lay(0, image).map_err(PictureError::Sink);
         } else if drawn.is_ok() {
-            let mut source = WithMarkers::new(&mut adaptive, markers.as_mut());
+            let mut source = Combined::new(&mut adaptive).with_markers(markers.as_mut());
             let whole = renderer.render(gpu, &mut source, &view, &table, &picture, lay);
             drawn = whole.map(|_| ());
         }

@@ -17,6 +17,9 @@ struct KeyedVarying {
     @location(4) @interpolate(flat) keys: vec4<u32>,
     @location(5) @interpolate(perspective, centroid) shares: vec4<f32>,
     @location(6) @interpolate(flat) instance: u32,
+#ifdef SHEETS
+    @location(7) grid: vec2<f32>,
+#endif
 }
 
 struct KeyedSample {
@@ -40,12 +43,29 @@ fn vertex_keyed(
     let v = shaded_vertex(vertex_index, instance_index);
     let k = surface_keys(vertex_index, instance_index);
     let shares = vec4<f32>(vec4(k.corner) == vec4(0u, 1u, 2u, 3u));
-    return KeyedVarying(v.position, v.normal, v.relative, v.coverage, v.thin, k.keys, shares, k.instance);
+    var out: KeyedVarying;
+    out.position = v.position;
+    out.normal = v.normal;
+    out.relative = v.relative;
+    out.coverage = v.coverage;
+    out.thin = v.thin;
+    out.keys = k.keys;
+    out.shares = shares;
+    out.instance = k.instance;
+#ifdef SHEETS
+    out.grid = v.grid;
+#endif
+    return out;
 }
 
 @fragment
 fn fragment_keyed(in: KeyedVarying, @builtin(front_facing) front: bool) -> KeyedSample {
     let f = facet(in.normal, in.relative, in.coverage, in.thin, front);
+#ifdef SHEETS
+    let mask = sheet_mask(f.coverage * sheet_coverage(in.grid), in.position, in.relative, front);
+#else
+    let mask = mask_of(f.coverage, in.position);
+#endif
     var weights = vec3(0.5, 0.0, 0.0);
     if shade.lit > 0.0 {
         let l = lights(f.normal, f.to_eye);
@@ -82,9 +102,9 @@ fn fragment_keyed(in: KeyedVarying, @builtin(front_facing) front: bool) -> Keyed
     out.keys = vec4(keys.x & 0xffffu, keys.x >> 16u, keys.y & 0xffffu, keys.y >> 16u);
     out.owner = vec4(keys.z & 0xffffu, keys.z >> 16u, in.instance & 0xffffu, in.instance >> 16u);
 #ifdef MULTISAMPLED
-    out.mask = mask_of(f.coverage, in.position);
+    out.mask = mask;
 #else
-    if mask_of(f.coverage, in.position) == 0u { discard; }
+    if mask == 0u { discard; }
 #endif
     return out;
 }

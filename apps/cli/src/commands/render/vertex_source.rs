@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
+    Adaptive, AdaptiveSettings, BoundingSphere, Camera, Combined, DEFAULT_BUDGET, Exploration,
     ExplorationStats, Frame, Gpu, Instance, Markers, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource, WithMarkers,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource,
 };
 use rayon::prelude::*;
 
@@ -97,8 +97,8 @@ impl PictureSource {
     }
 
     /// The source as the renderer takes it.
-    pub(crate) fn as_vertex_source(&mut self) -> WithMarkers<'_> {
-        WithMarkers::new(self.cells.as_vertex_source(), self.markers.as_mut())
+    pub(crate) fn as_vertex_source(&mut self) -> Combined<'_> {
+        Combined::new(self.cells.as_vertex_source()).with_markers(self.markers.as_mut())
     }
 
     /// What it draws in a whole picture.

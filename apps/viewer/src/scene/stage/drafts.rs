@@ -6,7 +6,7 @@ use eframe::egui;
 use neurotess::render::outline::Outlines;
 use neurotess::render::state::OUTLINED;
 use neurotess::render::{
-    AdaptiveSettings, Camera, Clip, DeviceError, Occlusion, Scene, ViewParams, WithMarkers,
+    AdaptiveSettings, Camera, Clip, Combined, DeviceError, Occlusion, Scene, ViewParams,
 };
 
 use super::cost_model::explorable;
@@ -175,7 +175,7 @@ impl Stage {
         let key = inputs.markers;
         if let Some(source) = explorer {
             let markers = self.markers.drawn(key, 1.0, Some(budget));
-            let mut source = WithMarkers::new(source, markers);
+            let mut source = Combined::new(source).with_markers(markers);
             self.progressive.draft(&self.gpu, &mut source, &params)?;
             self.count_markers(&params, key, Some(budget));
             return Ok(());
@@ -194,7 +194,7 @@ impl Stage {
         }
         let sub_pixels = if halved { 0.5 } else { 1.0 };
         let markers = self.markers.drawn(key, sub_pixels, Some(budget));
-        let mut source = WithMarkers::new(&mut self.adaptive, markers);
+        let mut source = Combined::new(&mut self.adaptive).with_markers(markers);
         self.progressive.draft(&self.gpu, &mut source, &params)?;
         self.count_markers(&inputs.params, key, Some(budget));
         Ok(())

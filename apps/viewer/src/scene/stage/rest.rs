@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use eframe::egui;
 use neurotess::render::{
-    AdaptiveSettings, DeviceError, Frame, Steps, VertexSource, ViewParams, WithMarkers,
+    AdaptiveSettings, Combined, DeviceError, Frame, Steps, VertexSource, ViewParams,
 };
 
 use super::cost_model::RestMode;
@@ -40,7 +40,7 @@ macro_rules! rest_source {
             }
         };
         let markers = $stage.markers.drawn(key, 1.0, rest_budget);
-        source.map(|source| WithMarkers::new(source, markers))
+        source.map(|source| Combined::new(source).with_markers(markers))
     }};
 }
 pub(super) use rest_source;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use eframe::egui;
 use neurotess::coloring::fractions;
-use neurotess::render::{DeviceError, VertexSource, ViewParams, WithMarkers};
+use neurotess::render::{Combined, DeviceError, VertexSource, ViewParams};
 
 use super::cost_model::RestMode;
 use super::rest::rest_source;
