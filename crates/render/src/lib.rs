@@ -34,7 +34,7 @@ pub mod adapter {
 
 /// Bounding spheres of meshes, and whether they are in view.
 pub mod bounds {
-    pub use crate::view::bounds::{any_shows, bounds, merged};
+    pub use crate::view::bounds::{any_shows, bounds, merged, surface_points};
     pub use crate::view::frustum::shows;
 }
 

@@ -4,10 +4,15 @@
 // the samples, and which ones is independent of the layers before and behind it. So the mean over the samples is what
 // blending all layers from back to front gives, in whatever order they are drawn.
 //
-// Practice: 16 samples, those of a block of two by two sub-pixels, are in a random order; a layer covers those whose
-// place in it is below 16 a. So a single layer has no grain. The order is the same for neighboring triangles of one
-// layer, and another for other layers: it depends on the block, the mesh, the side that is seen, and the depth, in steps
-// of SHEET_DEPTH sub-pixels. The steps begin elsewhere in each block, so that they do not show.
+// Practice: 16 samples, those of a block of two by two sub-pixels, are put in an order; a layer covers those whose place in
+// it is below 16 a. So a single layer has no grain. There are five kinds of orders. Each begins with all samples of one of
+// its four groups, and a group of one kind has one sample in common with each group of another (an orthogonal array of
+// strength 2: Hedayat, Sloane & Stufken, Orthogonal arrays, 1999): so two layers of different kinds have no grain
+// either, if their opacities are quarters, and little else. Front and back sides have different kinds.
+//
+// An order is the same for neighboring triangles of one layer, and another for other layers: it depends on the block, the
+// mesh, the side that is seen, and the depth, in steps of SHEET_DEPTH sub-pixels. The steps begin elsewhere in each block,
+// so that they do not show.
 
 // Depth of what does not stand for its sub-pixel in ambient occlusion, which looks for a sample behind it.
 const NO_DEPTH = vec4<f32>(1.0);
@@ -32,15 +37,24 @@ fn scrambled(value: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
-// Place of a sample in the order of a seed; both from 0 to 15.
-fn place_of(index: u32, seed: u32) -> u32 {
-    var x = index;
-    for (var round = 0u; round < 4u; round++) {
-        let bits = seed >> (7u * round);
-        x = (x * ((bits & 7u) * 2u + 1u) + ((bits >> 3u) & 15u)) & 15u;
-        x ^= x >> 2u;
-    }
-    return x;
+// A product in the field of four elements: their tables, by the first factor, have two bits for each second one.
+fn product(a: u32, b: u32) -> u32 {
+    let tables = vec4<u32>(0u, 0xe4u, 0x78u, 0x9cu);
+    return (tables[a] >> (2u * b)) & 3u;
+}
+
+// Place of a sample, from 0 to 15, in an order of this kind.
+fn place_of(index: u32, kind: u32, seed: u32) -> u32 {
+    let row = index >> 2u;
+    let column = index & 3u;
+    // Lines in the plane over that field: of each kind four, which are parallel.
+    let group = select(row ^ product(kind & 3u, column), column, kind == 4u);
+    let other = select(column, row, kind == 4u);
+    // Which group is first, and which sample in each, is random.
+    let first = product(1u + (seed >> 2u) % 3u, group) ^ (seed & 3u);
+    let bits = seed >> (16u + 4u * first);
+    let second = product(1u + ((seed >> 8u) + first) % 3u, other) ^ (bits & 3u);
+    return 4u * first + second;
 }
 
 // Steps of depth, of which each holds what counts as one layer.
@@ -65,14 +79,16 @@ fn sheet_mask(coverage: f32, position: vec4<f32>, relative: vec3<f32>, front: bo
     let of_block = scrambled(block.x + scrambled(block.y + scrambled(stage.x + 2u * stage.y + sheet)));
     let begin = f32(of_block >> 8u) / 16777216.0;
     let depth = -dot(relative, shade.backward);
-    let seed = scrambled(of_block + u32(i32(floor(steps_of_depth(depth) + begin))));
+    let layer = u32(i32(floor(steps_of_depth(depth) + begin)) + (1 << 20u));
+    let seed = scrambled(of_block + layer);
+    let kind = (2u * mesh_frame.number + select(3u + layer % 2u, layer % 3u, front)) % 5u;
     // Below a sixteenth, neighboring blocks differ.
     let x = block.x & 3u;
     let y = block.y & 3u;
     let fine = (bayer(vec2(x, y)) + 0.25 * bayer(vec2(x, y) >> vec2(1u)) - 0.125 + 0.25 * f32(stage.x + 2u * stage.y)) % 1.0;
     var mask = 0u;
     for (var k = 0u; k < SAMPLES; k++) {
-        let place = place_of(4u * (in_block.x + 2u * in_block.y) + k, seed);
+        let place = place_of(4u * (in_block.x + 2u * in_block.y) + k, kind, seed);
         if f32(place) + fine < 16.0 * coverage {
             mask |= 1u << k;
         }
