@@ -302,7 +302,8 @@ fn mesh_shaders_are_valid_in_every_language_and_have_our_structs() {
                 color_key,
                 number,
                 edges,
-                first_half
+                first_half,
+                scale
             ]
         );
     }

@@ -82,7 +82,7 @@ fn folded(places: &[f32]) -> SurfaceMesh {
 
 fn uploaded(gpu: &Gpu, meshes: &[(SurfaceMesh, MeshLook)]) -> Meshes {
     let made = meshes.iter().map(|(mesh, look)| {
-        let geometry = MeshGeometry::new(gpu, mesh.clone(), 1.0).expect("uploaded");
+        let geometry = MeshGeometry::new(gpu, mesh.clone()).expect("uploaded");
         (Arc::new(geometry), *look)
     });
     Meshes::new(gpu, made.collect())
@@ -93,6 +93,7 @@ fn look(color_key: u32, opacity: f32) -> MeshLook {
         color_key,
         opacity,
         edges: false,
+        scale: 1.0,
     }
 }
 

@@ -91,11 +91,12 @@ impl SceneMeshes {
         let mut all = Vec::new();
         for (SceneMesh { arg, surface, .. }, &color_key) in self.meshes.into_iter().zip(color_keys)
         {
-            let geometry = MeshGeometry::new(gpu, surface, arg.scale)?;
+            let geometry = MeshGeometry::new(gpu, surface)?;
             let look = MeshLook {
                 color_key,
                 opacity: arg.opacity as f32,
                 edges: arg.edges,
+                scale: arg.scale,
             };
             all.push((Arc::new(geometry), look));
         }

@@ -8,6 +8,7 @@ use neurotess::plot::Plot;
 use neurotess::render::{BoundingSphere, Placement};
 
 use super::State;
+use super::meshes::MeshesKey;
 use super::traces::PlotKey;
 use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
 use crate::model::ids::CircuitId;
@@ -36,6 +37,8 @@ pub(crate) struct SpheresKey {
     geometry: Revision,
     /// Revision of what was read, if points are shown.
     points: Option<Revision>,
+    /// Of meshes beside the cells.
+    meshes: MeshesKey,
 }
 
 /// Derived values.
@@ -92,11 +95,12 @@ impl State {
             .collect()
     }
 
-    /// Bounding spheres (µm) of the neurons that are shown, and of points beside them.
+    /// Bounding spheres (µm) of the neurons that are shown, and of points and opaque meshes beside them.
     pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
         let derive = || {
             let mut spheres = self.spheres_where(|_| true);
             spheres.extend(self.sphere_of_points());
+            spheres.extend(self.mesh_points(false));
             spheres
         };
         self.derived.spheres.get(self.spheres_key(), derive)
@@ -109,6 +113,7 @@ impl State {
             hidden: self.document.neurons.revisions().hidden,
             geometry: self.sources.geometry(),
             points: self.shows_points().then(|| self.marker_data.revision()),
+            meshes: self.meshes_key(),
         }
     }
 

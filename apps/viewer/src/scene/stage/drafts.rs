@@ -54,6 +54,7 @@ impl Stage {
             states: StatesKey::new(&state.document),
             instances: InstancesKey::new(state, self.content.revision),
             markers: self.markers.key(state),
+            meshes: self.meshes.key(),
         }
     }
 
@@ -63,7 +64,9 @@ impl Stage {
         match self.near[which] {
             Some((known, near)) if known == key => near,
             _ => {
-                let near = camera.near(&state.spheres());
+                let mut spheres = state.spheres().to_vec();
+                spheres.extend(state.mesh_points(true));
+                let near = camera.near(&spheres);
                 self.near[which] = Some((key, near));
                 near
             }
@@ -175,7 +178,9 @@ impl Stage {
         let key = inputs.markers;
         if let Some(source) = explorer {
             let markers = self.markers.drawn(key, 1.0, Some(budget));
-            let mut source = Combined::new(source).with_markers(markers);
+            let mut source = Combined::new(source)
+                .with_markers(markers)
+                .with_meshes(self.meshes.drawn());
             self.progressive.draft(&self.gpu, &mut source, &params)?;
             self.count_markers(&params, key, Some(budget));
             return Ok(());
@@ -194,7 +199,9 @@ impl Stage {
         }
         let sub_pixels = if halved { 0.5 } else { 1.0 };
         let markers = self.markers.drawn(key, sub_pixels, Some(budget));
-        let mut source = Combined::new(&mut self.adaptive).with_markers(markers);
+        let mut source = Combined::new(&mut self.adaptive)
+            .with_markers(markers)
+            .with_meshes(self.meshes.drawn());
         self.progressive.draft(&self.gpu, &mut source, &params)?;
         self.count_markers(&inputs.params, key, Some(budget));
         Ok(())

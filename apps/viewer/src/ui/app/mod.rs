@@ -155,6 +155,7 @@ impl Viewer {
         self.do_effects(&ctx);
         self.request_somata();
         self.request_markers();
+        self.request_meshes();
         self.update_plots();
         self.note_settings();
         self.end_input(&ctx);

@@ -54,15 +54,12 @@ pub struct MeshGeometry {
 }
 
 impl MeshGeometry {
-    /// Uploads a mesh. `scale`: micrometers of a unit of its coordinates.
+    /// Uploads a mesh.
     ///
     /// # Errors
     /// The device has no room for it.
-    pub fn new(gpu: &Gpu, mut mesh: SurfaceMesh, scale: f64) -> Result<Self, DeviceError> {
-        let origin = mesh.origin * scale;
-        for vertex in &mut mesh.vertices {
-            vertex.position *= scale as f32;
-        }
+    pub fn new(gpu: &Gpu, mesh: SurfaceMesh) -> Result<Self, DeviceError> {
+        let origin = mesh.origin;
         let lit = Lit::new(mesh);
         let mut chunks = Vec::new();
         // By vertex: its number within the chunk.
@@ -91,10 +88,13 @@ impl MeshGeometry {
         self.chunks.iter().map(bytes).sum()
     }
 
-    /// Spheres that hold it, in the world (µm).
-    pub fn spheres(&self) -> impl Iterator<Item = BoundingSphere> {
+    /// Spheres that hold it, in the world (µm). `scale`: micrometers of a unit of its coordinates.
+    pub fn spheres(&self, scale: f64) -> impl Iterator<Item = BoundingSphere> {
         let runs = self.chunks.iter().flat_map(|chunk| &chunk.runs);
-        runs.map(|run| (self.origin + run.center.as_dvec3(), f64::from(run.radius)))
+        runs.map(move |run| {
+            let center = self.origin + run.center.as_dvec3();
+            (scale * center, scale * f64::from(run.radius))
+        })
     }
 }
 

@@ -21,6 +21,8 @@ struct MeshFrame {
     edges: u32,
     // Index of the first triangle that is half of a quad.
     first_half: u32,
+    // Micrometers of a unit of the mesh's coordinates.
+    scale: f32,
 }
 
 @group(0) @binding(0) var<storage, read> stored: array<MeshVertex>;
@@ -39,7 +41,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
         grid = side * vec2(f32(corner == 1u), f32(corner == 2u));
     }
     let v = stored[index];
-    let position = vec3(v.x, v.y, v.z) + mesh_frame.relative_from_mesh;
+    let position = mesh_frame.scale * vec3(v.x, v.y, v.z) + mesh_frame.relative_from_mesh;
     return SurfaceVertex(
         position,
         unpack_normal(v.normal),

@@ -44,6 +44,8 @@ pub struct MeshLook {
     pub opacity: f32,
     /// Whether only the edges of its faces are drawn.
     pub edges: bool,
+    /// Micrometers of a unit of its coordinates.
+    pub scale: f64,
 }
 
 impl MeshLook {
@@ -63,6 +65,8 @@ pub(crate) struct MeshFrame {
     pub(crate) number: u32,
     pub(crate) edges: u32,
     pub(crate) first_half: u32,
+    pub(crate) scale: f32,
+    pub(crate) pad: [f32; 3],
 }
 
 /// A chunk of a mesh, and what of it is drawn.
@@ -144,7 +148,8 @@ impl Meshes {
 
     /// Spheres (µm) that hold them, for near planes.
     pub fn spheres(&self) -> impl Iterator<Item = BoundingSphere> {
-        self.meshes.iter().flat_map(|(mesh, _)| mesh.spheres())
+        let meshes = self.meshes.iter();
+        meshes.flat_map(|(mesh, look)| mesh.spheres(look.scale))
     }
 
     /// Index of the mesh that an id means; none if it means none.
@@ -178,7 +183,7 @@ impl Companion for Meshes {
     fn shows(&self, frame: &Frame) -> bool {
         let (planes, eye) = (frame.frustum(), frame.camera.eye());
         self.meshes.iter().any(|(mesh, look)| {
-            let mut spheres = mesh.spheres().filter(|_| look.opacity > 0.0);
+            let mut spheres = mesh.spheres(look.scale).filter(|_| look.opacity > 0.0);
             spheres.any(|(center, radius)| shows(&planes, (center - eye).as_vec3(), radius as f32))
         })
     }
@@ -189,7 +194,8 @@ impl Companion for Meshes {
         for (index, shown) in self.chunks.iter_mut().enumerate() {
             let (mesh, look) = &self.meshes[shown.mesh];
             let chunk = &mesh.chunks[shown.chunk];
-            let offset = (mesh.origin - eye).as_vec3();
+            let offset = (mesh.origin * look.scale - eye).as_vec3();
+            let scale = look.scale as f32;
             let uniforms = MeshFrame {
                 relative_from_mesh: offset.to_array(),
                 opacity: look.opacity.clamp(0.0, 1.0),
@@ -197,6 +203,8 @@ impl Companion for Meshes {
                 number: shown.mesh as u32,
                 edges: u32::from(look.edges),
                 first_half: chunk.first_half,
+                scale,
+                pad: [0.0; 3],
             };
             let bytes = bytemuck::bytes_of(&uniforms);
             let place = UNIFORM_STRIDE * index as u64;
@@ -206,7 +214,7 @@ impl Companion for Meshes {
                 continue;
             }
             for run in &chunk.runs {
-                if !shows(&planes, run.center + offset, run.radius) {
+                if !shows(&planes, scale * run.center + offset, scale * run.radius) {
                     continue;
                 }
                 match shown.shown.last_mut() {
