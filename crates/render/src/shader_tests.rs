@@ -188,6 +188,7 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
                     least_half_width,
                     edge,
                     flat,
+                    steps,
                     turn
                 ]
             );

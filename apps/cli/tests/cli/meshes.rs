@@ -45,7 +45,7 @@ fn meshes_of_any_format_are_drawn_with_any_source() {
         ),
         (
             "both",
-            "--mesh cube.obj,opacity=0.3 --mesh segment.stl,color=red",
+            "--mesh cube.obj,opacity=0.3 --mesh segment.stl,color=#cc2200",
         ),
     ] {
         let (document, picture) = draw(name, more);
@@ -125,7 +125,7 @@ fn what_is_no_mesh_says_why_and_leaves_no_picture() {
     work.file("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 7\n");
     work.file(
         "huge.stl",
-        &format!("{:80}\u{7f}\u{7f}\u{7f}\u{7f}", "solid?"),
+        &format!("{:80}\u{7f}\u{7f}\u{7f}\u{7f}", "binary"),
     );
     for (mesh, code, said) in [
         ("none.obj", 1, "none.obj: cannot be read"),

@@ -50,6 +50,8 @@ struct Shade {
     edge: vec4<f32>,
     // Size (µm) of a sub-pixel at every depth: 0 with perspective.
     flat: f32,
+    // Number of steps of a progressive picture; else 1.
+    steps: f32,
     // For a step of a progressive picture: what the dither pattern is offset by (sub-pixels).
     turn: vec2<f32>,
 }

@@ -62,7 +62,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Edit::SetPoints(None).into(),
                 ),
                 item(
-                    "Add a mesh: region, segment, pipette, surface (PLY, OBJ, STL, GLB)…",
+                    "Add a mesh (brain region, segment, pipette)…",
                     None,
                     Command::AskFiles(FilePurpose::Meshes),
                 ),

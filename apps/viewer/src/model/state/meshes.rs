@@ -42,10 +42,11 @@ impl State {
 
     /// Takes what was read of a file.
     pub(crate) fn set_mesh(&mut self, file: PathBuf, read: Result<ReadMesh, String>) {
-        let name = file.display().to_string();
         if let Err(why) = &read {
-            self.problem(name.clone(), why.clone());
+            self.problem(file.display().to_string(), why.clone());
         }
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let name = name.into_owned();
         self.mesh_data.set(file.clone(), read);
         self.status = match self.mesh_data.faces(&file) {
             Some(faces) => format!("{name}: {} faces", grouped(faces as u64)),

@@ -64,9 +64,11 @@ impl Stage {
         match self.near[which] {
             Some((known, near)) if known == key => near,
             _ => {
-                let mut spheres = state.spheres().to_vec();
-                spheres.extend(state.mesh_points(true));
-                let near = camera.near(&spheres);
+                let (spheres, meshes) = (state.spheres(), state.mesh_points(true));
+                let near = match meshes.is_empty() {
+                    true => camera.near(&spheres),
+                    false => camera.near(&[&spheres[..], &meshes].concat()),
+                };
                 self.near[which] = Some((key, near));
                 near
             }

@@ -18,7 +18,8 @@ use crate::scene::meshes::{self, SceneMesh};
 /// Meshes of the picture, once they are uploaded.
 #[derive(Default)]
 pub(super) struct StageMeshes {
-    uploaded: Vec<(Arc<SurfaceMesh>, Arc<MeshGeometry>)>,
+    /// Those that were uploaded; without a geometry if that failed, so that it is not tried again.
+    uploaded: Vec<(Arc<SurfaceMesh>, Option<Arc<MeshGeometry>>)>,
     uploading: Option<(Arc<SurfaceMesh>, Task<Result<MeshGeometry, DeviceError>>)>,
     /// What those that show were made of: of the document, whether they are placed, and how many were uploaded.
     inputs: Option<(MeshesKey, bool, usize)>,
@@ -62,8 +63,8 @@ impl StageMeshes {
     }
 
     pub(super) fn bytes(&self) -> u64 {
-        let bytes = self.uploaded.iter().map(|(_, mesh)| mesh.bytes());
-        bytes.sum()
+        let meshes = self.uploaded.iter().filter_map(|(_, mesh)| mesh.as_ref());
+        meshes.map(|mesh| mesh.bytes()).sum()
     }
 
     /// Those that show, for pictures that are saved.
@@ -86,7 +87,12 @@ impl StageMeshes {
     fn geometry(&self, surface: &Arc<SurfaceMesh>) -> Option<&Arc<MeshGeometry>> {
         let mut uploaded = self.uploaded.iter();
         let found = uploaded.find(|(of, _)| Arc::ptr_eq(of, surface));
-        found.map(|(_, geometry)| geometry)
+        found.and_then(|(_, geometry)| geometry.as_ref())
+    }
+
+    fn was_uploaded(&self, surface: &Arc<SurfaceMesh>) -> bool {
+        let mut uploaded = self.uploaded.iter();
+        uploaded.any(|(of, _)| Arc::ptr_eq(of, surface))
     }
 }
 
@@ -104,7 +110,7 @@ impl Stage {
         }
         let wanted = meshes::shown(state);
         let missing = wanted.iter().map(|mesh| &mesh.surface);
-        let missing = missing.filter(|surface| self.meshes.geometry(surface).is_none());
+        let missing = missing.filter(|surface| !self.meshes.was_uploaded(surface));
         if let Some(surface) = missing.cloned().next() {
             self.upload(surface, ctx);
         } else {
@@ -136,14 +142,17 @@ impl Stage {
         let Some((surface, _)) = self.meshes.uploading.take() else {
             return Ok(());
         };
-        match result {
-            Ok(geometry) => {
-                self.meshes.uploaded.push((surface, Arc::new(geometry?)));
-                self.meshes.count += 1;
+        self.meshes.count += 1;
+        let (geometry, end) = match result {
+            Ok(Ok(geometry)) => (Some(Arc::new(geometry)), Ok(())),
+            Ok(Err(e)) => (None, Err(e)),
+            Err(why) => {
+                state.problem("preparing a mesh", why);
+                (None, Ok(()))
             }
-            Err(why) => state.problem("preparing a mesh", why),
-        }
-        Ok(())
+        };
+        self.meshes.uploaded.push((surface, geometry));
+        end
     }
 
     /// Shows those of these meshes that are uploaded.

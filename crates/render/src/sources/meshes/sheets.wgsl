@@ -71,8 +71,9 @@ fn sheet_mask(coverage: f32, position: vec4<f32>, relative: vec3<f32>, front: bo
     }
     let turned = vec2<u32>(position.xy + shade.tile_origin + 4096.0);
     let turn = vec2<u32>(shade.turn);
-    let block = (turned - turn) >> vec2(1u);
-    // Each step of a progressive picture draws another sub-pixel of a block, and each stage of four steps draws all.
+    // Each step of a progressive picture draws another sub-pixel of its blocks, which are pixels; and each stage of four
+    // steps draws all.
+    let block = select((turned - turn) >> vec2(1u), turned - turn, shade.steps > 1.0);
     let in_block = turned & vec2(1u);
     let stage = turn >> vec2(1u);
     let sheet = scrambled(2u * mesh_frame.number + select(0u, 1u, front));
