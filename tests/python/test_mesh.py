@@ -110,6 +110,8 @@ def test_no_option_of_the_command_is_missing() -> None:
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
     # In Python a palette may be a dictionary of colors.
     drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color", "saved_view"}
+    # In Python several meshes are one list.
+    drawing |= {"mesh", "meshes"}
     for command, function, other in [
         ("mesh", nt.mesh, files | circuit),
         ("render", nt.render, drawing),

@@ -221,3 +221,35 @@ def test_views_show_times(circuit_folder: Path) -> None:
     slider.value = times[3]
     assert view.time == times[3]
     view.close()
+
+
+def test_meshes_are_drawn_from_files_and_from_memory(cell: nt.Morphology, tmp_path: Path) -> None:
+    around = nt.mesh(nt.synth("star", points=60), level=1)
+    file = tmp_path / "around.ply"
+    around.save(file)
+    plain = np.asarray(nt.render(cell, legend=False, **SMALL))
+    glass = {"opacity": 0.4, "color": "#2080ff", "fit": True}
+
+    class Elsewhere:
+        vertices = around.vertices
+        faces = around.triangles()
+
+    pictures = [
+        np.asarray(nt.render(cell, meshes=meshes, legend=False, **SMALL))
+        for meshes in ([{"mesh": file, **glass}], {"mesh": around, **glass}, [{"mesh": Elsewhere(), **glass}])
+    ]
+    assert (pictures[0] != plain).any()
+    assert (pictures[0] == pictures[1]).all() and (pictures[0] == pictures[2]).all()
+    nanometers = tmp_path / "nm.ply"
+    nt.Mesh.from_arrays(1000 * around.vertices, around.triangles()).save(nanometers)
+    scaled = nt.render(cell, meshes=[{"mesh": nanometers, "scale": 0.001, **glass}], legend=False, **SMALL)
+    apart = np.abs(np.asarray(scaled).astype(int) - pictures[0])
+    assert (apart > 8).mean() < 0.02
+    wires = nt.render(cell, meshes=[str(file), {"mesh": around, "edges": True}], **SMALL)
+    assert (np.asarray(wires) != plain).any()
+    with pytest.raises(ValueError, match="from 0 to 1"):
+        nt.render(cell, meshes=[{"mesh": file, "opacity": 7}], **SMALL)
+    with pytest.raises(ValueError, match="names no mesh"):
+        nt.render(cell, meshes=[{"color": "red"}], **SMALL)
+    with pytest.raises(nt.RenderError, match=r"none\.obj"):
+        nt.render(cell, meshes=["none.obj"], **SMALL)

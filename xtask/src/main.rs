@@ -19,6 +19,7 @@ mod modules;
 mod packages;
 mod pictures;
 mod python;
+mod scenery;
 mod setup;
 mod soak;
 mod steps;

@@ -7,12 +7,12 @@ use anyhow::Context;
 use crate::demo::neurotess;
 use crate::steps::{self, Steps, cargo, root};
 
-/// Name, and arguments of `neurotess render`. Small: all together stay below 450 kB.
+/// Name, and arguments of `neurotess render`. Small: all together stay below 700 kB.
 const PICTURES: &[(&str, &str)] = &[
     ("types", "samples/pyramidal.swc --size 480x640 --scale-bar"),
     (
         "depth",
-        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar --marker-size 1.8",
+        "samples/purkinje.swc --size 480x640 --color-by depth --colormap magma --background 101014 --scale-bar",
     ),
     (
         "soma",
@@ -30,6 +30,13 @@ const PICTURES: &[(&str, &str)] = &[
     (
         "spines",
         "target/pictures/spiny.swc --eye=-1.7,356.5,34.3 --target=-9.7,356.5,8.3 --size 480x360 --scale-bar --no-legend",
+    ),
+    (
+        "meshes",
+        "samples/pyramidal.swc --mesh=target/pictures/layer_1.obj,opacity=0.25,color=#70b080 \
+         --mesh=target/pictures/layer_2-3.obj,opacity=0.25,color=#60a0c8 \
+         --mesh=target/pictures/layer_5.obj,opacity=0.25,color=#d0a050 --mesh=target/pictures/pipette.obj,color=#808890 \
+         --eye=900,590,2150 --target=-20,35,0 --size 480x560 --samples 64 --scale-bar",
     ),
     (
         "order",
@@ -58,6 +65,10 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
     steps.step("spines", || {
         let made = "convert samples/pyramidal.swc -o target/pictures/spiny.swc --spines 2";
         steps::run(&mut neurotess(&format!("{made} --force -q"))?)?;
+        Ok("in target/pictures".into())
+    })?;
+    steps.step("meshes", || {
+        crate::scenery::write(&root().join("target/pictures"))?;
         Ok("in target/pictures".into())
     })?;
     let mut bytes = 0;

@@ -21,6 +21,7 @@ mod cut;
 mod film;
 #[cfg(feature = "circuit")]
 mod markers;
+mod meshes;
 mod own_colors;
 mod palette_file;
 mod path_distance;
@@ -47,6 +48,7 @@ pub use markers::{
     EdgeSynapses, MarkerError, MarkerRow, MarkerSet, ShownCells, SynapseFacts, SynapseOptions,
     points, synapse_markers, synapses,
 };
+pub use meshes::mesh_color;
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
 pub use palette_file::{PaletteError, PaletteFile};
 pub use path_distance::path_distances;

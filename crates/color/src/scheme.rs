@@ -2,7 +2,7 @@
 
 use neurotess_mesh::CoarseMesh;
 use neurotess_morphology::{Morphology, NeuriteKind};
-use neurotess_render::color::{ColorTable, Palette, Rgb};
+use neurotess_render::color::{CATEGORY_BIT, ColorTable, Palette, Rgb};
 use neurotess_render::overlay::Legend;
 
 use crate::own_colors::{ColorTarget, ColoredThing, OwnColors};
@@ -32,6 +32,17 @@ pub struct Coloring {
     /// What has a color that can be chosen, in the order of the legend, also where that names none
     /// because there are too many.
     pub things: Vec<ColoredThing>,
+}
+
+impl Coloring {
+    /// Number of categories that the cells have, also beyond the end of the table, where all have its last
+    /// color.
+    pub fn categories(&self) -> usize {
+        let keys = self.color_keys.iter().flatten();
+        let categories = keys.filter(|&key| key & CATEGORY_BIT != 0);
+        let used = categories.map(|key| (key & !CATEGORY_BIT) as usize + 1);
+        self.table.categories.len().max(used.max().unwrap_or(0))
+    }
 }
 
 /// The colors that a coloring uses.

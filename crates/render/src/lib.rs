@@ -34,7 +34,7 @@ pub mod adapter {
 
 /// Bounding spheres of meshes, and whether they are in view.
 pub mod bounds {
-    pub use crate::view::bounds::{any_shows, bounds, merged};
+    pub use crate::view::bounds::{any_shows, bounds, merged, surface_points};
     pub use crate::view::frustum::shows;
 }
 
@@ -103,7 +103,9 @@ pub use sources::adaptive::settings::{AdaptiveSettings, CullView};
 pub use sources::budgeted::{
     DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET, Proxy,
 };
-pub use sources::markers::{Marker, MarkerSettings, Markers, WithMarkers};
+pub use sources::combined::Combined;
+pub use sources::markers::{Marker, MarkerSettings, Markers};
+pub use sources::meshes::{MeshGeometry, MeshLook, Meshes};
 pub use sources::prerefined::{Place, Prerefined, PrerefinedSurface, Resident};
 pub use sources::{SourceKey, VertexSource};
 pub use view::camera::{Camera, CameraError};

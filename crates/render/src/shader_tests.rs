@@ -26,6 +26,7 @@ use crate::sources::budgeted::layout::{
 };
 use crate::sources::budgeted::passes::{Arguments, Measured, VisibleCluster, select_shader};
 use crate::sources::markers::{self, MarkerFrame, StoredMarker};
+use crate::sources::meshes::{self, MeshFrame, MeshVertex};
 use crate::sources::prerefined::{self, Placement, StoredVertex};
 
 #[test]
@@ -186,7 +187,9 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
                     batch,
                     least_half_width,
                     edge,
-                    flat
+                    flat,
+                    steps,
+                    turn
                 ]
             );
             assert_layout!(
@@ -273,6 +276,35 @@ fn marker_shaders_are_valid_in_every_language_and_have_our_structs() {
                 least,
                 backward,
                 first
+            ]
+        );
+    }
+}
+
+#[test]
+fn mesh_shaders_are_valid_in_every_language_and_have_our_structs() {
+    let source = meshes::vertex_shader();
+    for samples in [1, 4] {
+        let key = PipelineKey {
+            samples,
+            valued: samples > 1,
+            edged: samples > 1,
+            ..PipelineKey::default()
+        };
+        let (module, _) = testing::check(&shade_shader(&source, key));
+        assert_layout!(&module, "MeshVertex", MeshVertex, [x, y, z, normal]);
+        assert_layout!(
+            &module,
+            "MeshFrame",
+            MeshFrame,
+            [
+                relative_from_mesh,
+                opacity,
+                color_key,
+                number,
+                edges,
+                first_half,
+                scale
             ]
         );
     }

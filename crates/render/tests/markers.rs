@@ -10,8 +10,8 @@ use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::color::{ColorTable, category};
 use neurotess_render::{
-    Camera, Frame, Gpu, Image, KeyColors, Look, Marker, MarkerSettings, Markers, PictureOptions,
-    Placement, StillRenderer, VertexSource, Viewpoint, WithMarkers,
+    Camera, Combined, Frame, Gpu, Image, KeyColors, Look, Marker, MarkerSettings, Markers,
+    PictureOptions, Placement, StillRenderer, VertexSource, Viewpoint,
 };
 use pictured::{CELL, by_type, camera, mesh};
 use renderer::source;
@@ -81,7 +81,12 @@ fn markers_are_drawn_in_their_colors_and_leave_the_cells_as_they_are() {
     let view = viewpoint(&mesh);
     let mut cells = source(&gpu, &mesh, &[Placement::default()]);
     let without = drawn(&gpu, &mut cells, &view, &table);
-    let empty = drawn(&gpu, &mut WithMarkers::new(&mut cells, None), &view, &table);
+    let empty = drawn(
+        &gpu,
+        &mut Combined::new(&mut cells).with_markers(None),
+        &view,
+        &table,
+    );
     assert_eq!(without, empty);
     let radius = 6.0 * 0.7 * view.camera.pixel_at_target(f64::from(SIZE[1]));
     let settings = MarkerSettings {
@@ -91,7 +96,7 @@ fn markers_are_drawn_in_their_colors_and_leave_the_cells_as_they_are() {
     let mut markers = Markers::new(&gpu, &row(&view, key, 4), settings).expect("uploaded");
     let with = drawn(
         &gpu,
-        &mut WithMarkers::new(&mut cells, Some(&mut markers)),
+        &mut Combined::new(&mut cells).with_markers(Some(&mut markers)),
         &view,
         &table,
     );
@@ -145,7 +150,7 @@ fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
     let mut cells = source(&gpu, &mesh, &[]);
     let image = drawn(
         &gpu,
-        &mut WithMarkers::new(&mut cells, Some(&mut markers)),
+        &mut Combined::new(&mut cells).with_markers(Some(&mut markers)),
         &view,
         &table,
     );
@@ -188,7 +193,7 @@ fn static_pictures_have_markers_too() {
     };
     let mut cells = source(&gpu, &mesh, &[Placement::default()]);
     let mut markers = Markers::new(&gpu, &row(&view, key, 4), settings).expect("uploaded");
-    let mut both = WithMarkers::new(&mut cells, Some(&mut markers));
+    let mut both = Combined::new(&mut cells).with_markers(Some(&mut markers));
     let picture = StillRenderer::new()
         .render_static(&gpu, &mut both, &view, &table, &options())
         .expect("a static picture");
@@ -228,7 +233,7 @@ fn markers_are_picked_and_what_is_beside_them_as_before() {
     let mut drawer = renderer::renderer(&gpu, &mesh);
     let view = neurotess_render::ViewParams { near: 0.1, ..view };
     let before = renderer::picks(&gpu, &mut drawer, &mut cells, &view);
-    let mut both = WithMarkers::new(&mut cells, Some(&mut markers));
+    let mut both = Combined::new(&mut cells).with_markers(Some(&mut markers));
     drawer.identify(&gpu, &mut both, &view).expect("drawn");
     gpu.wait().expect("done");
     let (size, ids) = drawer.ids().expect("no fault").expect("arrived");

@@ -12,9 +12,9 @@ use neurotess_refine::{LodCriterion, RefineOptions};
 use neurotess_render::color::{ColorTable, category};
 use neurotess_render::overlay::{Overlay, OverlayOptions};
 use neurotess_render::{
-    Adaptive, AdaptiveSettings, Camera, DEFAULT_FOV, Exploration, Gpu, Image, Instance, Lens,
-    Marker, MarkerSettings, Markers, Occlusion, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Side, VertexSource, Viewpoint, WithMarkers, render_still,
+    Adaptive, AdaptiveSettings, Camera, Combined, DEFAULT_FOV, Exploration, Gpu, Image, Instance,
+    Lens, Marker, MarkerSettings, Markers, Occlusion, PictureOptions, Placement, Prerefined,
+    PrerefinedSurface, Proxy, Scene, Side, VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
 use pictured::{CELL, by_type, mesh, one_template, spheres};
@@ -190,7 +190,7 @@ fn spheres_and_tubes_have_one_size_and_the_scale_bar_is_theirs() {
         };
         let all = [marker(0), marker(1)];
         let mut markers = Markers::new(&gpu, &all, settings).expect("uploaded");
-        let mut source = WithMarkers::new(none, Some(&mut markers));
+        let mut source = Combined::new(none).with_markers(Some(&mut markers));
         let image = drawn(&gpu, &mut source, &camera, &table, Occlusion::Off);
         let widths = colors.map(|color| f64::from(width_of(&image, color)));
         note!("radius {radius}: {widths:?} pixels, {expected} expected");

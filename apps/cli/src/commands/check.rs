@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use neurotess::mesh::{self, FilePosition, Format, ReadError, Report};
+use neurotess::mesh::{self, Format, Report};
 use serde::Serialize;
 
 use crate::io::batch::each;
 use crate::io::inputs::{Input, Inputs};
+use crate::io::meshes::named;
 use crate::io::output::is_standard;
 use crate::io::standard_input::standard_input;
-use crate::report::{Entry, Failure, Reporter, place};
+use crate::report::{Entry, Failure, Reporter};
 
 /// `neurotess check`
 #[derive(Args, Debug)]
@@ -76,28 +77,6 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
         file,
         report: mesh::check(&surface),
     })
-}
-
-/// `FILE:LINE: what: what to do`
-fn named(file: &str, error: &ReadError) -> String {
-    match error.place() {
-        FilePosition::Line(line) => {
-            let text = error.to_string();
-            let what = text
-                .strip_prefix(&format!("line {line}: "))
-                .unwrap_or(&text);
-            format!("{} {what}", place(file, Some(line as u64)))
-        }
-        FilePosition::Byte(_) | FilePosition::File => match error {
-            ReadError::Io(e) => {
-                format!("{file}: cannot be read ({e}): check the path and its permissions")
-            }
-            other => {
-                let text = other.to_string();
-                format!("{file}: {}", text.strip_prefix("file: ").unwrap_or(&text))
-            }
-        },
-    }
 }
 
 /// The verdict on a mesh as text.

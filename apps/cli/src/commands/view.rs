@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use neurotess_viewer::CommandListener;
-use neurotess_viewer::document::{MarkerOptions, SomaEdit};
+use neurotess_viewer::document::{MarkerOptions, MeshEntry, SomaEdit};
 
 use crate::io::inputs::Inputs;
 use crate::io::morphologies::MORPHOLOGIES;
 use crate::options::markers::MarkerArgs;
+use crate::options::meshes::{MeshArg, MeshArgs};
 use crate::options::rings::RingArgs;
 use crate::report::{Reporter, usage};
 
@@ -22,6 +23,7 @@ use crate::report::{Reporter, usage};
   neurotess view circuit/circuit_config.json
   neurotess view circuit/ --report circuit/reports/voltage.h5
   neurotess view circuit/ --synapses --marker-color-by conductance
+  neurotess view circuit/ --mesh region.obj,opacity=0.2
   neurotess view yesterday.neurotess")]
 pub(crate) struct ViewArgs {
     /// Morphology files, folders (searched recursively), globs, circuits, or a session that the
@@ -35,6 +37,8 @@ pub(crate) struct ViewArgs {
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) markers: MarkerArgs,
+    #[command(flatten)]
+    pub(crate) meshes: MeshArgs,
     /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -63,6 +67,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         },
         report: args.report.clone(),
         markers: markers(&args.markers)?,
+        meshes: args.meshes.mesh.iter().enumerate().map(mesh).collect(),
         adapter: args.adapter.clone(),
     };
     let listener = reporter
@@ -90,6 +95,18 @@ fn markers(asked: &MarkerArgs) -> anyhow::Result<MarkerOptions> {
         size: asked.marker_size.map_or(usual.size, |size| size as f32),
         ..usual
     })
+}
+
+/// A mesh of the window. There the camera fits what one cannot see through.
+fn mesh((index, arg): (usize, &MeshArg)) -> MeshEntry {
+    let usual = MeshEntry::new(arg.file.clone(), index);
+    MeshEntry {
+        color: arg.color.unwrap_or(usual.color),
+        opacity: arg.opacity as f32,
+        edges: arg.edges,
+        scale: arg.scale as f32,
+        ..usual
+    }
 }
 
 /// `--verbose`: every command that runs, on standard error.

@@ -3,6 +3,8 @@
 pub(crate) mod cells;
 #[cfg(feature = "render")]
 pub(crate) mod markers;
+#[cfg(feature = "render")]
+pub(crate) mod meshes;
 pub(crate) mod numbers;
 pub(crate) mod out;
 pub(crate) mod rings;

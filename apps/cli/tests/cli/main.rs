@@ -12,6 +12,7 @@ mod inputs;
 mod kill;
 mod markers;
 mod mesh;
+mod meshes;
 mod palettes;
 mod render;
 mod resume;

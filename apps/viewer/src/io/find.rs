@@ -10,7 +10,7 @@ use neurotess::render::Placement;
 use walkdir::WalkDir;
 
 use crate::model::circuits::Opened;
-use crate::model::document::SomaEdit;
+use crate::model::document::{SomaEdit, is_mesh};
 use crate::model::session::Session;
 use crate::model::sources::{SAMPLE, Source};
 
@@ -65,6 +65,8 @@ pub(crate) struct Found {
     pub(crate) reports: Vec<PathBuf>,
     /// Tables of points.
     pub(crate) points: Vec<PathBuf>,
+    /// Meshes that are no cells.
+    pub(crate) meshes: Vec<PathBuf>,
     /// Cells of circuits. Files that belong to no cell are shown where they were traced.
     pub(crate) cells: Vec<CircuitCell>,
     /// Paths that could not be searched or opened: file and reason.
@@ -85,6 +87,8 @@ pub(crate) fn find(request: &OpenRequest) -> Found {
             found.files.push(path.clone());
         } else if is_point_table(path) {
             found.points.push(path.clone());
+        } else if is_mesh(path) {
+            found.meshes.push(path.clone());
         } else if is_circuit(path) {
             find_circuit(path, &mut found);
         } else if path.is_dir() {

@@ -4,6 +4,7 @@ pub(crate) mod find;
 pub(crate) mod frames;
 pub(crate) mod load;
 pub(crate) mod markers;
+pub(crate) mod meshes;
 pub(crate) mod paths;
 pub(crate) mod save;
 pub(crate) mod single;

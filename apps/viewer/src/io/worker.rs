@@ -15,10 +15,12 @@ use neurotess::morphology::Morphology;
 use crate::io::find::{self, Found, OpenRequest};
 use crate::io::load;
 use crate::io::markers;
+use crate::io::meshes;
 use crate::io::task::{Progress, Task, caught};
 use crate::model::document::{SomaEdit, SourceId};
 use crate::model::ids::CircuitId;
 use crate::model::markers::{MarkerContent, MarkerSource};
+use crate::model::meshes::ReadMesh;
 use crate::model::sources::{Source, Stale};
 
 /// A result of background work.
@@ -36,6 +38,8 @@ pub(crate) enum Message {
     Soma(SourceId, SomaEdit, Box<Result<Generated, String>>),
     /// Synapses or points that were read.
     Markers(MarkerSource, Box<Result<MarkerContent, String>>),
+    /// A mesh that was read.
+    Mesh(PathBuf, Box<Result<ReadMesh, String>>),
     /// Files that were changed or removed, or are as they were read.
     Files(Vec<(SourceId, Option<Stale>)>),
     /// Files are no longer watched, for this reason.
@@ -58,6 +62,7 @@ pub(crate) struct Worker {
     reloading: Vec<(SourceId, Task<Source>)>,
     remeshing: Option<(SourceId, SomaEdit, Task<Generated>)>,
     marking: Option<(MarkerSource, Task<MarkerContent>)>,
+    reading_mesh: Option<(PathBuf, Task<ReadMesh>)>,
     watching: Option<Task<()>>,
     watched: Arc<Mutex<Vec<Watched>>>,
 }
@@ -75,6 +80,7 @@ impl Worker {
             reloading: Vec::new(),
             remeshing: None,
             marking: None,
+            reading_mesh: None,
             watching: None,
             watched: Arc::default(),
         }
@@ -117,12 +123,19 @@ impl Worker {
         {
             messages.push(Message::Markers(source, Box::new(result)));
         }
+        let read = self.reading_mesh.as_ref().and_then(|(_, task)| task.take());
+        if let Some(result) = read
+            && let Some((file, _)) = self.reading_mesh.take()
+        {
+            messages.push(Message::Mesh(file, Box::new(result)));
+        }
         messages
     }
 
     /// Whether a task is running whose result will come.
     pub(crate) fn is_busy(&self) -> bool {
-        let reads = self.loading.is_some() || self.marking.is_some();
+        let beside = self.marking.is_some() || self.reading_mesh.is_some();
+        let reads = self.loading.is_some() || beside;
         reads || self.saving.is_some() || self.remeshing.is_some()
     }
 
@@ -131,11 +144,13 @@ impl Worker {
         self.saving.is_some()
     }
 
-    /// Progress of reading, of saving, and of reading synapses or points.
+    /// Progress of reading, of saving, and of reading synapses, points or meshes.
     pub(crate) fn progress(&self) -> [Option<Progress>; 3] {
         let reading = self.loading.as_ref().map(Task::progress);
         let saving = self.saving.as_ref().map(Task::progress);
         let marking = self.marking.as_ref().map(|(_, task)| task.progress());
+        let meshes = self.reading_mesh.as_ref().map(|(_, task)| task.progress());
+        let marking = marking.or(meshes);
         [reading, saving, marking].map(Option::<&Progress>::cloned)
     }
 
@@ -249,6 +264,24 @@ impl Worker {
             markers::read(&of, &circuits, progress)
         });
         self.marking = Some((source, task));
+    }
+
+    /// Whether a mesh is being read.
+    pub(crate) fn reads_mesh(&self) -> bool {
+        self.reading_mesh.is_some()
+    }
+
+    /// Reads a mesh.
+    pub(crate) fn read_mesh(&mut self, file: PathBuf) {
+        let of = file.clone();
+        let progress = Progress::new("reading a mesh", "files", 1);
+        let task = self.start(progress, move |_| meshes::read(&of));
+        self.reading_mesh = Some((file, task));
+    }
+
+    /// Drops the mesh that is being read.
+    pub(crate) fn stop_mesh(&mut self) {
+        self.reading_mesh = None;
     }
 
     /// Stops reading synapses or points at once; a file that is just being read is read to its end, and

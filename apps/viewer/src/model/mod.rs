@@ -10,6 +10,7 @@ pub(crate) mod history;
 pub(crate) mod ids;
 pub mod markers;
 pub mod measuring;
+pub(crate) mod meshes;
 pub(crate) mod numbers;
 pub mod playback;
 pub mod plots;

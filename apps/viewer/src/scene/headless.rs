@@ -18,6 +18,7 @@ use crate::scene::colors::ColorRequest;
 use crate::scene::content::{self, SceneContent};
 use crate::scene::dimensions;
 use crate::scene::markers::MarkerRequest;
+use crate::scene::meshes;
 use crate::scene::pictures::{StillScene, pictures};
 use crate::scene::templates;
 
@@ -75,6 +76,7 @@ pub fn draw_session(
     state.document.grid = session.grid;
     state.document.report = session.report.clone();
     state.document.markers = session.markers.clone();
+    *state.document.meshes = session.mesh.clone();
     state.playback.pace = session.playback;
     let mut opened = Vec::new();
     for entry in &session.neuron {
@@ -90,6 +92,10 @@ pub fn draw_session(
     }
     *state.document.dimensions = session.dimensions(&opened);
     drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
+    while let Some(file) = state.mesh_due() {
+        let read = io::meshes::read(&file);
+        state.set_mesh(file, read);
+    }
     read_markers(&mut state, &mut drawn);
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
     let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
@@ -137,6 +143,8 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
     if let Some(markers) = &markers {
         markers.add_to(&mut content);
     }
+    let mut meshes = meshes::shown(state);
+    meshes::add_to(&mut meshes, &mut content);
     StillScene {
         gpu,
         shared: false,
@@ -146,6 +154,8 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
         look: state.document.look.clone(),
         states: content::states(&state.document),
         spheres: state.spheres(),
+        around: state.mesh_points(true),
+        meshes,
         figures: dimensions::figures(state),
     }
 }

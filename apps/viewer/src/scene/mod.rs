@@ -8,6 +8,7 @@ mod film;
 pub(crate) mod headless;
 pub(crate) mod locate;
 mod markers;
+mod meshes;
 pub(crate) mod picks;
 pub(crate) mod pictures;
 pub(crate) mod stage;

@@ -9,8 +9,8 @@ use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
 use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    AdaptiveSettings, Gpu, Image, MarkerSettings, Markers, Occlusion, PictureError, PictureOptions,
-    PngWriter, StaticError, StillRenderer, Viewpoint, Watch, WithMarkers,
+    AdaptiveSettings, BoundingSphere, Combined, Gpu, Image, MarkerSettings, Markers, Occlusion,
+    PictureError, PictureOptions, PngWriter, StaticError, StillRenderer, Viewpoint, Watch,
 };
 
 use crate::io::save::existing;
@@ -20,6 +20,7 @@ use crate::model::save::PictureFile;
 use crate::scene::content;
 use crate::scene::film;
 use crate::scene::markers::settings;
+use crate::scene::meshes;
 
 pub(crate) use crate::scene::still_scene::StillScene;
 
@@ -51,6 +52,10 @@ pub(crate) fn pictures(
     let mut adaptive = content::adaptive(gpu, &still_scene.content, picture.sub_pixels(gpu))
         .map_err(|e| e.to_string())?;
     let mut markers = markers(still_scene, gpu, picture.sub_pixels(gpu))?;
+    let meshes = meshes::upload(gpu, &still_scene.meshes);
+    let mut meshes = meshes.map_err(|e| e.to_string())?;
+    let spheres = still_scene.spheres.iter().chain(&still_scene.around);
+    let around: Vec<BoundingSphere> = spheres.copied().collect();
     adaptive.set_settings(AdaptiveSettings {
         lod: LodCriterion::PixelError(0.25),
         wireframe: picture.look.wire > 0.0,
@@ -80,7 +85,7 @@ pub(crate) fn pictures(
         let overlay = overlay.again(still_scene.look.legend.then_some(&legend), &camera);
         let mut picture = picture;
         picture.look.clip = content::clip(&still_scene.look, &still_scene.spheres);
-        let near = camera.near(&still_scene.spheres);
+        let near = camera.near(&around);
         let view = Viewpoint { camera, near };
         let broken = |e: std::io::Error| OutputError::broken(file, e).to_string();
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
@@ -98,7 +103,9 @@ pub(crate) fn pictures(
         };
         let mut drawn = Ok(());
         if number == 0 && film::is_static(still_scene, film_frames, options) {
-            let mut source = WithMarkers::new(&mut adaptive, markers.as_mut());
+            let mut source = Combined::new(&mut adaptive)
+                .with_markers(markers.as_mut())
+                .with_meshes(meshes.as_mut());
             match renderer.render_static(gpu, &mut source, &view, &table, &picture) {
                 Ok(picture) => film = film::film(still_scene, picture),
                 Err(StaticError::Wireframe | StaticError::Source) => {}
@@ -113,7 +120,9 @@ pub(crate) fn pictures(
         if let Some(image) = recolored {
             drawn = lay(0, image).map_err(PictureError::Sink);
         } else if drawn.is_ok() {
-            let mut source = WithMarkers::new(&mut adaptive, markers.as_mut());
+            let mut source = Combined::new(&mut adaptive)
+                .with_markers(markers.as_mut())
+                .with_meshes(meshes.as_mut());
             let whole = renderer.render(gpu, &mut source, &view, &table, &picture, lay);
             drawn = whole.map(|_| ());
         }
@@ -121,7 +130,7 @@ pub(crate) fn pictures(
             Ok(()) => {}
             Err(PictureError::Stopped) => {
                 // Dropping the device waits for its current tile: done on another thread.
-                std::thread::spawn(move || drop((renderer, adaptive, markers, own)));
+                std::thread::spawn(move || drop((renderer, adaptive, markers, meshes, own)));
                 return Err(stopped());
             }
             Err(e) => return Err(e.to_string()),

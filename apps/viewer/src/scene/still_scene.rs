@@ -15,6 +15,7 @@ use crate::scene::colors::color_scheme;
 use crate::scene::content::SceneContent;
 use crate::scene::dimensions::annotations;
 use crate::scene::markers::SceneMarkers;
+use crate::scene::meshes::SceneMesh;
 
 /// All that pictures are drawn from, for another thread.
 pub(crate) struct StillScene {
@@ -25,6 +26,10 @@ pub(crate) struct StillScene {
     pub(crate) look: Look,
     pub(crate) states: Vec<u32>,
     pub(crate) spheres: Arc<Vec<BoundingSphere>>,
+    /// What holds meshes that one can see through, for near planes.
+    pub(crate) around: Vec<BoundingSphere>,
+    /// Meshes that are no cells; the content has their colors and legend, too.
+    pub(crate) meshes: Vec<SceneMesh>,
     /// Synapses and points; the content has their colors and legend, too.
     pub(crate) markers: Option<Arc<SceneMarkers>>,
     /// Their radius (µm).

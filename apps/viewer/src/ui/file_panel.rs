@@ -9,6 +9,7 @@ use eframe::egui::{self, Key, RichText, ScrollArea};
 use crate::io::find;
 use crate::io::paths::{self, Name, completed, goes_on, parted};
 use crate::model::command::{Command, Edit, FilePurpose, PlotOf};
+use crate::model::document::is_mesh;
 use crate::model::session;
 use crate::ui::path_line;
 
@@ -55,6 +56,7 @@ impl FilePanel {
                 FilePurpose::Open
                 | FilePurpose::Report
                 | FilePurpose::Points
+                | FilePurpose::Meshes
                 | FilePurpose::OpenPalette,
                 _,
             ) => String::new(),
@@ -115,6 +117,7 @@ impl FilePanel {
             }
             FilePurpose::Report => is_folder || find::is_hdf5(path),
             FilePurpose::Points => is_folder || is("csv") || is("tsv"),
+            FilePurpose::Meshes => is_folder || is_mesh(path),
             FilePurpose::SaveSession => is_folder || session::is_session(path),
             FilePurpose::OpenPalette | FilePurpose::SavePalette => is_folder || is("toml"),
             FilePurpose::SavePlot(_, extension) => is_folder || is(extension),
@@ -136,6 +139,7 @@ impl FilePanel {
             FilePurpose::Points => {
                 "Open a table of points: CSV or TSV with columns x, y and z (µm)"
             }
+            FilePurpose::Meshes => "Add meshes that are no cells (coordinates of the scene, µm)",
             FilePurpose::SaveSession => "Save the session",
             FilePurpose::OpenPalette => "Open a palette",
             FilePurpose::SavePalette => "Save the palette",
@@ -325,6 +329,7 @@ impl FilePanel {
             FilePurpose::Open => Command::Open(paths),
             FilePurpose::Report => Edit::SetReport(paths.pop()).into(),
             FilePurpose::Points => Command::OpenPoints(paths.pop().unwrap_or_default()),
+            FilePurpose::Meshes => Command::OpenMeshes(paths),
             FilePurpose::SaveSession => {
                 let path = paths.pop().unwrap_or_default();
                 let named = if session::is_session(&path) {

@@ -12,7 +12,7 @@ use neurotess::render::adapter::{device_descriptor, select_adapter};
 use thiserror::Error;
 
 use crate::model::command::{Command, Edit};
-use crate::model::document::{MarkerOptions, SomaEdit};
+use crate::model::document::{MarkerOptions, MeshEntry, SomaEdit};
 use crate::model::settings::Settings;
 use crate::ui::app::{CommandListener, Viewer, lost};
 
@@ -27,6 +27,8 @@ pub struct Options {
     pub report: Option<PathBuf>,
     /// Synapses and points to show beside them; those of a session are its own.
     pub markers: MarkerOptions,
+    /// Meshes to show beside them, besides those of a session.
+    pub meshes: Vec<MeshEntry>,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
 }
@@ -181,6 +183,9 @@ impl Window {
             viewer
                 .state
                 .run(Edit::SetMarkers(Box::new(options.markers)));
+        }
+        if !options.meshes.is_empty() {
+            viewer.state.run(Edit::AddMeshes(options.meshes));
         }
         Ok(Self {
             viewer,

@@ -20,6 +20,8 @@ def arguments(options: Mapping[str, Any]) -> list[str]:
             continue
         if value is True:
             words.append(flag)
+        elif name == "mesh":
+            words += [f"{flag}={one}" for one in value]
         elif name in ("ring", "set_color"):
             words += [f"{flag}={word(of)}={word(to)}" for of, to in value.items()]
         elif isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__"):

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import tempfile
 import warnings
 
 from . import _neurotess, _options
 from ._errors import NeurotessWarning, RenderError
+from ._meshes import Mesh
 from ._morphology import Morphology, read
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Literal, TypeAlias, Union
+    from typing import Any, Literal, TypeAlias, TypedDict, Union
 
     import numpy as np
     from numpy.typing import NDArray
@@ -21,6 +23,18 @@ if TYPE_CHECKING:
     Drawable: TypeAlias = Union[Morphology, "DrawnCircuit", str, os.PathLike[str]]
     ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
     Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
+
+    class SceneMesh(TypedDict, total=False):
+        """A mesh beside the cells, and how it looks."""
+
+        mesh: Mesh | str | os.PathLike[str] | Any
+        color: str
+        opacity: float
+        edges: bool
+        scale: float
+        fit: bool
+
+    Meshes: TypeAlias = Union[Mesh, str, os.PathLike[str], SceneMesh, Iterable[Any]]
 
 
 class DrawnCircuit:
@@ -107,7 +121,37 @@ def _drawing(what: Any, options: dict[str, Any], adapter: str | None) -> _neurot
         raise RenderError("this build draws no pictures: build it with the feature 'render'")
     quiet_adapters()
     cells, circuit = _sources(what)
-    return _neurotess.Drawing(cells, circuit, _options.arguments(_with_colors(options)), adapter)
+    options = _with_colors(options)
+    meshes = options.pop("meshes", None)
+    # Meshes in memory are read from files that last as long as that.
+    with tempfile.TemporaryDirectory(prefix="neurotess") as folder:
+        options["mesh"] = _mesh_words(meshes, folder)
+        return _neurotess.Drawing(cells, circuit, _options.arguments(options), adapter)
+
+
+def _mesh_words(meshes: Any, folder: str) -> list[str]:
+    """Meshes beside the cells as the command line takes them."""
+    from collections.abc import Mapping
+
+    if meshes is None:
+        return []
+    alone = isinstance(meshes, (str, os.PathLike, Mapping)) or hasattr(meshes, "vertices")
+    words = []
+    for number, one in enumerate([meshes] if alone else meshes):
+        look = dict(one) if isinstance(one, Mapping) else {"mesh": one}
+        if "mesh" not in look:
+            raise ValueError(f"{one!r} names no mesh: it needs a file or a mesh as 'mesh'")
+        file = look.pop("mesh")
+        if not isinstance(file, (str, os.PathLike)):
+            surface = file if isinstance(file, Mesh) else Mesh.from_arrays(file.vertices, file.faces)
+            name = surface.name.replace(os.sep, "_") if isinstance(file, Mesh) else f"mesh {number + 1}"
+            file = os.path.join(folder, str(number), f"{name}.ply")
+            os.mkdir(os.path.dirname(file))
+            surface.save(file)
+        options = [f"{name}={_options.word(value)}" for name, value in look.items() if not isinstance(value, bool)]
+        flags = [name for name, value in look.items() if value is True]
+        words.append(",".join([os.fspath(file), *options, *flags]))
+    return words
 
 
 def _with_colors(options: dict[str, Any]) -> dict[str, Any]:
@@ -116,7 +160,7 @@ def _with_colors(options: dict[str, Any]) -> dict[str, Any]:
 
     palette = options.get("palette")
     if not isinstance(palette, Mapping):
-        return options
+        return dict(options)
     own = {str(name): color for name, color in palette.items()}
     for name, color in own.items():
         if not isinstance(color, str):
@@ -159,6 +203,7 @@ def render(
     points: str | os.PathLike[str] | None = None,
     marker_color_by: str | None = None,
     marker_size: float | None = None,
+    meshes: Meshes | None = None,
     light: str | Sequence[float] | None = None,
     ao: float | None = None,
     lod: Literal["adaptive", "homogeneous", "prerefined", "exploration", "static"] | None = None,
@@ -198,6 +243,11 @@ def render(
     a CSV file with columns x, y and z (µm). `marker_color_by` is a number that each has; `marker_size` the diameter
     (µm).
 
+    Other `meshes` of the scene, such as brain regions, segments of electron microscopy or a pipette: files (PLY, OBJ,
+    STL, GLB, …), a `Mesh`, or anything with `vertices` and `faces` (µm); or dictionaries like ``{"mesh": "region.obj",
+    "color": "#7799bb", "opacity": 0.2}``, with ``"edges"`` (True: only those are drawn), ``"scale"`` (µm of a unit of
+    the file) and ``"fit"`` (True: the camera fits it even if one can see through it).
+
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
     `sample` and `sample_seed`.
 
@@ -232,6 +282,7 @@ def render(
         "points": points,
         "marker_color_by": marker_color_by,
         "marker_size": marker_size,
+        "meshes": meshes,
         "light": light,
         "ao": ao,
         "lod": lod,

@@ -8,7 +8,7 @@ mod synapses;
 
 use glam::DVec3;
 use neurotess_circuit::CircuitError;
-use neurotess_render::color::{CATEGORY_BIT, Rgb, category};
+use neurotess_render::color::{Rgb, category};
 use neurotess_render::overlay::Legend;
 use neurotess_render::{BoundingSphere, Marker};
 
@@ -198,15 +198,6 @@ impl MarkerSet {
 }
 
 impl Coloring {
-    /// Number of categories that the cells have, also beyond the end of the table, where all have its last
-    /// color.
-    pub fn categories(&self) -> usize {
-        let keys = self.color_keys.iter().flatten();
-        let categories = keys.filter(|&key| key & CATEGORY_BIT != 0);
-        let used = categories.map(|key| (key & !CATEGORY_BIT) as usize + 1);
-        self.table.categories.len().max(used.max().unwrap_or(0))
-    }
-
     /// Adds the colors of markers to the table, and their legend below the cells'. The markers' color keys are
     /// changed accordingly.
     pub fn add_markers(&mut self, set: &mut MarkerSet) {
@@ -228,7 +219,7 @@ mod tests {
     use std::collections::HashMap;
 
     use neurotess_circuit::PointTable;
-    use neurotess_render::color::{ColorMap, Palette};
+    use neurotess_render::color::{CATEGORY_BIT, ColorMap, Palette};
 
     use super::*;
 

@@ -16,9 +16,10 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 40] = [
+pub(crate) const FILES: [WgslFile; 45] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
+    file!("sources", "octahedral.wgsl"),
     file!("sources/adaptive", "placed.wgsl"),
     file!("sources/adaptive", "clusters.wgsl"),
     file!("sources/adaptive", "shown.wgsl"),
@@ -39,6 +40,10 @@ pub(crate) const FILES: [WgslFile; 40] = [
     file!("sources/markers", "markers.wgsl"),
     file!("sources/markers", "marker_id.wgsl"),
     file!("sources/markers", "marker_keys.wgsl"),
+    file!("sources/meshes", "meshes.wgsl"),
+    file!("sources/meshes", "sheets.wgsl"),
+    file!("sources/meshes", "mesh_id.wgsl"),
+    file!("sources/meshes", "mesh_keys.wgsl"),
     file!("sources/budgeted", "budgeted.wgsl"),
     file!("sources/budgeted", "selection.wgsl"),
     file!("sources/budgeted", "candidates.wgsl"),

@@ -27,5 +27,9 @@ fn fragment_id(in: PickHit) -> @location(0) vec2<u32> {
     if left_by_clip(in.relative.xyz, in.relative.w) <= 0.0 {
         discard;
     }
+#ifdef SHEETS
+    // What lies behind something translucent is meant.
+    if is_translucent() { discard; }
+#endif
     return in.id;
 }

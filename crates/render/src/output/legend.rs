@@ -90,10 +90,13 @@ impl Legend {
         self
     }
 
-    /// Has another legend below it, as of markers.
+    /// Has another legend below it, as of markers, and below those that are there already.
     #[must_use]
     pub fn with_below(mut self, below: Self) -> Self {
-        self.below = Some(Box::new(below));
+        self.below = Some(Box::new(match self.below {
+            Some(first) => first.with_below(below),
+            None => below,
+        }));
         self
     }
 

@@ -19,6 +19,7 @@ use crate::sources::adaptive::passes::{ENTRIES, modules};
 use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::budgeted;
 use crate::sources::markers;
+use crate::sources::meshes;
 use crate::sources::prerefined;
 
 type Groups = Vec<Vec<BindGroupLayoutEntry>>;
@@ -134,7 +135,12 @@ fn pictures_bind_what_their_shaders_have() {
         markers::entries(),
         Some(["marker_id.wgsl", "marker_keys.wgsl"]),
     );
-    for (source, entries, more) in adaptive.chain([budgeted, prerefined, markers]) {
+    let meshes = (
+        meshes::vertex_shader(),
+        meshes::entries(),
+        Some(["mesh_id.wgsl", "mesh_keys.wgsl"]),
+    );
+    for (source, entries, more) in adaptive.chain([budgeted, prerefined, markers, meshes]) {
         let groups = vec![entries, shade::entries()];
         for samples in [1, 4] {
             let key = PipelineKey {
@@ -213,6 +219,9 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "prerefined",
         "marker_id",
         "marker_keys",
+        "sheets",
+        "mesh_id",
+        "mesh_keys",
         "select",
         "visible_chunks",
         "visible_chunks_id",

@@ -123,11 +123,11 @@ pub(crate) fn finish_shader(samples: u32, last: Last) -> Shader {
     if last == Last::Accumulate {
         parts.files.push(shader::file("accumulate.wgsl"));
     }
-    // Textures of normals and depths are then multisampled; the first sample stands for the
-    // sub-pixel.
+    // Textures of normals and depths are then multisampled.
     if samples > 1 {
         parts.constants.flag("MULTISAMPLED");
     }
+    parts.constants.u32("SAMPLES", samples);
     parts.constants.u32("TAPS", TAPS);
     parts.constants.f32("STRENGTH", STRENGTH);
     parts.constants.i32("BLUR", BLUR as i32);

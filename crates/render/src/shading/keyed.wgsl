@@ -17,6 +17,9 @@ struct KeyedVarying {
     @location(2) @interpolate(flat) keys: vec4<u32>,
     @location(3) @interpolate(perspective, centroid) shares: vec4<f32>,
     @location(4) @interpolate(flat) instance: u32,
+#ifdef SHEETS
+    @location(5) grid: vec2<f32>,
+#endif
 }
 
 struct KeyedSample {
@@ -40,14 +43,27 @@ fn vertex_keyed(
     let v = shaded_vertex(vertex_index, instance_index);
     let k = surface_keys(vertex_index, instance_index);
     let shares = vec4<f32>(vec4(k.corner) == vec4(0u, 1u, 2u, 3u));
-    let normal = vec4(v.normal, v.coverage);
-    let relative = vec4(v.relative, v.thin);
-    return KeyedVarying(v.position, normal, relative, k.keys, shares, k.instance);
+    var out: KeyedVarying;
+    out.position = v.position;
+    out.normal = vec4(v.normal, v.coverage);
+    out.relative = vec4(v.relative, v.thin);
+    out.keys = k.keys;
+    out.shares = shares;
+    out.instance = k.instance;
+#ifdef SHEETS
+    out.grid = v.grid;
+#endif
+    return out;
 }
 
 @fragment
 fn fragment_keyed(in: KeyedVarying, @builtin(front_facing) front: bool) -> KeyedSample {
     let f = facet(in.normal.xyz, in.relative.xyz, in.normal.w, in.relative.w, front);
+#ifdef SHEETS
+    let mask = sheet_mask(f.coverage * sheet_coverage(in.grid), in.position, in.relative.xyz, front);
+#else
+    let mask = mask_of(f.coverage, in.position);
+#endif
     var weights = vec3(0.5, 0.0, 0.0);
     if shade.lit > 0.0 {
         let l = lights(f.normal, f.to_eye);
@@ -84,9 +100,9 @@ fn fragment_keyed(in: KeyedVarying, @builtin(front_facing) front: bool) -> Keyed
     out.keys = vec4(keys.x & 0xffffu, keys.x >> 16u, keys.y & 0xffffu, keys.y >> 16u);
     out.owner = vec4(keys.z & 0xffffu, keys.z >> 16u, in.instance & 0xffffu, in.instance >> 16u);
 #ifdef MULTISAMPLED
-    out.mask = mask_of(f.coverage, in.position);
+    out.mask = mask;
 #else
-    if mask_of(f.coverage, in.position) == 0u { discard; }
+    if mask == 0u { discard; }
 #endif
     return out;
 }

@@ -13,6 +13,18 @@ fn place(id: vec2<u32>) -> vec2<i32> {
     return vec2<i32>(id) + max(i32(finish.margin) - BLUR, 0);
 }
 
+// The first sample of a sub-pixel that nothing translucent covers, and the bytes of its depth; 0 if all are covered.
+// It stands for the sub-pixel: what is translucent neither is occluded nor occludes.
+fn solid_sample(p: vec2<i32>) -> vec2<u32> {
+    for (var k = 0; k < i32(SAMPLES); k++) {
+        let bytes = pack4x8unorm(textureLoad(depths, p, k));
+        if bytes != 0xffffffffu {
+            return vec2(u32(k), bytes);
+        }
+    }
+    return vec2(0u);
+}
+
 // Of the whole tile: what is around a sub-pixel occludes it, too.
 @compute @workgroup_size(8, 8)
 fn copy_depths(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -21,7 +33,7 @@ fn copy_depths(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let p = vec2<i32>(id.xy);
     // The bytes of an f32: see shade.wgsl.
-    let depth = bitcast<f32>(pack4x8unorm(textureLoad(depths, p, 0)));
+    let depth = bitcast<f32>(solid_sample(p).y);
     raw[index_of(p)] = vec2(1.0, depth);
 }
 
@@ -33,7 +45,8 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let center = view_at(p, depth);
-    let n = normalize(textureLoad(normals, p, 0).xyz * 2.0 - 1.0);
+    let solid = i32(solid_sample(p).x);
+    let n = normalize(textureLoad(normals, p, solid).xyz * 2.0 - 1.0);
     let pixel = finish.slope * depth + finish.flat;
     let reach = min(finish.radius / pixel, finish.most);
     let radius = reach * pixel;

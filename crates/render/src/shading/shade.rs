@@ -130,7 +130,8 @@ pub(crate) struct Shade {
     pub(crate) least_half_width: f32,
     pub(crate) edge: [f32; 4],
     pub(crate) flat: f32,
-    pub(crate) pad: [f32; 3],
+    pub(crate) steps: f32,
+    pub(crate) turn: [f32; 2],
 }
 
 /// Sizes of a color table, for shaders.
@@ -185,7 +186,8 @@ impl Shade {
             least_half_width: 0.5 * look.least_width.max(0.0) * scale as f32,
             edge: edge_color(look),
             flat: frame.pixel().flat as f32,
-            pad: [0.0; 3],
+            steps: 1.0,
+            turn: [0.0; 2],
         }
         .within(&frame.tile)
     }
@@ -198,11 +200,13 @@ impl Shade {
         self
     }
 
-    /// For a step of a progressive picture: offset by `jitter` (sub-pixels), its dither pattern by
-    /// `turn`.
-    pub(crate) fn moved(mut self, jitter: [f32; 2], turn: [f32; 2]) -> Self {
+    /// For a step of a progressive picture of so many: offset by `jitter` (sub-pixels), its dither pattern
+    /// by `turn`.
+    pub(crate) fn moved(mut self, steps: u32, (jitter, turn): ([f32; 2], [f32; 2])) -> Self {
         self.jitter = jitter;
+        self.steps = steps as f32;
         self.tile_origin = [0, 1].map(|k| self.tile_origin[k] + turn[k]);
+        self.turn = turn;
         self
     }
 }
@@ -266,6 +270,7 @@ impl DrawPass<'_> {
         layout: &wgpu::BindGroupLayout,
     ) -> Vec<wgpu::RenderPipeline> {
         let PipelineKey { samples, cut, .. } = key;
+        let both_sides = |shader: usize| cut || source.is_two_sided(shader);
         let device = &gpu.device;
         let target = |format: wgpu::TextureFormat| {
             Some(wgpu::ColorTargetState {
@@ -291,7 +296,7 @@ impl DrawPass<'_> {
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState {
-                    cull_mode: (!cut).then_some(wgpu::Face::Back),
+                    cull_mode: (!both_sides(shader)).then_some(wgpu::Face::Back),
                     ..wgpu::PrimitiveState::default()
                 },
                 depth_stencil: Some(wgpu::DepthStencilState {

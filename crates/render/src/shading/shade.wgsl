@@ -50,6 +50,10 @@ struct Shade {
     edge: vec4<f32>,
     // Size (µm) of a sub-pixel at every depth: 0 with perspective.
     flat: f32,
+    // Number of steps of a progressive picture; else 1.
+    steps: f32,
+    // For a step of a progressive picture: what the dither pattern is offset by (sub-pixels).
+    turn: vec2<f32>,
 }
 
 @group(1) @binding(0) var<uniform> shade: Shade;
@@ -261,7 +265,7 @@ struct Sample {
     // mask.
     @location(1) normal: vec4<f32>,
     // Depth (µm), not 0, as the bytes of an f32: OpenGL cannot load from depth textures, and cannot always
-    // draw to floating-point ones.
+    // draw to floating-point ones. All bits are set where something translucent is.
     @location(2) depth: vec4<f32>,
 #ifdef MULTISAMPLED
     @builtin(sample_mask) mask: u32,
@@ -300,15 +304,15 @@ fn light(albedo: vec3<f32>, white: f32, l: Lights) -> vec3<f32> {
     return albedo * l.diffuse + l.sheen * white + l.rim * (0.25 * white + albedo);
 }
 
-// Coverage by the wireframe: lines run where x, y or x + y is a whole number.
-fn wireframe(grid: vec2<f32>) -> f32 {
+// Coverage by lines, which run where x, y or x + y is a whole number; with half their width (sub-pixels).
+fn lines(grid: vec2<f32>, half_width: f32) -> f32 {
     let g = vec3(grid, grid.x + grid.y);
     let width = max(fwidth(g), vec3(1e-6));
     let distance = abs(fract(g - 0.5) - 0.5) / width;
     let nearest = min(distance.x, min(distance.y, distance.z));
     // Where lines are so close that they would touch, they fade to a tint.
-    let crowded = max(width.x, max(width.y, width.z)) * shade.wire * 4.0;
-    return (1.0 - smoothstep(shade.wire - 0.5, shade.wire + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
+    let crowded = max(width.x, max(width.y, width.z)) * half_width * 4.0;
+    return (1.0 - smoothstep(half_width - 0.5, half_width + 0.5, nearest)) * clamp(1.6 - crowded, 0.25, 1.0);
 }
 
 fn bayer(p: vec2<u32>) -> f32 {
@@ -341,9 +345,14 @@ struct Facet {
 }
 
 fn facet(world_normal: vec3<f32>, relative: vec3<f32>, coverage: f32, thin: f32, front: bool) -> Facet {
+#ifdef SHEETS
+    // A surface that may be open is lit alike from both sides.
+    let world = select(-1.0, 1.0, front) * normalize(world_normal);
+#else
     // Back faces show only where the surface is cut: with the plane's normal it looks as if it were
     // filled.
     let world = select(-shade.clip.xyz, normalize(world_normal), front);
+#endif
     let axes = mat3x3(shade.right, shade.up, shade.backward);
     let to_eye = select(-normalize(relative) * axes, vec3(0.0, 0.0, 1.0), shade.flat > 0.0);
     // A thin line is lit like a surface that faces the viewer, so that it has the color of the
@@ -363,9 +372,14 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
 #ifdef EDGED
     var edged = in.edge;
 #endif
+#ifdef SHEETS
+    let mask = sheet_mask(f.coverage * sheet_coverage(in.grid.xy), in.position, in.relative.xyz, front);
+#else
+    let mask = mask_of(f.coverage, in.position);
+#endif
     if shade.wire > 0.0 {
         let line = select(vec3(0.22), color * 0.06, luminance(color) > 0.06);
-        color = mix(color, line, wireframe(in.grid.xy) * (1.0 - thin));
+        color = mix(color, line, lines(in.grid.xy, shade.wire) * (1.0 - thin));
 #ifdef EDGED
         edged = vec4(color * edged.a, edged.a);
 #endif
@@ -386,11 +400,14 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     // Without perspective it may be negative, and 0 where the eye is.
     let depth = -dot(in.relative.xyz, shade.backward);
     out.depth = unpack4x8unorm(bitcast<u32>(select(depth, 1e-20, depth == 0.0)));
+#ifdef SHEETS
+    if is_translucent() { out.depth = NO_DEPTH; }
+#endif
 #ifdef MULTISAMPLED
-    out.mask = mask_of(f.coverage, in.position);
+    out.mask = mask;
 #else
     // A mask of one sample: it is drawn or not.
-    if mask_of(f.coverage, in.position) == 0u { discard; }
+    if mask == 0u { discard; }
 #endif
     return out;
 }

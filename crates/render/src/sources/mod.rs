@@ -21,7 +21,11 @@
 
 pub(crate) mod adaptive;
 pub(crate) mod budgeted;
+pub(crate) mod combined;
+mod companion;
 pub(crate) mod markers;
+pub(crate) mod meshes;
+mod octahedral;
 pub(crate) mod pick;
 pub(crate) mod prerefined;
 
@@ -40,6 +44,8 @@ pub struct SourceKey {
     pub variant: u32,
     /// Whether markers are drawn beside it, by one more shader.
     pub markers: bool,
+    /// Whether meshes are drawn beside it, by one more shader.
+    pub meshes: bool,
 }
 
 /// Makes vertices on the GPU, and selects how many.
@@ -79,6 +85,11 @@ pub trait VertexSource {
 
     /// Layout of bind group 0 of one of its shaders.
     fn layout(&self, shader: usize) -> &wgpu::BindGroupLayout;
+
+    /// Whether one of its shaders draws surfaces that are seen from both sides, which may be open.
+    fn is_two_sided(&self, _shader: usize) -> bool {
+        false
+    }
 
     /// Whether anything may show in a frame: tiles in which nothing does are not drawn.
     fn shows(&self, _frame: &Frame) -> bool {

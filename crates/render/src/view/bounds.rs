@@ -4,7 +4,7 @@
 //! of ten tiles of a cell drawn 4096 pixels high are empty.
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Patch, Role};
+use neurotess_mesh::{CoarseMesh, Patch, Role, SurfaceMesh};
 
 use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
@@ -42,6 +42,32 @@ fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {
         origin + center.as_dvec3(),
         f64::from(BULGE * reach + radius),
     )
+}
+
+/// Most vertices of a surface that a camera is fitted to, beside its farthest ones.
+const MOST_POINTS: usize = 20_000;
+
+/// Points of a surface, as spheres of radius 0, that a camera is fitted to: all vertices, or of more than 20,000 some and
+/// the farthest in 26 directions. `scale`: micrometers of a unit of its coordinates.
+pub fn surface_points(mesh: &SurfaceMesh, scale: f64) -> Vec<BoundingSphere> {
+    let step = mesh.vertices.len().div_ceil(MOST_POINTS).max(1);
+    let mut kept: Vec<Vec3> = mesh
+        .vertices
+        .iter()
+        .step_by(step)
+        .map(|v| v.position)
+        .collect();
+    if step > 1 {
+        // Of the 27 cells of a cube all but the middle one.
+        for cell in (0..27).filter(|cell| *cell != 13) {
+            let direction = [cell % 3, cell / 3 % 3, cell / 9].map(|k| k as f32 - 1.0);
+            let along = |position: &Vec3| position.dot(Vec3::from(direction));
+            let positions = mesh.vertices.iter().map(|vertex| vertex.position);
+            kept.extend(positions.max_by(|a, b| along(a).total_cmp(&along(b))));
+        }
+    }
+    let point = |position: Vec3| ((mesh.origin + position.as_dvec3()) * scale, 0.0);
+    kept.into_iter().map(point).collect()
 }
 
 /// Whether any sphere may be in view, with a margin since thin tubes are drawn a pixel wide.

@@ -13,6 +13,7 @@ use super::times::{MOST, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};
 use crate::options::cells::CellArgs;
 use crate::options::markers::MarkerArgs;
+use crate::options::meshes::MeshArgs;
 use crate::options::rings::RingArgs;
 use crate::options::size::Size;
 use crate::options::soma::SomaArg;
@@ -33,6 +34,7 @@ use crate::report::usage;
   neurotess render circuit/ -o all.png --lod exploration --budget 1000000
   neurotess render circuit/ -o fires.png --report voltage.h5 --time 14.5 --range=-80,30
   neurotess render circuit/ -o inputs.png --nodes 7 --synapses --marker-color-by conductance
+  neurotess render circuit/ -o region.png --mesh region.obj,opacity=0.2,fit
   neurotess render circuit/ -o film.png --report voltage.h5 --time 0:100:0.5")]
 pub(crate) struct RenderArgs {
     /// Morphology files, folders (searched recursively) or globs, all in one picture; or one
@@ -239,6 +241,8 @@ pub(crate) struct RenderArgs {
     pub(crate) strict: bool,
     #[command(flatten)]
     pub(crate) markers: MarkerArgs,
+    #[command(flatten)]
+    pub(crate) meshes: MeshArgs,
     #[command(flatten)]
     pub(crate) cells: CellArgs,
 }

@@ -16,6 +16,7 @@ use super::cells::MeshedCell;
 use super::circuit_instances::CircuitInstances;
 use super::color_check;
 use super::markers;
+use super::meshes::SceneMeshes;
 use super::times::{self, time_text};
 use crate::report::Reporter;
 
@@ -25,6 +26,8 @@ pub(crate) struct PictureColors {
     pub(crate) coloring: Coloring,
     /// Synapses or points beside the cells.
     pub(crate) markers: Option<MarkerSet>,
+    /// By mesh beside the cells: what its color is looked up by.
+    pub(crate) mesh_keys: Vec<u32>,
     /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
     /// Least width (pixels; 0: none) and factor on the radii of neurites, which the legend tells.
@@ -56,6 +59,11 @@ impl PictureColors {
             values: frame.values(series.range),
         };
         Ok((table, legend))
+    }
+
+    /// Adds the colors and names of meshes.
+    pub(crate) fn add_meshes(&mut self, meshes: &SceneMeshes) {
+        self.mesh_keys = self.coloring.add_meshes(&meshes.colors());
     }
 
     /// Whether pictures show one recording at several times.
@@ -154,6 +162,7 @@ pub(crate) fn of_pictures(
                 closest: None,
                 coloring,
                 markers: None,
+                mesh_keys: Vec::new(),
                 series: None,
                 widths: (args.least_width(), args.radius_factor()),
             }
@@ -227,6 +236,7 @@ fn over_time(
     let mut colored = PictureColors {
         coloring,
         markers: None,
+        mesh_keys: Vec::new(),
         series,
         widths: (args.least_width(), args.radius_factor()),
         closest: None,

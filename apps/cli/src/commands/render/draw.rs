@@ -14,6 +14,7 @@ use super::cameras;
 use super::coloring::PictureColors;
 use super::film::FixedFilm;
 use super::job::RenderJob;
+use super::meshes::SceneMeshes;
 use super::stats::{Stage, Stages, Stats};
 use super::values::Fit;
 use super::vertex_source::{PictureSource, SourceStats};
@@ -53,6 +54,7 @@ pub(super) fn overlay(
 pub(super) fn draw(
     gpu: &Gpu,
     job: &RenderJob<'_>,
+    meshes: SceneMeshes,
     stages: &mut Stages,
     reporter: &Reporter,
 ) -> anyhow::Result<Stats> {
@@ -61,7 +63,7 @@ pub(super) fn draw(
         placements,
         colored,
         cameras,
-        spheres,
+        around,
         overlay,
         files,
         ..
@@ -74,13 +76,13 @@ pub(super) fn draw(
     if overlay.legend_left_out {
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
-    let mut source = PictureSource::new(gpu, &options, job)?;
+    let mut source = PictureSource::new(gpu, &options, job, meshes)?;
     let mut renderer = StillRenderer::new();
     stages.end(Stage::Upload);
     let mut film = FixedFilm::new(
         gpu,
         colored,
-        (cameras, spheres),
+        (cameras, around),
         &options,
         (&mut source, &mut renderer),
     )?;
@@ -88,7 +90,7 @@ pub(super) fn draw(
     let mut counted = SourceStats::default();
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
-        let near = camera.near(spheres);
+        let near = camera.near(around);
         let legend = colored.legend(number);
         let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);
         let cost = write(file, args, |take| {

@@ -21,6 +21,7 @@ use super::circuit_instances::CircuitInstances;
 use super::coloring::PictureColors;
 use super::film::FixedFilm;
 use super::job::RenderJob;
+use super::meshes::SceneMeshes;
 use super::scene::RenderScene;
 use super::vertex_source::{self, PictureSource};
 use super::{bounds, cameras, checks, coloring, draw, scene};
@@ -60,7 +61,10 @@ pub struct Drawing {
     cells: Vec<MeshedCell>,
     placements: Vec<(usize, Placement)>,
     instances: Option<CircuitInstances>,
+    /// What the cameras of the options fit.
     spheres: Vec<BoundingSphere>,
+    /// What holds everything, for near planes.
+    around: Vec<BoundingSphere>,
     colored: PictureColors,
     cameras: Vec<Camera>,
     overlay: Overlay,
@@ -146,10 +150,14 @@ impl Drawing {
         }
         let shown: Vec<&MeshedCell> = cells.iter().collect();
         let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
-        let colored =
+        let meshes = SceneMeshes::read(&args.meshes, reporter)?;
+        let mut colored =
             coloring::of_pictures(&shown, instances.as_ref(), &of_cells, &args, reporter)?;
+        colored.add_meshes(&meshes);
         let mut spheres = bounds::spheres(&shown, &placements);
         spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
+        let around: Vec<_> = spheres.iter().copied().chain(meshes.points()).collect();
+        spheres.extend(meshes.fitted());
         let cameras = cameras::cameras(&args, &spheres)?;
         let (overlay, cameras) = draw::overlay(&args, &colored, cameras, &spheres);
         if overlay.legend_left_out {
@@ -162,16 +170,18 @@ impl Drawing {
             colored: &colored,
             cameras: &cameras,
             spheres: &spheres,
+            around: &around,
             overlay: &overlay,
             files: &[],
         };
-        let source = PictureSource::new(gpu, &draw::picture_options(&args), &job)?;
+        let source = PictureSource::new(gpu, &draw::picture_options(&args), &job, meshes)?;
         Ok(Self {
             args,
             cells,
             placements,
             instances,
             spheres,
+            around,
             colored,
             cameras,
             overlay,
@@ -213,7 +223,7 @@ impl Drawing {
             let drawn = FixedFilm::new(
                 gpu,
                 &self.colored,
-                (&self.cameras, &self.spheres),
+                (&self.cameras, &self.around),
                 &options,
                 (&mut self.source, &mut self.renderer),
             );
@@ -304,7 +314,7 @@ impl Drawing {
             whole.pixels.extend_from_slice(&band.pixels);
             Ok::<(), String>(())
         };
-        let near = camera.near(&self.spheres);
+        let near = camera.near(&self.around);
         let view = Viewpoint { camera, near };
         let mut source = self.source.as_vertex_source();
         self.renderer

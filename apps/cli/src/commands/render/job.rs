@@ -16,7 +16,10 @@ pub(super) struct RenderJob<'a> {
     pub(super) placements: &'a [(usize, Placement)],
     pub(super) colored: &'a PictureColors,
     pub(super) cameras: &'a [Camera],
+    /// What cameras fit.
     pub(super) spheres: &'a [BoundingSphere],
+    /// What holds everything, for near planes.
+    pub(super) around: &'a [BoundingSphere],
     pub(super) overlay: &'a Overlay,
     pub(super) files: &'a [PathBuf],
 }

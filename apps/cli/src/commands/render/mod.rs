@@ -17,6 +17,7 @@ mod film;
 mod in_memory;
 mod job;
 mod markers;
+mod meshes;
 mod palette;
 mod scene;
 mod session;
@@ -35,6 +36,7 @@ pub(crate) use args::RenderArgs;
 use cells::MeshedCell;
 pub use in_memory::{DrawError, Drawing, DrawingInput, Picked};
 use job::RenderJob;
+use meshes::SceneMeshes;
 use scene::RenderScene;
 use stats::{Stage, Stages};
 
@@ -61,6 +63,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         placements,
         instances,
     } = scene::read(args, reporter)?;
+    let meshes = SceneMeshes::read(&args.meshes, reporter)?;
     stages.end(Stage::Read);
     let cells: Vec<&MeshedCell> = entries
         .iter()
@@ -73,9 +76,12 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         return reporter.document(&stats::Document::new(&entries, &[], None));
     }
     let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
-    let colored = coloring::of_pictures(&cells, instances.as_ref(), &of_cells, args, reporter)?;
+    let mut colored = coloring::of_pictures(&cells, instances.as_ref(), &of_cells, args, reporter)?;
+    colored.add_meshes(&meshes);
     let mut spheres = bounds::spheres(&cells, &placements);
     spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
+    let around: Vec<_> = spheres.iter().copied().chain(meshes.points()).collect();
+    spheres.extend(meshes.fitted());
     let cameras = cameras::cameras(args, &spheres)?;
     stages.end(Stage::Frame);
     let gpu = Gpu::open(args.adapter.as_deref())?;
@@ -91,11 +97,12 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         colored: &colored,
         cameras: &cameras,
         spheres: &spheres,
+        around: &around,
         overlay: &overlay,
         files: &files,
     };
     stages.end(Stage::Frame);
-    let mut stats = draw::draw(&gpu, &job, &mut stages, reporter)?;
+    let mut stats = draw::draw(&gpu, &job, meshes, &mut stages, reporter)?;
     stages.end(Stage::Draw);
     stats.took(stages);
     stats.colors = colored.closest.as_ref().map(Into::into);

@@ -36,6 +36,9 @@ pub(crate) struct Stats {
     /// Synapses and points.
     #[serde(skip_serializing_if = "Option::is_none")]
     markers: Option<MarkerStats>,
+    /// Meshes that are no cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    meshes: Option<MeshStats>,
     /// Of a film whose pictures are one picture, colored anew.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) film: Option<FilmStats>,
@@ -116,6 +119,13 @@ struct MarkerStats {
     all: usize,
 }
 
+/// Meshes of the scene that are no cells, and their triangles.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct MeshStats {
+    count: u64,
+    triangles: u64,
+}
+
 /// Milliseconds.
 #[derive(Clone, Debug, Default, Serialize)]
 struct FrameTime {
@@ -160,6 +170,9 @@ impl Stats {
             in_view,
             all,
         });
+        self.meshes = made
+            .meshes
+            .map(|[count, triangles]| MeshStats { count, triangles });
         self.gpu_bytes.insert("targets", cost.target_bytes);
         self.frame_ms = FrameTime {
             cpu: cost.cpu_ms,

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, BoundingSphere, Camera, DEFAULT_BUDGET, Exploration,
-    ExplorationStats, Frame, Gpu, Instance, Markers, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource, WithMarkers,
+    Adaptive, AdaptiveSettings, BoundingSphere, Camera, Combined, DEFAULT_BUDGET, Exploration,
+    ExplorationStats, Frame, Gpu, Instance, Markers, Meshes, PictureOptions, Placement, Prerefined,
+    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource,
 };
 use rayon::prelude::*;
 
@@ -15,12 +15,14 @@ use super::bounds::covering;
 use super::cells::MeshedCell;
 use super::job::RenderJob;
 use super::markers;
+use super::meshes::SceneMeshes;
 use crate::report::usage;
 
-/// A vertex source for pictures, and markers beside it.
+/// A vertex source for pictures, and markers and meshes beside it.
 pub(crate) struct PictureSource {
     cells: CellSource,
     markers: Option<Markers>,
+    meshes: Option<Meshes>,
 }
 
 /// A vertex source for cells.
@@ -46,6 +48,8 @@ pub(crate) struct SourceStats {
     pub(crate) exploration: Option<ExplorationStats>,
     /// Synapses and points that are drawn, those in view, and all.
     pub(crate) markers: Option<[usize; 3]>,
+    /// Meshes that are no cells, and their triangles.
+    pub(crate) meshes: Option<[u64; 2]>,
 }
 
 /// The mode that follows from the options.
@@ -77,11 +81,12 @@ pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
 }
 
 impl PictureSource {
-    /// Uploads cells and markers.
+    /// Uploads cells, markers and meshes.
     pub(crate) fn new(
         gpu: &Gpu,
         options: &PictureOptions,
         job: &RenderJob<'_>,
+        meshes: SceneMeshes,
     ) -> anyhow::Result<Self> {
         let cells = CellSource::new(gpu, options, job)?;
         let budget = match &cells {
@@ -93,12 +98,15 @@ impl PictureSource {
         Ok(Self {
             cells,
             markers: markers.transpose()?,
+            meshes: meshes.upload(gpu, &job.colored.mesh_keys)?,
         })
     }
 
     /// The source as the renderer takes it.
-    pub(crate) fn as_vertex_source(&mut self) -> WithMarkers<'_> {
-        WithMarkers::new(self.cells.as_vertex_source(), self.markers.as_mut())
+    pub(crate) fn as_vertex_source(&mut self) -> Combined<'_> {
+        Combined::new(self.cells.as_vertex_source())
+            .with_markers(self.markers.as_mut())
+            .with_meshes(self.meshes.as_mut())
     }
 
     /// What it draws in a whole picture.
@@ -115,6 +123,10 @@ impl PictureSource {
             let [drawn, in_view] = markers.shown(&frame);
             stats.markers = Some([drawn, in_view, markers.len()]);
             stats.bytes.insert("markers", markers.bytes());
+        }
+        if let Some(meshes) = &self.meshes {
+            stats.meshes = Some([meshes.len() as u64, meshes.triangles()]);
+            stats.bytes.insert("meshes", meshes.bytes());
         }
         Ok(stats)
     }

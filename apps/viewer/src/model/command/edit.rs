@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use crate::model::document::{
-    Detail, Dimension, Document, Look, MarkerOptions, SavedView, SomaEdit, SourceId, TracePlace,
+    Detail, Dimension, Document, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, SourceId,
+    TracePlace,
 };
 
 /// A change of the document.
@@ -48,6 +49,14 @@ pub enum Edit {
     ShowSynapses(bool),
     /// Shows the points of a table, or none.
     SetPoints(Option<PathBuf>),
+    /// Shows meshes beside the cells.
+    AddMeshes(Vec<MeshEntry>),
+    /// Changes how a mesh looks, by its index.
+    SetMesh(usize, MeshEntry),
+    /// Removes a mesh, by its index.
+    RemoveMesh(usize),
+    /// Removes all meshes.
+    ClearMeshes,
     /// Keeps a dimension on the picture.
     AddDimension(Dimension),
     /// Removes a dimension, by its index.
@@ -89,6 +98,9 @@ impl Edit {
             Self::SetMarkers(_) | Self::ShowSynapses(_) | Self::SetPoints(_) => {
                 "Synapses and points"
             }
+            Self::AddMeshes(_) => "Mesh",
+            Self::SetMesh(..) => "Look of a mesh",
+            Self::RemoveMesh(_) | Self::ClearMeshes => "Remove mesh",
             Self::AddDimension(_) => "Dimension",
             Self::RemoveDimension(_) | Self::ClearDimensions => "Remove dimension",
             Self::SaveView(_) => "Save view",
@@ -109,6 +121,7 @@ impl Edit {
                 | Self::SetLook(_)
                 | Self::SetDetail(_)
                 | Self::SetMarkers(_)
+                | Self::SetMesh(..)
                 | Self::RenameView(..)
                 | Self::SetTraceColor(..)
         )
@@ -183,6 +196,17 @@ impl Edit {
                 }
                 document.markers.points = points;
             }
+            Self::AddMeshes(entries) => document.meshes.extend(entries),
+            Self::SetMesh(which, entry) => {
+                if document.meshes.get(which).is_some_and(|now| *now != entry) {
+                    document.meshes[which] = entry;
+                }
+            }
+            Self::RemoveMesh(which) if which < document.meshes.len() => {
+                document.meshes.remove(which);
+            }
+            Self::RemoveMesh(_) => {}
+            Self::ClearMeshes => document.meshes.clear(),
             Self::AddDimension(dimension) => document.dimensions.push(dimension),
             Self::RemoveDimension(which) if which < document.dimensions.len() => {
                 document.dimensions.remove(which);

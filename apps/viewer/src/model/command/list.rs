@@ -62,6 +62,12 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Edit::SetPoints(None).into(),
                 ),
                 item(
+                    "Add a mesh (brain region, segment, pipette)…",
+                    None,
+                    Command::AskFiles(FilePurpose::Meshes),
+                ),
+                item("Remove all meshes", None, Edit::ClearMeshes.into()),
+                item(
                     "Save session…",
                     Some((CTRL, Key::S)),
                     Command::AskFiles(FilePurpose::SaveSession),

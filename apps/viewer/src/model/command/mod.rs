@@ -57,6 +57,8 @@ pub enum FilePurpose {
     SaveSession,
     /// Opening a table of points.
     Points,
+    /// Opening meshes that are no cells.
+    Meshes,
     /// Opening a palette.
     OpenPalette,
     /// Saving a palette.
@@ -92,6 +94,8 @@ pub enum Command {
     SaveSession(PathBuf),
     /// Reads a table of points and shows them.
     OpenPoints(PathBuf),
+    /// Reads meshes and shows them beside the cells.
+    OpenMeshes(Vec<PathBuf>),
     /// Takes the colors of a palette's file.
     OpenPalette(PathBuf),
     /// Writes the palette, with the colors that were chosen.
@@ -191,6 +195,7 @@ impl fmt::Debug for Command {
             Self::OpenSample(value) => with("OpenSample", value),
             Self::SaveSession(value) => with("SaveSession", value),
             Self::OpenPoints(value) => with("OpenPoints", value),
+            Self::OpenMeshes(value) => with("OpenMeshes", value),
             Self::OpenPalette(value) => with("OpenPalette", value),
             Self::SavePalette(value) => with("SavePalette", value),
             Self::SavePlot(of, value) => {

@@ -4,6 +4,7 @@ mod detail;
 mod dimension;
 mod look;
 mod markers;
+mod meshes;
 mod neurons;
 mod placement;
 mod saved_view;
@@ -22,6 +23,7 @@ pub use detail::{Detail, LodKind, RestChoice};
 pub use dimension::{Anchor, Dimension};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 pub use markers::MarkerOptions;
+pub use meshes::{MeshEntry, is_mesh};
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use saved_view::SavedView;
@@ -45,6 +47,8 @@ pub struct Document {
     pub report: Option<PathBuf>,
     /// Synapses and points beside the cells.
     pub markers: MarkerOptions,
+    /// Meshes beside the cells that are none.
+    pub meshes: Tracked<Vec<MeshEntry>>,
     /// What was measured and is kept on the picture.
     pub dimensions: Tracked<Vec<Dimension>>,
     /// Views that were saved under a name.

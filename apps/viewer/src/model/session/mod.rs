@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{Detail, Dimension, Look, MarkerOptions, SavedView, SomaEdit, Trace};
+use crate::model::document::{
+    Detail, Dimension, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, Trace,
+};
 use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::playback::Pace;
 use crate::model::state::State;
@@ -74,6 +76,9 @@ pub struct Session {
     /// Synapses and points beside the cells.
     #[serde(default, skip_serializing_if = "is_default")]
     pub markers: MarkerOptions,
+    /// Meshes beside the cells.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mesh: Vec<MeshEntry>,
     /// Its time and speed.
     #[serde(default)]
     pub playback: Pace,
@@ -165,6 +170,14 @@ impl Session {
                     .map(|file| relative(file, folder)),
                 ..document.markers.clone()
             },
+            mesh: document
+                .meshes
+                .iter()
+                .map(|entry| MeshEntry {
+                    file: relative(&entry.file, folder),
+                    ..entry.clone()
+                })
+                .collect(),
             playback: state.playback.pace,
             circuit: circuit.collect(),
             file: file.collect(),
@@ -198,7 +211,8 @@ impl Session {
         let files = session.file.iter_mut().map(|entry| &mut entry.path);
         let circuits = session.circuit.iter_mut().map(|entry| &mut entry.path);
         let shown = session.report.iter_mut().chain(&mut session.markers.points);
-        for path in files.chain(circuits).chain(shown) {
+        let meshes = session.mesh.iter_mut().map(|entry| &mut entry.file);
+        for path in files.chain(circuits).chain(shown).chain(meshes) {
             if path.is_relative() && !path.to_string_lossy().starts_with("sample:") {
                 *path = folder.join(&*path);
             }

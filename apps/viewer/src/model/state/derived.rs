@@ -9,6 +9,7 @@ use neurotess::plot::Plot;
 use neurotess::render::{BoundingSphere, Placement};
 
 use super::State;
+use super::meshes::MeshesKey;
 use super::traces::PlotKey;
 use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
 use crate::model::ids::CircuitId;
@@ -38,6 +39,8 @@ pub(crate) struct SpheresKey {
     /// Revision of what was read, if points are shown.
     points: Option<Revision>,
     radius_factor: f64,
+    /// Of meshes beside the cells.
+    meshes: MeshesKey,
 }
 
 /// Derived values.
@@ -105,11 +108,12 @@ impl State {
             .collect()
     }
 
-    /// Bounding spheres (µm) of the neurons that are shown, and of points beside them.
+    /// Bounding spheres (µm) of the neurons that are shown, and of points and opaque meshes beside them.
     pub fn spheres(&self) -> Arc<Vec<BoundingSphere>> {
         let derive = || {
             let mut spheres = self.spheres_where(|_| true);
             spheres.extend(self.sphere_of_points());
+            spheres.extend(self.mesh_points(false));
             spheres
         };
         self.derived.spheres.get(self.spheres_key(), derive)
@@ -123,6 +127,7 @@ impl State {
             geometry: self.sources.geometry(),
             points: self.shows_points().then(|| self.marker_data.revision()),
             radius_factor: self.document.look.radius_factor(),
+            meshes: self.meshes_key(),
         }
     }
 

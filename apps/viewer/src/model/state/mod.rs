@@ -7,6 +7,7 @@ mod dimension_table;
 mod dimensions;
 mod effect;
 mod markers;
+mod meshes;
 mod picked;
 mod plots;
 mod traces;
@@ -23,6 +24,7 @@ use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
 use crate::model::markers::{MarkerData, MarkerRef};
 use crate::model::measuring::Measuring;
+use crate::model::meshes::MeshData;
 use crate::model::playback::Playback;
 use crate::model::plots::MeasurePlot;
 use crate::model::save::{SaveForm, SaveRequest};
@@ -35,6 +37,7 @@ pub use counters::{Counters, Draft, Lowered, Rebuilds, StaticFigures};
 use derived::Derived;
 pub(crate) use derived::{PlacementsKey, SpheresKey};
 pub use effect::{Dialog, Effect};
+pub(crate) use meshes::MeshesKey;
 pub use picked::{CellPart, Picked};
 pub(crate) use traces::part_name;
 
@@ -59,6 +62,8 @@ pub struct State {
     pub circuits: Circuits,
     /// Synapses and points that were read.
     pub marker_data: MarkerData,
+    /// Meshes beside the cells that were read.
+    pub mesh_data: MeshData,
     /// Playback of the recording.
     pub playback: Playback,
     /// What was read for the plot of values over time.
@@ -135,6 +140,7 @@ impl State {
             sources: Sources::default(),
             circuits: Circuits::default(),
             marker_data: MarkerData::default(),
+            mesh_data: MeshData::default(),
             playback: Playback::default(),
             traces: TraceData::default(),
             measures: MeasurePlot::default(),
@@ -280,6 +286,7 @@ impl State {
                 self.marker_data.forget_points();
                 self.run(Edit::SetPoints(Some(path)));
             }
+            Command::OpenMeshes(paths) => self.open_meshes(paths),
             Command::OpenPalette(path) => self.effects.push(Effect::OpenPalette(path)),
             Command::SavePalette(path) => self.effects.push(Effect::SavePalette(path)),
             Command::SaveSession(path) => self.save(SaveRequest::Session(path)),

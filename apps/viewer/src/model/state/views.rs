@@ -13,6 +13,7 @@ impl State {
     pub(super) fn fit(&self, side: Side) -> View {
         let mut spheres = self.outline(|_| true);
         spheres.extend(self.sphere_of_points());
+        spheres.extend(self.mesh_points(false));
         self.view
             .fitted(side, self.settings.y_down, self.aspect, &spheres)
     }

@@ -6,7 +6,7 @@ use eframe::egui;
 use neurotess::render::outline::Outlines;
 use neurotess::render::state::OUTLINED;
 use neurotess::render::{
-    AdaptiveSettings, Camera, Clip, DeviceError, Occlusion, Scene, ViewParams, WithMarkers,
+    AdaptiveSettings, Camera, Clip, Combined, DeviceError, Occlusion, Scene, ViewParams,
 };
 
 use super::cost_model::explorable;
@@ -54,6 +54,7 @@ impl Stage {
             states: StatesKey::new(&state.document),
             instances: InstancesKey::new(state, self.content.revision),
             markers: self.markers.key(state),
+            meshes: self.meshes.key(),
         }
     }
 
@@ -63,7 +64,11 @@ impl Stage {
         match self.near[which] {
             Some((known, near)) if known == key => near,
             _ => {
-                let near = camera.near(&state.spheres());
+                let (spheres, meshes) = (state.spheres(), state.mesh_points(true));
+                let near = match meshes.is_empty() {
+                    true => camera.near(&spheres),
+                    false => camera.near(&[&spheres[..], &meshes].concat()),
+                };
                 self.near[which] = Some((key, near));
                 near
             }
@@ -175,7 +180,9 @@ impl Stage {
         let key = inputs.markers;
         if let Some(source) = explorer {
             let markers = self.markers.drawn(key, 1.0, Some(budget));
-            let mut source = WithMarkers::new(source, markers);
+            let mut source = Combined::new(source)
+                .with_markers(markers)
+                .with_meshes(self.meshes.drawn());
             self.progressive.draft(&self.gpu, &mut source, &params)?;
             self.count_markers(&params, key, Some(budget));
             return Ok(());
@@ -194,7 +201,9 @@ impl Stage {
         }
         let sub_pixels = if halved { 0.5 } else { 1.0 };
         let markers = self.markers.drawn(key, sub_pixels, Some(budget));
-        let mut source = WithMarkers::new(&mut self.adaptive, markers);
+        let mut source = Combined::new(&mut self.adaptive)
+            .with_markers(markers)
+            .with_meshes(self.meshes.drawn());
         self.progressive.draft(&self.gpu, &mut source, &params)?;
         self.count_markers(&inputs.params, key, Some(budget));
         Ok(())

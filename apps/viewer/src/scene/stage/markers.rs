@@ -17,6 +17,7 @@ use crate::model::revision::Revision;
 use crate::model::state::State;
 use crate::scene::content::SceneContent;
 use crate::scene::markers::{MarkerInputs, MarkerRequest, SceneMarkers, settings};
+use crate::scene::meshes::{self, SceneMesh};
 
 /// Most triangles of markers at rest without a budget: a processor draws a million of small ones in less time than
 /// a slice may take.
@@ -214,7 +215,7 @@ impl Stage {
         made.filter(|made| made.fits(&self.content))
     }
 
-    /// Passes the colors of cells and markers to the renderer.
+    /// Passes the colors of cells, markers and meshes to the renderer.
     pub(super) fn set_colors(&mut self) {
         let mut table = self.content.table.clone();
         self.markers.closest = None;
@@ -226,16 +227,18 @@ impl Stage {
         } else if self.markers.made.is_some() {
             self.markers.clear();
         }
+        self.meshes.add_colors(&mut table, self.content.categories);
         self.progressive.set_colors(table);
     }
 
-    /// The legend of cells and markers.
+    /// The legend of cells, markers and meshes.
     pub(super) fn whole_legend(&self) -> Legend {
         let cells = self.content.legend.clone();
-        match self.fitting_markers() {
+        let legend = match self.fitting_markers() {
             Some(markers) => markers.legend_below(cells),
             None => cells,
-        }
+        };
+        self.meshes.legend_below(legend)
     }
 
     /// The colors of the legend that are closest to one another.
@@ -259,14 +262,18 @@ impl Stage {
         things
     }
 
-    /// The scene, and markers with it, for pictures that are saved.
-    pub(crate) fn saved_content(&self) -> (SceneContent, Option<Arc<SceneMarkers>>) {
+    /// The scene, and markers and meshes with it, for pictures that are saved.
+    pub(crate) fn saved_content(
+        &self,
+    ) -> (SceneContent, Option<Arc<SceneMarkers>>, Vec<SceneMesh>) {
         let mut content = self.content.clone();
         let markers = self.markers.made().cloned();
         if let Some(markers) = &markers {
             markers.add_to(&mut content);
         }
-        (content, markers)
+        let mut meshes = self.meshes.shown().to_vec();
+        meshes::add_to(&mut meshes, &mut content);
+        (content, markers, meshes)
     }
 
     /// Counts the markers that a picture shows.

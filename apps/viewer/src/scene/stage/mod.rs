@@ -6,6 +6,7 @@ mod cost_model;
 mod drafts;
 mod frames;
 mod markers;
+mod meshes;
 mod pointing;
 mod rest;
 mod static_mode;
@@ -35,6 +36,7 @@ use crate::scene::picks::Picks;
 use building::Built;
 use cost_model::{CostModel, RestMode};
 use markers::{MarkersKey, StageMarkers};
+use meshes::{DrawnMeshes, StageMeshes};
 pub(crate) use pointing::OUTLINES;
 use pointing::{MaskKey, Resolver};
 use static_mode::StaticKey;
@@ -69,6 +71,8 @@ pub struct Stage {
     building: Option<(Checked, Task<Built>)>,
     /// Synapses and points.
     markers: StageMarkers,
+    /// Meshes that are no cells.
+    meshes: StageMeshes,
     /// Reads the recording.
     reader: Option<FrameReader>,
     values: Option<Arc<FrameValues>>,
@@ -120,6 +124,7 @@ struct PictureInputs {
     states: StatesKey,
     instances: InstancesKey,
     markers: Option<MarkersKey>,
+    meshes: Option<DrawnMeshes>,
 }
 
 /// Phases of the full picture.
@@ -171,6 +176,7 @@ impl Stage {
             legend,
             building: None,
             markers: StageMarkers::new(software),
+            meshes: StageMeshes::default(),
             reader: None,
             values: None,
             visible: None,
@@ -246,7 +252,8 @@ impl Stage {
     }
 
     fn is_building(&self) -> bool {
-        self.building.is_some() || self.markers.is_making()
+        let beside = self.markers.is_making() || self.meshes.is_uploading();
+        self.building.is_some() || beside
     }
 
     /// Whether the picture, perhaps a draft, shows the recording's current frame.
@@ -296,6 +303,7 @@ impl Stage {
         self.take_built(state, ctx)?;
         self.update_templates(state, ctx)?;
         self.update_markers(state, ctx)?;
+        self.update_meshes(state, ctx)?;
         if let Some(why) = self.explorer.update(&self.gpu, &self.content, ctx) {
             state.problem("preparing drafts", why);
         }
@@ -356,7 +364,8 @@ impl Stage {
     /// Bytes on the device: of cells, and of pictures.
     fn bytes(&self) -> [u64; 2] {
         let cells: u64 = self.adaptive.bytes().iter().map(|(_, bytes)| bytes).sum();
-        [cells + self.markers.bytes(), self.progressive.bytes()]
+        let beside = self.markers.bytes() + self.meshes.bytes();
+        [cells + beside, self.progressive.bytes()]
     }
 
     /// The picture's texture for egui; its id stays the same as long as the texture does.

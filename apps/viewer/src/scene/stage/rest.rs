@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use eframe::egui;
 use neurotess::render::{
-    AdaptiveSettings, DeviceError, Frame, Steps, VertexSource, ViewParams, WithMarkers,
+    AdaptiveSettings, Combined, DeviceError, Frame, Steps, VertexSource, ViewParams,
 };
 
 use super::cost_model::RestMode;
@@ -22,7 +22,7 @@ const SLICE_MS: f64 = 120.0;
 /// would take longer in all.
 const MOST_SLICES: f64 = 3.0;
 
-/// The source of the picture at rest and the markers beside it, without borrowing the whole stage; none if exploration mode cannot
+/// The source of the picture at rest and the markers and meshes beside it, without borrowing the whole stage; none if exploration mode cannot
 /// draw it any more.
 macro_rules! rest_source {
     ($stage:ident) => {{
@@ -40,7 +40,12 @@ macro_rules! rest_source {
             }
         };
         let markers = $stage.markers.drawn(key, 1.0, rest_budget);
-        source.map(|source| WithMarkers::new(source, markers))
+        let meshes = $stage.meshes.drawn();
+        source.map(|source| {
+            Combined::new(source)
+                .with_markers(markers)
+                .with_meshes(meshes)
+        })
     }};
 }
 pub(super) use rest_source;

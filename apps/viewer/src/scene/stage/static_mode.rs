@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use eframe::egui;
 use neurotess::coloring::fractions;
-use neurotess::render::{DeviceError, VertexSource, ViewParams, WithMarkers};
+use neurotess::render::{Combined, DeviceError, VertexSource, ViewParams};
 
 use super::cost_model::RestMode;
 use super::rest::rest_source;
-use super::{MarkersKey, PictureInputs, RestPhase, Stage};
+use super::{DrawnMeshes, MarkersKey, PictureInputs, RestPhase, Stage};
 use crate::io::frames::FrameValues;
 use crate::model::document::Detail;
 use crate::model::state::{State, StaticFigures};
@@ -25,6 +25,7 @@ pub(super) struct StaticKey {
     coverage: CoverageKey,
     instances: InstancesKey,
     markers: Option<MarkersKey>,
+    meshes: Option<DrawnMeshes>,
 }
 
 impl StaticKey {
@@ -35,6 +36,7 @@ impl StaticKey {
             coverage: inputs.states.coverage(),
             instances: inputs.instances,
             markers: inputs.markers,
+            meshes: inputs.meshes,
         }
     }
 }

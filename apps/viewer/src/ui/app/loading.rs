@@ -78,6 +78,7 @@ impl Viewer {
         let (adapter, aspect) = (state.adapter.clone(), state.aspect);
         // What is being read belongs to circuits that are closed now.
         self.worker.stop_markers();
+        self.worker.stop_mesh();
         self.plots.cancel();
         *state = State::new(settings);
         (state.adapter, state.aspect) = (adapter, aspect);
@@ -87,6 +88,7 @@ impl Viewer {
         state.document.grid = session.grid;
         state.document.report = session.report.clone();
         state.document.markers = session.markers.clone();
+        *state.document.meshes = session.mesh.clone();
         state.playback.pace = session.playback;
         (state.view, state.fitted) = (session.view, None);
         state.key_views = session.key_view.clone();
@@ -129,6 +131,9 @@ impl Viewer {
                 let why = "one table of points shows at a time: open it alone";
                 self.state.problem(other.display().to_string(), why);
             }
+        }
+        if !found.meshes.is_empty() {
+            self.state.run(Command::OpenMeshes(found.meshes.clone()));
         }
         if let Some(loading) = &mut self.loading {
             let circuits = found.circuits.iter().cloned();
@@ -249,10 +254,11 @@ impl Viewer {
             self.state.effects.push(Effect::Load(waiting));
         }
         let found = &loading.found;
-        let beside = !found.reports.is_empty() || !found.points.is_empty();
+        let with_cells = !found.points.is_empty() || !found.meshes.is_empty();
+        let beside = !found.reports.is_empty() || with_cells;
         if found.files.is_empty() && beside {
-            if self.state.document.neurons.is_empty() && !found.points.is_empty() {
-                self.state.status = "Points show beside cells: open these, too".into();
+            if self.state.document.neurons.is_empty() && with_cells {
+                self.state.status = "Points and meshes show beside cells: open these, too".into();
             }
             return;
         }

@@ -37,6 +37,7 @@ impl Viewer {
             },
             Message::Soma(id, edit, generated) => self.remeshed(id, edit, *generated),
             Message::Markers(source, content) => self.state.set_markers(source, *content),
+            Message::Mesh(file, read) => self.state.set_mesh(file, *read),
             Message::Files(files) => {
                 for (id, stale) in files {
                     self.state.sources.set_stale(id, stale);
@@ -81,6 +82,16 @@ impl Viewer {
         let shared = |&id| Some((id, self.state.circuits.shared(id)?));
         let circuits = circuits.iter().filter_map(shared).collect();
         self.worker.read_markers(source, circuits);
+    }
+
+    /// Requests meshes that are to be shown and were not read yet: one after the other.
+    pub(super) fn request_meshes(&mut self) {
+        if self.worker.reads_mesh() || self.loading.is_some() {
+            return;
+        }
+        if let Some(file) = self.state.mesh_due() {
+            self.worker.read_mesh(file);
+        }
     }
 
     /// Stops reading synapses or points: they are not shown then.

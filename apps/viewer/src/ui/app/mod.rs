@@ -161,6 +161,7 @@ impl Viewer {
         self.do_effects(&ctx);
         self.request_somata();
         self.request_markers();
+        self.request_meshes();
         self.update_plots();
         self.update_crossings();
         self.note_settings();

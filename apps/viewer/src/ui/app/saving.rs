@@ -137,7 +137,7 @@ impl Viewer {
     }
 
     fn still_scene(&self) -> StillScene {
-        let (content, markers) = self.stage.saved_content();
+        let (content, markers, meshes) = self.stage.saved_content();
         StillScene {
             gpu: self.stage.gpu().clone(),
             shared: true,
@@ -147,6 +147,8 @@ impl Viewer {
             look: self.state.document.look.clone(),
             states: content::states(&self.state.document),
             spheres: self.state.spheres(),
+            around: self.state.mesh_points(true),
+            meshes,
             figures: dimensions::figures(&self.state),
         }
     }

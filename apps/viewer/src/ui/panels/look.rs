@@ -6,7 +6,7 @@ use neurotess::render::color::Palette;
 use super::number::{field, slider};
 use super::tip::Tip;
 use super::{color_map, heading};
-use super::{markers, own_colors, saved_views};
+use super::{markers, meshes, own_colors, saved_views};
 use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 use crate::model::state::State;
@@ -24,6 +24,7 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     // Otherwise the map is chosen above.
     let mapped = maps_cells(&look, stage.legend().is_bar());
     markers::show(state, (!mapped).then_some(&mut look), released, ui);
+    meshes::show(state, released, ui);
     heading(ui, "Shown");
     ui.horizontal_wrapped(|ui| {
         ui.selectable_value(&mut look.parts, VisibleParts::All, "All");

@@ -16,6 +16,7 @@ mod marks;
 mod measures;
 mod measuring;
 mod menu;
+mod meshes;
 mod number;
 mod overlay;
 mod own_colors;

@@ -407,8 +407,8 @@ impl ProgressiveRenderer {
                 (0..height, shaders.start as usize..shaders.end as usize)
             }
         };
-        let (jitter, turn) = offset(way.step, steps.steps);
-        let shade = shade(renderer, params).moved(jitter, turn);
+        let place = offset(way.step, steps.steps);
+        let shade = shade(renderer, params).moved(steps.steps, place);
         gpu.queue
             .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
         let group = renderer.shade_group(gpu);

@@ -254,9 +254,9 @@ impl ProgressiveRenderer {
         let Some(canvas) = &self.fine else {
             return Ok(());
         };
-        let (jitter, turn) = offset(making.step, steps.steps);
+        let place = offset(making.step, steps.steps);
         let group = renderer.shade_group(gpu);
-        let whole = shade(renderer, &params).moved(jitter, turn);
+        let whole = shade(renderer, &params).moved(steps.steps, place);
         gpu.queue
             .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&whole));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -282,7 +282,9 @@ impl ProgressiveRenderer {
             width,
             height: bottom - top,
         };
-        let of_band = shade(renderer, &params).within(&band).moved(jitter, turn);
+        let of_band = shade(renderer, &params)
+            .within(&band)
+            .moved(steps.steps, place);
         gpu.queue
             .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&of_band));
         let frame = Frame::whole(params.camera, params.near, params.size);

@@ -1,23 +1,22 @@
 //! Markers: spheres that are no part of a membrane, such as synapses, drawn beside any vertex source.
 //!
-//! [`WithMarkers`] is a source with one more shader. Markers are culled by chunks (chunks.rs); each chunk's
+//! [`Combined`](crate::Combined) draws them with one more shader. Markers are culled by chunks (chunks.rs); each chunk's
 //! size in the picture selects a shape for its markers (shapes.rs), and how many of them are drawn. Markers
 //! keep a least size, so that they can be seen from afar, and their cost is bounded by the pixels that they
 //! cover and by a budget, not by their number.
 
 mod chunks;
 mod shapes;
-mod with_markers;
 
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use neurotess_refine::wgsl::ShaderParts;
+use neurotess_refine::wgsl::{ShaderParts, WgslFile};
 
 use self::chunks::{CHUNK, Chunk};
 use self::shapes::Shapes;
-pub use self::with_markers::WithMarkers;
+use super::companion::Companion;
 use super::pick::PickId;
 use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, storage, uniform, upload};
 use crate::gpu::device::Gpu;
@@ -218,41 +217,6 @@ impl Markers {
         Some(*index as usize)
     }
 
-    /// Selects what a frame draws: for the whole picture, whatever the tile, so that tiles fit together.
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) {
-        self.select(frame);
-        let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
-        let least = frame.pixel().times(self.settings.least);
-        for (index, block) in self.blocks.iter().enumerate() {
-            let uniforms = MarkerFrame {
-                relative_from_block: (block.origin - frame.camera.eye()).as_vec3().to_array(),
-                radius: self.settings.radius.max(least.flat) as f32,
-                right,
-                near: frame.near as f32,
-                up,
-                least: least.slope as f32,
-                backward,
-                first: block.first,
-            };
-            let bytes = bytemuck::bytes_of(&uniforms);
-            gpu.queue
-                .write_buffer(&self.frames, UNIFORM_STRIDE * index as u64, bytes);
-        }
-    }
-
-    /// Whether any may show in a frame.
-    fn shows(&self, frame: &Frame) -> bool {
-        let (planes, eye) = (frame.frustum(), frame.camera.eye());
-        let reach = |chunk: &Chunk| {
-            let center = chunk.relative(eye);
-            let least = frame.pixel().times(self.settings.least);
-            let least = least.at(f64::from(center.length()));
-            (chunk.reach + self.settings.radius.max(least)) as f32
-        };
-        let mut chunks = self.chunks.iter();
-        chunks.any(|chunk| shows(&planes, chunk.relative(eye), reach(chunk)))
-    }
-
     fn select(&mut self, frame: &Frame) {
         let whole = Frame {
             tile: Tile {
@@ -312,6 +276,58 @@ impl Markers {
             }
         }
         (self.runs, self.in_view) = (runs, in_view);
+    }
+}
+
+impl Companion for Markers {
+    fn shader(&self) -> ShaderParts {
+        vertex_shader()
+    }
+
+    fn id_shader(&self) -> WgslFile {
+        shader::file("marker_id.wgsl")
+    }
+
+    fn key_shader(&self) -> WgslFile {
+        shader::file("marker_keys.wgsl")
+    }
+
+    fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    /// Selects what a frame draws: for the whole picture, whatever the tile, so that tiles fit together.
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame) {
+        self.select(frame);
+        let [right, up, backward] = frame.camera.view_rotation().map(|axis| axis.to_array());
+        let least = frame.pixel().times(self.settings.least);
+        for (index, block) in self.blocks.iter().enumerate() {
+            let uniforms = MarkerFrame {
+                relative_from_block: (block.origin - frame.camera.eye()).as_vec3().to_array(),
+                radius: self.settings.radius.max(least.flat) as f32,
+                right,
+                near: frame.near as f32,
+                up,
+                least: least.slope as f32,
+                backward,
+                first: block.first,
+            };
+            let bytes = bytemuck::bytes_of(&uniforms);
+            gpu.queue
+                .write_buffer(&self.frames, UNIFORM_STRIDE * index as u64, bytes);
+        }
+    }
+
+    fn shows(&self, frame: &Frame) -> bool {
+        let (planes, eye) = (frame.frustum(), frame.camera.eye());
+        let reach = |chunk: &Chunk| {
+            let center = chunk.relative(eye);
+            let least = frame.pixel().times(self.settings.least);
+            let least = least.at(f64::from(center.length()));
+            (chunk.reach + self.settings.radius.max(least)) as f32
+        };
+        let mut chunks = self.chunks.iter();
+        chunks.any(|chunk| shows(&planes, chunk.relative(eye), reach(chunk)))
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

@@ -18,6 +18,7 @@ use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::shader;
+use crate::sources::octahedral::pack_normal;
 use crate::sources::{SourceKey, VertexSource};
 use crate::view::bounds::{any_shows, bounds};
 use crate::view::frame::Frame;
@@ -408,20 +409,6 @@ fn store(vertex: &SurfaceVertex, source: &PrerefinedSurface<'_>) -> StoredVertex
         normal: pack_normal(vertex.normal),
         color_key: source.color_keys.get(tracing).copied().unwrap_or(0),
     }
-}
-
-/// A unit vector as octahedral coordinates, two signed 16-bit numbers: accurate to 0.005°.
-fn pack_normal(normal: Vec3) -> u32 {
-    let sum = normal.abs().element_sum().max(f32::MIN_POSITIVE);
-    let (x, y) = (normal.x / sum, normal.y / sum);
-    let sign = |value: f32| if value < 0.0 { -1.0 } else { 1.0 };
-    let (x, y) = if normal.z < 0.0 {
-        ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y))
-    } else {
-        (x, y)
-    };
-    let snorm = |value: f32| u32::from((value.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
-    snorm(x) | (snorm(y) << 16)
 }
 
 /// Group 0: vertices, corners, and the placement of an instance.

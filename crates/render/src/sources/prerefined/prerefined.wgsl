@@ -2,6 +2,7 @@
 // Rust twin: mod.rs beside it. BARYCENTRIC says whether no two triangles share corners.
 
 #import surface_vertex.wgsl
+#import octahedral.wgsl
 
 struct StoredVertex {
     x: f32,
@@ -20,15 +21,6 @@ struct Placement {
 @group(0) @binding(0) var<storage, read> stored: array<StoredVertex>;
 @group(0) @binding(1) var<storage, read> corners: array<u32>;
 @group(0) @binding(2) var<uniform> placement: Placement;
-
-// Unit vector from octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010).
-fn unpack_normal(packed: u32) -> vec3<f32> {
-    let p = unpack2x16snorm(packed);
-    let z = 1.0 - abs(p.x) - abs(p.y);
-    let fold = max(-z, 0.0);
-    let folded = p - select(vec2(-fold), vec2(fold), p >= vec2(0.0));
-    return normalize(vec3(folded, z));
-}
 
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     var index = vertex_index;
