@@ -66,12 +66,14 @@
 //! | [`coloring`] | what the colors of pictures tell | `render` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files | |
+//! | [`cache`] | meshes of an earlier opening of a circuit | |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
 //! All features are on by default. Without any, the crate meshes SWC files and needs neither wgpu nor HDF5.
 #![forbid(unsafe_code)]
 
+pub use neurotess_cache as cache;
 #[cfg(feature = "circuit")]
 pub use neurotess_circuit as circuit;
 #[cfg(feature = "render")]

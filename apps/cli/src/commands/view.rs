@@ -9,6 +9,7 @@ use neurotess_viewer::document::{MarkerOptions, SomaEdit};
 
 use crate::io::inputs::Inputs;
 use crate::io::morphologies::MORPHOLOGIES;
+use crate::options::cache::CacheArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::rings::RingArgs;
 use crate::report::{Reporter, usage};
@@ -35,6 +36,8 @@ pub(crate) struct ViewArgs {
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) markers: MarkerArgs,
+    #[command(flatten)]
+    pub(crate) cache: CacheArgs,
     /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -63,6 +66,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         },
         report: args.report.clone(),
         markers: markers(&args.markers)?,
+        without_caches: args.cache.no_cache,
         adapter: args.adapter.clone(),
     };
     let listener = reporter

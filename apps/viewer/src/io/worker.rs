@@ -12,6 +12,7 @@ use neurotess::circuit::Circuit;
 use neurotess::generate::{Generated, generate_timed};
 use neurotess::morphology::Morphology;
 
+use crate::io::circuit_caches::CircuitCaches;
 use crate::io::find::{self, Found, OpenRequest};
 use crate::io::load;
 use crate::io::markers;
@@ -30,6 +31,8 @@ pub(crate) enum Message {
     Loaded(usize, Box<Result<Source, (PathBuf, String)>>),
     /// All files of a loading are read, or it was canceled.
     LoadingDone(Result<(), String>),
+    /// What was wrong with a circuit's cache.
+    Cache(String),
     /// A file that was read again.
     Reloaded(SourceId, Box<Result<Source, String>>),
     /// A cell that was meshed again with another soma.
@@ -164,6 +167,7 @@ impl Worker {
         let task = self.start(Progress::new("reading", "files", 0), move |progress| {
             let found = find::find(&request);
             let files = found.files.clone();
+            let caches = CircuitCaches::open(&found, &request);
             progress.all.store(files.len(), Ordering::Relaxed);
             send(Message::Found(Box::new(found)));
             let next = AtomicUsize::new(0);
@@ -173,6 +177,7 @@ impl Worker {
                 for _ in 0..cores.min(files.len()) {
                     let (sender, next, files) = (sender.clone(), &next, &files);
                     let (somata, usual) = (&request.somata, &request.usual);
+                    let caches = &caches;
                     scope.spawn(move || {
                         loop {
                             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -182,7 +187,7 @@ impl Worker {
                             };
                             let soma = somata.iter().find(|(path, _)| path == file);
                             let soma = soma.map_or(usual, |(_, soma)| soma).clone();
-                            let loaded = caught(|| load::load(file, soma));
+                            let loaded = caught(|| load::load(file, soma, caches.of_file(index)));
                             let loaded = loaded.map_err(|why| (file.clone(), why));
                             progress.done.fetch_add(1, Ordering::Relaxed);
                             let _ = sender.send((index, loaded));
@@ -201,6 +206,10 @@ impl Worker {
                     }
                 }
             });
+            // Whoever cancels does not want to wait.
+            if !progress.is_canceled() {
+                caches.finish().for_each(|why| send(Message::Cache(why)));
+            }
             Ok(())
         });
         self.loading = Some(task);
@@ -209,7 +218,7 @@ impl Worker {
     /// Reads a file again.
     pub(crate) fn reload(&mut self, id: SourceId, file: PathBuf, soma: SomaEdit) {
         let progress = Progress::new("reading", "files", 1);
-        let task = self.start(progress, move |_| load::load(&file, soma));
+        let task = self.start(progress, move |_| load::load(&file, soma, None));
         self.reloading.push((id, task));
     }
 

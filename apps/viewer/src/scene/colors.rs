@@ -173,6 +173,7 @@ impl ColorRequest {
                 if let Ok(generated) = generate(&morphology, &source.options) {
                     source.morphology = Arc::new(morphology);
                     source.generated = Arc::new(generated);
+                    source.proxy = None;
                 }
             });
         sources

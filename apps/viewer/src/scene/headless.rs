@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use neurotess::cache::Cache;
 use neurotess::render::Gpu;
 
 use crate::io::find::{self, OpenRequest};
@@ -57,12 +58,14 @@ pub fn draw_session(
     for (file, why) in found.failures {
         drawn.failures.push((file.display().to_string(), why));
     }
+    let circuit = found.circuits.first();
+    let cache = circuit.map(|(_, circuit)| Cache::open(Path::new(&circuit.file)));
     for opened in found.circuits {
         state.circuits.add(opened);
     }
     for entry in &session.file {
         let soma = entry.soma.clone().unwrap_or_default();
-        ids.push(match load::load(&entry.path, soma) {
+        ids.push(match load::load(&entry.path, soma, cache.as_ref()) {
             Ok(source) => Some(state.sources.add(source)),
             Err(why) => {
                 let file = entry.path.display().to_string();
@@ -71,6 +74,8 @@ pub fn draw_session(
             }
         });
     }
+    // A cache that cannot be read or written changes nothing in the picture.
+    drop(cache.map(Cache::finish));
     state.document.look = session.look.clone();
     state.document.grid = session.grid;
     state.document.report = session.report.clone();

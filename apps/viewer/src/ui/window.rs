@@ -27,6 +27,8 @@ pub struct Options {
     pub report: Option<PathBuf>,
     /// Synapses and points to show beside them; those of a session are its own.
     pub markers: MarkerOptions,
+    /// Whether caches of circuits are neither read nor written, whatever the settings say.
+    pub without_caches: bool,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
 }
@@ -165,6 +167,9 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
+        if options.without_caches {
+            viewer = viewer.without_caches();
+        }
         if let Some(listener) = listener {
             viewer = viewer.with_listener(listener);
         }

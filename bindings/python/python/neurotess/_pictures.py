@@ -173,6 +173,7 @@ def render(
     region: tuple[Sequence[float], Sequence[float]] | None = None,
     sample: int | None = None,
     sample_seed: int | None = None,
+    cache: bool = True,
     adapter: str | None = None,
 ) -> Image:
     """Draws cells or a circuit, without a window: a cell, a file, several of them, or a `Circuit`.
@@ -198,7 +199,7 @@ def render(
     (µm).
 
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
-    `sample` and `sample_seed`.
+    `sample` and `sample_seed`; `cache`: whether the meshes of a large circuit are kept beside it for the next time.
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
@@ -245,6 +246,7 @@ def render(
         "region": region,
         "sample": sample,
         "sample_seed": sample_seed,
+        "cache": cache,
         "adapter": adapter,
     }
     return next(_pictures(what, options))
@@ -281,6 +283,7 @@ def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
         options["region"] = [*region[0], *region[1]]
     options["size"] = _options.joined(options.get("size"), "x")
     options["no_legend"] = not options.pop("legend", True)
+    options["no_cache"] = not options.pop("cache", True)
     drawing = _drawing(what, options, options.pop("adapter", None))
     for message in drawing.messages:
         warnings.warn(NeurotessWarning(message), stacklevel=3)

@@ -60,6 +60,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         entries,
         placements,
         instances,
+        cache,
     } = scene::read(args, reporter)?;
     stages.end(Stage::Read);
     let cells: Vec<&MeshedCell> = entries
@@ -98,6 +99,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let mut stats = draw::draw(&gpu, &job, &mut stages, reporter)?;
     stages.end(Stage::Draw);
     stats.took(stages);
+    stats.cache = cache.map(Into::into);
     stats.colors = colored.closest.as_ref().map(Into::into);
     if let Some(path) = &args.stats {
         let mut output = output::begin(path, args.force)?;
