@@ -320,6 +320,66 @@ mod tests {
     use crate::model::settings::Settings;
     use crate::model::state::State;
 
+    /// All messages of opening a circuit.
+    fn opened(circuit: &std::path::Path, without_caches: bool) -> Vec<Message> {
+        let mut worker = Worker::new(|| {});
+        worker.load(OpenRequest {
+            paths: vec![circuit.to_path_buf()],
+            without_caches,
+            ..OpenRequest::default()
+        });
+        let mut messages = Vec::new();
+        while worker.is_busy() {
+            messages.extend(worker.messages());
+            std::thread::yield_now();
+        }
+        messages
+    }
+
+    /// The source of the only cell, and what was wrong with the cache.
+    fn of_one_cell(messages: Vec<Message>) -> (Source, Vec<String>) {
+        let (mut source, mut wrong) = (None, Vec::new());
+        for message in messages {
+            match message {
+                Message::Loaded(_, loaded) => source = (*loaded).ok(),
+                Message::Cache(why) => wrong.push(why),
+                _ => {}
+            }
+        }
+        (source.expect("read"), wrong)
+    }
+
+    #[test]
+    fn cells_of_circuits_come_from_their_cache_and_are_the_same() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (cell, circuit) = (
+            folder.path().join("a.swc"),
+            folder.path().join("few.scene.toml"),
+        );
+        std::fs::write(&cell, "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n").expect("written");
+        std::fs::write(&circuit, "[[cells]]\nfile = \"a.swc\"\n").expect("written");
+        let (without, _) = of_one_cell(opened(&circuit, true));
+        assert!(without.proxy.is_none());
+        let (with, wrong) = of_one_cell(opened(&circuit, false));
+        assert!(with.proxy.is_some() && wrong.is_empty());
+        assert_eq!(with.generated.mesh, without.generated.mesh);
+        // A file of so few points was not left behind; one that is there is damaged, and replaced.
+        let file = folder.path().join("few.scene.ntcache");
+        assert!(!file.exists());
+        std::fs::write(&file, "neurotess cache").expect("written");
+        let (damaged, wrong) = of_one_cell(opened(&circuit, false));
+        assert_eq!(damaged.generated.mesh, without.generated.mesh);
+        let [why] = &wrong[..] else {
+            panic!("{wrong:?}");
+        };
+        assert!(why.contains("few.scene.ntcache"), "{why}");
+        let (again, wrong) = of_one_cell(opened(&circuit, false));
+        assert!(wrong.is_empty());
+        assert_eq!(again.generated.mesh, without.generated.mesh);
+        let spheres = |source: &Source| source.proxy.as_ref().map(|proxy| proxy.spheres());
+        assert_eq!(spheres(&again), spheres(&with));
+    }
+
     #[test]
     fn a_task_that_panics_shows_its_text_as_a_problem() {
         let mut worker = Worker::new(|| {});

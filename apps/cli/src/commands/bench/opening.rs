@@ -38,7 +38,8 @@ struct Row {
 struct RenderStats {
     seconds: Seconds,
     /// Meshes that the cache had, and those that were generated.
-    cache: Option<Meshes>,
+    #[serde(alias = "cache")]
+    meshes: Option<Meshes>,
     peak_bytes: Option<u64>,
 }
 
@@ -158,11 +159,11 @@ fn start<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> anyhow::Result<(
 fn line(row: &Row) -> String {
     let RenderStats {
         seconds,
-        cache,
+        meshes,
         peak_bytes,
     } = &row.stats;
     let peak = peak_bytes.map_or("-".into(), |bytes| format!("{:.0}", mib(bytes)));
-    let meshes = cache.as_ref().map_or("-".into(), |meshes| {
+    let meshes = meshes.as_ref().map_or("-".into(), |meshes| {
         format!("{}, {}", meshes.found, meshes.generated)
     });
     format!(
