@@ -63,6 +63,11 @@ use writing::Writing;
 /// points take 0.4 s on two cores.
 pub const LEAST_POINTS: usize = 100_000;
 
+/// How many proxies are computed in the time of a mesh, about: in a profile of opening 1,000 cells of 5,000 points,
+/// meshes took 75 % of the time, proxies 8 %.
+#[cfg(feature = "render")]
+const PROXIES_OF_MESH: usize = 10;
+
 /// A circuit's cache while it is opened.
 #[derive(Debug)]
 pub struct Cache {
@@ -214,7 +219,7 @@ impl Cache {
             let proxy = Proxy::new(mesh, &[]);
             let mut bytes = ByteWriter::default();
             proxy.write_bytes(&mut bytes);
-            self.put(&key, bytes, 0);
+            self.put(&key, bytes, mesh.tracing.len() / PROXIES_OF_MESH);
             proxy
         })
     }

@@ -6,6 +6,6 @@ use clap::Args;
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(crate) struct CacheArgs {
     /// Neither read nor write the meshes that are kept beside a circuit (NAME.ntcache)
-    #[arg(long)]
+    #[arg(long, help_heading = "Circuits")]
     pub(crate) no_cache: bool,
 }

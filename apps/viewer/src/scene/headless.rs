@@ -32,7 +32,7 @@ pub struct SessionPicture {
 }
 
 /// Draws a session as the window would save it, from its own view or from the saved `view` of this
-/// name.
+/// name. `without_caches`: neither read nor write the cache of its circuit.
 ///
 /// # Errors
 /// A message that says what is wrong with the session, the adapter or the file to write, and what
@@ -42,6 +42,7 @@ pub fn draw_session(
     picture: &PictureFile,
     view: Option<&str>,
     adapter: Option<&str>,
+    without_caches: bool,
 ) -> Result<SessionPicture, String> {
     let session = Session::read(file).map_err(|e| e.of(file))?;
     let view = match view {
@@ -58,7 +59,7 @@ pub fn draw_session(
     for (file, why) in found.failures {
         drawn.failures.push((file.display().to_string(), why));
     }
-    let circuit = found.circuits.first();
+    let circuit = found.circuits.first().filter(|_| !without_caches);
     let cache = circuit.map(|(_, circuit)| Cache::open(Path::new(&circuit.file)));
     for opened in found.circuits {
         state.circuits.add(opened);
