@@ -122,7 +122,7 @@ def test_no_option_of_the_command_is_missing() -> None:
             flag.replace("-", "_") for flag in re.findall(r"^ +(?:-\w, )?--([a-z-]+)", text, re.MULTILINE)
         }
         ours = set(inspect.signature(function).parameters)
-        flags = {"legend" if flag == "no_legend" else flag for flag in flags}
+        flags = {flag.removeprefix("no_") if flag in ("no_legend", "no_cache") else flag for flag in flags}
         assert flags - other - common == ours - {"cell", "what"} - other, command
 
 

@@ -38,6 +38,16 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-output", &[]),
     ("neurotess-plot", &["neurotess-morphology"]),
     (
+        "neurotess-cache",
+        &[
+            "neurotess-morphology",
+            "neurotess-mesh",
+            "neurotess-generate",
+            "neurotess-render",
+            "neurotess-output",
+        ],
+    ),
+    (
         "neurotess-color",
         &[
             "neurotess-morphology",
@@ -60,6 +70,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-color",
             "neurotess-output",
             "neurotess-plot",
+            "neurotess-cache",
             "neurotess-union",
         ],
     ),

@@ -3,6 +3,7 @@
 
 mod assemble;
 mod bends;
+mod bytes;
 mod crowd;
 mod error;
 mod facets;

@@ -2,6 +2,41 @@
 
 use std::fmt;
 
+/// The codes of all causes.
+pub(crate) const CODES: [&str; 31] = [
+    "branches_separated",
+    "branches_touch",
+    "buried_twig",
+    "close_forks",
+    "coarse_coordinates",
+    "coincident_points",
+    "crowded_branches",
+    "dense_points",
+    "drawn_in",
+    "far_from_soma",
+    "fork_split",
+    "fork_thickened",
+    "insertion_quad_far",
+    "inside_soma",
+    "near_fork",
+    "neurite_inside_soma",
+    "no_insertion_quad",
+    "one_point_neurite",
+    "one_point_tree",
+    "radius_mended",
+    "ring_limited",
+    "ring_moved",
+    "ring_nearer",
+    "ring_shrunk",
+    "ring_unused",
+    "rings_cross",
+    "sharp_bend",
+    "soma_folded",
+    "soma_inverted",
+    "soma_radius_mended",
+    "stems_gathered",
+];
+
 /// One cause with its count and the first sample concerned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
@@ -35,6 +70,7 @@ pub(crate) struct Warnings(Vec<Warning>);
 impl Warnings {
     /// Counts one occurrence.
     pub(crate) fn add(&mut self, code: &'static str, sample: Option<i64>, message: &str) {
+        debug_assert!(CODES.contains(&code), "{code} is missing in CODES");
         match self.0.iter_mut().find(|w| w.code == code) {
             Some(warning) => warning.count += 1,
             None => {

@@ -24,8 +24,10 @@
 #![forbid(unsafe_code)]
 
 mod bvh;
+mod bytes;
 mod check;
 mod coarse;
+mod coarse_bytes;
 mod crossing;
 mod forest;
 mod format;
@@ -44,6 +46,7 @@ mod unit;
 mod weld;
 mod write;
 
+pub use bytes::{ByteReader, ByteWriter, BytesError};
 pub use check::{Report, check};
 pub use coarse::{
     CoarseMesh, Patch, PatchKind, Role, SampleId, SectionNumber, SwcType, TracingPoint, Vertex,

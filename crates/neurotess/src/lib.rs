@@ -59,6 +59,7 @@
 //! | [`morphology`] | the traced cell, its measures, edits and comparisons | |
 //! | [`formats`] | morphology files, there and back | SWC; `asc`, `h5`, `neuroml` |
 //! | [`circuit`] | many neurons: circuits, scenes, reports | `circuit` |
+//! | [`cache`] | what opening a circuit leaves for the next time | `circuit` |
 //! | [`synth`] | synthetic neurons and circuits | `synth` |
 //! | [`generate`] | from a morphology to a coarse mesh | |
 //! | [`refine`] | from a coarse mesh to a surface | |
@@ -72,6 +73,8 @@
 //! All features are on by default. Without any, the crate meshes SWC files and needs neither wgpu nor HDF5.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "circuit")]
+pub use neurotess_cache as cache;
 #[cfg(feature = "circuit")]
 pub use neurotess_circuit as circuit;
 #[cfg(feature = "render")]

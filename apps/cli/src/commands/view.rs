@@ -9,6 +9,7 @@ use neurotess_viewer::document::{MarkerOptions, MeshEntry, SomaEdit};
 
 use crate::io::inputs::Inputs;
 use crate::io::morphologies::MORPHOLOGIES;
+use crate::options::cache::CacheArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::meshes::{MeshArg, MeshArgs};
 use crate::options::rings::RingArgs;
@@ -39,6 +40,8 @@ pub(crate) struct ViewArgs {
     pub(crate) markers: MarkerArgs,
     #[command(flatten)]
     pub(crate) meshes: MeshArgs,
+    #[command(flatten)]
+    pub(crate) cache: CacheArgs,
     /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -68,6 +71,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         report: args.report.clone(),
         markers: markers(&args.markers)?,
         meshes: args.meshes.mesh.iter().enumerate().map(mesh).collect(),
+        without_caches: args.cache.no_cache,
         adapter: args.adapter.clone(),
     };
     let listener = reporter

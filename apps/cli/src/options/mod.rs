@@ -1,5 +1,7 @@
 //! Options that several commands share.
 
+#[cfg(feature = "render")]
+pub(crate) mod cache;
 pub(crate) mod cells;
 #[cfg(feature = "render")]
 pub(crate) mod markers;

@@ -103,3 +103,32 @@ fn static_pictures_are_colored_beside_drawn_ones() {
     let table = work.run(small).exits(0).stdout();
     assert!(table.contains("recolored ms"), "{table}");
 }
+
+#[neurotess_testing::test(needs(gpu))]
+fn the_second_opening_of_a_circuit_generates_nothing() {
+    let work = Work::new();
+    let bench = "bench opening --neurons 100 --morphologies 21 --size 48x36 --json";
+    let json = work.run(bench).exits(0).json();
+    let rows = json["rows"].as_array().expect("rows");
+    let names: Vec<_> = rows.iter().map(|row| row["cache"].clone()).collect();
+    assert_eq!(names.len(), 3);
+    let meshes: Vec<_> = rows.iter().map(|row| &row["meshes"]).collect();
+    assert!(meshes[0].is_null());
+    assert_eq!(
+        (&meshes[1]["found"], &meshes[2]["generated"]),
+        (&0.into(), &0.into())
+    );
+    assert_eq!(meshes[1]["generated"], meshes[2]["found"]);
+    assert!(
+        json["cache_bytes"]
+            .as_u64()
+            .is_some_and(|bytes| bytes > 1 << 20)
+    );
+    for row in rows {
+        let seconds = row["seconds"]["read"].as_f64();
+        assert!(
+            seconds.is_some_and(|s| s > 0.0) && row["all"].as_f64() > seconds,
+            "{row}"
+        );
+    }
+}

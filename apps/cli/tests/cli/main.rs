@@ -2,6 +2,7 @@
 
 mod attacks;
 mod bench;
+mod cache;
 mod check;
 mod circuit;
 mod convert;

@@ -36,6 +36,8 @@ pub(crate) struct OpenRequest {
     pub(crate) somata: Vec<(PathBuf, SomaEdit)>,
     /// How the somata of all other files are generated.
     pub(crate) usual: SomaEdit,
+    /// Whether caches of circuits are neither read nor written.
+    pub(crate) without_caches: bool,
 }
 
 impl OpenRequest {
@@ -49,7 +51,7 @@ impl OpenRequest {
                 .iter()
                 .filter_map(|f| Some((f.path.clone(), f.soma.clone()?)))
                 .collect(),
-            usual: SomaEdit::default(),
+            ..Self::default()
         }
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Instant, SystemTime};
 
+use neurotess::cache::Cache;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::generate_timed;
 use neurotess::morphology::{Measures, Morphology, shape};
@@ -13,16 +14,17 @@ use neurotess::synth::{self, Kind};
 use crate::model::document::SomaEdit;
 use crate::model::sources::{Remark, SAMPLE, SectionFacts, Source, Stale, spheres, thickest};
 
-/// Reads a file, or grows a sample, and meshes it.
+/// Reads a file, or grows a sample, and meshes it. `cache`: that of the circuit that it belongs to.
 ///
 /// # Errors
 /// A message that says what is wrong and what to do.
-pub(crate) fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
+pub(crate) fn load(file: &Path, soma: SomaEdit, cache: Option<&Cache>) -> Result<Source, String> {
     let name = file.to_string_lossy();
     if let Some(kind) = name.strip_prefix(SAMPLE) {
         let kind: Kind = kind.parse().map_err(|e| format!("{e}"))?;
         let morphology = synth::grow(&synth::Options::sample(kind));
-        return source(file, kind.to_string(), morphology, soma, Vec::new(), None);
+        let content = (morphology, Vec::new(), None);
+        return source(file, kind.to_string(), content, soma, None);
     }
     let written = fs::metadata(file).and_then(|m| m.modified()).ok();
     let read = formats::read(file, &ReadOptions::default()).map_err(|e| reason(&name, &e))?;
@@ -37,10 +39,9 @@ pub(crate) fn load(file: &Path, soma: SomaEdit) -> Result<Source, String> {
     let made = source(
         file,
         stem.into_owned(),
-        read.morphology,
+        (read.morphology, warnings, written),
         soma,
-        warnings,
-        written,
+        cache,
     )?;
     if made.generated.mesh.patches.is_empty() {
         return Err("nothing in it to mesh: check the file".into());
@@ -58,15 +59,23 @@ fn reason(file: &str, error: &formats::ReadError) -> String {
 fn source(
     file: &Path,
     name: String,
-    morphology: Morphology,
+    (morphology, mut warnings, written): (Morphology, Vec<Remark>, Option<SystemTime>),
     soma: SomaEdit,
-    mut warnings: Vec<Remark>,
-    written: Option<SystemTime>,
+    cache: Option<&Cache>,
 ) -> Result<Source, String> {
     let clock = Instant::now();
     let seconds = || clock.elapsed().as_secs_f64();
-    let generated =
-        generate_timed(&morphology, &soma.options(), seconds).map_err(|e| e.to_string())?;
+    let options = soma.options();
+    let generate = || generate_timed(&morphology, &options, seconds);
+    let (generated, proxy) = match cache {
+        Some(cache) => {
+            let meshed = cache.mesh(&morphology, &options, generate);
+            let (generated, key) = meshed.map_err(|e| e.to_string())?;
+            let proxy = cache.proxy(&key, &generated.mesh);
+            (generated, Some(Arc::new(proxy)))
+        }
+        None => (generate().map_err(|e| e.to_string())?, None),
+    };
     let made = generated.warnings.iter();
     warnings.extend(made.map(|w| Remark::new(w.code, w.to_string())));
     let (all, few_spheres) = spheres(&generated.mesh);
@@ -80,6 +89,7 @@ fn source(
         thickest: thickest(&generated.mesh),
         morphology: Arc::new(morphology),
         generated: Arc::new(generated),
+        proxy,
         soma,
         warnings,
         written,
@@ -118,12 +128,13 @@ mod tests {
 
     #[test]
     fn samples_are_grown_and_missing_files_have_a_reason() {
-        let star = load(&sample(Kind::Star), SomaEdit::default()).expect("grown");
+        let star = load(&sample(Kind::Star), SomaEdit::default(), None).expect("grown");
         assert!(star.measures.n_sections > 10 && !star.spheres.is_empty());
         assert_eq!(star.sections.len(), star.measures.n_sections);
-        let error = load(Path::new("not/there.swc"), SomaEdit::default()).expect_err("missing");
+        let error =
+            load(Path::new("not/there.swc"), SomaEdit::default(), None).expect_err("missing");
         assert!(!error.contains("there.swc") && error.len() > 5, "{error}");
-        assert!(load(Path::new("sample:nothing"), SomaEdit::default()).is_err());
+        assert!(load(Path::new("sample:nothing"), SomaEdit::default(), None).is_err());
     }
 
     #[test]
@@ -131,7 +142,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("a.swc");
         fs::write(&file, "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n").expect("written");
-        let source = load(&file, SomaEdit::default()).expect("read");
+        let source = load(&file, SomaEdit::default(), None).expect("read");
         assert_eq!(stale(&file, source.written), None);
         let later = SystemTime::now() + std::time::Duration::from_secs(5);
         fs::File::options()

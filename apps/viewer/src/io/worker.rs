@@ -12,6 +12,7 @@ use neurotess::circuit::Circuit;
 use neurotess::generate::{Generated, generate_timed};
 use neurotess::morphology::Morphology;
 
+use crate::io::circuit_caches::CircuitCaches;
 use crate::io::find::{self, Found, OpenRequest};
 use crate::io::load;
 use crate::io::markers;
@@ -32,6 +33,8 @@ pub(crate) enum Message {
     Loaded(usize, Box<Result<Source, (PathBuf, String)>>),
     /// All files of a loading are read, or it was canceled.
     LoadingDone(Result<(), String>),
+    /// What was wrong with a circuit's cache.
+    Cache(String),
     /// A file that was read again.
     Reloaded(SourceId, Box<Result<Source, String>>),
     /// A cell that was meshed again with another soma.
@@ -179,6 +182,7 @@ impl Worker {
         let task = self.start(Progress::new("reading", "files", 0), move |progress| {
             let found = find::find(&request);
             let files = found.files.clone();
+            let caches = CircuitCaches::open(&found, &request);
             progress.all.store(files.len(), Ordering::Relaxed);
             send(Message::Found(Box::new(found)));
             let next = AtomicUsize::new(0);
@@ -188,6 +192,7 @@ impl Worker {
                 for _ in 0..cores.min(files.len()) {
                     let (sender, next, files) = (sender.clone(), &next, &files);
                     let (somata, usual) = (&request.somata, &request.usual);
+                    let caches = &caches;
                     scope.spawn(move || {
                         loop {
                             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -197,7 +202,7 @@ impl Worker {
                             };
                             let soma = somata.iter().find(|(path, _)| path == file);
                             let soma = soma.map_or(usual, |(_, soma)| soma).clone();
-                            let loaded = caught(|| load::load(file, soma));
+                            let loaded = caught(|| load::load(file, soma, caches.of_file(index)));
                             let loaded = loaded.map_err(|why| (file.clone(), why));
                             progress.done.fetch_add(1, Ordering::Relaxed);
                             let _ = sender.send((index, loaded));
@@ -216,6 +221,10 @@ impl Worker {
                     }
                 }
             });
+            // Whoever cancels does not want to wait.
+            if !progress.is_canceled() {
+                caches.finish().for_each(|why| send(Message::Cache(why)));
+            }
             Ok(())
         });
         self.loading = Some(task);
@@ -224,7 +233,7 @@ impl Worker {
     /// Reads a file again.
     pub(crate) fn reload(&mut self, id: SourceId, file: PathBuf, soma: SomaEdit) {
         let progress = Progress::new("reading", "files", 1);
-        let task = self.start(progress, move |_| load::load(&file, soma));
+        let task = self.start(progress, move |_| load::load(&file, soma, None));
         self.reloading.push((id, task));
     }
 
@@ -343,6 +352,66 @@ mod tests {
     use super::*;
     use crate::model::settings::Settings;
     use crate::model::state::State;
+
+    /// All messages of opening a circuit.
+    fn opened(circuit: &std::path::Path, without_caches: bool) -> Vec<Message> {
+        let mut worker = Worker::new(|| {});
+        worker.load(OpenRequest {
+            paths: vec![circuit.to_path_buf()],
+            without_caches,
+            ..OpenRequest::default()
+        });
+        let mut messages = Vec::new();
+        while worker.is_busy() {
+            messages.extend(worker.messages());
+            std::thread::yield_now();
+        }
+        messages
+    }
+
+    /// The source of the only cell, and what was wrong with the cache.
+    fn of_one_cell(messages: Vec<Message>) -> (Source, Vec<String>) {
+        let (mut source, mut wrong) = (None, Vec::new());
+        for message in messages {
+            match message {
+                Message::Loaded(_, loaded) => source = (*loaded).ok(),
+                Message::Cache(why) => wrong.push(why),
+                _ => {}
+            }
+        }
+        (source.expect("read"), wrong)
+    }
+
+    #[test]
+    fn cells_of_circuits_come_from_their_cache_and_are_the_same() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (cell, circuit) = (
+            folder.path().join("a.swc"),
+            folder.path().join("few.scene.toml"),
+        );
+        std::fs::write(&cell, "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n").expect("written");
+        std::fs::write(&circuit, "[[cells]]\nfile = \"a.swc\"\n").expect("written");
+        let (without, _) = of_one_cell(opened(&circuit, true));
+        assert!(without.proxy.is_none());
+        let (with, wrong) = of_one_cell(opened(&circuit, false));
+        assert!(with.proxy.is_some() && wrong.is_empty());
+        assert_eq!(with.generated.mesh, without.generated.mesh);
+        // A file of so few points was not left behind; one that is there is damaged, and replaced.
+        let file = folder.path().join("few.scene.ntcache");
+        assert!(!file.exists());
+        std::fs::write(&file, "neurotess cache").expect("written");
+        let (damaged, wrong) = of_one_cell(opened(&circuit, false));
+        assert_eq!(damaged.generated.mesh, without.generated.mesh);
+        let [why] = &wrong[..] else {
+            panic!("{wrong:?}");
+        };
+        assert!(why.contains("few.scene.ntcache"), "{why}");
+        let (again, wrong) = of_one_cell(opened(&circuit, false));
+        assert!(wrong.is_empty());
+        assert_eq!(again.generated.mesh, without.generated.mesh);
+        let spheres = |source: &Source| source.proxy.as_ref().map(|proxy| proxy.spheres());
+        assert_eq!(spheres(&again), spheres(&with));
+    }
 
     #[test]
     fn a_task_that_panics_shows_its_text_as_a_problem() {

@@ -35,6 +35,8 @@ pub struct Settings {
     pub picture_size: [u32; 2],
     /// Factor on everything's size.
     pub zoom: f32,
+    /// Whether circuits have a cache.
+    pub caches: bool,
     /// Colors and light.
     pub look: Look,
     /// The level of detail.
@@ -50,6 +52,7 @@ impl Default for Settings {
             recent: Vec::new(),
             picture_size: [1920, 1440],
             zoom: 1.0,
+            caches: true,
             look: Look::default(),
             detail: Detail::default(),
         }

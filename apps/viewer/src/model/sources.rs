@@ -9,8 +9,8 @@ use glam::DVec3;
 use neurotess::generate::Generated;
 use neurotess::mesh::{CoarseMesh, Role};
 use neurotess::morphology::{Measures, Morphology};
-use neurotess::render::BoundingSphere;
 use neurotess::render::bounds::{bounds, merged};
+use neurotess::render::{BoundingSphere, Proxy};
 use neurotess::synth::Kind;
 
 use crate::model::document::SomaEdit;
@@ -35,6 +35,8 @@ pub struct Source {
     pub morphology: Arc<Morphology>,
     /// Its coarse mesh with the soma's figures.
     pub generated: Arc<Generated>,
+    /// What exploration draws of the mesh, if it came with the mesh; all its color keys are 0.
+    pub proxy: Option<Arc<Proxy>>,
     /// How the soma of the mesh was generated.
     pub soma: SomaEdit,
     /// Morphometrics.
@@ -185,6 +187,7 @@ impl Sources {
             (source.spheres, source.few_spheres) = spheres(&generated.mesh);
             source.thickest = thickest(&generated.mesh);
             source.generated = Arc::new(generated);
+            source.proxy = None;
         }
         self.geometry = Revision::next();
     }

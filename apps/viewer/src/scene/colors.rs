@@ -165,6 +165,7 @@ impl ColorRequest {
                 && let Some(before) = before.get(place).filter(same)
             {
                 source.generated = Arc::clone(&before.generated);
+                source.proxy = None;
                 return;
             }
             let morphology = match elements {
@@ -174,6 +175,7 @@ impl ColorRequest {
             if let Ok(generated) = generate(&morphology, &source.options) {
                 source.morphology = morphology;
                 source.generated = Arc::new(generated);
+                source.proxy = None;
             }
         });
         sources

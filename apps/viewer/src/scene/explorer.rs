@@ -8,6 +8,7 @@ use eframe::egui;
 use neurotess::generate::Generated;
 use neurotess::render::pick::{ProxyPickResolver, ProxyPickTargets};
 use neurotess::render::{DEFAULT_BUDGET, DeviceError, Exploration, Gpu, Proxy};
+use rayon::prelude::*;
 
 use crate::io::task::{Progress, Task};
 use crate::model::revision::Revision;
@@ -80,14 +81,20 @@ impl Explorer {
 
     fn begin(&mut self, gpu: &Arc<Gpu>, content: &SceneContent, ctx: &egui::Context) {
         self.builds += 1;
-        let meshes = content.sources.iter().map(|s| Arc::clone(&s.generated));
-        let meshes: Vec<Arc<Generated>> = meshes.collect();
+        let meshes = content.sources.iter().map(|source| {
+            let proxy = source.proxy.clone();
+            (Arc::clone(&source.generated), proxy)
+        });
+        let meshes: Vec<(Arc<Generated>, Option<Arc<Proxy>>)> = meshes.collect();
         let coloring = Arc::clone(&content.coloring);
         let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
         let work = move |_: &Progress| {
-            let cells = meshes.iter().zip(&coloring.color_keys);
+            let cells = meshes.par_iter().zip(&coloring.color_keys);
             let proxies: Vec<Proxy> = cells
-                .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
+                .map(|((generated, proxy), color_keys)| match proxy {
+                    Some(proxy) => proxy.with_color_keys(color_keys),
+                    None => Proxy::new(&generated.mesh, color_keys),
+                })
                 .collect();
             Ok(Exploration::new(&gpu, 1).and_then(|mut exploration| {
                 exploration.add(&gpu, &proxies)?;

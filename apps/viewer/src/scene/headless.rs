@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use neurotess::cache::Cache;
 use neurotess::render::Gpu;
 
 use crate::io::find::{self, OpenRequest};
@@ -32,7 +33,7 @@ pub struct SessionPicture {
 }
 
 /// Draws a session as the window would save it, from its own view or from the saved `view` of this
-/// name.
+/// name. `without_caches`: neither read nor write the cache of its circuit.
 ///
 /// # Errors
 /// A message that says what is wrong with the session, the adapter or the file to write, and what
@@ -42,6 +43,7 @@ pub fn draw_session(
     picture: &PictureFile,
     view: Option<&str>,
     adapter: Option<&str>,
+    without_caches: bool,
 ) -> Result<SessionPicture, String> {
     let session = Session::read(file).map_err(|e| e.of(file))?;
     let view = match view {
@@ -58,12 +60,14 @@ pub fn draw_session(
     for (file, why) in found.failures {
         drawn.failures.push((file.display().to_string(), why));
     }
+    let circuit = found.circuits.first().filter(|_| !without_caches);
+    let cache = circuit.map(|(_, circuit)| Cache::open(Path::new(&circuit.file)));
     for opened in found.circuits {
         state.circuits.add(opened);
     }
     for entry in &session.file {
         let soma = entry.soma.clone().unwrap_or_default();
-        ids.push(match load::load(&entry.path, soma) {
+        ids.push(match load::load(&entry.path, soma, cache.as_ref()) {
             Ok(source) => Some(state.sources.add(source)),
             Err(why) => {
                 let file = entry.path.display().to_string();
@@ -72,6 +76,8 @@ pub fn draw_session(
             }
         });
     }
+    // A cache that cannot be read or written changes nothing in the picture.
+    drop(cache.map(Cache::finish));
     state.document.look = session.look.clone();
     state.document.grid = session.grid;
     state.document.report = session.report.clone();

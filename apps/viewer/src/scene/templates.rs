@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use neurotess::generate::{GenerateOptions, Generated};
 use neurotess::morphology::Morphology;
+use neurotess::render::Proxy;
 
 use crate::model::ids::SourceId;
 use crate::model::state::State;
@@ -15,6 +16,8 @@ pub(crate) struct SceneTemplate {
     pub(crate) name: String,
     pub(crate) morphology: Arc<Morphology>,
     pub(crate) generated: Arc<Generated>,
+    /// What exploration draws of `generated`, if it is there; all its color keys are 0.
+    pub(crate) proxy: Option<Arc<Proxy>>,
     /// The mesh of the tracing itself; it differs from `generated` if points were inserted for a
     /// report's values, or radii are drawn larger.
     pub(crate) traced: Arc<Generated>,
@@ -44,6 +47,7 @@ pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
             name: source.name.clone(),
             morphology: Arc::clone(&source.morphology),
             generated: Arc::clone(&source.generated),
+            proxy: source.proxy.clone(),
             traced: Arc::clone(&source.generated),
             options: GenerateOptions {
                 radius_factor: state.document.look.radius_factor(),

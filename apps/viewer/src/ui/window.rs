@@ -29,6 +29,8 @@ pub struct Options {
     pub markers: MarkerOptions,
     /// Meshes to show beside them, besides those of a session.
     pub meshes: Vec<MeshEntry>,
+    /// Whether caches of circuits are neither read nor written, whatever the settings say.
+    pub without_caches: bool,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
 }
@@ -167,6 +169,9 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
+        if options.without_caches {
+            viewer = viewer.without_caches();
+        }
         if let Some(listener) = listener {
             viewer = viewer.with_listener(listener);
         }

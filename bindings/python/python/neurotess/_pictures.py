@@ -219,6 +219,7 @@ def render(
     region: tuple[Sequence[float], Sequence[float]] | None = None,
     sample: int | None = None,
     sample_seed: int | None = None,
+    cache: bool = True,
     adapter: str | None = None,
 ) -> Image:
     """Draws cells or a circuit, without a window: a cell, a file, several of them, or a `Circuit`.
@@ -249,7 +250,7 @@ def render(
     the file) and ``"fit"`` (True: the camera fits it even if one can see through it).
 
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
-    `sample` and `sample_seed`.
+    `sample` and `sample_seed`; `cache`: whether the meshes of a large circuit are kept beside it for the next time.
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
@@ -298,6 +299,7 @@ def render(
         "region": region,
         "sample": sample,
         "sample_seed": sample_seed,
+        "cache": cache,
         "adapter": adapter,
     }
     return next(_pictures(what, options))
@@ -334,6 +336,7 @@ def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
         options["region"] = [*region[0], *region[1]]
     options["size"] = _options.joined(options.get("size"), "x")
     options["no_legend"] = not options.pop("legend", True)
+    options["no_cache"] = not options.pop("cache", True)
     drawing = _drawing(what, options, options.pop("adapter", None))
     for message in drawing.messages:
         warnings.warn(NeurotessWarning(message), stacklevel=3)

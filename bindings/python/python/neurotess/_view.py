@@ -183,6 +183,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         }
         if options.pop("legend", False) is False:
             options["no_legend"] = True
+        if not options.pop("cache", True):
+            options["no_cache"] = True
         quick = {**options, "lod": "exploration", "budget": self._budget}
         full = _drawing(self._what, {**options, "lod": "static"}, self._adapter)
         made = (_drawing(self._what, quick, self._adapter), full)

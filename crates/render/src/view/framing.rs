@@ -94,10 +94,11 @@ impl Camera {
         // touch the spheres.
         let touch = |axis: usize, low_tan: f64, high_tan: f64| {
             let (mut low, mut high) = (f64::MAX, f64::MIN);
+            let (low_slant, high_slant) = (low_tan.hypot(1.0), high_tan.hypot(1.0));
             for &(center, radius) in spheres {
                 let v = start.view_from_world * center;
-                high = high.max(v[axis] + high_tan * v.z + radius * high_tan.hypot(1.0));
-                low = low.min(v[axis] - low_tan * v.z - radius * low_tan.hypot(1.0));
+                high = high.max(v[axis] + high_tan * v.z + radius * high_slant);
+                low = low.min(v[axis] - low_tan * v.z - radius * low_slant);
             }
             let depth = (high - low) / (low_tan + high_tan);
             (

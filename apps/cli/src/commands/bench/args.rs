@@ -23,6 +23,31 @@ pub(crate) enum Bench {
     Exploration(ExplorationArgs),
     /// Further pictures of a recording from a fixed camera: drawn anew, and colored anew
     Static(StaticArgs),
+    /// A circuit from cold start to the first picture, with and without its cache
+    Opening(OpeningArgs),
+}
+
+/// `neurotess bench opening`
+#[derive(Args, Debug)]
+pub(crate) struct OpeningArgs {
+    /// Neurons of the circuit
+    #[arg(long, value_name = "N", default_value_t = 10_000,
+          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) neurons: u32,
+    /// Distinct tracings of the circuit
+    #[arg(long, value_name = "M", default_value_t = 100,
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) morphologies: u32,
+    /// Points of a tracing, about
+    #[arg(long, value_name = "N", default_value_t = 5_000,
+          value_parser = clap::value_parser!(u32).range(50..=500_000))]
+    pub(crate) points: u32,
+    /// Width and height (pixels)
+    #[arg(long, value_name = "WxH", default_value = "1280x960")]
+    pub(crate) size: Size,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
 }
 
 /// `neurotess bench static`

@@ -3,11 +3,13 @@
 //! `refinement` repeats the experiment of García-Cantero et al. (Frontiers in Neuroinformatics
 //! 2017, figure 15): scenes of several sizes drawn with rising levels in three ways, and beyond it
 //! by the error in pixels and with thousands of neurons. `exploration` draws such scenes within a
-//! budget. `static` colors pictures of them anew instead of drawing them anew.
+//! budget. `static` colors pictures of them anew instead of drawing them anew. `opening` opens a circuit with its
+//! cache and without.
 
 mod args;
 mod exploration;
 mod methods;
+mod opening;
 mod plot;
 mod recoloring;
 mod scenes;
@@ -52,6 +54,7 @@ pub(crate) fn run(args: &BenchArgs, reporter: &Reporter) -> anyhow::Result<()> {
         Bench::Refinement(args) => refinement(args, reporter),
         Bench::Exploration(args) => exploration::run(args, reporter),
         Bench::Static(args) => recoloring::run(args, reporter),
+        Bench::Opening(args) => opening::run(args, reporter),
     }
 }
 

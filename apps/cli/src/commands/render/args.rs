@@ -11,6 +11,7 @@ use neurotess::render::color::{ColorMap, Palette, Rgb};
 use super::palette::{PaletteArg, PaletteParser, SetColor};
 use super::times::{MOST, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};
+use crate::options::cache::CacheArgs;
 use crate::options::cells::CellArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::meshes::MeshArgs;
@@ -243,6 +244,8 @@ pub(crate) struct RenderArgs {
     pub(crate) markers: MarkerArgs,
     #[command(flatten)]
     pub(crate) meshes: MeshArgs,
+    #[command(flatten)]
+    pub(crate) cache: CacheArgs,
     #[command(flatten)]
     pub(crate) cells: CellArgs,
 }

@@ -4,14 +4,16 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
+use neurotess::cache::Cache;
 use neurotess::circuit::Compartment;
 use neurotess::coloring::with_middles;
 use neurotess::formats::{ReadOptions, Warning};
-use neurotess::generate::{self, GenerateOptions};
+use neurotess::generate::{self, GenerateOptions, Generated};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
+use neurotess::render::Proxy;
 
-use super::args::RenderArgs;
+use super::args::{LodMode, RenderArgs};
 use crate::io::batch::each;
 use crate::io::inputs::{Input, Inputs};
 use crate::io::morphologies::read_morphology;
@@ -22,26 +24,34 @@ pub(crate) struct MeshedCell {
     pub(crate) file: String,
     pub(crate) morphology: Morphology,
     pub(crate) mesh: CoarseMesh,
+    /// What exploration draws, if it came with the mesh; all its color keys are 0.
+    pub(crate) proxy: Option<Proxy>,
     warnings: Vec<Warning>,
     mended: Vec<String>,
 }
 
 /// Reads and meshes all inputs on all cores; reports those that fail. `cuts`: the compartments of
-/// those that show values of a report.
+/// those that show values of a report. `cache`: of their circuit.
 pub(crate) fn read(
     inputs: &Inputs,
     cuts: &HashMap<PathBuf, Vec<Compartment>>,
     args: &RenderArgs,
+    cache: Option<&Cache>,
     reporter: &Reporter,
 ) -> anyhow::Result<Vec<Entry<MeshedCell>>> {
-    let options = options(args);
+    let meshing = Meshing {
+        options: options(args),
+        exploring: args.lod == Some(LodMode::Exploration),
+        cache,
+        stopped: reporter.stopped(),
+    };
     let read = ReadOptions {
         strict: args.strict,
         ..ReadOptions::default()
     };
     let entries = each(inputs, reporter, |input| {
         let cut = cuts.get(&input.path).map_or(&[][..], Vec::as_slice);
-        cell(input, cut, read, &options, reporter.stopped())
+        cell(input, cut, read, &meshing)
     })?;
     let one = entries.len() == 1;
     for entry in &entries {
@@ -64,21 +74,46 @@ pub(super) fn options(args: &RenderArgs) -> GenerateOptions {
     }
 }
 
+/// What meshes are made by.
+struct Meshing<'a> {
+    options: GenerateOptions,
+    /// Whether exploration draws them.
+    exploring: bool,
+    cache: Option<&'a Cache>,
+    stopped: &'a AtomicBool,
+}
+
 fn cell(
     input: &Input,
     cut: &[Compartment],
     read: ReadOptions,
-    options: &GenerateOptions,
-    stopped: &AtomicBool,
+    meshing: &Meshing<'_>,
 ) -> Result<MeshedCell, Failure> {
     let mut read = read_morphology(&input.path, None, &read)?;
     if !cut.is_empty() {
         read.morphology = with_middles(&read.morphology, cut);
     }
     let file = input.path.display().to_string();
+    let Meshing {
+        options, stopped, ..
+    } = meshing;
+    let Some(cache) = meshing.cache else {
+        return Ok(MeshedCell {
+            warnings: read.warnings,
+            ..meshed(file, read.morphology, options, stopped)?
+        });
+    };
+    let generate = || generate::generate_stoppable(&read.morphology, options, || 0.0, stopped);
+    let (generated, key) = cache
+        .mesh(&read.morphology, options, generate)
+        .map_err(|e| Failure(format!("{file}: {e}")))?;
+    let proxy = meshing
+        .exploring
+        .then(|| cache.proxy(&key, &generated.mesh));
     Ok(MeshedCell {
         warnings: read.warnings,
-        ..meshed(file, read.morphology, options, stopped)?
+        proxy,
+        ..of_mesh(file, read.morphology, generated)
     })
 }
 
@@ -91,14 +126,19 @@ pub(super) fn meshed(
 ) -> Result<MeshedCell, Failure> {
     let generated = generate::generate_stoppable(&morphology, options, || 0.0, stopped);
     let generated = generated.map_err(|e| Failure(format!("{file}: {e}")))?;
+    Ok(of_mesh(file, morphology, generated))
+}
+
+fn of_mesh(file: String, morphology: Morphology, generated: Generated) -> MeshedCell {
     let mended = generated.warnings.iter();
-    Ok(MeshedCell {
+    MeshedCell {
         file,
         mended: mended.map(|w| format!("{w} ({})", w.code)).collect(),
         morphology,
         mesh: generated.mesh,
+        proxy: None,
         warnings: Vec::new(),
-    })
+    }
 }
 
 fn warn(cell: &MeshedCell, all: bool, reporter: &Reporter) {

@@ -130,6 +130,7 @@ impl Drawing {
             entries,
             placements,
             instances,
+            ..
         } = match input {
             DrawingInput::Cells(cells) => in_memory(cells, &args, reporter.stopped())?,
             DrawingInput::Circuit(_) => scene::read(&args, reporter)?,
@@ -445,5 +446,6 @@ fn in_memory(
         placements: placements.collect(),
         entries,
         instances: None,
+        cache: None,
     })
 }

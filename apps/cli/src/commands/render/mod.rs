@@ -62,6 +62,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         entries,
         placements,
         instances,
+        cache,
     } = scene::read(args, reporter)?;
     let meshes = SceneMeshes::read(&args.meshes, reporter)?;
     stages.end(Stage::Read);
@@ -105,6 +106,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let mut stats = draw::draw(&gpu, &job, meshes, &mut stages, reporter)?;
     stages.end(Stage::Draw);
     stats.took(stages);
+    stats.cache = cache.map(Into::into);
     stats.colors = colored.closest.as_ref().map(Into::into);
     if let Some(path) = &args.stats {
         let mut output = output::begin(path, args.force)?;

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
+use neurotess::cache::{Cache, Summary};
 use neurotess::circuit::{Compartment, Instance, soma_center};
 use neurotess::coloring::cuts;
 use neurotess::render::Placement;
@@ -22,6 +23,8 @@ pub(crate) struct RenderScene {
     pub(crate) placements: Vec<(usize, Placement)>,
     /// The circuit of the placements.
     pub(crate) instances: Option<CircuitInstances>,
+    /// What the circuit's cache was good for.
+    pub(crate) cache: Option<Summary>,
 }
 
 /// Reads and meshes all inputs: tracings, or one circuit.
@@ -35,13 +38,14 @@ pub(crate) fn read(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Ren
         [] => {
             check_of_cells(args)?;
             let inputs = Inputs::find(&args.inputs, &crate::io::morphologies::MORPHOLOGIES);
-            let entries = cells::read(&inputs, &HashMap::new(), args, reporter)?;
+            let entries = cells::read(&inputs, &HashMap::new(), args, None, reporter)?;
             let done = entries.iter().filter(|e| matches!(e, Entry::Done(_)));
             let placements = (0..done.count()).map(|cell| (cell, Placement::default()));
             Ok(RenderScene {
                 placements: placements.collect(),
                 entries,
                 instances: None,
+                cache: None,
             })
         }
         _ => usage("a circuit is drawn alone: leave out the other inputs"),
@@ -82,6 +86,7 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
                 entries: vec![Entry::Failed(failed)],
                 placements: Vec::new(),
                 instances: None,
+                cache: None,
             });
         }
     };
@@ -124,7 +129,12 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
         (circuit.templates[template].path.clone(), cut)
     };
     let cuts = cuts.into_iter().map(of_path).collect();
-    let entries = cells::read(&inputs, &cuts, args, reporter)?;
+    let cache = (!args.cache.no_cache).then(|| Cache::open(Path::new(&circuit.file)));
+    let entries = cells::read(&inputs, &cuts, args, cache.as_ref(), reporter)?;
+    let cache = cache.map(Cache::finish);
+    for warning in cache.iter().flat_map(|summary| &summary.warnings) {
+        reporter.warning(&warning.to_string());
+    }
     // Indices of cells among those that did not fail; none for those that did.
     let mut centers = Vec::new();
     for (entry, index) in entries.iter().zip(of_template.values_mut()) {
@@ -153,5 +163,6 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
             circuit,
             instances: placed,
         }),
+        cache,
     })
 }

@@ -33,6 +33,7 @@ pub(super) fn draw(
         &picture,
         args.saved_view.as_deref(),
         args.adapter.as_deref(),
+        args.cache.no_cache,
     );
     let drawn = drawn.map_err(anyhow::Error::msg)?;
     for (file, why) in &drawn.failures {

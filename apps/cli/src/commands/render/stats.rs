@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use neurotess::cache::Summary;
 use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
 
@@ -42,6 +43,12 @@ pub(crate) struct Stats {
     /// Of a film whose pictures are one picture, colored anew.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) film: Option<FilmStats>,
+    /// Of a circuit's cache, if one was used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) cache: Option<CacheStats>,
+    /// Most memory (bytes) that the program has held so far, where the system tells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_bytes: Option<u64>,
     /// Of a legend of several colors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) colors: Option<ColorStats>,
@@ -126,6 +133,27 @@ struct MeshStats {
     triangles: u64,
 }
 
+/// Meshes of a circuit's tracings.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CacheStats {
+    /// Those that the cache had.
+    found: usize,
+    /// Those that were generated.
+    generated: usize,
+    /// The file that was written.
+    written: Option<PathBuf>,
+}
+
+impl From<Summary> for CacheStats {
+    fn from(summary: Summary) -> Self {
+        Self {
+            found: summary.found,
+            generated: summary.computed,
+            written: summary.written,
+        }
+    }
+}
+
 /// Milliseconds.
 #[derive(Clone, Debug, Default, Serialize)]
 struct FrameTime {
@@ -208,6 +236,7 @@ impl Stats {
     /// Sets the times of the stages.
     pub(crate) fn took(&mut self, stages: Stages) {
         self.seconds = stages;
+        self.peak_bytes = peak_bytes();
     }
 
     /// The statistics as a line of text.
@@ -219,6 +248,16 @@ impl Stats {
             self.frame_ms.cpu / 1e3
         )
     }
+}
+
+/// Most memory (bytes) that the program has held so far: Linux tells.
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib = peak.trim().strip_suffix(" kB")?;
+    Some(kib.parse::<u64>().ok()? * 1024)
 }
 
 /// What `--json` prints.

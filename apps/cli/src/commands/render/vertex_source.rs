@@ -245,7 +245,10 @@ fn budgeted(
     let proxies: Vec<Proxy> = cells
         .par_iter()
         .zip(&colored.coloring.color_keys)
-        .map(|(cell, color_keys)| Proxy::new(&cell.mesh, color_keys))
+        .map(|(cell, color_keys)| match &cell.proxy {
+            Some(proxy) => proxy.with_color_keys(color_keys),
+            None => Proxy::new(&cell.mesh, color_keys),
+        })
         .collect();
     let mut source = Exploration::new(gpu, options.sub_pixels(gpu))?;
     source.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));

@@ -182,7 +182,7 @@ mod tests {
 
     fn plan(name: &str) -> MeshPlan {
         let star = sources::sample(neurotess::synth::Kind::Star);
-        let source = load::load(&star, SomaEdit::default()).expect("grown");
+        let source = load::load(&star, SomaEdit::default(), None).expect("grown");
         MeshPlan {
             name: name.into(),
             generated: source.generated,

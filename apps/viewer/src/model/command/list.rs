@@ -315,6 +315,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::SetDark(!now.dark),
                 ),
                 item(
+                    choose(
+                        now.caches,
+                        "Keep caches of circuits",
+                        "Keep no caches of circuits",
+                    ),
+                    None,
+                    Command::SetCaches(!now.caches),
+                ),
+                item(
                     "Show or hide the panels",
                     Some((PLAIN, Key::Tab)),
                     Command::TogglePanels,
@@ -369,6 +378,8 @@ pub struct Toggles {
     pub grid: bool,
     /// Whether levels are frozen.
     pub frozen: bool,
+    /// Whether circuits have caches.
+    pub caches: bool,
     /// Whether the theme is dark.
     pub dark: bool,
     /// Whether a recording is playing.

@@ -166,6 +166,8 @@ pub enum Command {
     TogglePalette,
     /// Shows or hides the list of problems.
     ToggleProblems,
+    /// Sets whether circuits that are opened have a cache.
+    SetCaches(bool),
     /// Sets the dark or light theme.
     SetDark(bool),
     /// Shows or hides both side panels.
@@ -219,6 +221,7 @@ impl fmt::Debug for Command {
             Self::MeasureFrom(value) => with("MeasureFrom", value),
             Self::CopyDimensions(value) => with("CopyDimensions", value),
             Self::Show(value) => with("Show", value),
+            Self::SetCaches(value) => with("SetCaches", value),
             Self::SetDark(value) => with("SetDark", value),
             Self::SaveMeshes(value) => with("SaveMeshes", value),
             Self::SavePicture(value) => with("SavePicture", value),

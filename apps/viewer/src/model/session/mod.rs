@@ -322,7 +322,7 @@ mod tests {
     fn state() -> State {
         let mut state = State::new(Settings::default());
         let star = sources::sample(neurotess::synth::Kind::Star);
-        let source = load::load(&star, SomaEdit::default()).expect("grown");
+        let source = load::load(&star, SomaEdit::default(), None).expect("grown");
         let id = state.sources.add(source);
         for name in ["one", "two \"quoted\" µ"] {
             let mut neuron = Neuron::new(id, name.into());

@@ -182,6 +182,7 @@ impl State {
             y_down: self.settings.y_down,
             grid: self.document.grid,
             frozen: self.frozen.is_some(),
+            caches: self.settings.caches,
             dark: self.settings.dark,
             playing: self.playback.playing,
             measuring: self.measuring.is_some(),
@@ -255,6 +256,7 @@ impl State {
             Command::ToggleKeys => self.toggle(Dialog::Keys),
             Command::TogglePalette => self.toggle(Dialog::Palette(String::new(), 0)),
             Command::ToggleProblems => self.toggle(Dialog::Problems),
+            Command::SetCaches(caches) => self.settings.caches = caches,
             Command::SetDark(dark) => {
                 self.settings.dark = dark;
             }

@@ -65,6 +65,7 @@ impl Viewer {
         };
         let request = OpenRequest {
             usual: std::mem::take(&mut self.soma),
+            without_caches: self.without_caches || !self.state.settings.caches,
             ..request
         };
         self.loading = Some(loading);

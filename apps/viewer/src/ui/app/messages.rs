@@ -19,6 +19,7 @@ impl Viewer {
                     self.state.problem("reading", why);
                 }
             }
+            Message::Cache(why) => self.state.problem("cache", why),
             Message::Reloaded(id, source) => match *source {
                 Ok(source) => {
                     self.state.status = format!("{} was read again", source.name);

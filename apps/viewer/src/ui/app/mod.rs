@@ -55,6 +55,8 @@ pub struct Viewer {
     remembered: Settings,
     /// How the somata of files that are opened first are generated.
     soma: SomaEdit,
+    /// Whether circuits have no caches, whatever the settings say.
+    without_caches: bool,
     /// When the recording's time was last advanced.
     ticked: Instant,
     /// Folder that the session is saved in when the program must end.
@@ -100,6 +102,7 @@ impl Viewer {
             theme: None,
             remembered: settings,
             soma: SomaEdit::default(),
+            without_caches: false,
             ticked: Instant::now(),
             rescue: crate::model::settings::folder().unwrap_or_default(),
             somata_checked: None,
@@ -117,6 +120,12 @@ impl Viewer {
     /// Sets how the somata of files that are opened first are generated.
     pub fn with_soma(mut self, soma: SomaEdit) -> Self {
         self.soma = soma;
+        self
+    }
+
+    /// Neither reads nor writes caches of circuits, whatever the settings say.
+    pub fn without_caches(mut self) -> Self {
+        self.without_caches = true;
         self
     }
 

@@ -25,6 +25,7 @@
 //! difference cannot be seen.
 
 mod build;
+mod bytes;
 pub(crate) mod layout;
 pub(crate) mod lod_requests;
 mod nested;

@@ -43,6 +43,14 @@ impl Proxy {
         }
     }
 
+    /// The same proxy with these color keys, one for each tracing point of the mesh.
+    #[must_use]
+    pub fn with_color_keys(&self, color_keys: &[u32]) -> Self {
+        let mut colored = self.clone();
+        colored.set_color_keys(color_keys);
+        colored
+    }
+
     /// Number of tracing points outside somata.
     pub fn point_count(&self) -> usize {
         self.points
