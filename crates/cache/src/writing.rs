@@ -157,8 +157,9 @@ fn keep(
             for key in old.keys() {
                 let fits = old
                     .length(key)
-                    .is_some_and(|l| file.place() + l <= MOST_KEPT);
-                if used.contains(key) != of_now || !(of_now || fits) || !kept.insert(*key) {
+                    .is_some_and(|length| file.place() + length <= MOST_KEPT);
+                let due = used.contains(key) == of_now && (of_now || fits);
+                if !due || !kept.insert(*key) {
                     continue;
                 }
                 // A damaged entry is left out.

@@ -46,7 +46,7 @@ impl Known {
         let file = folder.path().join("circuit.ntcache");
         let cells: Vec<Morphology> = (1..4).map(cell).collect();
         let options = GenerateOptions::default();
-        let (meshes, summary) = open(&[file.clone()], &cells, &options);
+        let (meshes, summary) = open(std::slice::from_ref(&file), &cells, &options);
         assert_eq!((summary.found, summary.computed), (0, 3));
         assert_eq!(summary.written.as_ref(), Some(&file));
         Self {
@@ -60,7 +60,7 @@ impl Known {
 
     /// Opens the cells again: the meshes are the same, whatever has become of the cache.
     fn again(&self) -> Summary {
-        let (meshes, summary) = open(&[self.file.clone()], &self.cells, &self.options);
+        let (meshes, summary) = open(std::slice::from_ref(&self.file), &self.cells, &self.options);
         self.same(&meshes);
         assert_eq!(summary.found + summary.computed, self.cells.len());
         summary
@@ -304,11 +304,8 @@ fn where_the_folder_cannot_be_written_the_next_place_is() {
     // With nowhere to write, one is told, and has the meshes all the same.
     let (meshes, summary) = open(&[beside], &cells, &options);
     assert_eq!((meshes.len(), summary.written), (1, None));
-    let told = summary.warnings.iter();
-    assert!(
-        told.into_iter()
-            .any(|w| matches!(w, CacheWarning::NotWritten { .. }))
-    );
+    let mut told = summary.warnings.iter();
+    assert!(told.any(|w| matches!(w, CacheWarning::NotWritten { .. })));
 }
 
 #[test]

@@ -236,12 +236,8 @@ mod tests {
                     errors += 1;
                     continue;
                 };
-                let corners = read.patches.iter().flat_map(|p| p.corners);
-                assert!(
-                    corners
-                        .into_iter()
-                        .all(|c| (c as usize) < read.vertices.len())
-                );
+                let mut corners = read.patches.iter().flat_map(|p| p.corners);
+                assert!(corners.all(|c| (c as usize) < read.vertices.len()));
                 let mut points = read.vertices.iter().map(|v| v.tracing as usize);
                 assert!(points.all(|point| point < read.tracing.len()));
             }

@@ -77,8 +77,10 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let listener = reporter
         .verbose()
         .then(|| Box::new(tell) as CommandListener);
-    neurotess_viewer::run(options, listener)?;
-    Ok(())
+    let ended = neurotess_viewer::run(options, listener);
+    // Threads that still read or save end with the program: what they have begun must not stay.
+    let _ended = neurotess::output::remove_unfinished();
+    Ok(ended?)
 }
 
 /// What the window shows of synapses and points.

@@ -93,7 +93,7 @@ fn pictures_are_the_same_with_a_cache_that_is_sound_cut_off_stale_or_locked() {
     // Stale: a tracing is another one now, and its cells are drawn as they are.
     let folder = drawn.work.path("circuit/morphologies");
     let mut names: Vec<_> = fs::read_dir(folder).expect("there").flatten().collect();
-    names.sort_by_key(|entry| entry.file_name());
+    names.sort_by_key(fs::DirEntry::file_name);
     let [first, second] = [0, 1].map(|i| names[i].path());
     let kept = fs::read(&first).expect("a tracing");
     fs::copy(&second, &first).expect("copied");
