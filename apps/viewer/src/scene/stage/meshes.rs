@@ -7,6 +7,7 @@ use eframe::egui;
 use neurotess::mesh::SurfaceMesh;
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
+use neurotess::render::pick::PickId;
 use neurotess::render::{DeviceError, MeshGeometry, Meshes};
 
 use super::Stage;
@@ -55,6 +56,11 @@ impl StageMeshes {
             device.set_look(index, mesh.look);
         }
         Some(device)
+    }
+
+    /// Index of the mesh that an id means, if it means one.
+    pub(super) fn picked(&self, id: PickId) -> Option<usize> {
+        self.device.as_ref()?.picked(id)
     }
 
     /// Whether one is being uploaded.
@@ -173,6 +179,8 @@ impl Stage {
             self.meshes.device = (!all.is_empty()).then(|| Meshes::new(&self.gpu, all));
             self.meshes.revision = Revision::next();
             self.drop_hidden();
+            // Ids of a picture that is on its way are those of the meshes before.
+            (self.resolver, self.picks_stale) = (None, true);
         }
         self.set_colors();
         self.revalued = true;
