@@ -21,7 +21,7 @@ use crate::scene::meshes::{self, SceneMesh};
 pub(super) struct StageMeshes {
     /// Those that were uploaded; without a geometry if that failed, so that it is not tried again.
     uploaded: Vec<(Arc<SurfaceMesh>, Option<Arc<MeshGeometry>>)>,
-    uploading: Option<(Arc<SurfaceMesh>, Task<Result<MeshGeometry, DeviceError>>)>,
+    uploading: Option<(Arc<SurfaceMesh>, Task<Uploaded>)>,
     /// What those that show were made of: of the document, whether they are placed, and how many were uploaded.
     inputs: Option<(MeshesKey, bool, usize)>,
     /// How many meshes were uploaded in all.
@@ -31,6 +31,8 @@ pub(super) struct StageMeshes {
     /// Revision of all but their colors.
     revision: Revision,
 }
+
+type Uploaded = Result<MeshGeometry, DeviceError>;
 
 /// What a picture depends on of its meshes: all but their colors, and where these are in the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,8 +118,8 @@ impl Stage {
         }
         let wanted = meshes::shown(state);
         let missing = wanted.iter().map(|mesh| &mesh.surface);
-        let missing = missing.filter(|surface| !self.meshes.was_uploaded(surface));
-        if let Some(surface) = missing.cloned().next() {
+        let mut missing = missing.filter(|surface| !self.meshes.was_uploaded(surface));
+        if let Some(surface) = missing.next().cloned() {
             self.upload(surface, ctx);
         } else {
             self.meshes.inputs = Some(inputs);
