@@ -143,9 +143,18 @@ fn cells_behind_glass_are_picked() {
     run(&mut window, Command::OpenMeshes(vec![file]));
     rest(&mut window);
     let hidden = hits(&mut window);
+    let [mesh, nothing] = [[600.0, 120.0], [600.0, 700.0]];
+    let name = |window: &mut Window, [x, y]: [f32; 2]| {
+        let rect = picture(window);
+        let (x, y) = (x - rect.left(), y - rect.top());
+        viewer(window).stage.mesh_at(x, y).map(str::to_owned)
+    };
+    assert_eq!(name(&mut window, mesh).as_deref(), Some("region"));
+    assert_eq!(name(&mut window, nothing), None);
     assert!(hidden < all / 10 * 9, "{hidden} of {all}");
     look(&mut window, |mesh| mesh.opacity = 0.9);
     assert_eq!(hits(&mut window), all);
+    assert_eq!(name(&mut window, mesh), None);
 }
 
 #[neurotess_testing::test(needs(gpu))]

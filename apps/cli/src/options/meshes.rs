@@ -115,7 +115,7 @@ mod tests {
             ("a.obj,opacity=2", "from 0 to 1"),
             ("a.obj,scale=0", "above 0"),
             ("a.obj,colour=red", "'colour=red' is no option"),
-            ("a.obj,color=reddish", "reddish"),
+            ("a.obj,color=reddish", "RRGGBB"),
         ] {
             let error = text.parse::<MeshArg>().expect_err(text);
             assert!(error.contains(said), "{error}");

@@ -22,7 +22,7 @@ fn cube(from: f64, unit: f64) -> String {
 fn meshes_of_any_format_are_drawn_with_any_source() {
     let work = Work::new();
     work.file("a.swc", SMALL);
-    work.file("cube.obj", &cube(-30.0, 1.0));
+    work.file("cube.obj", cube(-30.0, 1.0));
     work.run("mesh a.swc -o segment.stl").exits(0);
     let options = "--size 160x120 --samples 4 --no-legend --json";
     let draw = |name: &str, more: &str| {
@@ -62,9 +62,9 @@ fn meshes_of_any_format_are_drawn_with_any_source() {
 fn a_scaled_mesh_is_the_same_and_only_opaque_ones_move_the_camera() {
     let work = Work::new();
     work.file("a.swc", SMALL);
-    work.file("um.obj", &cube(-30.0, 1.0));
-    work.file("nm.obj", &cube(-30.0, 1e-3));
-    work.file("far.obj", &cube(500.0, 1.0));
+    work.file("um.obj", cube(-30.0, 1.0));
+    work.file("nm.obj", cube(-30.0, 1e-3));
+    work.file("far.obj", cube(500.0, 1.0));
     let draw = |more: &str| {
         let options = "--size 160x120 --samples 4 --no-legend --force";
         let run = work.run(&format!("render a.swc -o x.png {more} {options}"));
@@ -88,7 +88,7 @@ fn films_are_colored_anew_with_their_meshes() {
     let work = Work::new();
     work.run("synth circuit -o c --neurons 5 --morphologies 2 --points 80 --reported 5")
         .exits(0);
-    work.file("cube.obj", &cube(-30.0, 1.0));
+    work.file("cube.obj", cube(-30.0, 1.0));
     let report = "c/reports/voltage.h5";
     let options = format!(
         "--report {report} --mesh cube.obj,opacity=0.4,scale=5 --range=-80,30 --no-legend \
@@ -119,13 +119,13 @@ fn pixels(png: &[u8]) -> Vec<u8> {
 fn what_is_no_mesh_says_why_and_leaves_no_picture() {
     let work = Work::new();
     work.file("a.swc", SMALL);
-    work.file("cube.obj", &cube(0.0, 1.0));
+    work.file("cube.obj", cube(0.0, 1.0));
     work.file("points.obj", "v 0 0 0\nv 1 0 0\n");
     work.file("broken.obj", "v 0 0 0\nv 1 0 up\n");
     work.file("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 7\n");
     work.file(
         "huge.stl",
-        &format!("{:80}\u{7f}\u{7f}\u{7f}\u{7f}", "binary"),
+        format!("{:80}\u{7f}\u{7f}\u{7f}\u{7f}", "binary"),
     );
     for (mesh, code, said) in [
         ("none.obj", 1, "none.obj: cannot be read"),

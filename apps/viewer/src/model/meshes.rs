@@ -16,6 +16,14 @@ pub(crate) struct ReadMesh {
     pub(crate) points: Arc<Vec<BoundingSphere>>,
 }
 
+impl ReadMesh {
+    /// Number of its faces.
+    pub(crate) fn faces(&self) -> usize {
+        let faces = &self.surface.faces;
+        faces.triangles.len() + faces.quads.len()
+    }
+}
+
 /// All meshes that were read, or why one was not.
 #[derive(Clone, Debug, Default)]
 pub struct MeshData {
@@ -48,8 +56,7 @@ impl MeshData {
 
     /// Number of faces of the mesh of a file.
     pub(crate) fn faces(&self, file: &Path) -> Option<usize> {
-        let faces = &self.get(file)?.surface.faces;
-        Some(faces.triangles.len() + faces.quads.len())
+        self.get(file).map(ReadMesh::faces)
     }
 
     /// Takes what was read.

@@ -24,6 +24,10 @@ pub(crate) struct SceneMesh {
 }
 
 impl SceneMesh {
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Whether another differs in nothing but its color and name.
     pub(crate) fn is_recolored(&self, other: &Self) -> bool {
         let MeshLook { color_key, .. } = self.look;

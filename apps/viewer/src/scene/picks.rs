@@ -52,21 +52,25 @@ impl CursorHit {
     }
 }
 
+/// Set where an opaque mesh is, which hides what is behind it.
+const MESH: u32 = 1 << 31;
+
 /// What is at each pixel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Picks {
     size: [u32; 2],
-    /// By pixel: 0 if nothing is there, else 1 + the index in `seen`.
+    /// By pixel: 0 if nothing is there, else 1 + the index in `seen`, or [`MESH`] and the index of a mesh.
     index: Vec<u32>,
     seen: Vec<CursorHit>,
 }
 
 impl Picks {
-    /// `resolve` returns what is drawn at a pixel with an id.
+    /// `resolve` returns what is drawn at a pixel with an id, `mesh` the index of the mesh that is.
     pub(crate) fn new(
         size: [u32; 2],
         ids: &[PickId],
         mut resolve: impl FnMut(PickId) -> Option<CursorHit>,
+        mesh: impl Fn(PickId) -> Option<usize>,
     ) -> Self {
         let mut seen = Vec::new();
         let mut known: HashMap<PickId, u32> = HashMap::from([([0; 2], 0)]);
@@ -79,7 +83,7 @@ impl Picks {
                         seen.push(found);
                         seen.len() as u32
                     }
-                    None => 0,
+                    None => mesh(id).map_or(0, |mesh| MESH | mesh as u32),
                 });
                 last = (id, index);
             }
@@ -106,13 +110,24 @@ impl Picks {
             .find_map(|(dx, dy)| self.exactly(x + dx, y + dy))
     }
 
+    /// Index of the mesh at a pixel, unless something thin is near.
+    pub(crate) fn mesh_at(&self, x: f32, y: f32) -> Option<usize> {
+        let index = self.index_at(x.floor() as i64, y.floor() as i64)?;
+        let is_mesh = index & MESH != 0 && self.at(x, y).is_none();
+        is_mesh.then_some((index & !MESH) as usize)
+    }
+
     fn exactly(&self, x: i64, y: i64) -> Option<CursorHit> {
+        let index = self.index_at(x, y)?;
+        self.seen.get(index.checked_sub(1)? as usize).copied()
+    }
+
+    fn index_at(&self, x: i64, y: i64) -> Option<u32> {
         let [width, height] = self.size.map(i64::from);
         if !(0..width).contains(&x) || !(0..height).contains(&y) {
             return None;
         }
-        let index = *self.index.get((y * width + x) as usize)?;
-        self.seen.get(index.checked_sub(1)? as usize).copied()
+        self.index.get((y * width + x) as usize).copied()
     }
 
     /// Mask of outlines, with bits by pixel: selected neurons, the part under the cursor, and the
@@ -180,7 +195,8 @@ impl Picks {
             ];
             for beside in around.into_iter().filter_map(|at| self.index.get(at)) {
                 if *beside != index && !is_marker(*beside) {
-                    bits[index as usize] |= of_cells[*beside as usize];
+                    let of_cell = of_cells.get(*beside as usize).copied();
+                    bits[index as usize] |= of_cell.unwrap_or(0);
                 }
             }
         }
@@ -249,17 +265,49 @@ mod tests {
     fn picks() -> Picks {
         // Ten pixels in a row; the fourth shows a section, the fifth and sixth a soma.
         let ids = [0, 0, 0, 7, 9, 9, 0, 0, 0, 0].map(|id| [id, id]);
-        Picks::new([10, 1], &ids, |id| {
-            let part = if id[0] == 7 {
-                CellPart::Section(2)
-            } else {
-                CellPart::Soma
-            };
-            Some(CursorHit {
-                target: HitTarget::Cell(Picked { neuron: 0, part }),
-                place: DVec3::ZERO,
-            })
-        })
+        Picks::new(
+            [10, 1],
+            &ids,
+            |id| {
+                let part = if id[0] == 7 {
+                    CellPart::Section(2)
+                } else {
+                    CellPart::Soma
+                };
+                Some(CursorHit {
+                    target: HitTarget::Cell(Picked { neuron: 0, part }),
+                    place: DVec3::ZERO,
+                })
+            },
+            |_| None,
+        )
+    }
+
+    #[test]
+    fn a_mesh_is_named_where_nothing_thin_is_near() {
+        use crate::model::markers::MarkerRef::Point;
+        // A marker on the left, and a mesh elsewhere.
+        let mut ids = [[5, 5]; 12];
+        ids[0] = [9, 9];
+        let marker = CursorHit {
+            target: HitTarget::Marker(Point(0)),
+            place: DVec3::ZERO,
+        };
+        let resolve = |[id, _]: PickId| (id == 9).then_some(marker);
+        let picks = Picks::new([12, 1], &ids, resolve, |[id, _]| (id == 5).then_some(3));
+        let places = [0.5, 2.5, 8.5].map(|x| (picks.at(x, 0.5), picks.mesh_at(x, 0.5)));
+        assert_eq!(
+            places,
+            [(Some(marker), None), (Some(marker), None), (None, Some(3))]
+        );
+        assert_eq!(picks.mesh_at(20.0, 0.5), None);
+        let mask = picks.mask(
+            &Document::default(),
+            [None; 2],
+            [Some(Point(0)), None],
+            |_, _| None,
+        );
+        assert_eq!(mask[..3], [2, 0, 0]);
     }
 
     #[test]
@@ -308,19 +356,24 @@ mod tests {
         use crate::model::markers::MarkerRef::Point;
         // Five pixels in a row: a soma with a marker on it, another marker beside, nothing.
         let ids = [9, 7, 9, 8, 0].map(|id| [id, id]);
-        let picks = Picks::new([5, 1], &ids, |[id, _]| {
-            let soma = Picked {
-                neuron: 0,
-                part: CellPart::Soma,
-            };
-            Some(CursorHit {
-                target: match id {
-                    9 => HitTarget::Cell(soma),
-                    id => HitTarget::Marker(Point(u64::from(id))),
-                },
-                place: DVec3::ZERO,
-            })
-        });
+        let picks = Picks::new(
+            [5, 1],
+            &ids,
+            |[id, _]| {
+                let soma = Picked {
+                    neuron: 0,
+                    part: CellPart::Soma,
+                };
+                Some(CursorHit {
+                    target: match id {
+                        9 => HitTarget::Cell(soma),
+                        id => HitTarget::Marker(Point(u64::from(id))),
+                    },
+                    place: DVec3::ZERO,
+                })
+            },
+            |_| None,
+        );
         let mut document = Document::default();
         document.neurons.push(Neuron::new(SourceId(0), "n".into()));
         let mask =

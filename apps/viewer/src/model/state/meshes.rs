@@ -47,11 +47,12 @@ impl State {
         }
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let name = name.into_owned();
-        self.mesh_data.set(file.clone(), read);
-        self.status = match self.mesh_data.faces(&file) {
-            Some(faces) => format!("{name}: {} faces", grouped(faces as u64)),
-            None => format!("{name} does not show"),
+        let faces = read.as_ref().map(ReadMesh::faces);
+        self.status = match faces {
+            Ok(faces) => format!("{name}: {} faces", grouped(faces as u64)),
+            Err(_) => format!("{name} does not show"),
         };
+        self.mesh_data.set(file, read);
     }
 
     /// Whether meshes are where they are relative to the cells: side by side, cells are elsewhere.

@@ -7,6 +7,7 @@ use eframe::egui;
 use neurotess::mesh::SurfaceMesh;
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
+use neurotess::render::pick::PickId;
 use neurotess::render::{DeviceError, MeshGeometry, Meshes};
 
 use super::Stage;
@@ -20,7 +21,7 @@ use crate::scene::meshes::{self, SceneMesh};
 pub(super) struct StageMeshes {
     /// Those that were uploaded; without a geometry if that failed, so that it is not tried again.
     uploaded: Vec<(Arc<SurfaceMesh>, Option<Arc<MeshGeometry>>)>,
-    uploading: Option<(Arc<SurfaceMesh>, Task<Result<MeshGeometry, DeviceError>>)>,
+    uploading: Option<(Arc<SurfaceMesh>, Task<Uploaded>)>,
     /// What those that show were made of: of the document, whether they are placed, and how many were uploaded.
     inputs: Option<(MeshesKey, bool, usize)>,
     /// How many meshes were uploaded in all.
@@ -30,6 +31,8 @@ pub(super) struct StageMeshes {
     /// Revision of all but their colors.
     revision: Revision,
 }
+
+type Uploaded = Result<MeshGeometry, DeviceError>;
 
 /// What a picture depends on of its meshes: all but their colors, and where these are in the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +58,11 @@ impl StageMeshes {
             device.set_look(index, mesh.look);
         }
         Some(device)
+    }
+
+    /// Index of the mesh that an id means, if it means one.
+    pub(super) fn picked(&self, id: PickId) -> Option<usize> {
+        self.device.as_ref()?.picked(id)
     }
 
     /// Whether one is being uploaded.
@@ -110,8 +118,8 @@ impl Stage {
         }
         let wanted = meshes::shown(state);
         let missing = wanted.iter().map(|mesh| &mesh.surface);
-        let missing = missing.filter(|surface| !self.meshes.was_uploaded(surface));
-        if let Some(surface) = missing.cloned().next() {
+        let mut missing = missing.filter(|surface| !self.meshes.was_uploaded(surface));
+        if let Some(surface) = missing.next().cloned() {
             self.upload(surface, ctx);
         } else {
             self.meshes.inputs = Some(inputs);
@@ -173,6 +181,8 @@ impl Stage {
             self.meshes.device = (!all.is_empty()).then(|| Meshes::new(&self.gpu, all));
             self.meshes.revision = Revision::next();
             self.drop_hidden();
+            // Ids of a picture that is on its way are those of the meshes before.
+            (self.resolver, self.picks_stale) = (None, true);
         }
         self.set_colors();
         self.revalued = true;

@@ -55,6 +55,13 @@ impl Stage {
         self.picks.as_ref()?.at(x, y)
     }
 
+    /// The name of the opaque mesh at a pixel, where nothing else is. Nothing while something moves.
+    pub fn mesh_at(&self, x: f32, y: f32) -> Option<&str> {
+        let picks = self.picks.as_ref().filter(|_| !self.picks_stale)?;
+        let shown = self.meshes.shown().get(picks.mesh_at(x, y)?)?;
+        Some(shown.name())
+    }
+
     /// Whether it is known what is at each pixel of the current picture.
     pub fn can_pick(&self) -> bool {
         self.picks.is_some() && !self.picks_stale
@@ -73,9 +80,9 @@ impl Stage {
         let Some(resolver) = self.resolver.take() else {
             return Ok(());
         };
-        let (content, markers) = (&self.content, &self.markers);
+        let (content, markers, meshes) = (&self.content, &self.markers, &self.meshes);
         self.picks_stale = false;
-        self.picks = Some(Picks::new(size, &ids, |id| {
+        let resolve = |id| {
             if let Some((marker, place)) = markers.picked(id) {
                 let target = HitTarget::Marker(marker);
                 return Some(CursorHit { target, place });
@@ -84,7 +91,8 @@ impl Stage {
             let instance = content.instances.get(hit.instance as usize)?;
             let source = content.sources.get(instance.source)?;
             seen(hit, &source.generated.mesh, &instance.placement)
-        }));
+        };
+        self.picks = Some(Picks::new(size, &ids, resolve, |id| meshes.picked(id)));
         ctx.request_repaint();
         Ok(())
     }

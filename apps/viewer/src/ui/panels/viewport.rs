@@ -184,6 +184,11 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
             false => before,
         };
     }
+    if let (Some(at), None) = (at, seen)
+        && let Some(mesh) = screen.stage.mesh_at(at.x, at.y)
+    {
+        response.clone().on_hover_text_at_pointer(mesh);
+    }
     let place = match (&screen.state.playback.facts, screen.stage.can_pick()) {
         (Some(_), true) => measuring::trace_place(screen.state, seen, response),
         _ => None,
