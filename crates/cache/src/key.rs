@@ -156,15 +156,20 @@ mod tests {
 
     #[test]
     fn any_other_option_is_another_key() {
-        let changes: [fn(&mut GenerateOptions); 12] = [
+        let changes: [fn(&mut GenerateOptions); 13] = [
             |_| {},
             |o| o.soma = SomaMethod::Sphere,
             |o| o.poisson = 0.31,
             |o| o.soma_scale = 1.1,
+            |o| o.radius_factor = 2.0,
             |o| o.sphere = SphereKind::Octahedron,
             |o| o.sphere_level = Some(4),
-            |o| drop(o.rings.insert(0, 0.5)),
-            |o| drop(o.rings.insert(1, 0.5)),
+            |o| {
+                o.rings.insert(0, 0.5);
+            },
+            |o| {
+                o.rings.insert(1, 0.5);
+            },
             |o| o.kinds = Some(vec![NeuriteKind::AXON]),
             |o| o.kinds = Some(Vec::new()),
             |o| o.crossings = Crossings::Separate,
