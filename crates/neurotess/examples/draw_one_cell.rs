@@ -35,6 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         name: "cell",
         morphology: &morphology,
         mesh: &mesh,
+        radius_factor: 1.0,
     }];
     let colors = coloring(&cells, ColorBy::Type, &scheme);
 

@@ -32,6 +32,9 @@ impl Crossing {
     }
 }
 
+/// All crossings of some cells.
+pub type Crossings = Arc<Vec<Crossing>>;
+
 /// What a list of crossings depends on: the tracings, and the revision of their meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrossingKey {
@@ -45,7 +48,7 @@ pub struct CrossingList {
     /// Whether they are asked for.
     pub open: bool,
     /// The newest list and what it is of, or why there is none.
-    pub(crate) found: Option<(CrossingKey, Result<Arc<Vec<Crossing>>, String>)>,
+    pub(crate) found: Option<(CrossingKey, Result<Crossings, String>)>,
     /// The one that was flown to last.
     pub(crate) pointed: Option<usize>,
 }

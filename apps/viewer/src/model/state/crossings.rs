@@ -1,12 +1,10 @@
 //! The list of places where the selected cells' surfaces cross themselves.
 
-use std::sync::Arc;
-
 use neurotess::render::{BoundingSphere, Placement};
 
 use super::State;
 use crate::model::command::{Command, Tab};
-use crate::model::crossings::{Crossing, CrossingKey};
+use crate::model::crossings::{Crossing, CrossingKey, Crossings};
 use crate::model::ids::SourceId;
 
 /// How many radii of a place are in the picture that is flown to.
@@ -28,7 +26,7 @@ impl State {
     }
 
     /// The newest list, once it is there, and whether it is of the current selection.
-    pub fn crossing_list(&self) -> Option<(Result<&Arc<Vec<Crossing>>, &str>, bool)> {
+    pub fn crossing_list(&self) -> Option<(Result<&Crossings, &str>, bool)> {
         let key = self.crossing_key()?;
         let (of, list) = self.crossings.found.as_ref()?;
         Some((list.as_ref().map_err(String::as_str), *of == key))
