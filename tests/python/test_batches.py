@@ -108,6 +108,8 @@ LONG_WORK = {
     "mesh_many": "list(nt.mesh_many([cell] * 50, threads=2, level=4))",
     "render": "nt.render(cell, size=(8000, 8000), samples=64)",
 }
+#: Samples of the cell, where 100,000 are too many or too soon done.
+POINTS = {"render": 3000, "mesh": 2_000_000}
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
@@ -119,7 +121,7 @@ def test_interrupts_stop_the_work(work: str, request: pytest.FixtureRequest) -> 
         import os, signal, time, neurotess as nt
         # Where the tests run in the background, it is ignored.
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        cell = nt.synth("purkinje", points={3000 if work == "render" else 100_000})
+        cell = nt.synth("purkinje", points={POINTS.get(work, 100_000)})
         def used():
             # Of all threads.
             return time.process_time()

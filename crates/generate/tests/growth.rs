@@ -3,6 +3,7 @@
 //! Asserted is growth, the cost of four times as many over the cost of as many, and never a time.
 //! n log n gives little more than 4 and a square 16.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::{Vec3, vec3};
@@ -237,11 +238,15 @@ fn cost(morphology: &Morphology, options: &GenerateOptions) -> f64 {
 /// Four times as many must not cost more than this often as much.
 const MOST: f64 = 9.0;
 
+/// Held while something is timed: the tests of this program slow one another down, now this and now that.
+static ALONE: Mutex<()> = Mutex::new(());
+
 /// A name, what makes so many, and how many.
 type Kind = (&'static str, fn(usize) -> Morphology, usize);
 
 #[expect(clippy::print_stdout, reason = "shown where a test fails")]
 fn assert_no_square(kinds: &[Kind], options: &GenerateOptions) {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut failed = Vec::new();
     for (name, make, count) in kinds {
         let (few, many) = (make(*count), make(4 * count));

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import warnings
 
 from . import _neurotess, _options
@@ -115,6 +114,9 @@ def _sources(what: Any) -> tuple[list[_neurotess.Cell], str | None]:
 
 
 def _drawing(what: Any, options: dict[str, Any], adapter: str | None) -> _neurotess.Drawing:
+    # Not at the top: it takes as long to import as all the rest.
+    import tempfile
+
     from . import quiet_adapters
 
     if not _neurotess.CAN_RENDER:
