@@ -14,8 +14,8 @@ use neurotess_viewer::save::PictureFile;
 use neurotess_viewer::{Command, draw_session};
 
 use common::{
-    Window, differing, gpu, picture, rest, run, settle, snapshot, state, viewer, wait, window,
-    with_samples,
+    Window, differing, drawn, gpu, picture, rest, run, settle, snapshot, state, viewer, wait,
+    window, with_samples,
 };
 
 /// A box around the cell, half of it: the picture shows where it is and where it is not.
@@ -46,16 +46,6 @@ fn with_file() -> (Window, tempfile::TempDir, PathBuf) {
     write_box(&file, 120.0);
     rest(&mut window);
     (window, folder, file)
-}
-
-/// The picture alone, without panels.
-fn drawn(window: &mut Window) -> Vec<u8> {
-    let rect = picture(window);
-    let image = window.render().expect("a picture");
-    let [left, right] = [rect.left(), rect.right()].map(|x| x as u32);
-    let rows = (rect.top() as u32)..(rect.bottom() as u32);
-    let pixels = rows.flat_map(|y| (left..right).map(move |x| (x, y)));
-    pixels.flat_map(|(x, y)| image.get_pixel(x, y).0).collect()
 }
 
 fn look(window: &mut Window, change: impl FnOnce(&mut MeshEntry)) {

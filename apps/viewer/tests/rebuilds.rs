@@ -84,7 +84,13 @@ fn only_what_a_change_concerns_is_made_again() {
     window.run_steps(20);
     assert_eq!(rebuilds(&mut window), last, "nothing changes any more");
     // Larger radii need other meshes, once: not again for other colors.
+    let saved = |window: &mut Window| state(window).source_of(0).expect("open").generated.clone();
+    let traced = saved(&mut window);
     set_look(&mut window, |look| look.radius_factor = 3.0);
+    assert!(
+        std::sync::Arc::ptr_eq(&traced, &saved(&mut window)),
+        "meshes are saved as traced"
+    );
     let thicker = rebuilds(&mut window);
     assert!(thicker.templates > last.templates && thicker.spheres > last.spheres);
     set_look(&mut window, |look| look.color_map = ColorMap::ALL[1]);

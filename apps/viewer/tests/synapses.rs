@@ -20,8 +20,8 @@ use neurotess_viewer::{Command, draw_session};
 
 use common::circuit::write_with_synapses;
 use common::{
-    Window, click, differing, gpu, picture, rest, run, set_look, settle, snapshot, state, viewer,
-    wait, window, with_samples,
+    Window, click, differing, drawn, gpu, picture, rest, run, set_look, settle, snapshot, state,
+    viewer, wait, window, with_samples,
 };
 
 /// Cells of the circuit, and synapses onto each.
@@ -68,16 +68,6 @@ fn seen(window: &mut Window) -> Vec<(MarkerRef, Pos2)> {
         }
     }
     found
-}
-
-/// The picture alone, without panels.
-fn drawn(window: &mut Window) -> Vec<u8> {
-    let rect = picture(window);
-    let image = window.render().expect("a picture");
-    let [left, right] = [rect.left(), rect.right()].map(|x| x as u32);
-    let rows = (rect.top() as u32)..(rect.bottom() as u32);
-    let pixels = rows.flat_map(|y| (left..right).map(move |x| (x, y)));
-    pixels.flat_map(|(x, y)| image.get_pixel(x, y).0).collect()
 }
 
 fn legend_names(window: &mut Window) -> Vec<String> {

@@ -220,7 +220,7 @@ impl ColorRequest {
                 name: &s.name,
                 morphology: &s.morphology,
                 mesh: &s.generated.mesh,
-                radius_factor: s.options.radius_factor,
+                radius_factor: s.drawn_factor(),
             })
             .collect();
         let color_scheme = color_scheme(&self.look);

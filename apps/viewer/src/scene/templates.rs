@@ -31,6 +31,14 @@ impl SceneTemplate {
         Arc::ptr_eq(&self.traced, &other.traced) && self.options == other.options
     }
 
+    /// The factor that the radii of its mesh have: 1 also where they could not be drawn larger.
+    pub(crate) fn drawn_factor(&self) -> f64 {
+        match Arc::ptr_eq(&self.generated, &self.traced) {
+            true => 1.0,
+            false => self.options.radius_factor,
+        }
+    }
+
     /// Whether its mesh is that of the tracing itself.
     pub(crate) fn is_as_traced(&self) -> bool {
         self.options.radius_factor == 1.0

@@ -215,3 +215,13 @@ pub(crate) fn click(window: &mut Window, at: Pos2, modifiers: Modifiers) {
     window.run_steps(30);
     settle(window);
 }
+
+/// The picture alone, without panels.
+pub(crate) fn drawn(window: &mut Window) -> Vec<u8> {
+    let rect = picture(window);
+    let image = window.render().expect("a picture");
+    let [left, right] = [rect.left(), rect.right()].map(|x| x as u32);
+    let rows = (rect.top() as u32)..(rect.bottom() as u32);
+    let pixels = rows.flat_map(|y| (left..right).map(move |x| (x, y)));
+    pixels.flat_map(|(x, y)| image.get_pixel(x, y).0).collect()
+}

@@ -119,6 +119,31 @@ pub(crate) fn read_mapped(
     Ok(copied)
 }
 
+/// Bind group of two storage buffers and, at 2, a uniform of this size whose offset is set when it is bound.
+pub(crate) fn group_with_frame(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    [first, second]: [&wgpu::Buffer; 2],
+    (frames, size): (&wgpu::Buffer, usize),
+) -> wgpu::BindGroup {
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let frame = wgpu::BufferBinding {
+        buffer: frames,
+        offset: 0,
+        size: wgpu::BufferSize::new(size as u64),
+    };
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(label),
+        layout,
+        entries: &[
+            entry(0, first.as_entire_binding()),
+            entry(1, second.as_entire_binding()),
+            entry(2, wgpu::BindingResource::Buffer(frame)),
+        ],
+    })
+}
+
 /// A binding of a uniform buffer.
 pub(crate) fn uniform(
     binding: u32,

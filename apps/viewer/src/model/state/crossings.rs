@@ -14,11 +14,7 @@ impl State {
     /// What the list is to be of, while it is open: the tracings of the selected cells, each once; of the only one, if
     /// none is selected.
     pub(crate) fn crossing_key(&self) -> Option<CrossingKey> {
-        let neurons = &self.document.neurons;
-        let sources = match (neurons.selected(), neurons.len()) {
-            ([], 1) => neurons.sources(),
-            _ => neurons.selected_sources(),
-        };
+        let sources = self.inspected_sources();
         (self.crossings.open && !sources.is_empty()).then(|| CrossingKey {
             sources: sources.to_vec(),
             geometry: self.sources.geometry(),

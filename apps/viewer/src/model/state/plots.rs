@@ -7,6 +7,7 @@ use neurotess::plot::{Measure, Plot};
 
 use super::State;
 use crate::model::command::PlotOf;
+use crate::model::ids::SourceId;
 use crate::model::plots::MeasureKey;
 use crate::model::save::SaveRequest;
 
@@ -14,15 +15,20 @@ use crate::model::save::SaveRequest;
 const LEAST_STEP: f64 = 0.01;
 
 impl State {
+    /// The tracings of the selected cells, each once; of the only cell, if none is selected.
+    pub(super) fn inspected_sources(&self) -> &[SourceId] {
+        let neurons = &self.document.neurons;
+        match (neurons.selected(), neurons.len()) {
+            ([], 1) => neurons.sources(),
+            _ => neurons.selected_sources(),
+        }
+    }
+
     /// What the plot of measures is to be of: the tracings of the selected cells, each once; of all, if none is selected
     /// and there is one cell only.
     pub(crate) fn measure_key(&self) -> Option<MeasureKey> {
         let form = self.measures.form;
-        let neurons = &self.document.neurons;
-        let sources = match (neurons.selected(), neurons.len()) {
-            ([], 1) => neurons.sources(),
-            _ => neurons.selected_sources(),
-        };
+        let sources = self.inspected_sources();
         let measure = form.measure.filter(|_| !sources.is_empty())?;
         Some(MeasureKey {
             measure,

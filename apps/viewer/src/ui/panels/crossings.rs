@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{
-    Button, Color32, Painter, Pos2, Rect, RichText, ScrollArea, Stroke, TextStyle, Ui, vec2,
-};
+use eframe::egui::{Button, Color32, Painter, Rect, RichText, ScrollArea, Stroke, TextStyle, Ui};
 use neurotess::render::BoundingSphere;
 use neurotess::union::Kin;
 
 use super::cells::count;
+use super::marks;
 use super::tip::Tip;
 use crate::model::command::Command;
 use crate::model::crossings::Crossing;
@@ -105,15 +104,10 @@ pub(super) fn marks(state: &State, rect: Rect, painter: &Painter) {
 /// A ring as large as the place, or large enough to be found.
 fn ring(state: &State, (center, radius): BoundingSphere, chosen: bool, rect: Rect, to: &Painter) {
     let camera = state.view.camera();
-    // In sixteenths of a point, since sizes are whole numbers.
-    let size = [rect.width(), rect.height()].map(|n| (16.0 * n) as u32);
-    let Some([x, y]) = camera.pixel_of(center, size) else {
+    let Some(at) = marks::at(&camera, rect, center) else {
         return;
     };
-    let at: Pos2 = rect.min + vec2(x as f32, y as f32) / 16.0;
-    let pixel = camera.pixel_size(f64::from(rect.height()));
-    let wide = 1.5 * radius / pixel.at(camera.depth(center).max(1e-9));
-    let wide = (wide as f32).clamp(4.0, 200.0);
+    let wide = marks::wide(&camera, rect, center, 1.5 * radius).clamp(4.0, 200.0);
     if rect.expand(wide).contains(at) {
         to.circle_stroke(at, wide, Stroke::new(3.5, Color32::from_white_alpha(150)));
         let width = if chosen { 2.5 } else { 1.2 };

@@ -25,19 +25,33 @@ struct Projection<'a> {
 impl Projection<'_> {
     fn at(&self, point: DVec3) -> Option<Pos2> {
         let place = self.placement.world_from_cell(self.origin + point);
-        // In sixteenths of a point, since sizes are whole numbers.
-        let size = [self.rect.width(), self.rect.height()].map(|n| (16.0 * n) as u32);
-        let [x, y] = self.camera.pixel_of(place, size)?;
-        Some(self.rect.min + vec2(x as f32, y as f32) / 16.0)
+        at(&self.camera, self.rect, place)
     }
 
     /// Length in points of the window of a length (µm) at a position.
     fn wide(&self, point: DVec3, length: f64) -> f32 {
         let place = self.placement.world_from_cell(self.origin + point);
-        let pixel = self.camera.pixel_size(f64::from(self.rect.height()));
-        let pixel = pixel.at(self.camera.depth(place).max(1e-9));
-        (self.placement.scale * length / pixel) as f32
+        wide(
+            &self.camera,
+            self.rect,
+            place,
+            self.placement.scale * length,
+        )
     }
+}
+
+/// Where a place of the scene is in the window.
+pub(super) fn at(camera: &Camera, rect: Rect, place: DVec3) -> Option<Pos2> {
+    // In sixteenths of a point, since sizes are whole numbers.
+    let size = [rect.width(), rect.height()].map(|n| (16.0 * n) as u32);
+    let [x, y] = camera.pixel_of(place, size)?;
+    Some(rect.min + vec2(x as f32, y as f32) / 16.0)
+}
+
+/// Length in points of the window of a length (µm) at a place of the scene.
+pub(super) fn wide(camera: &Camera, rect: Rect, place: DVec3, length: f64) -> f32 {
+    let pixel = camera.pixel_size(f64::from(rect.height()));
+    (length / pixel.at(camera.depth(place).max(1e-9))) as f32
 }
 
 fn hovered_color() -> Color32 {

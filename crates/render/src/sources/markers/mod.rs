@@ -18,7 +18,9 @@ use self::chunks::{CHUNK, Chunk};
 use self::shapes::Shapes;
 use super::companion::Companion;
 use super::pick::PickId;
-use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, storage, uniform, upload};
+use crate::gpu::buffers::{
+    UNIFORM_STRIDE, group_layout, group_with_frame, storage, uniform, upload,
+};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::shader;
@@ -170,7 +172,13 @@ impl Markers {
             made.blocks.push(Block {
                 first,
                 origin,
-                group: group(gpu, &made.layout, [&stored, &corners], &made.frames),
+                group: group_with_frame(
+                    gpu,
+                    "markers",
+                    &made.layout,
+                    [&stored, &corners],
+                    (&made.frames, size_of::<MarkerFrame>()),
+                ),
             });
         }
         gpu.check()?;
@@ -365,29 +373,4 @@ pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
         storage(1, vertex, true),
         uniform(2, vertex, true),
     ]
-}
-
-fn group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    [markers, corners]: [&wgpu::Buffer; 2],
-    frames: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("markers"),
-        layout,
-        entries: &[
-            entry(0, markers.as_entire_binding()),
-            entry(1, corners.as_entire_binding()),
-            entry(
-                2,
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                    buffer: frames,
-                    offset: 0,
-                    size: wgpu::BufferSize::new(size_of::<MarkerFrame>() as u64),
-                }),
-            ),
-        ],
-    })
 }

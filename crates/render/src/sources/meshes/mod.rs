@@ -20,7 +20,7 @@ pub use self::geometry::MeshGeometry;
 pub(crate) use self::geometry::MeshVertex;
 use super::companion::Companion;
 use super::pick::PickId;
-use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, storage, uniform};
+use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, group_with_frame, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
 use crate::view::frame::Frame;
@@ -104,7 +104,13 @@ impl Meshes {
                 chunks.push(ShownChunk {
                     mesh,
                     chunk,
-                    group: group(gpu, &layout, [&buffers.vertices, &buffers.corners], &frames),
+                    group: group_with_frame(
+                        gpu,
+                        "meshes",
+                        &layout,
+                        [&buffers.vertices, &buffers.corners],
+                        (&frames, size_of::<MeshFrame>()),
+                    ),
                     shown: Vec::new(),
                 });
             }
@@ -264,29 +270,4 @@ pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
         storage(1, vertex, true),
         uniform(2, wgpu::ShaderStages::VERTEX_FRAGMENT, true),
     ]
-}
-
-fn group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    [vertices, corners]: [&wgpu::Buffer; 2],
-    frames: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("meshes"),
-        layout,
-        entries: &[
-            entry(0, vertices.as_entire_binding()),
-            entry(1, corners.as_entire_binding()),
-            entry(
-                2,
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                    buffer: frames,
-                    offset: 0,
-                    size: wgpu::BufferSize::new(size_of::<MeshFrame>() as u64),
-                }),
-            ),
-        ],
-    })
 }
