@@ -15,8 +15,8 @@ use rayon::prelude::*;
 use crate::assemble::{Assembly, Somata};
 use crate::fork_trials::ForkTrials;
 use crate::inset::{self, ForkChoice};
-use crate::judge::faults;
 use crate::neighborhood::Neighborhood;
+use crate::refined_patches::{RefinedPatches, count};
 use crate::skeleton::Skeleton;
 use crate::stop::Stop;
 use crate::warning::Warnings;
@@ -135,7 +135,10 @@ fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: S
         .par_iter()
         .map(|(fork, patches)| match stop.asked() {
             true => (*fork, 0),
-            false => (*fork, faults(&made.mesh, patches)),
+            false => {
+                let patches = RefinedPatches::new(&made.mesh, patches.clone());
+                (*fork, count(&patches.faults()))
+            }
         })
         .collect();
     trials.advance(&judged.into_iter().collect());

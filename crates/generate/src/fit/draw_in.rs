@@ -9,7 +9,7 @@ use glam::Vec3;
 use neurotess_mesh::CoarseMesh;
 
 use super::ring::{Drawn, Ring};
-use super::stretch::{Fault, Stretch};
+use crate::refined_patches::{Fault, RefinedPatches, count};
 
 /// Rounds of a stretch, and those without fewer faults after which it is left as it was best. Chosen with
 /// the example `forks`: twice as many find nothing more.
@@ -48,14 +48,14 @@ struct Blame {
 
 /// A stretch with its rings.
 pub(super) struct DrawIn {
-    stretch: Stretch,
+    stretch: RefinedPatches,
     rings: Vec<Ring>,
     drawn: Vec<Drawn>,
 }
 
 impl DrawIn {
     /// `is_free`: whether a tracing point of the whole may be drawn in.
-    pub(super) fn new(stretch: Stretch, is_free: impl Fn(u32) -> bool) -> Self {
+    pub(super) fn new(stretch: RefinedPatches, is_free: impl Fn(u32) -> bool) -> Self {
         let rings = Ring::all(&stretch, is_free);
         Self {
             drawn: vec![Drawn::NOT; rings.len()],
@@ -64,9 +64,8 @@ impl DrawIn {
         }
     }
 
-    /// Whether drawing rings in makes fewer faults.
-    pub(super) fn run(&mut self) -> bool {
-        let mut faults = self.stretch.faults();
+    /// Whether drawing rings in makes fewer faults than those that the stretch has.
+    pub(super) fn run(&mut self, mut faults: Vec<Fault>) -> bool {
         let before = count(&faults);
         let mut best = (before, self.drawn.clone());
         let mut rounds_since = 0;
@@ -246,8 +245,4 @@ impl DrawIn {
         }
         written
     }
-}
-
-fn count(faults: &[Fault]) -> usize {
-    faults.iter().map(|fault| fault.count).sum()
 }

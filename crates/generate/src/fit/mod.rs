@@ -7,7 +7,7 @@
 //!
 //! **Practice.** Tests of a few products find suspect rings (suspects.rs). Those that belong together are a
 //! stretch (stretches.rs), whose patches are refined and searched for facets that cross or fold
-//! (stretch.rs). Where there are any, its rings are drawn in (draw_in.rs), or stay as they were if that
+//! (refined_patches.rs). Where there are any, its rings are drawn in (draw_in.rs), or stay as they were if that
 //! makes no fewer faults. Only positions, radii and normals of vertices change: never what they are joined
 //! to, nor which tracing point they belong to. Work is bounded by stretch; crowds are left as they are.
 //!
@@ -18,7 +18,6 @@
 mod draw_in;
 mod graph;
 mod ring;
-mod stretch;
 mod stretches;
 mod suspects;
 
@@ -26,10 +25,10 @@ use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
 use crate::normals::average_normals;
+use crate::refined_patches::RefinedPatches;
 use crate::stop::Stop;
 use draw_in::DrawIn;
 use graph::RingGraph;
-use stretch::Stretch;
 use stretches::Stretches;
 use suspects::Suspects;
 
@@ -65,14 +64,12 @@ fn draw_in(mesh: &CoarseMesh, stretches: &Stretches, number: usize) -> Option<Dr
     if patches.len() > MOST_PATCHES {
         return None;
     }
-    let suspect = Stretch::new(mesh, stretches.suspect[number].clone());
-    if suspect.is_crowd() || suspect.faults().is_empty() {
+    let suspect = RefinedPatches::new(mesh, stretches.suspect[number].clone());
+    if suspect.faults_unless_crowd()?.is_empty() {
         return None;
     }
-    let stretch = Stretch::new(mesh, patches.clone());
-    if stretch.is_crowd() {
-        return None;
-    }
+    let stretch = RefinedPatches::new(mesh, patches.clone());
+    let faults = stretch.faults_unless_crowd()?;
     let mut draw_in = DrawIn::new(stretch, |ring| stretches.has(number, ring));
-    draw_in.run().then_some(draw_in)
+    draw_in.run(faults).then_some(draw_in)
 }

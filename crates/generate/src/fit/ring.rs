@@ -3,7 +3,7 @@
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role, TracingPoint, Vertex};
 
-use super::stretch::Stretch;
+use crate::refined_patches::RefinedPatches;
 
 /// How a ring differs from how it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub(super) struct Ring {
 
 impl Ring {
     /// All rings of a stretch, by its tracing points. `is_free`: by tracing point of the whole.
-    pub(super) fn all(stretch: &Stretch, is_free: impl Fn(u32) -> bool) -> Vec<Self> {
+    pub(super) fn all(stretch: &RefinedPatches, is_free: impl Fn(u32) -> bool) -> Vec<Self> {
         let mesh = &stretch.part.mesh;
         let of_tube = |role| matches!(role, Role::Ordinary | Role::End | Role::Joint | Role::Inset);
         let points = mesh.tracing.iter().zip(&stretch.part.tracing);

@@ -1,19 +1,20 @@
-//! A stretch of tubes: the facets of its refined patches, and which of them cross or fold over.
+//! Some patches of a mesh, refined: which of their facets cross or fold over.
+//!
+//! By this forks are judged, thousands of times a cell, and rings are drawn in.
 
-use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 use neurotess_refine::{RefineOptions, patch_points};
 
-use crate::facets::Facet;
+use crate::facets::{Bounds, Facet};
 use crate::part::Part;
 
-/// Cells of a patch to a side: level 2, as forks are judged.
+/// Cells of a patch to a side: level 2.
 const STEPS: u32 = 2;
 /// Facets of a patch.
 const FACETS: usize = 8;
 /// Points of a patch.
 const POINTS: usize = 9;
-/// Overlapping boxes by patch from which on a stretch is a crowd. Stretches of the reference cells have six to
+/// Overlapping boxes by patch from which on patches are a crowd. Forks of the reference cells have six to
 /// eight, stems all around a small soma fifty.
 const CROWDED: usize = 16;
 
@@ -42,32 +43,37 @@ const FANNED: [[usize; 3]; FACETS] = [
 
 /// Faults between two patches, or of one patch with itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fault {
-    pub(super) patches: [u32; 2],
-    pub(super) count: usize,
+pub(crate) struct Fault {
+    pub(crate) patches: [u32; 2],
+    pub(crate) count: usize,
     /// Whether they fold over at their edge, and do not cross.
-    pub(super) folded: bool,
+    pub(crate) folded: bool,
+}
+
+/// How many faults there are in all.
+pub(crate) fn count(faults: &[Fault]) -> usize {
+    faults.iter().map(|fault| fault.count).sum()
 }
 
 /// Some patches with their refined facets.
-pub(super) struct Stretch {
-    pub(super) part: Part,
+pub(crate) struct RefinedPatches {
+    pub(crate) part: Part,
     /// By patch: the numbers of its points.
     points: Vec<[u32; POINTS]>,
     /// Eight of each patch.
     facets: Vec<Facet>,
-    /// Lowest and highest corner of each patch's box.
-    boxes: Vec<[Vec3; 2]>,
+    /// By patch.
+    boxes: Vec<Bounds>,
     /// Facets that share an edge, and those of each patch by number.
     edges: Vec<[u32; 2]>,
     patch_edges: Vec<Vec<u32>>,
 }
 
-impl Stretch {
-    pub(super) fn new(mesh: &CoarseMesh, patches: Vec<u32>) -> Self {
+impl RefinedPatches {
+    pub(crate) fn new(mesh: &CoarseMesh, patches: Vec<u32>) -> Self {
         let part = Part::new(mesh, patches);
         let count = part.mesh.patches.len();
-        let mut stretch = Self {
+        let mut refined = Self {
             points: numbers(&part.mesh),
             part,
             facets: Vec::with_capacity(FACETS * count),
@@ -76,29 +82,34 @@ impl Stretch {
             patch_edges: vec![Vec::new(); count],
         };
         for patch in 0..count {
-            let facets = stretch.patch_facets(patch);
-            stretch.facets.extend(facets);
-            stretch.boxes.push(bounds(&facets));
+            let facets = refined.patch_facets(patch);
+            refined.facets.extend(facets);
+            refined.boxes.push(bounds(&facets));
         }
-        stretch.edges = shared_edges(&stretch.facets);
-        for (number, edge) in (0..).zip(&stretch.edges) {
+        refined.edges = shared_edges(&refined.facets);
+        for (number, edge) in (0..).zip(&refined.edges) {
             let [a, b] = edge.map(|facet| facet as usize / FACETS);
-            stretch.patch_edges[a].push(number);
+            refined.patch_edges[a].push(number);
             if a != b {
-                stretch.patch_edges[b].push(number);
+                refined.patch_edges[b].push(number);
             }
         }
-        stretch
-    }
-
-    /// Whether there are so many patches in one place that they cannot be looked at pair by pair.
-    pub(super) fn is_crowd(&self) -> bool {
-        self.near_pairs(CROWDED * self.boxes.len()).is_none()
+        refined
     }
 
     /// Pairs of facets that cross, and folded edges, by their patches.
-    pub(super) fn faults(&self) -> Vec<Fault> {
-        let near = self.near_pairs(usize::MAX).unwrap_or_default();
+    pub(crate) fn faults(&self) -> Vec<Fault> {
+        self.faults_of_pairs(self.near_pairs(usize::MAX).unwrap_or_default())
+    }
+
+    /// [`RefinedPatches::faults`]; none where there are so many patches in one place that they cannot be looked
+    /// at pair by pair.
+    pub(crate) fn faults_unless_crowd(&self) -> Option<Vec<Fault>> {
+        let near = self.near_pairs(CROWDED * self.boxes.len())?;
+        Some(self.faults_of_pairs(near))
+    }
+
+    fn faults_of_pairs(&self, near: Vec<[u32; 2]>) -> Vec<Fault> {
         let crossings = near.into_iter().map(|patches| self.crossing(patches));
         let crossings = crossings.filter(|fault| fault.count > 0);
         crossings.chain(self.folds()).collect()
@@ -122,7 +133,7 @@ impl Stretch {
     }
 
     /// All faults, after some patches were refined again; `before` has those of the others.
-    pub(super) fn faults_again(&self, before: &[Fault], changed: &[u32]) -> Vec<Fault> {
+    pub(crate) fn faults_again(&self, before: &[Fault], changed: &[u32]) -> Vec<Fault> {
         let mut has_changed = vec![false; self.boxes.len()];
         for &patch in changed {
             has_changed[patch as usize] = true;
@@ -139,14 +150,14 @@ impl Stretch {
     }
 
     /// How many faults some patches have, with each other and with all others. `patches`: ascending.
-    pub(super) fn faults_of(&self, patches: &[u32]) -> usize {
+    pub(crate) fn faults_of(&self, patches: &[u32]) -> usize {
         let mut count = 0;
         let mut edges: Vec<u32> = Vec::new();
         for &patch in patches {
             edges.extend(&self.patch_edges[patch as usize]);
             for other in 0..self.boxes.len() as u32 {
                 let counted = other < patch && patches.binary_search(&other).is_ok();
-                if !counted && overlap(&self.boxes[patch as usize], &self.boxes[other as usize]) {
+                if !counted && self.boxes[patch as usize].overlaps(&self.boxes[other as usize]) {
                     count += self.crossings([patch, other]);
                 }
             }
@@ -158,7 +169,7 @@ impl Stretch {
     }
 
     /// Refines patches again whose corners moved.
-    pub(super) fn update(&mut self, patches: &[u32]) {
+    pub(crate) fn update(&mut self, patches: &[u32]) {
         for &patch in patches {
             let patch = patch as usize;
             let facets = self.patch_facets(patch);
@@ -182,14 +193,14 @@ impl Stretch {
     /// Pairs of patches whose boxes overlap, each with itself too; none if there are more than `most`.
     fn near_pairs(&self, most: usize) -> Option<Vec<[u32; 2]>> {
         let mut order: Vec<u32> = (0..self.boxes.len() as u32).collect();
-        let low = |patch: u32| self.boxes[patch as usize][0].x;
+        let low = |patch: u32| self.boxes[patch as usize].low.x;
         order.sort_by(|&a, &b| low(a).total_cmp(&low(b)).then(a.cmp(&b)));
         let mut pairs = Vec::with_capacity(12 * order.len());
         for (i, &a) in order.iter().enumerate() {
-            let end = self.boxes[a as usize][1].x;
+            let end = self.boxes[a as usize].high.x;
             pairs.push([a, a]);
             for &b in order[i + 1..].iter().take_while(|&&b| low(b) <= end) {
-                if overlap(&self.boxes[a as usize], &self.boxes[b as usize]) {
+                if self.boxes[a as usize].overlaps(&self.boxes[b as usize]) {
                     pairs.push([a, b]);
                 }
             }
@@ -208,9 +219,7 @@ impl Stretch {
             return (0..FACETS).map(|i| after(i).count()).sum();
         }
         // Of patches side by side, few facets are near the other patch.
-        let near = |patch: u32, facet: &Facet| {
-            overlap(&[facet.low, facet.high], &self.boxes[patch as usize])
-        };
+        let near = |patch: u32, facet: &Facet| facet.bounds.overlaps(&self.boxes[patch as usize]);
         let mut others = [0; FACETS];
         let mut count = 0;
         for (i, _) in b.iter().enumerate().filter(|(_, f)| near(patches[0], f)) {
@@ -231,16 +240,9 @@ impl Stretch {
     }
 }
 
-fn bounds(facets: &[Facet; FACETS]) -> [Vec3; 2] {
-    let low = facets[1..].iter().fold(facets[0].low, |b, f| b.min(f.low));
-    let high = facets[1..]
-        .iter()
-        .fold(facets[0].high, |b, f| b.max(f.high));
-    [low, high]
-}
-
-fn overlap(a: &[Vec3; 2], b: &[Vec3; 2]) -> bool {
-    (a[0].cmple(b[1]) & b[0].cmple(a[1])).all()
+fn bounds(facets: &[Facet; FACETS]) -> Bounds {
+    let rest = facets[1..].iter();
+    rest.fold(facets[0].bounds, |bounds, facet| bounds.with(&facet.bounds))
 }
 
 /// Numbers of the points of each patch: corners first, then the middles of edges, then those of patches.
