@@ -2,7 +2,7 @@
 //!
 //! By this forks are judged, thousands of times a cell, and rings are drawn in.
 
-use neurotess_mesh::{CoarseMesh, PatchKind};
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
 use neurotess_refine::{RefineOptions, patch_points};
 
 use crate::facets::{Bounds, Facet};
@@ -18,28 +18,74 @@ const POINTS: usize = 9;
 /// eight, stems all around a small soma fifty.
 const CROWDED: usize = 16;
 
-/// Triangles of a patch by its points, which are numbered row by row: with parallel diagonals, and with
-/// diagonals that run towards the corners.
-const PARALLEL: [[usize; 3]; FACETS] = [
-    [0, 1, 4],
-    [0, 4, 3],
-    [1, 2, 5],
-    [1, 5, 4],
-    [3, 4, 7],
-    [3, 7, 6],
-    [4, 5, 8],
-    [4, 8, 7],
-];
-const FANNED: [[usize; 3]; FACETS] = [
-    [0, 1, 4],
-    [0, 4, 3],
-    [1, 2, 4],
-    [2, 5, 4],
-    [3, 4, 6],
-    [4, 7, 6],
-    [4, 5, 8],
-    [4, 8, 7],
-];
+/// How a patch is cut into triangles; points are numbered row by row.
+struct Pattern {
+    triangles: [[usize; 3]; FACETS],
+    /// Triangles that share an edge.
+    within: [[u32; 2]; FACETS],
+    /// Triangles at the two halves of each side, in the order of [`sides`].
+    along: [[u32; 2]; 4],
+}
+
+/// With parallel diagonals.
+const PARALLEL: Pattern = Pattern {
+    triangles: [
+        [0, 1, 4],
+        [0, 4, 3],
+        [1, 2, 5],
+        [1, 5, 4],
+        [3, 4, 7],
+        [3, 7, 6],
+        [4, 5, 8],
+        [4, 8, 7],
+    ],
+    within: [
+        [0, 1],
+        [0, 3],
+        [2, 3],
+        [1, 4],
+        [4, 5],
+        [3, 6],
+        [6, 7],
+        [4, 7],
+    ],
+    along: [[0, 2], [2, 6], [5, 7], [1, 5]],
+};
+/// With diagonals that run towards the corners.
+const FANNED: Pattern = Pattern {
+    triangles: [
+        [0, 1, 4],
+        [0, 4, 3],
+        [1, 2, 4],
+        [2, 5, 4],
+        [3, 4, 6],
+        [4, 7, 6],
+        [4, 5, 8],
+        [4, 8, 7],
+    ],
+    within: [
+        [0, 1],
+        [0, 2],
+        [2, 3],
+        [3, 6],
+        [6, 7],
+        [5, 7],
+        [4, 5],
+        [1, 4],
+    ],
+    along: [[0, 2], [3, 6], [5, 7], [1, 4]],
+};
+/// Points of the sides of a patch, in the order of [`sides`].
+const SIDES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]];
+
+impl Pattern {
+    fn of(patch: &Patch) -> &'static Self {
+        match patch.kind {
+            PatchKind::Lateral => &PARALLEL,
+            PatchKind::Cap | PatchKind::Soma | PatchKind::Loft => &FANNED,
+        }
+    }
+}
 
 /// Faults between two patches, or of one patch with itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,35 +110,25 @@ pub(crate) struct RefinedPatches {
     facets: Vec<Facet>,
     /// By patch.
     boxes: Vec<Bounds>,
-    /// Facets that share an edge, and those of each patch by number.
-    edges: Vec<[u32; 2]>,
-    patch_edges: Vec<Vec<u32>>,
+    seams: Seams,
 }
 
 impl RefinedPatches {
     pub(crate) fn new(mesh: &CoarseMesh, patches: Vec<u32>) -> Self {
         let part = Part::new(mesh, patches);
         let count = part.mesh.patches.len();
+        let (points, seams) = numbers(&part.mesh);
         let mut refined = Self {
-            points: numbers(&part.mesh),
+            points,
             part,
             facets: Vec::with_capacity(FACETS * count),
             boxes: Vec::with_capacity(count),
-            edges: Vec::new(),
-            patch_edges: vec![Vec::new(); count],
+            seams,
         };
         for patch in 0..count {
             let facets = refined.patch_facets(patch);
             refined.facets.extend(facets);
             refined.boxes.push(bounds(&facets));
-        }
-        refined.edges = shared_edges(&refined.facets);
-        for (number, edge) in (0..).zip(&refined.edges) {
-            let [a, b] = edge.map(|facet| facet as usize / FACETS);
-            refined.patch_edges[a].push(number);
-            if a != b {
-                refined.patch_edges[b].push(number);
-            }
         }
         refined
     }
@@ -123,13 +159,39 @@ impl RefinedPatches {
         }
     }
 
+    /// Edges within patches and between them that fold over, in the order of their vertices.
     fn folds(&self) -> impl Iterator<Item = Fault> {
-        let folded = self.edges.iter().filter(|edge| self.is_folded(edge));
-        folded.map(|edge| Fault {
+        let patches = 0..self.boxes.len() as u32;
+        let within = patches.flat_map(|patch| self.edges_within(patch));
+        let across = self.seams.edges.iter().copied();
+        let folded = within.chain(across).filter(|edge| self.is_folded(edge));
+        let mut folded: Vec<([u32; 2], [u32; 2])> = folded
+            .map(|edge| (self.common_vertices(edge), edge))
+            .collect();
+        folded.sort_unstable();
+        folded.into_iter().map(|(_, edge)| Fault {
             patches: edge.map(|facet| facet / FACETS as u32),
             count: 1,
             folded: true,
         })
+    }
+
+    /// Pairs of facets that share an edge within a patch.
+    fn edges_within(&self, patch: u32) -> impl Iterator<Item = [u32; 2]> {
+        let pattern = Pattern::of(&self.part.mesh.patches[patch as usize]);
+        let first = FACETS as u32 * patch;
+        pattern
+            .within
+            .iter()
+            .map(move |pair| pair.map(|facet| first + facet))
+    }
+
+    /// The vertices of the edge that two facets share, in order.
+    fn common_vertices(&self, edge: [u32; 2]) -> [u32; 2] {
+        let [a, b] = edge.map(|facet| self.facets[facet as usize].corners);
+        let mut common = a.into_iter().filter(|corner| b.contains(corner));
+        let [p, q] = [(); 2].map(|()| common.next().unwrap_or_default());
+        [p.min(q), p.max(q)]
     }
 
     /// All faults, after some patches were refined again; `before` has those of the others.
@@ -152,9 +214,13 @@ impl RefinedPatches {
     /// How many faults some patches have, with each other and with all others. `patches`: ascending.
     pub(crate) fn faults_of(&self, patches: &[u32]) -> usize {
         let mut count = 0;
-        let mut edges: Vec<u32> = Vec::new();
+        let mut seams: Vec<u32> = Vec::new();
         for &patch in patches {
-            edges.extend(&self.patch_edges[patch as usize]);
+            count += self
+                .edges_within(patch)
+                .filter(|edge| self.is_folded(edge))
+                .count();
+            seams.extend(self.seams.of(patch));
             for other in 0..self.boxes.len() as u32 {
                 let counted = other < patch && patches.binary_search(&other).is_ok();
                 if !counted && self.boxes[patch as usize].overlaps(&self.boxes[other as usize]) {
@@ -162,10 +228,10 @@ impl RefinedPatches {
                 }
             }
         }
-        edges.sort_unstable();
-        edges.dedup();
-        let folded = |edge: &&u32| self.is_folded(&self.edges[**edge as usize]);
-        count + edges.iter().filter(folded).count()
+        seams.sort_unstable();
+        seams.dedup();
+        let edges = seams.iter().flat_map(|&seam| self.seams.edges(seam));
+        count + edges.filter(|edge| self.is_folded(edge)).count()
     }
 
     /// Refines patches again whose corners moved.
@@ -183,10 +249,7 @@ impl RefinedPatches {
         let mesh = &self.part.mesh;
         patch_points(mesh, patch, STEPS, &RefineOptions::default(), &mut points);
         let numbers = &self.points[patch];
-        let triangles = match mesh.patches[patch].kind {
-            PatchKind::Lateral => &PARALLEL,
-            PatchKind::Cap | PatchKind::Soma | PatchKind::Loft => &FANNED,
-        };
+        let triangles = Pattern::of(&mesh.patches[patch]).triangles;
         triangles.map(|t| Facet::new(t.map(|k| numbers[k]), t.map(|k| points[k])))
     }
 
@@ -245,41 +308,114 @@ fn bounds(facets: &[Facet; FACETS]) -> Bounds {
     rest.fold(facets[0].bounds, |bounds, facet| bounds.with(&facet.bounds))
 }
 
-/// Numbers of the points of each patch: corners first, then the middles of edges, then those of patches.
-fn numbers(mesh: &CoarseMesh) -> Vec<[u32; POINTS]> {
-    let sides = |c: [u32; 4]| [(c[0], c[1]), (c[1], c[2]), (c[3], c[2]), (c[0], c[3])];
-    let edge = |(a, b): (u32, u32)| (a.min(b), a.max(b));
-    let mut edges: Vec<(u32, u32)> = mesh
-        .patches
-        .iter()
-        .flat_map(|patch| sides(patch.corners).map(edge))
-        .collect();
-    edges.sort_unstable();
-    edges.dedup();
-    let first_edge = mesh.vertices.len() as u32;
-    let first_inner = first_edge + edges.len() as u32;
-    let number = |side| first_edge + edges.partition_point(|&e| e < edge(side)) as u32;
-    (first_inner..)
-        .zip(&mesh.patches)
-        .map(|(inner, patch)| {
-            let [a, b, c, d] = patch.corners;
-            let [near, right, far, left] = sides(patch.corners).map(number);
-            [a, near, b, left, inner, right, d, far, c]
-        })
-        .collect()
+/// Sides that two patches share.
+struct Seams {
+    /// Pairs of facets: two of each seam.
+    edges: Vec<[u32; 2]>,
+    /// Numbers of the seams by patch and side; [`NO_SEAM`] where no other patch is.
+    by_side: Vec<[u32; 4]>,
 }
 
-/// Pairs of facets with a common edge.
-fn shared_edges(facets: &[Facet]) -> Vec<[u32; 2]> {
-    let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * facets.len());
-    for (number, facet) in (0..).zip(facets) {
-        let [a, b, c] = facet.corners;
-        for (p, q) in [(a, b), (b, c), (c, a)] {
-            edges.push((p.min(q), p.max(q), number));
+/// No other patch is at a side.
+const NO_SEAM: u32 = u32::MAX;
+
+impl Seams {
+    /// Seams of a patch.
+    fn of(&self, patch: u32) -> impl Iterator<Item = u32> {
+        let sides = self.by_side[patch as usize].into_iter();
+        sides.filter(|&seam| seam != NO_SEAM)
+    }
+
+    /// Pairs of facets along a seam.
+    fn edges(&self, seam: u32) -> [[u32; 2]; 2] {
+        [0, 1].map(|half| self.edges[2 * seam as usize + half])
+    }
+
+    /// Adds the seam between two sides, each given as a patch with a side of it.
+    fn add(&mut self, mesh: &CoarseMesh, [a, b]: [(u32, usize); 2]) {
+        let seam = self.edges.len() as u32 / 2;
+        let first =
+            |(patch, side): (u32, usize)| sides(mesh.patches[patch as usize].corners)[side].0;
+        let along = |(patch, side): (u32, usize)| {
+            let halves = Pattern::of(&mesh.patches[patch as usize]).along[side];
+            halves.map(|facet| FACETS as u32 * patch + facet)
+        };
+        let ([a0, a1], mut others) = (along(a), along(b));
+        if first(a) != first(b) {
+            others.reverse();
+        }
+        self.edges.extend([[a0, others[0]], [a1, others[1]]]);
+        for (patch, side) in [a, b] {
+            self.by_side[patch as usize][side] = seam;
         }
     }
-    edges.sort_unstable();
-    let same = |pair: &&[(u32, u32, u32)]| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1);
-    let pairs = edges.windows(2).filter(same);
-    pairs.map(|pair| [pair[0].2, pair[1].2]).collect()
+}
+
+/// Sides of a patch, as its points run along them.
+fn sides(c: [u32; 4]) -> [(u32, u32); 4] {
+    [(c[0], c[1]), (c[1], c[2]), (c[3], c[2]), (c[0], c[3])]
+}
+
+/// Numbers of the points of each patch: corners first, then the middles of edges, then those of patches;
+/// and where patches meet.
+fn numbers(mesh: &CoarseMesh) -> (Vec<[u32; POINTS]>, Seams) {
+    let count = mesh.patches.len();
+    let mut at: Vec<(u32, u32, u32)> = Vec::with_capacity(4 * count);
+    for (patch, corners) in (0..).zip(mesh.patches.iter().map(|p| p.corners)) {
+        let sides = (4 * patch..).zip(sides(corners));
+        at.extend(sides.map(|(slot, (a, b))| (a.min(b), a.max(b), slot)));
+    }
+    at.sort_unstable();
+    let mut points = vec![[0; POINTS]; count];
+    let mut seams = Seams {
+        edges: Vec::with_capacity(4 * count),
+        by_side: vec![[NO_SEAM; 4]; count],
+    };
+    let mut number = mesh.vertices.len() as u32;
+    for same in at.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        for slot in same.iter().map(|&(_, _, slot)| slot as usize) {
+            points[slot / 4][SIDES[slot % 4][1]] = number;
+        }
+        for pair in same.windows(2) {
+            let side = |slot: u32| (slot / 4, slot as usize % 4);
+            seams.add(mesh, [side(pair[0].2), side(pair[1].2)]);
+        }
+        number += 1;
+    }
+    for ((points, patch), inner) in points.iter_mut().zip(&mesh.patches).zip(number..) {
+        let [a, b, c, d] = patch.corners;
+        (points[0], points[2], points[8], points[6]) = (a, b, c, d);
+        points[4] = inner;
+    }
+    (points, seams)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_say_which_triangles_share_edges() {
+        for pattern in [&PARALLEL, &FANNED] {
+            let has = |triangle: usize, edge: [usize; 2]| {
+                edge.iter()
+                    .all(|point| pattern.triangles[triangle].contains(point))
+            };
+            let mut within: Vec<[u32; 2]> = Vec::new();
+            for (a, b) in (0..FACETS).flat_map(|a| (a + 1..FACETS).map(move |b| (a, b))) {
+                let common = pattern.triangles[a].iter().filter(|p| has(b, [**p; 2]));
+                if common.count() == 2 {
+                    within.push([a as u32, b as u32]);
+                }
+            }
+            let mut said = pattern.within.map(|[a, b]| [a.min(b), a.max(b)]);
+            said.sort_unstable();
+            assert_eq!(within, said);
+            for (points, halves) in SIDES.iter().zip(pattern.along) {
+                for (edge, half) in points.windows(2).zip(halves) {
+                    assert!(has(half as usize, [edge[0], edge[1]]));
+                }
+            }
+        }
+    }
 }
