@@ -16,7 +16,7 @@ pub(crate) struct Facet {
     points: [Vec3A; 3],
     pub(crate) bounds: Bounds,
     /// Unit, or zero where the facet has no area.
-    normal: Vec3A,
+    pub(crate) normal: Vec3A,
 }
 
 /// A box along the axes.
