@@ -75,7 +75,11 @@ fn every_shortcut_runs_its_command_and_nothing_else() {
     let list = heard(&mut window);
     for (_, items) in listed(&Toggles::default()) {
         for item in items {
-            let (Some(keys), false) = (item.keys, item.command == Command::Quit) else {
+            // On the turntable nothing comes to rest, which the next line waits for.
+            let turns = Command::SetPresenting(true) == item.command
+                || Command::SetTurning(true) == item.command;
+            let skipped = turns || item.command == Command::Quit;
+            let (Some(keys), false) = (item.keys, skipped) else {
                 continue;
             };
             let toggles = state(&mut window).toggles();

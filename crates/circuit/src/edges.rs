@@ -1,7 +1,9 @@
 //! Connections: how many there are, and where their synapses sit where the file says so.
 //!
-//! Blue Brain's files have `afferent_center_{x,y,z}` (on the target's axis) and
+//! Here are those of SONATA, `snudda.rs` has those of Snudda. Blue Brain's files have `afferent_center_{x,y,z}` (on the target's axis) and
 //! `afferent_surface_{x,y,z}` (on its membrane); the Allen Institute's may have `pos_{x,y,z}`.
+
+mod snudda;
 
 use std::path::{Path, PathBuf};
 
@@ -9,6 +11,11 @@ use glam::DVec3;
 
 use crate::hdf5::Store;
 use crate::{CircuitError, Fault};
+
+pub(crate) use snudda::of_network;
+
+/// The one population of a network of Snudda.
+pub(crate) const NEURONS: &str = "neurons";
 
 /// A population of connections.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,6 +108,11 @@ pub(crate) fn open(file: &Path, listed: Option<&[String]>) -> Result<Vec<Edges>,
     edges.collect()
 }
 
+/// Whether a file is SONATA's, not Snudda's.
+fn is_sonata(store: &Store) -> bool {
+    !store.has_group("network/neurons")
+}
+
 /// Connections are more than nodes: their number is 64 bits wide.
 fn edge_rows(store: &Store, path: &str) -> Result<u64, CircuitError> {
     match store.shape(path)?[..] {
@@ -139,6 +151,15 @@ impl Edges {
     /// What is wrong with the file.
     pub fn properties(&self) -> Result<Vec<String>, CircuitError> {
         let store = Store::open(&self.file)?;
+        if is_sonata(&store) {
+            Ok(self.columns(&store))
+        } else {
+            snudda::properties(self, &store)
+        }
+    }
+
+    /// Datasets of the group, but for those that are places.
+    fn columns(&self, store: &Store) -> Vec<String> {
         let mut names = store.datasets(&self.group());
         let is_place = |name: &String| {
             let columns = AFFERENT.iter().chain(&EFFERENT).flatten();
@@ -146,7 +167,7 @@ impl Edges {
         };
         names.retain(|name| !is_place(name));
         names.sort_unstable();
-        Ok(names)
+        names
     }
 
     /// One number of each synapse, in the order of [`Edges::synapses`].
@@ -155,6 +176,9 @@ impl Edges {
     /// There is none of this name; what is wrong with the file.
     pub fn property(&self, name: &str) -> Result<Vec<f64>, CircuitError> {
         let store = Store::open(&self.file)?;
+        if !is_sonata(&store) {
+            return snudda::property(self, &store, name);
+        }
         let key = format!("{}/{name}", self.group());
         let values = store.reals(&key)?;
         self.check_rows(&store, &key, values.len())?;
@@ -163,6 +187,9 @@ impl Edges {
 
     fn read(&self, places: &[[&str; 3]]) -> Result<Synapses, CircuitError> {
         let store = Store::open(&self.file)?;
+        if !is_sonata(&store) {
+            return snudda::synapses(self, &store);
+        }
         let path = format!("edges/{}", self.name);
         let ends = ["source", "target"].map(|end| {
             let key = format!("{path}/{end}_node_id");

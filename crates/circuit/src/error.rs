@@ -190,6 +190,44 @@ pub enum Fault {
         /// How many there are.
         count: u64,
     },
+    /// Matrices that turn nothing rigidly.
+    #[error(
+        "row {row} is no rotation, as are {count} in all: these cells are left out, correct them"
+    )]
+    NotARotation {
+        /// The first such row, from 0 on.
+        row: u64,
+        /// How many there are.
+        count: u64,
+    },
+    /// HDF5 without the neurons of a network of Snudda.
+    #[error(
+        "is not in this HDF5 file: give Snudda's network-synapses.hdf5, or of SONATA the configuration, like \
+         circuit_config.json"
+    )]
+    NotANetwork,
+    /// A configuration of Blue Brain's before SONATA.
+    #[error(
+        "a BlueConfig, which is not read: its cells are in {cells}; {way} a circuit_config.json that names \
+         them and open that, see docs/circuits.md#blueconfig"
+    )]
+    BlueConfig {
+        /// The file of its cells.
+        cells: String,
+        /// How those become SONATA's nodes.
+        way: &'static str,
+    },
+    /// Cells in Blue Brain's formats before SONATA.
+    #[error(
+        "{format} is not read: {way} a circuit_config.json that names the cells and open that, see \
+         docs/circuits.md#blueconfig"
+    )]
+    Mvd {
+        /// MVD2 or MVD3.
+        format: &'static str,
+        /// How they become SONATA's nodes.
+        way: &'static str,
+    },
     /// One to three of a quaternion's four components.
     #[error("is missing while other components of the quaternion are there: add it")]
     PartialQuaternion,

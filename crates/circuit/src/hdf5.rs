@@ -160,6 +160,34 @@ impl Store {
         self.read(path, Dataset::read_u64)
     }
 
+    /// A table of real numbers, row by row.
+    pub(crate) fn matrix(
+        &self,
+        path: &str,
+        rows: u64,
+        columns: u64,
+    ) -> Result<Vec<f64>, CircuitError> {
+        let shape = self.shape(path)?;
+        if shape != [rows, columns] {
+            let (found, expected) = (shape, format!("[{rows}, {columns}]"));
+            return Err(self.fault(path, Fault::Shape { found, expected }));
+        }
+        self.believe(path)?;
+        let values = self.dataset(path)?.read_f64();
+        values.map_err(|e| self.fault(path, hdf5(&e)))
+    }
+
+    /// The text of a dataset that has one; none where there is no such text.
+    pub(crate) fn text(&self, path: &str) -> Option<String> {
+        self.believe(path).ok()?;
+        let dataset = self.dataset(path).ok()?;
+        let texts = match dataset.datatype().ok()? {
+            Datatype::VariableLength { .. } => dataset.read_vlen_strings(self.payload()),
+            _ => dataset.read_string(),
+        };
+        texts.ok()?.into_iter().next()
+    }
+
     fn read<T>(
         &self,
         path: &str,
@@ -182,6 +210,17 @@ impl Store {
         count: u64,
     ) -> Result<Vec<u64>, CircuitError> {
         let rows = self.dataset(path)?.read_u64_rows(from, count);
+        rows.map_err(|e| self.fault(path, hdf5(&e)))
+    }
+
+    /// Some rows of whole numbers.
+    pub(crate) fn wholes_of(
+        &self,
+        path: &str,
+        from: u64,
+        count: u64,
+    ) -> Result<Vec<i64>, CircuitError> {
+        let rows = self.dataset(path)?.read_i64_rows(from, count);
         rows.map_err(|e| self.fault(path, hdf5(&e)))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! # A tour
 //!
-//! A **circuit** is opened by its configuration, or by the folder that has one. It holds
+//! A **circuit** is opened by its configuration, or by the folder that has one; one of Snudda by its HDF5 file. It holds
 //! **populations** of **nodes**, each with a place, a rotation and the name of a morphology, and
 //! **templates**: the distinct morphology files, which are read when they are first asked for, and
 //! once.
@@ -52,6 +52,7 @@
 //! Coordinates of circuits are `f64`: at 10⁴ µm `f32` resolves 0.001 µm only.
 #![forbid(unsafe_code)]
 
+mod blue_config;
 mod edges;
 mod error;
 mod groups;
@@ -69,6 +70,7 @@ mod population;
 mod report;
 mod scene;
 mod select;
+mod snudda;
 mod sonata;
 mod table;
 mod template;

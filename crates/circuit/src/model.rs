@@ -17,7 +17,7 @@ use crate::warning::Warning;
 pub struct Circuit {
     /// The configuration or scene as it was named.
     pub file: String,
-    /// Short name of the format: `sonata`, `nsol`, `scene` or `table`.
+    /// Short name of the format: `sonata`, `snudda`, `nsol`, `scene` or `table`.
     pub format: &'static str,
     /// Populations in the order of the files, each in a file by name.
     pub populations: Vec<Population>,

@@ -6,12 +6,12 @@ use std::path::Path;
 
 use neurotess_formats::regular;
 
-use crate::{Circuit, CircuitError, nsol, placed, scene, sonata, table};
+use crate::{Circuit, CircuitError, blue_config, nsol, placed, scene, snudda, sonata, table};
 
 impl Circuit {
     /// Opens a circuit: a SONATA configuration (the circuit's or the simulation's), the folder that
-    /// has one, nsol's XML scene, a scene of our own (`.scene.toml`, `.scene.json`), or a table of placed
-    /// cells (`.csv`, `.tsv`). Morphologies are not read yet.
+    /// has one, a network of Snudda or its folder, nsol's XML scene, a scene of our own (`.scene.toml`,
+    /// `.scene.json`), or a table of placed cells (`.csv`, `.tsv`). Morphologies are not read yet.
     ///
     /// # Errors
     /// What is wrong with the file, or with all populations. What is wrong with one of several is in
@@ -19,7 +19,16 @@ impl Circuit {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, CircuitError> {
         let path = path.as_ref();
         if path.is_dir() {
-            return sonata::open(&sonata::find(path)?);
+            return match (sonata::find(path), snudda::find(path)) {
+                (Err(_), Some(network)) => snudda::open(&network),
+                (config, _) => sonata::open(&config?),
+            };
+        }
+        if snudda::is_hdf5(path) {
+            return snudda::open(path);
+        }
+        if let Some(refusal) = blue_config::refusal(path) {
+            return Err(refusal);
         }
         if scene::is_named_so(path) {
             return scene::open(path);
@@ -35,13 +44,17 @@ impl Circuit {
 }
 
 /// Whether a file, or a folder, is to be opened as a circuit. A folder is if it has the configuration
-/// of one; any `.json`, `.csv` and `.tsv` file is, since no morphology is: what is wrong with it, opening
-/// tells.
+/// of one; HDF5 is if it is a network of Snudda; any `.json`, `.csv` and `.tsv` file is, since no morphology is: what
+/// is wrong with it, opening tells. So are configurations and cells of before SONATA, which opening refuses with a remedy.
 pub fn is_circuit(path: &Path) -> bool {
     if path.is_dir() {
-        return sonata::find(path).is_ok();
+        return sonata::find(path).is_ok() || snudda::find(path).is_some();
     }
-    if scene::is_named_so(path) || table::is_named_so(path) {
+    if snudda::is_network(path)
+        || blue_config::refusal(path).is_some()
+        || scene::is_named_so(path)
+        || table::is_named_so(path)
+    {
         return true;
     }
     if has_extension(path, "xml") {

@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 
 /// Greatest departure from a rotation, as a part of the scale: files round to three decimals or so.
-const TOLERANCE: f64 = 2e-3;
+pub(crate) const TOLERANCE: f64 = 2e-3;
 
 /// Translation (µm), rotation and uniform scale.
 pub(crate) type Placement = (DVec3, DQuat, f64);

@@ -17,6 +17,7 @@ mod meshes;
 mod palettes;
 mod render;
 mod resume;
+mod snudda;
 mod streams;
 mod synth;
 mod tables;

@@ -4,12 +4,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use neurotess::circuit::{Circuit, is_circuit, is_point_table, is_recording, soma_center};
+use neurotess::circuit::{Circuit, is_circuit, is_point_table, is_recording};
 use neurotess::formats;
 use neurotess::render::Placement;
 use walkdir::WalkDir;
 
-use crate::model::circuits::Opened;
+use crate::model::circuits::{self, Opened};
 use crate::model::document::{SomaEdit, is_mesh};
 use crate::model::session::Session;
 use crate::model::sources::{SAMPLE, Source};
@@ -185,14 +185,8 @@ fn find_circuit(path: &Path, found: &mut Found) {
 impl CircuitCell {
     /// Name and placement of the cell, once its tracing is read.
     pub(crate) fn place(&self, source: &Source) -> (String, Placement) {
-        let instance = &self.instance;
-        let center = soma_center(&source.morphology);
-        let placement = Placement {
-            rotation: instance.rotation,
-            scale: instance.scale,
-            translation: instance.world_from_cell(center).translation,
-        };
-        (format!("{} {}", instance.id, source.name), placement)
+        let placement = circuits::placement(&self.instance, &source.morphology);
+        (format!("{} {}", self.instance.id, source.name), placement)
     }
 }
 

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use neurotess::circuit::{Circuit, NodeRef};
+use neurotess::circuit::{Circuit, Instance, NodeRef, soma_center};
 use neurotess::coloring::{self, Node};
+use neurotess::morphology::Morphology;
+use neurotess::render::Placement;
 
 use crate::model::ids::{CircuitId, CircuitNode};
 
@@ -80,4 +82,14 @@ pub(crate) fn node(circuit: &Circuit, population: &str, id: u64) -> Option<NodeR
         population: place as u32,
         row: row as u32,
     })
+}
+
+/// Where a circuit places an instance of a morphology.
+pub(crate) fn placement(instance: &Instance, morphology: &Morphology) -> Placement {
+    let center = soma_center(morphology);
+    Placement {
+        rotation: instance.rotation,
+        scale: instance.scale,
+        translation: instance.world_from_cell(center).translation,
+    }
 }

@@ -27,6 +27,8 @@ pub struct Settings {
     pub dark: bool,
     /// Whether y points down.
     pub y_down: bool,
+    /// Whether a drag that selects draws a lasso instead of a rectangle.
+    pub lasso: bool,
     /// Folder of the last file.
     pub folder: PathBuf,
     /// Files that were opened last, the newest first.
@@ -48,6 +50,7 @@ impl Default for Settings {
         Self {
             dark: true,
             y_down: false,
+            lasso: false,
             folder: std::env::current_dir().unwrap_or_default(),
             recent: Vec::new(),
             picture_size: [1920, 1440],

@@ -9,7 +9,6 @@ use neurotess::render::Gpu;
 use crate::io::find::{self, OpenRequest};
 use crate::io::task::Progress;
 use crate::io::{self, load};
-use crate::model::document::Neuron;
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
 use crate::model::session::Session;
@@ -88,11 +87,8 @@ pub fn draw_session(
     for entry in &session.neuron {
         let id = ids.get(entry.file).copied().flatten();
         opened.push(id.map(|id| {
-            let node = session.node_of(entry, &state.circuits);
-            state.document.neurons.push(Neuron {
-                node,
-                ..entry.neuron(id)
-            });
+            let neuron = session.neuron_of(entry, id, &state);
+            state.document.neurons.push(neuron);
             state.document.neurons.len() - 1
         }));
     }

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use neurotess::circuit::{NodeRef, PointTable};
 use neurotess::coloring::{
     self, ColorScheme, ColoredThing, MarkerRow, MarkerSet, OwnColors, ShownCells,
 };
 use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::overlay::Legend;
-use neurotess::render::{DeviceError, Gpu, Marker, MarkerSettings, Markers};
+use neurotess::render::{DeviceError, Gpu, Marker, MarkerSettings, Markers, Placement};
 
 use crate::model::circuits::Circuits;
 use crate::model::document::MarkerOptions;
@@ -93,8 +93,8 @@ pub(crate) struct MarkerRequest {
     points: Option<(PathBuf, Arc<PointTable>)>,
     options: MarkerOptions,
     circuits: Circuits,
-    /// Nodes that show, and how far (µm) each was moved.
-    shown: Vec<(CircuitId, NodeRef, DVec3)>,
+    /// Nodes that show, and how each was moved (µm) and turned.
+    shown: Vec<(CircuitId, NodeRef, DAffine3)>,
     scheme: ColorScheme,
     first: usize,
 }
@@ -126,8 +126,7 @@ impl MarkerRequest {
         let placed = placed.filter(|(n, _)| !n.hidden && (n.selected || !selected));
         let shown = placed.filter_map(|(neuron, placement)| {
             let node = neuron.node?;
-            let moved = placement.translation - neuron.placement.translation;
-            Some((node.circuit, node.node, moved))
+            Some((node.circuit, node.node, moved(&neuron.traced, placement)))
         });
         let points = data.points().filter(|_| state.shows_points());
         Some(Self {
@@ -201,6 +200,18 @@ impl MarkerRequest {
         let of: Vec<_> = read.iter().map(|r| (&r.edges, cells(&r.circuit))).collect();
         coloring::synapse_markers(&of, self.options.property.as_deref(), &self.scheme)
     }
+}
+
+/// From places where a cell was to places where it is.
+fn moved(from: &Placement, to: &Placement) -> DAffine3 {
+    if from == to {
+        return DAffine3::IDENTITY;
+    }
+    let [from, to] = [from, to].map(|place| {
+        let scale = DVec3::splat(place.scale);
+        DAffine3::from_scale_rotation_translation(scale, place.rotation, place.translation)
+    });
+    to * from.inverse()
 }
 
 impl SceneMarkers {

@@ -1,13 +1,19 @@
 //! How the camera moves: by mouse and keys, in a flight to another view, and when the window
 //! changes size.
 
+use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use eframe::egui::Vec2;
+use glam::DVec3;
 
 use crate::model::state::State;
 use crate::model::view::View;
 
+/// Duration (s) of a turn of the turntable.
+const TURN: f64 = 24.0;
+/// Longest time (s) of one step of it: after a long frame it goes on as if that had been short.
+const STEP: f64 = 0.1;
 /// Duration of a flight to another view.
 const FLIGHT: Duration = Duration::from_millis(260);
 
@@ -16,8 +22,8 @@ pub(crate) struct Motion {
     /// Whether views change gradually; in tests they change at once.
     smooth: bool,
     flight: Option<Flight>,
-    /// Size of the window, once it is known.
-    window: Option<Vec2>,
+    /// Size of the window, once it is known, and whether it has just changed.
+    window: (Option<Vec2>, bool),
 }
 
 #[derive(Clone, Copy)]
@@ -32,7 +38,7 @@ impl Motion {
         Self {
             smooth: true,
             flight: None,
-            window: None,
+            window: (None, false),
         }
     }
 
@@ -78,6 +84,16 @@ impl Motion {
         }
     }
 
+    /// Turns the scene by what the turntable turns in this time (s).
+    pub(crate) fn turn(&mut self, state: &mut State, time: f64) {
+        let upwards = match state.settings.y_down {
+            true => DVec3::NEG_Y,
+            false => DVec3::Y,
+        };
+        let angle = TAU * time.clamp(0.0, STEP) / TURN;
+        self.steer(state, state.view.orbited(-angle, 0.0, upwards));
+    }
+
     /// Goes to a view at once.
     pub(crate) fn jump(&mut self, state: &mut State, to: View) {
         state.view = to;
@@ -97,17 +113,22 @@ impl Motion {
         true
     }
 
-    /// Adapts the view to the picture's aspect ratio (width by height), in a window of this size. A
-    /// view that fits everything still does; another one changes only with the window's size, not
-    /// with panels.
-    pub(crate) fn reshape(&mut self, state: &mut State, aspect: f64, window: Vec2) {
-        let before = self.window.replace(window);
-        let resized = before.is_some_and(|before| before != window);
+    /// Notes the size of the window in this frame.
+    pub(crate) fn note_window(&mut self, size: Vec2) {
+        let resized = self.window.0.is_some_and(|before| before != size);
+        self.window = (Some(size), resized);
+    }
+
+    /// Adapts the view to the picture's aspect ratio (width by height). A view that fits everything still does;
+    /// another one changes only with the window's size, not with panels. `flies`: whether a flight is that of this
+    /// view.
+    pub(crate) fn reshape(&mut self, state: &mut State, aspect: f64, flies: bool) {
+        let (_, resized) = self.window;
         let fitted = state.fitted.is_some();
         let Some(view) = state.reshape(aspect) else {
             return;
         };
-        match &mut self.flight {
+        match self.flight.as_mut().filter(|_| flies) {
             Some(flight) if fitted => flight.to = view,
             // A flight goes on to its destination.
             Some(_) => {}

@@ -9,6 +9,8 @@ mod common;
 mod drawing;
 mod edits;
 mod files;
+mod placing;
 mod shows;
+mod two_views;
 
 neurotess_testing::main!();

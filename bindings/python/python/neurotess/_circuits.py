@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 
 class Circuit(DrawnCircuit):
-    """A circuit: SONATA, a scene of nsol or one of your own.
+    """A circuit: SONATA, a network of Snudda, a scene of nsol or one of your own.
 
-    `path` is a configuration, or the folder of one. Parts that are missing are warned of.
+    `path` is a configuration, or the folder of one; of Snudda, `network-synapses.hdf5` or its folder. Parts that are missing are warned of.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:

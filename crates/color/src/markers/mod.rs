@@ -323,14 +323,16 @@ mod tests {
         let facts = read.facts(2).expect("a synapse");
         assert_eq!((facts.cell, facts.partner, facts.number), (1, 9, Some(2.5)));
         assert_eq!(read.facts(4), None);
-        // Cell 1 was moved, cell 3 has a synapse without a place.
-        let moved = DVec3::Y * 100.0;
-        let shown = HashMap::from([(1, moved), (3, DVec3::ZERO)]);
+        // Cell 1 was turned and moved, cell 3 has a synapse without a place.
+        let turned = glam::DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let moved = glam::DAffine3::from_rotation_translation(turned, DVec3::Y * 100.0);
+        let shown = HashMap::from([(1, moved), (3, glam::DAffine3::IDENTITY)]);
         let shown = ShownCells::from([("post".to_owned(), shown)]);
         let set = synapse_markers(&[(&read, &shown)], Some("delay"), &scheme());
         let rows: Vec<u64> = set.rows.iter().map(|row| row.row).collect();
         assert_eq!((rows, set.left_out), (vec![0, 2], 2));
-        assert_eq!(set.markers[1].position, DVec3::new(20.0, 101.0, 2.0));
+        let place = DVec3::new(-1.0, 120.0, 2.0);
+        assert!(set.markers[1].position.distance(place) < 1e-9);
         assert!(set.legend.is_bar() && set.bounds().is_none());
         let missing = EdgeSynapses::read(&edges, Afferent, Some("size")).expect_err("none");
         assert!(missing.to_string().contains("it has delay"), "{missing}");

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use neurotess_circuit::{Circuit, Edges, NodeRef, SynapseSide};
 use neurotess_render::Marker;
 use neurotess_render::color::category;
@@ -49,9 +49,9 @@ pub struct SynapseFacts {
     pub number: Option<f64>,
 }
 
-/// By population: the ids of cells whose synapses are shown, and how far (µm) each was moved from where the
-/// circuit places it.
-pub type ShownCells = HashMap<String, HashMap<u64, DVec3>>;
+/// By population: the ids of cells whose synapses are shown, and how each was moved (µm) and turned from where
+/// the circuit places it.
+pub type ShownCells = HashMap<String, HashMap<u64, DAffine3>>;
 
 impl EdgeSynapses {
     /// Reads places and both cells of each synapse, and a number of each. Needs 48 bytes for each.
@@ -152,7 +152,7 @@ pub fn synapse_markers(
                 continue;
             };
             markers.push(Marker {
-                position: position + *moved,
+                position: moved.transform_point3(position),
                 color_key: category(table),
             });
             rows.push(MarkerRow { table, row });
@@ -200,7 +200,7 @@ fn where_placed(circuit: &Circuit, nodes: &[NodeRef]) -> ShownCells {
             shown.insert(population.name.clone(), HashMap::new());
         }
         let ids = shown.get_mut(&population.name);
-        ids.map(|ids| ids.insert(id, DVec3::ZERO));
+        ids.map(|ids| ids.insert(id, DAffine3::IDENTITY));
     }
     shown
 }

@@ -30,7 +30,7 @@ use table::Target;
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
     /// Morphology files, folders (searched recursively) or globs, - for standard input; circuits (a
-    /// SONATA configuration or the folder of one, a scene)
+    /// SONATA configuration or the folder of one, a network of Snudda, a scene)
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// Format of standard input (-), where its content does not tell: swc, asc, h5 or nml

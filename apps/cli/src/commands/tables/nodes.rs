@@ -19,7 +19,7 @@ use crate::report::{Failure, Reporter, usage};
   neurotess nodes circuit/ --csv nodes.csv
   neurotess nodes circuit/ --node-set L5 --columns layer,mtype --csv -")]
 pub(crate) struct NodesArgs {
-    /// A circuit: SONATA, a scene of nsol or one of your own
+    /// A circuit: SONATA, a network of Snudda, a scene of nsol or one of your own
     #[arg(value_name = "CIRCUIT")]
     circuit: PathBuf,
     #[command(flatten)]

@@ -2,6 +2,9 @@
 
 use std::path::PathBuf;
 
+use glam::DVec3;
+use neurotess::render::Placement;
+
 use crate::model::document::{
     Detail, Dimension, Document, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, SourceId,
     TracePlace,
@@ -29,6 +32,10 @@ pub enum Edit {
     SetHidden(usize, bool),
     /// Removes the selected neurons from the list.
     Remove,
+    /// Moves and turns neurons: their indices, and where they are then.
+    Place(Vec<(usize, Placement)>),
+    /// Copies the selected neurons, moved by this way (µm); the copies are selected.
+    Duplicate(DVec3),
     /// Changes how somata are generated.
     SetSoma(Vec<SourceId>, SomaEdit),
     /// Places the first ring of a neurite, or leaves its position to the generator.
@@ -89,6 +96,8 @@ impl Edit {
             Self::Isolate => "Isolate",
             Self::ShowAll | Self::SetHidden(_, false) => "Show",
             Self::Remove => "Remove",
+            Self::Place(_) => "Move or turn",
+            Self::Duplicate(_) => "Duplicate",
             Self::SetSoma(..) => "Soma",
             Self::SetRing(..) | Self::ResetRings(_) => "First ring",
             Self::SetLook(_) => "Look",
@@ -116,7 +125,8 @@ impl Edit {
     pub fn joins(&self) -> bool {
         matches!(
             self,
-            Self::SetSoma(..)
+            Self::Place(_)
+                | Self::SetSoma(..)
                 | Self::SetRing(..)
                 | Self::SetLook(_)
                 | Self::SetDetail(_)
@@ -162,6 +172,8 @@ impl Edit {
                 false => (n.hidden, n.selected),
             }),
             Self::Remove => document.remove_selected(),
+            Self::Place(places) => neurons.place(&places),
+            Self::Duplicate(way) => document.duplicate_selected(way),
             Self::SetSoma(sources, edit) => {
                 for source in sources {
                     // Each cell keeps its own rings.

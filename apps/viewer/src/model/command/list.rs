@@ -115,14 +115,42 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 item("Select all", Some((CTRL, Key::A)), Edit::SelectAll.into()),
                 item(
                     "Select none",
-                    // While measuring, Escape leaves that.
-                    (!now.measuring).then_some((PLAIN, Key::Escape)),
+                    // While measuring or presenting, Escape leaves that.
+                    (!now.measuring && !now.presenting).then_some((PLAIN, Key::Escape)),
                     Edit::SelectNone.into(),
                 ),
                 item(
                     "Invert the selection",
                     Some((CTRL, Key::I)),
                     Edit::SelectOthers.into(),
+                ),
+                item(
+                    choose(
+                        now.lasso,
+                        "Select with a lasso (Ctrl + drag, freehand)",
+                        "Select with a rectangle (Ctrl + drag, box)",
+                    ),
+                    Some((PLAIN, Key::L)),
+                    Command::SetLasso(!now.lasso),
+                ),
+                item(
+                    choose(
+                        now.placing,
+                        "Move and turn selected (handles, gizmo, translate, rotate)",
+                        "Stop moving and turning (handles, gizmo)",
+                    ),
+                    Some((PLAIN, Key::P)),
+                    Command::SetPlacing(!now.placing),
+                ),
+                item(
+                    "Duplicate selected (copy of a cell)",
+                    Some((CTRL, Key::D)),
+                    Command::Duplicate,
+                ),
+                item(
+                    "Put selected back where they were traced",
+                    None,
+                    Command::PutBack,
                 ),
                 item(
                     "Remove selected from the list",
@@ -151,7 +179,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 ),
             ]
             .into_iter()
-            .chain(now.measuring.then(|| {
+            .chain((now.measuring && !now.presenting).then(|| {
                 item(
                     "Forget the first place, or stop measuring",
                     Some((PLAIN, Key::Escape)),
@@ -230,6 +258,33 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     ),
                     Some((CTRL, Key::F)),
                     Command::SetFrozen(!now.frozen),
+                ),
+                item(
+                    choose(
+                        now.split,
+                        "Two views side by side (split)",
+                        "One view (unsplit)",
+                    ),
+                    Some((PLAIN, Key::B)),
+                    Command::SetSplit(!now.split),
+                ),
+                item(
+                    choose(
+                        now.linked,
+                        "Link the two views: they move together",
+                        "Unlink the two views",
+                    ),
+                    Some((CTRL, Key::B)),
+                    Command::SetLinked(!now.linked),
+                ),
+                item(
+                    choose(
+                        now.turning,
+                        "Turntable: turn the scene slowly (spin)",
+                        "Stop the turntable (spin)",
+                    ),
+                    Some((PLAIN, Key::R)),
+                    Command::SetTurning(!now.turning),
                 ),
                 item(
                     choose(
@@ -324,12 +379,35 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::SetCaches(!now.caches),
                 ),
                 item(
+                    choose(now.full_screen, "Full screen", "Leave the full screen"),
+                    Some((PLAIN, Key::F11)),
+                    Command::SetFullScreen(!now.full_screen),
+                ),
+                item(
+                    choose(
+                        now.presenting,
+                        "Presentation: full screen, no panels, turntable",
+                        "End the presentation (turntable)",
+                    ),
+                    Some((PLAIN, Key::F5)),
+                    Command::SetPresenting(!now.presenting),
+                ),
+                item(
                     "Show or hide the panels",
                     Some((PLAIN, Key::Tab)),
                     Command::TogglePanels,
                 ),
                 item("What went wrong", None, Command::ToggleProblems),
-            ],
+            ]
+            .into_iter()
+            .chain(now.presenting.then(|| {
+                item(
+                    "Leave the presentation",
+                    Some((PLAIN, Key::Escape)),
+                    Command::SetPresenting(false),
+                )
+            }))
+            .collect(),
         ),
         (
             "Help",
@@ -392,6 +470,20 @@ pub struct Toggles {
     pub traces: bool,
     /// Whether places where surfaces cross themselves are listed.
     pub crossings: bool,
+    /// Whether a drag that selects draws a lasso.
+    pub lasso: bool,
+    /// Whether handles move and turn the selected cells.
+    pub placing: bool,
+    /// Whether the window presents.
+    pub presenting: bool,
+    /// Whether there are two views.
+    pub split: bool,
+    /// Whether they move together.
+    pub linked: bool,
+    /// Whether the scene turns.
+    pub turning: bool,
+    /// Whether it fills the screen.
+    pub full_screen: bool,
 }
 
 #[cfg(test)]
@@ -400,9 +492,11 @@ mod tests {
 
     #[test]
     fn no_keys_are_used_twice() {
-        for measuring in [false, true] {
+        for (measuring, presenting) in [(false, false), (true, false), (false, true), (true, true)]
+        {
             let menus = listed(&Toggles {
                 measuring,
+                presenting,
                 ..Toggles::default()
             });
             let keys: Vec<_> = menus

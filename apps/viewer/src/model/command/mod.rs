@@ -146,6 +146,26 @@ pub enum Command {
     GoSaved(usize),
     /// Sets whether y points down.
     SetYDown(bool),
+    /// Sets whether Ctrl and a drag draw a lasso instead of a rectangle.
+    SetLasso(bool),
+    /// Shows or hides the handles that move and turn the selected cells.
+    SetPlacing(bool),
+    /// Ends the drag of such a handle: the next one is another edit.
+    EndPlacing,
+    /// Copies the selected cells, beside them.
+    Duplicate,
+    /// Puts the selected cells back where they were traced, or where their circuit places them.
+    PutBack,
+    /// Begins or ends a presentation: the whole screen, no panels, and a turntable.
+    SetPresenting(bool),
+    /// Shows two views side by side, or one.
+    SetSplit(bool),
+    /// Sets whether the two views move together.
+    SetLinked(bool),
+    /// Turns the scene slowly, or lets it rest.
+    SetTurning(bool),
+    /// Fills the screen, or leaves it.
+    SetFullScreen(bool),
     /// Keeps the levels of the current view while the camera moves.
     SetFrozen(bool),
 
@@ -216,6 +236,13 @@ impl fmt::Debug for Command {
             Self::SetOrthographic(value) => with("SetOrthographic", value),
             Self::GoSaved(value) => with("GoSaved", value),
             Self::SetYDown(value) => with("SetYDown", value),
+            Self::SetLasso(value) => with("SetLasso", value),
+            Self::SetPlacing(value) => with("SetPlacing", value),
+            Self::SetPresenting(value) => with("SetPresenting", value),
+            Self::SetSplit(value) => with("SetSplit", value),
+            Self::SetLinked(value) => with("SetLinked", value),
+            Self::SetTurning(value) => with("SetTurning", value),
+            Self::SetFullScreen(value) => with("SetFullScreen", value),
             Self::SetFrozen(value) => with("SetFrozen", value),
             Self::SetMeasuring(value) => with("SetMeasuring", value),
             Self::MeasureFrom(value) => with("MeasureFrom", value),
@@ -227,6 +254,9 @@ impl fmt::Debug for Command {
             Self::SavePicture(value) => with("SavePicture", value),
             Self::DropKeyView(value) => with("DropKeyView", value),
             Self::SaveFilm(value) => with("SaveFilm", value),
+            Self::Duplicate => f.write_str("Duplicate"),
+            Self::EndPlacing => f.write_str("EndPlacing"),
+            Self::PutBack => f.write_str("PutBack"),
             Self::Reload => f.write_str("Reload"),
             Self::Cancel => f.write_str("Cancel"),
             Self::Quit => f.write_str("Quit"),

@@ -66,8 +66,10 @@ pub struct Neuron {
     pub node: Option<CircuitNode>,
     /// Its name in the list.
     pub name: String,
-    /// Where it was traced, or where its circuit places it.
+    /// Where it is.
     pub placement: Placement,
+    /// Where it was traced, or where its circuit places it: there it is until it is moved.
+    pub traced: Placement,
     /// Whether it is hidden.
     pub hidden: bool,
     /// Whether it is selected.
@@ -82,6 +84,7 @@ impl Neuron {
             node: None,
             name,
             placement: Placement::default(),
+            traced: Placement::default(),
             hidden: false,
             selected: false,
         }
@@ -115,6 +118,30 @@ impl Document {
             (None, _) => {}
         }
         self.report = report;
+    }
+
+    /// Adds a copy of each selected neuron, moved by `way` (µm), and selects the copies alone. A copy is no node of
+    /// a circuit: its synapses and the values of a report are those of the one node.
+    pub(crate) fn duplicate_selected(&mut self, way: DVec3) {
+        let selected = self.neurons.iter().filter(|neuron| neuron.selected);
+        let copy = |neuron: &Neuron| Neuron {
+            node: None,
+            name: format!("{} (copy)", neuron.name),
+            placement: Placement {
+                translation: neuron.placement.translation + way,
+                ..neuron.placement
+            },
+            traced: Placement::default(),
+            ..neuron.clone()
+        };
+        let copies: Vec<Neuron> = selected.map(copy).collect();
+        if copies.is_empty() {
+            return;
+        }
+        self.neurons.set_states(|_, n| (n.hidden, false));
+        for copy in copies {
+            self.neurons.push(copy);
+        }
     }
 
     /// Removes the selected neurons, and the dimensions and traces that refer to them.

@@ -2,6 +2,8 @@
 
 use std::ops::Deref;
 
+use neurotess::render::Placement;
+
 use super::Neuron;
 use crate::model::ids::SourceId;
 use crate::model::revision::Revision;
@@ -114,6 +116,20 @@ impl Neurons {
         }
     }
 
+    /// Moves and turns neurons, by their indices.
+    pub fn place(&mut self, places: &[(usize, Placement)]) {
+        let mut moved = false;
+        for &(index, placement) in places {
+            if let Some(neuron) = self.list.get_mut(index) {
+                moved |= neuron.placement != placement;
+                neuron.placement = placement;
+            }
+        }
+        if moved {
+            self.revisions.members = Revision::next();
+        }
+    }
+
     /// Hides and selects neurons: `state` returns for each whether it is hidden and whether it is
     /// selected.
     pub fn set_states(&mut self, mut state: impl FnMut(usize, &Neuron) -> (bool, bool)) {
@@ -196,6 +212,16 @@ mod tests {
             (3, 0, 0)
         );
         assert_ne!(neurons.revisions().members, now.members);
+        let before = neurons.revisions();
+        let place = Placement {
+            scale: 2.0,
+            ..Placement::default()
+        };
+        neurons.place(&[(1, Placement::default()), (9, place)]);
+        assert_eq!(neurons.revisions(), before, "it is there already");
+        neurons.place(&[(1, place)]);
+        assert_ne!(neurons.revisions().members, before.members);
+        assert_eq!(neurons.revisions().hidden, before.hidden);
         neurons.push(neuron(7));
         assert_eq!(neurons.sources(), [SourceId(0), SourceId(1)]);
     }

@@ -26,7 +26,10 @@ impl From<PlacementEntry> for Placement {
     fn from(p: PlacementEntry) -> Self {
         let rotation = DQuat::from_array(p.rotation);
         Self {
-            rotation: if rotation.is_finite() && rotation.length() > 1e-6 {
+            // One that is a rotation already comes back to the last bit.
+            rotation: if (rotation.length_squared() - 1.0).abs() < 1e-12 {
+                rotation
+            } else if rotation.is_finite() && rotation.length() > 1e-6 {
                 rotation.normalize()
             } else {
                 DQuat::IDENTITY

@@ -12,10 +12,11 @@ use thiserror::Error;
 
 use crate::model::circuits::{self, Circuits};
 use crate::model::document::{
-    Detail, Dimension, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, Trace,
+    Detail, Dimension, Look, MarkerOptions, MeshEntry, Neuron, SavedView, SomaEdit, Trace,
 };
-use crate::model::ids::{CircuitId, CircuitNode};
+use crate::model::ids::{CircuitId, CircuitNode, SourceId};
 use crate::model::playback::Pace;
+use crate::model::split::Split;
 use crate::model::state::State;
 use crate::model::view::View;
 
@@ -58,6 +59,9 @@ pub struct Session {
     /// The camera.
     #[serde(default)]
     pub view: View,
+    /// The other one of two views side by side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub split: Option<Split>,
     /// Colors and light.
     #[serde(default)]
     pub look: Look,
@@ -157,6 +161,7 @@ impl Session {
             grid: document.grid,
             y_down: state.settings.y_down,
             view: state.view,
+            split: state.split.map(Split::kept),
             look: document.look.clone(),
             detail: document.detail,
             key_view: state.key_views.clone(),
@@ -264,8 +269,24 @@ impl Session {
         traces.filter_map(|t| t.renumbered(index)).collect()
     }
 
+    /// The neuron of an entry, whose tracing is open as `source`.
+    pub(crate) fn neuron_of(&self, entry: &NeuronEntry, source: SourceId, state: &State) -> Neuron {
+        let node = self.node_of(entry, &state.circuits);
+        let traced = node.and_then(|of| {
+            let circuit = state.circuits.get(of.circuit)?;
+            let instances = circuit.instances(&[of.node], None);
+            let morphology = &state.sources.get(source)?.morphology;
+            Some(circuits::placement(instances.first()?, morphology))
+        });
+        Neuron {
+            node,
+            traced: traced.unwrap_or_default(),
+            ..entry.neuron(source)
+        }
+    }
+
     /// The node of a neuron, if its circuit is open.
-    pub(crate) fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<CircuitNode> {
+    fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<CircuitNode> {
         let said = entry.node.as_ref()?;
         let file = self.circuit.get(said.circuit)?.path.as_path();
         let mut ids = open.iter().map(|(id, _)| id);
@@ -315,7 +336,7 @@ mod tests {
     use super::*;
     use crate::io::load;
     use crate::model::command::{Command, Edit};
-    use crate::model::document::{ColorBy, Cut, Lighting, Neuron};
+    use crate::model::document::{ColorBy, Cut, Lighting};
     use crate::model::settings::Settings;
     use crate::model::sources;
 
@@ -354,6 +375,7 @@ mod tests {
         state.run(Edit::SetLook(Box::new(look)));
         state.run(Command::AddKeyView);
         state.view.orthographic = true;
+        state.run(Command::SetLinked(true));
         state.run(Command::SaveView);
         state.run(Edit::RenameView(0, "of the \"tuft\"".into()));
         state

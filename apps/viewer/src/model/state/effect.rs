@@ -43,6 +43,8 @@ pub enum Effect {
     Go(View),
     /// Show the picture without perspective, or with it, also at the end of a flight.
     Project(bool),
+    /// Fill the screen, or leave it.
+    FullScreen(bool),
     /// Put a text on the clipboard.
     Copy(String),
     /// Quit.

@@ -9,7 +9,9 @@ mod effect;
 mod markers;
 mod meshes;
 mod picked;
+mod placing;
 mod plots;
+mod split;
 mod traces;
 mod views;
 
@@ -25,11 +27,13 @@ use crate::model::history::History;
 use crate::model::markers::{MarkerData, MarkerRef};
 use crate::model::measuring::Measuring;
 use crate::model::meshes::MeshData;
+use crate::model::placing::Placing;
 use crate::model::playback::Playback;
 use crate::model::plots::MeasurePlot;
 use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources};
+use crate::model::split::Split;
 use crate::model::traces::TraceData;
 use crate::model::view::View;
 
@@ -76,6 +80,8 @@ pub struct State {
     pub view: View,
     /// The side from which the view shows everything, until it is moved by hand.
     pub fitted: Option<Side>,
+    /// The other one of two views side by side.
+    pub split: Option<Split>,
     /// Views of a film.
     pub key_views: Vec<View>,
     /// The view that levels are frozen for.
@@ -92,6 +98,14 @@ pub struct State {
     pub picked_marker: Option<MarkerRef>,
     /// The tool that measures, while it is on.
     pub measuring: Option<Measuring>,
+    /// The handles that move and turn the selected cells, while they show.
+    pub placing: Option<Placing>,
+    /// Whether the window presents: the whole screen, and no panels.
+    pub presenting: bool,
+    /// Whether the scene turns slowly.
+    pub turning: bool,
+    /// Whether the window was asked to fill the screen.
+    pub full_screen: bool,
     /// The dimension whose line in the list is under the cursor.
     pub pointed_dimension: Option<usize>,
     /// Problems, in the order in which they occurred.
@@ -147,6 +161,7 @@ impl State {
             crossings: CrossingList::default(),
             view: View::default(),
             fitted: None,
+            split: None,
             key_views: Vec::new(),
             frozen: None,
             hovered: None,
@@ -155,6 +170,10 @@ impl State {
             picked: None,
             picked_marker: None,
             measuring: None,
+            placing: None,
+            presenting: false,
+            turning: false,
+            full_screen: false,
             pointed_dimension: None,
             problems: Vec::new(),
             status: String::new(),
@@ -189,6 +208,13 @@ impl State {
             synapses: self.document.markers.synapses,
             traces: self.traces.open,
             crossings: self.crossings.open,
+            lasso: self.settings.lasso,
+            placing: self.placing.is_some(),
+            split: self.split.is_some(),
+            linked: self.split.is_some_and(|split| split.linked),
+            presenting: self.presenting,
+            turning: self.turning,
+            full_screen: self.full_screen,
         }
     }
 
@@ -243,6 +269,24 @@ impl State {
                 self.settings.y_down = y_down;
                 self.run(Command::Home);
             }
+            Command::SetLasso(lasso) => {
+                self.settings.lasso = lasso;
+                let area = if lasso { "lasso" } else { "rectangle" };
+                self.status = format!("Ctrl and a drag select with a {area}");
+            }
+            Command::SetPlacing(on) => self.set_placing(on),
+            Command::EndPlacing => {
+                if let Some(placing) = &mut self.placing {
+                    placing.drag = None;
+                }
+            }
+            Command::Duplicate => self.duplicate(),
+            Command::PutBack => self.put_back(),
+            Command::SetPresenting(on) => self.present(on),
+            Command::SetSplit(on) => self.set_split(on),
+            Command::SetLinked(on) => self.set_linked(on),
+            Command::SetTurning(on) => self.turning = on,
+            Command::SetFullScreen(on) => self.fill_screen(on),
             Command::ShowTraces(open) => self.traces.open = open,
             Command::PlotMeasure(form) => self.measures.form = form,
             Command::ListCrossings(open) => self.list_crossings(open),

@@ -204,6 +204,21 @@ impl Stage {
         })
     }
 
+    /// Another stage on the same device.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub(crate) fn another(&self) -> Result<Self, DeviceError> {
+        Self::new(self.render.clone())
+    }
+
+    /// Gives its picture back to egui, which must not show it any more.
+    pub(crate) fn free(mut self) {
+        if let Some((id, ..)) = self.texture.take() {
+            self.render.renderer.write().free_texture(&id);
+        }
+    }
+
     /// The device.
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu

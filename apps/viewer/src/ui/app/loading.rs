@@ -92,6 +92,7 @@ impl Viewer {
         *state.document.meshes = session.mesh.clone();
         state.playback.pace = session.playback;
         (state.view, state.fitted) = (session.view, None);
+        state.split = session.split;
         state.key_views = session.key_view.clone();
         state.document.saved_views = session.saved_view.clone();
         state.session = Some(file.to_path_buf());
@@ -206,11 +207,7 @@ impl Viewer {
                 for entry in &session.neuron {
                     let id = loading.ids.get(entry.file).copied().flatten();
                     opened.push(id.map(|id| {
-                        let node = session.node_of(entry, &self.state.circuits);
-                        self.open(Neuron {
-                            node,
-                            ..entry.neuron(id)
-                        });
+                        self.open(session.neuron_of(entry, id, &self.state));
                         self.state.document.neurons.len() - 1
                     }));
                 }
@@ -240,6 +237,7 @@ impl Viewer {
                         });
                         self.open(Neuron {
                             placement,
+                            traced: placement,
                             node,
                             ..Neuron::new(id, name)
                         });

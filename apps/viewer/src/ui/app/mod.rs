@@ -37,6 +37,8 @@ pub struct Viewer {
     pub state: State,
     /// The stage, which draws the picture.
     pub stage: Stage,
+    /// That of the right one of two views.
+    second: Option<Stage>,
     worker: Worker,
     plots: PlotWork,
     crossing_search: Single<CrossingKey, Vec<Crossing>>,
@@ -51,6 +53,8 @@ pub struct Viewer {
     quits: bool,
     /// A text for the clipboard.
     copied: Option<String>,
+    /// Whether the window is to fill the screen, or to leave it.
+    full_screen: Option<bool>,
     theme: Option<(bool, u32)>,
     remembered: Settings,
     /// How the somata of files that are opened first are generated.
@@ -89,6 +93,7 @@ impl Viewer {
         Ok(Self {
             state,
             stage,
+            second: None,
             plots: PlotWork::new(&wake),
             crossing_search: Single::new(&wake),
             worker: Worker::new(move || wake()),
@@ -99,6 +104,7 @@ impl Viewer {
             fatal: None,
             quits: false,
             copied: None,
+            full_screen: None,
             theme: None,
             remembered: settings,
             soma: SomaEdit::default(),
@@ -143,7 +149,12 @@ impl Viewer {
 
     /// Whether no task is running and everything is drawn.
     pub fn is_settled(&self) -> bool {
-        let drawn = self.stage.is_settled() || self.state.document.neurons.is_empty();
+        let mut stages = [Some(&self.stage), self.second.as_ref()]
+            .into_iter()
+            .flatten();
+        let empty = self.state.document.neurons.is_empty();
+        let opened = self.state.split.is_some() == self.second.is_some();
+        let drawn = empty || opened && stages.all(Stage::is_settled);
         let reads = self.worker.is_busy() || self.plots.is_busy();
         let busy = reads || self.crossing_search.is_busy();
         !busy && !self.motion.is_flying() && self.loading.is_none() && drawn
@@ -162,6 +173,8 @@ impl Viewer {
             ctx.request_repaint();
         }
         self.tick();
+        self.turn(&ctx);
+        self.split();
         self.show_panels(ui);
         for command in std::mem::take(&mut self.state.requests) {
             self.run(command);
@@ -180,6 +193,22 @@ impl Viewer {
         }
     }
 
+    /// Opens a stage for the second view, or closes it.
+    fn split(&mut self) {
+        match (self.state.split, self.second.take()) {
+            (Some(_), Some(stage)) => self.second = Some(stage),
+            (Some(_), None) => match self.stage.another() {
+                Ok(stage) => self.second = Some(stage),
+                Err(e) => {
+                    self.state.split = None;
+                    self.state.problem("two views", e.to_string());
+                }
+            },
+            (None, Some(stage)) => stage.free(),
+            (None, None) => {}
+        }
+    }
+
     /// Shows all panels; keeps an error that ends the program in `fatal`.
     fn show_panels(&mut self, ui: &mut egui::Ui) {
         let [reading, saving, marking] = self.worker.progress();
@@ -187,6 +216,7 @@ impl Viewer {
         let mut screen = Screen {
             state: &mut self.state,
             stage: &mut self.stage,
+            second: self.second.as_mut(),
             motion: &mut self.motion,
             files: &mut self.files,
             tasks: [reading, saving, marking, self.plots.progress(), searching],
@@ -234,6 +264,16 @@ impl Viewer {
         self.state.playback.advance(seconds);
     }
 
+    /// Turns the scene on the turntable, unless it is held by the mouse.
+    fn turn(&mut self, ctx: &egui::Context) {
+        let (held, time) = ctx.input(|i| (i.pointer.any_down(), i.stable_dt));
+        let turns = self.state.turning && !self.state.document.neurons.is_empty();
+        if turns && !held && !self.motion.is_flying() {
+            self.motion.turn(&mut self.state, f64::from(time));
+            ctx.request_repaint();
+        }
+    }
+
     fn effect(&mut self, effect: Effect) {
         match effect {
             Effect::Load(paths) => self.load(paths),
@@ -257,6 +297,7 @@ impl Viewer {
             }
             Effect::Quit => self.quits = true,
             Effect::Copy(text) => self.copied = Some(text),
+            Effect::FullScreen(on) => self.full_screen = Some(on),
             Effect::Save(request) => self.save(request),
             Effect::OpenPalette(path) => self.open_palette(&path),
             Effect::SavePalette(path) => self.save_palette(&path),
@@ -271,6 +312,9 @@ impl Viewer {
         }
         if let Some(text) = self.copied.take() {
             ctx.copy_text(text);
+        }
+        if let Some(on) = self.full_screen.take() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(on));
         }
     }
 

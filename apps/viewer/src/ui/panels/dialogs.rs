@@ -104,7 +104,7 @@ const MOUSE: [(&str, &str); 9] = [
     ("click", "select; with Shift or Ctrl, select several"),
     (
         "Ctrl + left drag",
-        "select somata in a rectangle; with Shift, more",
+        "select somata in a rectangle or a lasso (L); with Shift, more",
     ),
     ("double click", "zoom to what is under the cursor"),
     ("W A S D   Q E", "fly; down, up; Shift: faster"),

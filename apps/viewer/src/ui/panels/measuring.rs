@@ -138,7 +138,7 @@ fn hint(tool: &Measuring, rect: Rect, ui: &Ui) {
              Esc goes back."
         }
     };
-    Area::new(Id::unique("measuring hint"))
+    Area::new(Id::unique("measuring hint").with(rect.left() as i32))
         .order(Order::Middle)
         .interactable(false)
         .fixed_pos(rect.center_bottom() - vec2(0.0, 14.0))

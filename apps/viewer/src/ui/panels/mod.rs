@@ -1,5 +1,6 @@
 //! Panels: plain functions of the state that request commands.
 
+mod area;
 mod cell_tip;
 mod cells;
 mod color_map;
@@ -9,6 +10,7 @@ mod dialogs;
 mod dimension_list;
 mod dimensions;
 mod empty;
+mod gizmo;
 mod inspect;
 mod look;
 mod markers;
@@ -20,7 +22,7 @@ mod meshes;
 mod number;
 mod overlay;
 mod own_colors;
-mod rectangle;
+mod panes;
 mod rings;
 mod save;
 mod saved_views;
@@ -31,9 +33,11 @@ mod tip;
 mod traces;
 mod viewport;
 
+use std::time::Duration;
+
 use eframe::egui::{
-    self, CentralPanel, Color32, CornerRadius, Frame, Margin, Panel, RichText, ScrollArea, Sense,
-    UiBuilder, Visuals,
+    self, Align2, CentralPanel, Color32, CornerRadius, CursorIcon, FontId, Frame, Margin, Panel,
+    RichText, ScrollArea, Sense, UiBuilder, Visuals, vec2,
 };
 use neurotess::render::DeviceError;
 
@@ -49,6 +53,8 @@ use crate::ui::motion::Motion;
 pub(crate) struct Screen<'a> {
     pub(crate) state: &'a mut State,
     pub(crate) stage: &'a mut Stage,
+    /// That of the right one of two views.
+    pub(crate) second: Option<&'a mut Stage>,
     pub(crate) motion: &'a mut Motion,
     /// The file dialog, while it is open.
     pub(crate) files: &'a mut Option<FilePanel>,
@@ -58,6 +64,8 @@ pub(crate) struct Screen<'a> {
     pub(crate) failed: Option<DeviceError>,
 }
 
+/// Seconds after the last movement of the mouse for which a presentation says how it ends.
+const HINT: f32 = 3.0;
 /// Usual height of the plot of traces.
 const TRACES: f32 = 230.0;
 
@@ -69,6 +77,14 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     screen.state.touched = None;
     screen.state.traces.pointed = None;
     screen.state.pointed_dimension = None;
+    if screen.state.presenting && !screen.state.document.neurons.is_empty() {
+        CentralPanel::no_frame().show(ui, |ui| {
+            panes::show(screen, (before, marker_before), ui);
+            presentation(ui);
+        });
+        dialogs::show(screen.state, screen.files, &ctx);
+        return;
+    }
     Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
     let progress = screen.stage.progress();
     Panel::bottom("status").show(ui, |ui| {
@@ -107,7 +123,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     }
     CentralPanel::no_frame().show(ui, |ui| {
         if any {
-            viewport::show(screen, (before, marker_before), ui);
+            panes::show(screen, (before, marker_before), ui);
         } else {
             let reads = screen.tasks[0].is_some();
             empty::show(screen.state, reads, ui);
@@ -115,6 +131,27 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     });
     dialogs::show(screen.state, screen.files, &ctx);
     dialogs::hover(&ctx);
+}
+
+/// Says how a presentation ends while the mouse moves; hides the cursor while it rests.
+fn presentation(ui: &egui::Ui) {
+    let rests = ui.input(|i| i.pointer.time_since_last_movement()) > HINT;
+    if rests {
+        ui.set_cursor_icon(CursorIcon::None);
+        return;
+    }
+    let rect = ui.max_rect();
+    let at = rect.center_bottom() - vec2(0.0, 24.0);
+    let font = FontId::proportional(14.0);
+    let text = "Esc ends the presentation, R stops the turntable".to_owned();
+    let line = ui.painter().layout_no_wrap(text, font, Color32::WHITE);
+    let place = Align2::CENTER_BOTTOM.anchor_size(at, line.size());
+    let dark = Color32::from_black_alpha(170);
+    ui.painter().rect_filled(place.expand(8.0), 6.0, dark);
+    ui.painter().galley(place.min, line, Color32::WHITE);
+    // Once more when the hint is to go.
+    ui.ctx()
+        .request_repaint_after(Duration::from_secs_f32(HINT));
 }
 
 /// Clips what is wider than its panel, since it would push the panel over the picture.
@@ -162,8 +199,8 @@ pub(crate) fn style(ctx: &egui::Context, dark: bool) {
         egui::Theme::Light
     });
     ctx.all_styles_mut(|style| {
-        style.spacing.item_spacing = egui::vec2(8.0, 5.0);
-        style.spacing.button_padding = egui::vec2(7.0, 3.0);
+        style.spacing.item_spacing = vec2(8.0, 5.0);
+        style.spacing.button_padding = vec2(7.0, 3.0);
         style.spacing.slider_width = 118.0;
         style.interaction.tooltip_delay = 0.4;
     });

@@ -7,7 +7,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::{
-    Screen, cell_tip, crossings, marks, measuring, overlay, plate, rectangle, tip, traces,
+    Screen, area, cell_tip, crossings, gizmo, marks, measuring, overlay, plate, tip, traces,
 };
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
@@ -24,25 +24,62 @@ const SPEED: f64 = 0.7;
 /// What the cursor was at in the frame before: a part of a neuron, or a marker.
 pub(super) type Before = (Option<Picked>, Option<MarkerRef>);
 
-/// Shows the picture.
-pub(super) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
-    let rect = ui.available_rect_before_wrap();
-    let response = ui.interact(rect, Id::unique("picture"), Sense::click_and_drag());
-    tip::set_picture(ui.ctx(), rect);
-    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
+/// One picture of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pane {
+    /// The only one.
+    Only,
+    /// The left one of two, and whether commands are for its view.
+    Left { commanded: bool },
+    /// The right one of two.
+    Right { commanded: bool },
+}
+
+impl Pane {
+    /// Whether commands are for its view.
+    fn is_commanded(self) -> bool {
+        match self {
+            Self::Only => true,
+            Self::Left { commanded } | Self::Right { commanded } => commanded,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Only | Self::Left { .. } => "Picture",
+            Self::Right { .. } => "Picture on the right",
+        }
+    }
+}
+
+/// Shows a picture.
+pub(super) fn show(screen: &mut Screen<'_>, before: Before, pane: Pane, rect: Rect, ui: &mut Ui) {
+    let response = ui.interact(rect, Id::unique(pane.name()), Sense::click_and_drag());
+    if !matches!(pane, Pane::Right { .. }) {
+        tip::set_picture(ui.ctx(), rect);
+    }
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, pane.name()));
     let points = ui.ctx().pixels_per_point();
     let size = [rect.width(), rect.height()].map(|n| (n * points).round().max(0.0) as u32);
     if size.contains(&0) {
         return;
     }
-    let window = ui.ctx().content_rect().size();
     screen.motion.reshape(
         screen.state,
         f64::from(size[0]) / f64::from(size[1]),
-        window,
+        pane.is_commanded(),
     );
-    steer(screen, &response, ui);
-    point(screen, before, &response, points);
+    // Of two pictures, the mouse is in one.
+    let held =
+        response.dragged() || response.drag_stopped() || response.is_pointer_button_down_on();
+    let mine = pane == Pane::Only || held || response.hovered() || response.clicked();
+    if mine {
+        steer(screen, &response, ui);
+        point(screen, before, &response, points);
+    }
+    if pane.is_commanded() && !ui.ctx().egui_wants_keyboard_input() {
+        fly(screen, upwards(screen.state), ui);
+    }
     let ctx = ui.ctx().clone();
     let texture = screen.picture(size, &ctx);
     let [r, g, b] = screen.state.document.look.background;
@@ -52,21 +89,22 @@ pub(super) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
-    over(screen, rect, ui);
-    rectangle::show(&response, &ui.painter().with_clip_rect(rect), ui);
+    over(screen, pane, rect, ui);
+    area::show(
+        screen.state,
+        &response,
+        &ui.painter().with_clip_rect(rect),
+        ui,
+    );
     response.context_menu(|ui| menu(screen.state, ui));
 }
 
-/// Moves the camera by mouse and keys.
+/// Moves the camera by mouse.
 fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     let view = screen.state.view;
     let height = f64::from(response.rect.height());
-    let upwards = if screen.state.settings.y_down {
-        DVec3::NEG_Y
-    } else {
-        DVec3::Y
-    };
-    let selects = rectangle::drag(screen.state, response, ui);
+    let upwards = upwards(screen.state);
+    let taken = area::drag(screen.state, response, ui) || gizmo::drag(screen.state, response, ui);
     let drag = response.drag_delta();
     let (dx, dy) = (f64::from(drag.x), f64::from(drag.y));
     let shift = ui.input(|i| i.modifiers.shift);
@@ -74,7 +112,7 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     let moves = response.dragged_by(PointerButton::Middle)
         || response.dragged_by(PointerButton::Secondary)
         || (left && shift);
-    if drag != egui::Vec2::ZERO && !selects {
+    if drag != egui::Vec2::ZERO && !taken {
         if moves {
             screen
                 .motion
@@ -88,8 +126,12 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
     if response.hovered() {
         zoom(screen, response, ui);
     }
-    if !ui.ctx().egui_wants_keyboard_input() {
-        fly(screen, upwards, ui);
+}
+
+fn upwards(state: &State) -> DVec3 {
+    match state.settings.y_down {
+        true => DVec3::NEG_Y,
+        false => DVec3::Y,
     }
 }
 
@@ -297,11 +339,19 @@ fn menu(state: &mut State, ui: &mut Ui) {
     } else {
         "Measure"
     };
+    let places = state.placing.is_some();
+    let place = if places {
+        "Stop moving and turning"
+    } else {
+        "Move and turn selected"
+    };
     for (title, command) in [
         (measure, Command::SetMeasuring(!measures)),
         ("Zoom to the selection", Command::Focus),
         ("Hide selected", Edit::Hide.into()),
         ("Isolate selected", Edit::Isolate.into()),
+        (place, Command::SetPlacing(!places)),
+        ("Duplicate selected", Command::Duplicate),
         ("Show all", Edit::ShowAll.into()),
         ("Everything, from the front", Command::Home),
         ("Keep this view for a film", Command::AddKeyView),
@@ -315,9 +365,9 @@ fn menu(state: &mut State, ui: &mut Ui) {
 }
 
 /// Draws legend, scale bar and axes.
-fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
+fn over(screen: &Screen<'_>, pane: Pane, rect: Rect, ui: &mut Ui) {
     let look = &screen.state.document.look;
-    if look.legend {
+    if look.legend && !matches!(pane, Pane::Right { .. }) {
         let told = screen.stage.legend().clone();
         overlay::legend(
             told.with_widths(look.least_width, look.radius_factor()),
@@ -336,6 +386,7 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     marks::rings(screen.state, rect, &painter);
     crossings::marks(screen.state, rect, &painter);
     traces::marks(screen.state, rect, &painter);
+    gizmo::show(screen.state, rect, &painter);
     measuring::show(screen.state, rect, ui);
     if screen.state.measuring.is_none() {
         cell_tip::show(screen.state, rect, ui);
@@ -344,7 +395,8 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
         marks::hovered(screen.state, rect, &painter);
     }
     if !screen.stage.is_settled() && screen.stage.content().sources.is_empty() {
-        Area::new(Id::unique("meshing"))
+        // Of two pictures, each has its own.
+        Area::new(Id::unique("meshing").with(rect.left() as i32))
             .fixed_pos(rect.center())
             .pivot(Align2::CENTER_CENTER)
             .show(ui.ctx(), |ui| {
