@@ -18,8 +18,8 @@ mod ui;
 
 pub use model::command::Command;
 pub use model::{
-    command, crossings, document, markers, measuring, playback, plots, save, session, settings,
-    sources, state, traces, view,
+    command, crossings, document, markers, measuring, partners, playback, plots, save, session,
+    settings, sources, state, traces, view,
 };
 pub use scene::headless::{SessionPicture, draw_session};
 pub use scene::stage::Stage;

@@ -7,7 +7,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::{
-    Screen, cell_tip, crossings, marks, measuring, overlay, plate, rectangle, tip, traces,
+    Screen, cell_tip, crossings, marks, measuring, overlay, partners, plate, rectangle, tip, traces,
 };
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
@@ -334,6 +334,7 @@ fn over(screen: &Screen<'_>, rect: Rect, ui: &mut Ui) {
     }
     let painter = ui.painter().with_clip_rect(rect);
     marks::rings(screen.state, rect, &painter);
+    partners::show(screen.state, rect, &painter);
     crossings::marks(screen.state, rect, &painter);
     traces::marks(screen.state, rect, &painter);
     measuring::show(screen.state, rect, ui);
