@@ -226,6 +226,25 @@ fn where_places_are_too_close_bases_move_on_and_then_are_left() {
 }
 
 #[test]
+fn bases_keep_away_from_forks_and_ends_however_many_places_are_there() {
+    let radius = 0.3;
+    let all = (0..400).map(|i| [0.1 * f64::from(i % 4), 70.0 + 0.1 * f64::from(i), 0.0]);
+    let places: Vec<[f64; 3]> = all.collect();
+    let (spiny, _) = at(&cell(radius), given(&places), 1);
+    let grown = spines(&spiny);
+    // The fork is at 106 µm.
+    let trunk = grown.iter().filter(|[base, _]| base[0].0.x == 0.0);
+    let last = trunk.map(|[base, _]| base[0].0.y).fold(0.0, f64::max);
+    assert!(last > 104.0 && last < 106.0 - 1.99 * radius, "{last}");
+    for (i, [a, _]) in grown.iter().enumerate() {
+        let near = grown[..i]
+            .iter()
+            .any(|[b, _]| b[0].0.distance(a[0].0) < 1.99 * radius);
+        assert!(!near, "{a:?}");
+    }
+}
+
+#[test]
 fn shares_of_sections_are_places_too() {
     let cell = cell(0.3);
     let id = |kind: i32| {

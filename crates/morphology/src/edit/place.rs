@@ -31,6 +31,12 @@ pub(super) fn scale(nodes: &Nodes, factors: DVec3) -> Result<Edits, EditError> {
 
 pub(super) fn place(nodes: &Nodes, placement: &DAffine3) -> Result<Edits, EditError> {
     let factor = positive("the scale", placement.matrix3.determinant().abs().cbrt())?;
+    // A rotation leaves radii as they are, to the last digit.
+    let factor = if (factor - 1.0).abs() < 1e-12 {
+        1.0
+    } else {
+        factor
+    };
     let mut edits = moved(nodes, |place| placement.transform_point3(place));
     for node in &mut edits.nodes {
         node.radius *= factor;

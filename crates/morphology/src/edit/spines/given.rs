@@ -135,11 +135,9 @@ fn grow_on(
 ) {
     let (mut least, end) = line.room();
     for &(wanted, place) in wanted {
-        let along = if wanted > end { end } else { wanted.max(least) };
-        // The end itself belongs to the next section, or to none.
-        let site = line.at(along.min(line.length() * (1.0 - 1e-9)));
-        let near = along >= least && (along - wanted).abs() <= SLIDE;
-        let Some(site) = site.filter(|_| near) else {
+        let along = wanted.min(end).max(least);
+        let there = along <= end && (along - wanted).abs() <= SLIDE;
+        let Some(site) = line.at(along).filter(|_| there) else {
             grown.left += 1;
             continue;
         };
