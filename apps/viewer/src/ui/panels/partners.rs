@@ -55,7 +55,7 @@ pub(super) fn figures(state: &State, ui: &mut Ui) {
         };
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            ui.label(RichText::new("━").color(color(path.role)).strong());
+            ui.label(RichText::new("•").color(color(path.role)).strong());
             ui.label(RichText::new(&neuron.name).strong());
             let length = measured(path.length, "µm");
             let mut text = format!("{role}: {length} along the {what} to the soma");
