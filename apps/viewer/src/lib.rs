@@ -18,8 +18,8 @@ mod ui;
 
 pub use model::command::Command;
 pub use model::{
-    command, crossings, document, markers, measuring, placing, playback, plots, save, session,
-    settings, sources, split, state, traces, view,
+    command, crossings, document, markers, measuring, partners, placing, playback, plots, save,
+    session, settings, sources, split, state, traces, view,
 };
 pub use scene::headless::{SessionPicture, draw_session};
 pub use scene::stage::Stage;

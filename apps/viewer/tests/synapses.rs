@@ -15,6 +15,7 @@ use neurotess::synth::circuit::EDGES;
 use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::MarkerOptions;
 use neurotess_viewer::markers::MarkerRef;
+use neurotess_viewer::partners::Role;
 use neurotess_viewer::save::PictureFile;
 use neurotess_viewer::{Command, draw_session};
 
@@ -237,6 +238,15 @@ fn a_click_tells_which_synapse_it_is() {
     let number = number.and_then(|(_, text)| text.parse::<f64>().ok());
     assert!(number.is_some_and(|n| n > 0.0), "{facts:?}");
     assert!(state(&mut window).status.starts_with("Synapse"));
+    // Paths of both cells to their somata.
+    let paths = state(&mut window).partner_paths();
+    let roles: Vec<Role> = paths.iter().map(|path| path.role).collect();
+    assert_eq!(roles, [Role::Postsynaptic, Role::Presynaptic]);
+    assert_eq!(
+        [Some(paths[0].neuron), Some(paths[1].neuron)],
+        facts.neurons
+    );
+    assert!(paths[0].gap < 0.5 && paths[0].length > 0.0, "{paths:?}");
     rest(&mut window);
     snapshot(&mut window, "synapse_picked");
     window.get_by_label("Select its cell").click();
@@ -257,6 +267,7 @@ fn a_click_tells_which_synapse_it_is() {
     // Switched off, it is forgotten.
     run(&mut window, Edit::ShowSynapses(false));
     assert_eq!(state(&mut window).picked_marker, None);
+    assert!(state(&mut window).partner_paths().is_empty());
     assert!(window.query_by_label("Select its cell").is_none());
 }
 

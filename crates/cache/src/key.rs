@@ -43,6 +43,7 @@ fn write_morphology(morphology: &Morphology, to: &mut ByteWriter) {
         sample_ids,
         sections,
         header: _,
+        spines: _,
     } = morphology;
     to.dvec3(*origin);
     to.number(somata.len() as u64);

@@ -1,6 +1,9 @@
 //! Connections: how many there are, and where their synapses sit where the file says so.
 //!
-//! Here are those of SONATA, `snudda.rs` has those of Snudda. Blue Brain's files have `afferent_center_{x,y,z}` (on the target's axis) and
+//! Here are those of SONATA; `snudda.rs` has those of Snudda. Where a file has no coordinates, it may have the
+//! section and the place along it.
+//!
+//! Blue Brain's files have `afferent_center_{x,y,z}` (on the target's axis) and
 //! `afferent_surface_{x,y,z}` (on its membrane); the Allen Institute's may have `pos_{x,y,z}`.
 
 mod snudda;
@@ -10,7 +13,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 use crate::hdf5::Store;
-use crate::{CircuitError, Fault};
+use crate::{CircuitError, Compartment, Fault};
 
 pub(crate) use snudda::of_network;
 
@@ -82,6 +85,13 @@ const EFFERENT: [[&str; 3]; 2] = [
     ],
 ];
 
+/// Columns of sections, and of shares of their length: of Blue Brain's files and of the Allen Institute's.
+const AFFERENT_SHARES: [[&str; 2]; 2] = [
+    ["afferent_section_id", "afferent_section_pos"],
+    ["sec_id", "sec_x"],
+];
+const EFFERENT_SHARES: [[&str; 2]; 1] = [["efferent_section_id", "efferent_section_pos"]];
+
 /// Counts the connections of a file.
 pub(crate) fn open(file: &Path, listed: Option<&[String]>) -> Result<Vec<Edges>, CircuitError> {
     let store = Store::open(file)?;
@@ -143,6 +153,33 @@ impl Edges {
             SynapseSide::Afferent => &AFFERENT,
             SynapseSide::Efferent => &EFFERENT,
         })
+    }
+
+    /// The section of each synapse on one side, and its place along it; empty if the file does not say.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn shares_on(&self, side: SynapseSide) -> Result<Vec<Compartment>, CircuitError> {
+        let store = Store::open(&self.file)?;
+        let group = self.group();
+        let columns: &[[&str; 2]] = match side {
+            SynapseSide::Afferent => &AFFERENT_SHARES,
+            SynapseSide::Efferent => &EFFERENT_SHARES,
+        };
+        let full =
+            |columns: &&[&str; 2]| columns.iter().all(|c| store.has(&format!("{group}/{c}")));
+        let Some([section, share]) = columns.iter().find(full) else {
+            return Ok(Vec::new());
+        };
+        let [section, share] = [section, share].map(|column| format!("{group}/{column}"));
+        let (sections, shares) = (store.naturals(&section)?, store.reals(&share)?);
+        self.check_rows(&store, &section, sections.len())?;
+        self.check_rows(&store, &share, shares.len())?;
+        let compartment = |(&section, &share): (&u64, &f64)| Compartment {
+            section,
+            along: share as f32,
+        };
+        Ok(sections.iter().zip(&shares).map(compartment).collect())
     }
 
     /// Names of the numbers that the file has of each synapse, such as `delay` or `conductance`.

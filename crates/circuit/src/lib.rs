@@ -57,6 +57,7 @@ mod edges;
 mod error;
 mod groups;
 mod hdf5;
+mod inputs;
 mod json;
 mod listed;
 mod manifest;
@@ -65,10 +66,12 @@ mod node_sets;
 mod nsol;
 mod open;
 mod placed;
+mod places;
 mod points;
 mod population;
 mod report;
 mod scene;
+mod sections;
 mod select;
 mod snudda;
 mod sonata;
@@ -84,13 +87,15 @@ pub use groups::{Groups, natural};
 pub use model::{Circuit, Instance};
 pub use node_sets::NodeSets;
 pub use open::is_circuit;
+pub use places::PlaceTable;
 pub use points::{PointTable, is_point_table};
 pub use population::{Attribute, NodeRef, Population};
 pub use report::{
-    Compartment, Location, RecordingFile, Report, ReportKind, ReportPopulation, SectionOrder,
-    SpikePopulation, Spikes, TimeAxis, is_recording,
+    RecordingFile, Report, ReportKind, ReportPopulation, SpikePopulation, Spikes, TimeAxis,
+    is_recording,
 };
 pub use scene::color;
+pub use sections::{Compartment, Location, SectionOrder};
 pub use select::Selection;
 
 pub use template::{Template, TemplateId, read_all, soma_center};

@@ -39,7 +39,7 @@ impl PointTable {
         Self::of_bytes(path, &bytes)
     }
 
-    fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, CircuitError> {
+    pub(crate) fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, CircuitError> {
         let file = path.display().to_string();
         let mut reader = table::reader(path, bytes);
         let headers = reader.headers().map_err(|e| table::broken(&file, &e))?;

@@ -33,11 +33,12 @@ mod format;
 pub mod h5;
 #[cfg(feature = "h5")]
 mod hdf5;
-#[cfg(any(feature = "asc", feature = "h5"))]
 mod losses;
 #[cfg(feature = "neuroml")]
 pub mod neuroml;
 mod number;
+#[cfg(any(feature = "asc", feature = "h5"))]
+mod outlines;
 mod packed;
 mod recognize;
 mod regular;

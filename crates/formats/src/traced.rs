@@ -34,9 +34,17 @@ pub(crate) struct Tracing {
     /// Outlines of somata, none of them empty.
     pub(crate) outlines: Vec<Vec<Sample>>,
     pub(crate) points: Vec<Traced>,
+    /// Where spines are that are not traced (µm).
+    pub(crate) spines: Vec<DVec3>,
     /// Comments to keep.
     pub(crate) header: Vec<String>,
 }
+
+/// What is told of spines that are not traced: code and message.
+pub(crate) const SPINES_LEFT_OUT: (&str, &str) = (
+    "spines_left_out",
+    "spines: left out of the tree, their places are kept",
+);
 
 impl Tracing {
     /// The morphology, its oddities told to `warnings`.
@@ -77,7 +85,11 @@ impl Tracing {
                 }
             })?;
         warnings.add_notes(built.notes, |node| lines[node as usize]);
-        Ok(built.morphology)
+        let mut morphology = built.morphology;
+        let origin = morphology.origin;
+        let spines = self.spines.iter().map(|&spine| (spine - origin).as_vec3());
+        morphology.spines = spines.filter(|spine| spine.is_finite()).collect();
+        Ok(morphology)
     }
 
     /// Appends the neurites' nodes without copies.

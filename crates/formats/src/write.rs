@@ -9,6 +9,7 @@ use crate::asc;
 use crate::format::Format;
 #[cfg(feature = "h5")]
 use crate::h5;
+use crate::losses::Losses;
 use crate::swc;
 use crate::warning::Warning;
 
@@ -26,7 +27,11 @@ pub fn write(
     writer: impl Write,
 ) -> io::Result<Vec<Warning>> {
     match format {
-        Format::Swc => swc::write(morphology, writer).map(|()| Vec::new()),
+        Format::Swc => swc::write(morphology, writer).map(|()| {
+            let mut losses = Losses::default();
+            losses.spines(morphology);
+            losses.into_warnings()
+        }),
         #[cfg(feature = "asc")]
         Format::Asc => asc::write(morphology, writer),
         #[cfg(feature = "h5")]

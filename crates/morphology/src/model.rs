@@ -25,6 +25,9 @@ pub struct Morphology {
     pub sections: Vec<Section>,
     /// Comment lines of the file's header, without the comment sign.
     pub header: Vec<String>,
+    /// Spines that the file tells of without tracing them (µm, relative to the origin): where each ends, or where it
+    /// is on its dendrite. They are no part of the tree until [`Edit::Spines`](crate::edit::Edit::Spines) grows them.
+    pub spines: Vec<Vec3>,
 }
 
 /// Center (µm, relative to the morphology's origin) and radius (µm) of a traced point.

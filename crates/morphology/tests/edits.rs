@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
-use neurotess_morphology::edit::{BeforeAfter, Edit, EditError, EditReport, apply};
+use neurotess_morphology::edit::{BeforeAfter, Edit, EditError, EditReport, SpinePlaces, apply};
 use neurotess_morphology::smoothing::SmoothingLength;
 use neurotess_morphology::{Attachment, Measures, Morphology, NeuriteKind, Node, SomaKind, shape};
 use proptest::prelude::*;
@@ -69,7 +69,7 @@ fn every_edit(morphology: &Morphology) -> Vec<Edit> {
         Edit::Resample { spacing: 30.0 },
         Edit::Simplify { tolerance: 20.0 },
         Edit::Spines {
-            density: 0.05,
+            places: SpinePlaces::Density(0.05),
             seed: 1,
         },
         Edit::Recenter,
@@ -459,7 +459,7 @@ fn what_cannot_be_done_is_an_error() {
         Edit::Resample { spacing: 1e-20 },
         Edit::Simplify { tolerance: -1.0 },
         Edit::Spines {
-            density: 1e9,
+            places: SpinePlaces::Density(1e9),
             seed: 1,
         },
         Edit::Smooth(SmoothingLength::Length(0.0)),

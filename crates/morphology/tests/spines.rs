@@ -1,7 +1,7 @@
 //! Spines are where they should be, and touch nothing.
 
 use glam::DVec3;
-use neurotess_morphology::edit::{self, Edit, EditReport, SPINE};
+use neurotess_morphology::edit::{self, Edit, EditReport, SPINE, SPINE_REACH, SpinePlaces};
 use neurotess_morphology::{Morphology, NeuriteKind, Node, SectionId};
 
 /// A soma, and on it a straight dendrite of 100 µm that forks, and an axon.
@@ -30,7 +30,11 @@ fn cell(radius: f64) -> Morphology {
 }
 
 fn grown(cell: &Morphology, density: f64, seed: u64) -> (Morphology, EditReport) {
-    let edited = edit::apply(cell, &[Edit::Spines { density, seed }]).expect("spines");
+    at(cell, SpinePlaces::Density(density), seed)
+}
+
+fn at(cell: &Morphology, places: SpinePlaces, seed: u64) -> (Morphology, EditReport) {
+    let edited = edit::apply(cell, &[Edit::Spines { places, seed }]).expect("spines");
     (edited.morphology, edited.reports[0].clone())
 }
 
@@ -155,4 +159,131 @@ fn equal_seeds_give_equal_spines_and_traced_samples_stay() {
     }
     let kinds = |m: &Morphology, id: u32| m.sections[SectionId(id).index()].kind;
     assert_eq!(kinds(&one, 0), NeuriteKind(3));
+}
+
+/// Places (µm) as a file's or synapses'.
+fn given(places: &[[f64; 3]]) -> SpinePlaces {
+    SpinePlaces::At(places.iter().map(|&place| DVec3::from(place)).collect())
+}
+
+#[test]
+fn a_spine_ends_at_its_place_or_leaves_the_membrane_there() {
+    // Beyond the membrane of the dendrite along y, on it, and on its axis.
+    let places = [[1.5, 20.0, 0.0], [0.0, 40.0, 0.3], [0.0, 60.0, 0.0]];
+    let (spiny, report) = at(&cell(0.3), given(&places), 4);
+    let spines = spines(&spiny);
+    assert_eq!((spines.len(), report.left), (3, 0));
+    for ([base, _], place) in spines.iter().zip(places) {
+        assert!((base[0].0.y - place[1]).abs() < 1e-4, "{base:?}");
+    }
+    let end = |spine: usize| {
+        let [base, twig] = &spines[spine];
+        let &(center, radius) = twig.last().expect("a head");
+        center + radius * (center - base[0].0).normalize_or_zero()
+    };
+    assert!(end(0).distance(DVec3::from(places[0])) < 1e-4, "{}", end(0));
+    let outwards = end(1) - spines[1][0][0].0;
+    assert!(outwards.normalize_or_zero().z > 0.999 && outwards.z > 0.55);
+    let towards = end(2) - DVec3::from(places[2]);
+    assert!(towards.y.abs() < 1e-4 && towards.length() > 0.55);
+    assert_eq!(spiny, at(&cell(0.3), given(&places), 4).0);
+    assert_ne!(spiny, at(&cell(0.3), given(&places), 5).0);
+}
+
+#[test]
+fn places_without_a_dendrite_are_left() {
+    let far = 0.3 + SPINE_REACH + 0.1;
+    let places = [
+        [0.0, 4.9, 1.0],   // the soma
+        [0.3, -50.0, 0.0], // the axon
+        [far, 50.0, 0.0],  // too far away
+        [0.0, f64::NAN, 0.0],
+    ];
+    let (spiny, report) = at(&cell(0.3), given(&places), 1);
+    assert_eq!((spines(&spiny).len(), report.left), (0, 4));
+    assert_eq!(report.changed, 0);
+    let near = [[far - 0.2, 50.0, 0.0]];
+    assert_eq!(spines(&at(&cell(0.3), given(&near), 1).0).len(), 1);
+}
+
+#[test]
+fn where_places_are_too_close_bases_move_on_and_then_are_left() {
+    let radius = 0.3;
+    let places = [[radius, 50.0, 0.0]; 12];
+    let (spiny, report) = at(&cell(radius), given(&places), 1);
+    let spines = spines(&spiny);
+    assert_eq!(spines.len() + report.left, 12);
+    assert!((3..6).contains(&spines.len()), "{}", spines.len());
+    for pair in spines.windows(2) {
+        let apart = pair[1][0][0].0.y - pair[0][0][0].0.y;
+        assert!(apart > 1.99 * radius, "{apart}");
+    }
+    assert!(
+        spines
+            .iter()
+            .all(|[base, _]| (49.99..52.01).contains(&base[0].0.y))
+    );
+}
+
+#[test]
+fn bases_keep_away_from_forks_and_ends_however_many_places_are_there() {
+    let radius = 0.3;
+    let all = (0..400).map(|i| [0.1 * f64::from(i % 4), 70.0 + 0.1 * f64::from(i), 0.0]);
+    let places: Vec<[f64; 3]> = all.collect();
+    let (spiny, _) = at(&cell(radius), given(&places), 1);
+    let grown = spines(&spiny);
+    // The fork is at 106 µm.
+    let trunk = grown.iter().filter(|[base, _]| base[0].0.x == 0.0);
+    let last = trunk.map(|[base, _]| base[0].0.y).fold(0.0, f64::max);
+    assert!(last > 104.0 && last < 106.0 - 1.99 * radius, "{last}");
+    for (i, [a, _]) in grown.iter().enumerate() {
+        let near = grown[..i]
+            .iter()
+            .any(|[b, _]| b[0].0.distance(a[0].0) < 1.99 * radius);
+        assert!(!near, "{a:?}");
+    }
+}
+
+#[test]
+fn shares_of_sections_are_places_too() {
+    let cell = cell(0.3);
+    let id = |kind: i32| {
+        let mut sections = cell.sections.iter();
+        let found = sections.position(|section| section.kind == NeuriteKind(kind));
+        SectionId(found.expect("a section") as u32)
+    };
+    let shares = vec![
+        (id(3), 0.25),
+        (id(2), 0.5),
+        (SectionId(99), 0.5),
+        (id(3), 1.5),
+    ];
+    let (spiny, report) = at(&cell, SpinePlaces::Along(shares), 1);
+    assert_eq!(report.left, 3);
+    let spines = spines(&spiny);
+    assert_eq!(spines.len(), 1);
+    assert!((spines[0][0][0].0.y - 31.0).abs() < 1e-4);
+}
+
+#[test]
+fn spines_that_a_file_tells_of_move_with_the_cell_and_grow_once() {
+    let mut told = cell(0.3);
+    told.spines = vec![
+        glam::Vec3::new(1.2, 30.0, 0.0),
+        glam::Vec3::new(0.0, 70.0, -1.0),
+    ];
+    let edits = [
+        Edit::Scale(DVec3::splat(2.0)),
+        Edit::Place(glam::DAffine3::from_translation(DVec3::X * 10.0)),
+        Edit::Mirror { axis: 0 },
+    ];
+    let moved = edit::apply(&told, &edits).expect("moved").morphology;
+    let expected = [[-12.4, 60.0, 0.0], [-10.0, 140.0, -2.0]].map(glam::Vec3::from);
+    for (spine, expected) in moved.spines.iter().zip(expected) {
+        assert!(spine.distance(expected) < 1e-4, "{spine}");
+    }
+    let (spiny, report) = at(&moved, SpinePlaces::File, 1);
+    assert_eq!((spines(&spiny).len(), report.left), (2, 0));
+    assert!(spiny.spines.is_empty());
+    assert_eq!(at(&spiny, SpinePlaces::File, 1).0, spiny, "none is left");
 }

@@ -7,6 +7,7 @@ mod mend;
 mod neurom;
 mod packed;
 mod page;
+mod spines;
 mod table;
 
 #[path = "../common/work.rs"]

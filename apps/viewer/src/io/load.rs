@@ -56,6 +56,7 @@ fn reason(file: &str, error: &formats::ReadError) -> String {
     rest.trim_start_matches([':', ' ']).to_owned()
 }
 
+/// The source of a tracing, still without the spines that `soma` asks for.
 fn source(
     file: &Path,
     name: String,
@@ -79,6 +80,7 @@ fn source(
     let made = generated.warnings.iter();
     warnings.extend(made.map(|w| Remark::new(w.code, w.to_string())));
     let (all, few_spheres) = spheres(&generated.mesh);
+    let morphology = Arc::new(morphology);
     Ok(Source {
         file: file.to_path_buf(),
         name,
@@ -87,7 +89,9 @@ fn source(
         spheres: all,
         few_spheres,
         thickest: thickest(&generated.mesh),
-        morphology: Arc::new(morphology),
+        morphology: Arc::clone(&morphology),
+        traced: morphology,
+        spines: None,
         generated: Arc::new(generated),
         proxy,
         soma,
@@ -97,7 +101,7 @@ fn source(
     })
 }
 
-fn section_facts(morphology: &Morphology) -> Vec<SectionFacts> {
+pub(crate) fn section_facts(morphology: &Morphology) -> Vec<SectionFacts> {
     let lengths = shape::section_lengths(morphology);
     let orders = shape::branch_orders(morphology);
     let paths = shape::path_lengths(morphology);

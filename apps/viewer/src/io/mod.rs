@@ -7,6 +7,7 @@ pub(crate) mod load;
 pub(crate) mod markers;
 pub(crate) mod meshes;
 pub(crate) mod paths;
+pub(crate) mod remesh;
 pub(crate) mod save;
 pub(crate) mod single;
 pub(crate) mod task;

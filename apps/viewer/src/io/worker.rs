@@ -6,23 +6,22 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, SystemTime};
 
 use neurotess::circuit::Circuit;
-use neurotess::generate::{Generated, generate_timed};
-use neurotess::morphology::Morphology;
 
 use crate::io::circuit_caches::CircuitCaches;
 use crate::io::find::{self, Found, OpenRequest};
 use crate::io::load;
 use crate::io::markers;
 use crate::io::meshes;
+use crate::io::remesh::{self, MeshRequest};
 use crate::io::task::{Progress, Task, caught};
 use crate::model::document::{SomaEdit, SourceId};
 use crate::model::ids::CircuitId;
 use crate::model::markers::{MarkerContent, MarkerSource};
 use crate::model::meshes::ReadMesh;
-use crate::model::sources::{Source, Stale};
+use crate::model::sources::{Meshed, Source, Stale};
 
 /// A result of background work.
 #[derive(Debug)]
@@ -37,8 +36,8 @@ pub(crate) enum Message {
     Cache(String),
     /// A file that was read again.
     Reloaded(SourceId, Box<Result<Source, String>>),
-    /// A cell that was meshed again with another soma.
-    Soma(SourceId, SomaEdit, Box<Result<Generated, String>>),
+    /// A cell that was meshed again with another soma or other spines.
+    Meshed(MeshRequest, Box<Result<Meshed, String>>),
     /// Synapses or points that were read.
     Markers(MarkerSource, Box<Result<MarkerContent, String>>),
     /// A mesh that was read.
@@ -63,7 +62,7 @@ pub(crate) struct Worker {
     loading: Option<Task<()>>,
     saving: Option<Task<String>>,
     reloading: Vec<(SourceId, Task<Source>)>,
-    remeshing: Option<(SourceId, SomaEdit, Task<Generated>)>,
+    remeshing: Option<(MeshRequest, Task<Meshed>)>,
     marking: Option<(MarkerSource, Task<MarkerContent>)>,
     reading_mesh: Option<(PathBuf, Task<ReadMesh>)>,
     watching: Option<Task<()>>,
@@ -114,11 +113,11 @@ impl Worker {
             }
             None => true,
         });
-        let remeshed = self.remeshing.as_ref().and_then(|(.., task)| task.take());
+        let remeshed = self.remeshing.as_ref().and_then(|(_, task)| task.take());
         if let Some(result) = remeshed
-            && let Some((id, edit, _)) = self.remeshing.take()
+            && let Some((request, _)) = self.remeshing.take()
         {
-            messages.push(Message::Soma(id, edit, Box::new(result)));
+            messages.push(Message::Meshed(request, Box::new(result)));
         }
         let read = self.marking.as_ref().and_then(|(_, task)| task.take());
         if let Some(result) = read
@@ -242,15 +241,13 @@ impl Worker {
         self.remeshing.is_some()
     }
 
-    /// Meshes a cell again, with another soma.
-    pub(crate) fn remesh(&mut self, id: SourceId, morphology: Arc<Morphology>, edit: SomaEdit) {
-        let options = edit.options();
+    /// Meshes a cell again, with another soma or other spines.
+    pub(crate) fn remesh(&mut self, request: MeshRequest) {
+        let of = request.clone();
         let task = self.start(Progress::new("meshing", "cells", 1), move |_| {
-            let clock = Instant::now();
-            let seconds = || clock.elapsed().as_secs_f64();
-            generate_timed(&morphology, &options, seconds).map_err(|e| e.to_string())
+            remesh::remesh(&of)
         });
-        self.remeshing = Some((id, edit, task));
+        self.remeshing = Some((request, task));
     }
 
     /// Whether synapses or points are being read.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::circuit::{PointTable, SynapseSide};
-use neurotess::coloring::{EdgeSynapses, MarkerRow};
+use neurotess::coloring::{EdgeSynapses, MarkerRow, SynapseFacts};
 use neurotess::render::BoundingSphere;
 
 use crate::model::ids::CircuitId;
@@ -163,6 +163,15 @@ impl MarkerData {
         let synapses = self.synapses.as_ref().and_then(|(_, r)| r.as_ref().err());
         let points = self.points.as_ref().and_then(|(_, r)| r.as_ref().err());
         [synapses, points].map(|why| why.map(String::as_str))
+    }
+
+    /// What is known of a synapse, and of which side its place is.
+    pub(crate) fn synapse(&self, marker: MarkerRef) -> Option<(SynapseFacts, SynapseSide)> {
+        let MarkerRef::Synapse(MarkerRow { table, row }) = marker else {
+            return None;
+        };
+        let of = self.synapses()?.get(table as usize)?;
+        Some((of.edges.facts(row)?, self.synapse_key()?.side))
     }
 
     /// What is known of a marker. `neuron`: the index of a cell's neuron, by circuit, population and id.

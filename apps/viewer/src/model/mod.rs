@@ -12,6 +12,7 @@ pub mod markers;
 pub mod measuring;
 pub(crate) mod meshes;
 pub(crate) mod numbers;
+pub mod partners;
 pub mod placing;
 pub mod playback;
 pub mod plots;

@@ -8,12 +8,13 @@ use std::time::SystemTime;
 use glam::DVec3;
 use neurotess::generate::Generated;
 use neurotess::mesh::{CoarseMesh, Role};
+use neurotess::morphology::edit::SPINE;
 use neurotess::morphology::{Measures, Morphology};
 use neurotess::render::bounds::{bounds, merged};
 use neurotess::render::{BoundingSphere, Proxy};
 use neurotess::synth::Kind;
 
-use crate::model::document::SomaEdit;
+use crate::model::document::{SomaEdit, SpineEdit};
 use crate::model::ids::SourceId;
 use crate::model::revision::Revision;
 
@@ -31,8 +32,12 @@ pub struct Source {
     pub file: PathBuf,
     /// Name in the window.
     pub name: String,
-    /// The tracing.
+    /// The tracing as it was read.
+    pub traced: Arc<Morphology>,
+    /// The tracing with its spines.
     pub morphology: Arc<Morphology>,
+    /// The spines that it has.
+    pub spines: Option<SpineEdit>,
     /// Its coarse mesh with the soma's figures.
     pub generated: Arc<Generated>,
     /// What exploration draws of the mesh, if it came with the mesh; all its color keys are 0.
@@ -118,6 +123,35 @@ pub struct SectionFacts {
     pub neurite: u32,
 }
 
+impl Source {
+    /// Number of spines that have grown on it.
+    pub fn spine_count(&self) -> usize {
+        let count = |morphology: &Morphology| {
+            let sections = morphology.sections.iter();
+            sections.filter(|section| section.kind == SPINE).count()
+        };
+        count(&self.morphology).saturating_sub(count(&self.traced))
+    }
+}
+
+/// A tracing that was meshed again.
+#[derive(Debug)]
+pub(crate) struct Meshed {
+    pub(crate) generated: Generated,
+    /// The tracing, if its spines are others now.
+    pub(crate) grown: Option<Grown>,
+}
+
+/// A tracing with its spines, or without.
+#[derive(Debug)]
+pub(crate) struct Grown {
+    pub(crate) morphology: Arc<Morphology>,
+    pub(crate) measures: Measures,
+    pub(crate) sections: Vec<SectionFacts>,
+    /// How many spines there was no room for.
+    pub(crate) left: usize,
+}
+
 /// All tracings that were opened.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
@@ -176,18 +210,28 @@ impl Sources {
         }
     }
 
-    /// Sets how a tracing's soma is generated; `generated`: the mesh with it, unless nothing is
-    /// left to draw.
-    pub(crate) fn set_soma(&mut self, id: SourceId, edit: SomaEdit, generated: Option<Generated>) {
+    /// Sets how a tracing is meshed; `meshed`: its mesh, unless nothing is left to draw.
+    pub(crate) fn set_meshed(
+        &mut self,
+        id: SourceId,
+        (soma, spines): (SomaEdit, Option<SpineEdit>),
+        meshed: Option<Meshed>,
+    ) {
         let Some(source) = self.list.get_mut(id.0 as usize) else {
             return;
         };
-        source.soma = edit;
-        if let Some(generated) = generated {
+        (source.soma, source.spines) = (soma, spines);
+        if let Some(meshed) = meshed {
+            let generated = meshed.generated;
             (source.spheres, source.few_spheres) = spheres(&generated.mesh);
             source.thickest = thickest(&generated.mesh);
             source.generated = Arc::new(generated);
             source.proxy = None;
+            if let Some(grown) = meshed.grown {
+                source.morphology = grown.morphology;
+                source.measures = Arc::new(grown.measures);
+                source.sections = Arc::new(grown.sections);
+            }
         }
         self.geometry = Revision::next();
     }

@@ -8,7 +8,9 @@ use neurotess::render::Side;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Edit, Tab};
-use neurotess_viewer::document::{Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId};
+use neurotess_viewer::document::{
+    Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId, SpineEdit,
+};
 use neurotess_viewer::state::CellPart;
 
 use crate::common::{Window, gpu, hit_at, run, settle, snapshot, state, viewer, with_samples};
@@ -117,6 +119,8 @@ fn every_edit_can_be_undone_and_done_again() {
         Edit::SetRing(SourceId(0), 1, Some(0.25)),
         Edit::SetRing(SourceId(0), 2, None),
         Edit::ResetRings(SourceId(0)),
+        Edit::GrowSpines(Some(SpineEdit::default())),
+        Edit::SetSpines(vec![SourceId(0)], Some(SpineEdit::default())),
         Edit::SetLook(Box::new(look)),
         Edit::SetDetail(detail),
         Edit::SetGrid(true),

@@ -194,6 +194,14 @@ class Circuit(DrawnCircuit):
         p, row = self._row(node, population)
         return np.array([*self._circuit.placement(p, row), [0.0, 0.0, 0.0, 1.0]])
 
+    def inputs(self, node: int, *, population: str | None = None) -> NDArray[np.float64]:
+        """Places of the synapses that a node gets, of all edges, in the coordinates of its morphology (µm), (n, 3).
+
+        ``neurotess.edit(circuit.morphology(7), spines=circuit.inputs(7))`` grows a spine at each. Where a file of edges
+        has no coordinates, they follow from sections and places along them.
+        """
+        return self._circuit.inputs(*self._row(node, population))
+
     def mesh(
         self,
         nodes: Iterable[int] | None = None,

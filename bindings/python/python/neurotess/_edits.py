@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 
 from . import _neurotess, _options
@@ -9,12 +10,14 @@ from ._morphology import Morphology, _read, _warn, read
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    import os
     from collections.abc import Iterable, Sequence
     from typing import Any, Literal
 
+    from numpy.typing import ArrayLike
+
     Source = Morphology | str | os.PathLike[str]
     Axis = Literal["x", "y", "z"]
+    Spines = float | Literal["file"] | os.PathLike[str] | str | ArrayLike
 
 
 def edit(
@@ -30,7 +33,7 @@ def edit(
     smooth: float | Literal["auto"] | None = None,
     resample: float | None = None,
     simplify: float | None = None,
-    spines: float | tuple[float, int] | None = None,
+    spines: Spines | tuple[Spines, int] | None = None,
     recenter: bool = False,
     rotate: Mapping[Axis, float] | Iterable[tuple[Axis, float]] | None = None,
     mirror: Axis | Iterable[Axis] | None = None,
@@ -53,8 +56,10 @@ def edit(
     - `smooth`: smooths noise away that is shorter than this length (µm), or ``"auto"``
     - `resample`: puts samples at this distance (µm) along each section, as nearly as equal parts allow
     - `simplify`: leaves out samples without which the membrane moves by no more than this tolerance (µm)
-    - `spines`: grows so many spines on each µm of basal and apical dendrites, as far as there is room, at random
-      places; ``(density, seed)`` for others than those of seed 1. They are of type 7, a neck and a head each
+    - `spines`: grows spines, as far as there is room: a number for so many on each µm of basal and apical dendrites, at
+      random places; ``"file"`` for those that an ASC or H5 file tells of (`Morphology.spines`); the path of a table, or
+      places (µm), (n, 3), as those of synapses (`Circuit.inputs`). ``(…, seed)`` gives others than seed 1. They are of
+      type 7, a neck and a head each
     - `recenter`: moves the soma, or without one the first root, to the origin
     - `rotate`: turns around axes through the origin, counterclockwise, by degrees: ``{"z": 90}``, or pairs where an
       axis comes twice
@@ -87,8 +92,12 @@ def edit(
             "simplify": simplify,
         }
     )
+    synapses = None
     if spines is not None:
-        words += _words("spines", [",".join(map(_options.word, _several(spines)))])
+        places, *seed = spines if isinstance(spines, tuple) else (spines,)
+        if hasattr(places, "__len__") and not isinstance(places, (str, os.PathLike)):
+            places, synapses = "synapses", _places(places)
+        words += _words("spines", [",".join(map(_options.word, (places, *seed)))])
     words += _options.arguments({"recenter": recenter})
     words += _words("rotate", [_join([pair], "") for pair in pairs])
     words += _words("mirror", _several(mirror))
@@ -98,7 +107,7 @@ def edit(
     else:
         read = _read(cell, None, None, False, bad_radii=edits.mends_radii)
         _warn(read)
-    edited, reports = edits.apply(read)
+    edited, reports = edits.apply(read, synapses)
     return Morphology(edited, tuple(reports))
 
 
@@ -113,6 +122,18 @@ def _join(pairs: Iterable[tuple[object, object]], by: str) -> str:
 
 def _voxel(sides: Sequence[float]) -> str:
     return "voxel=" + ",".join(map(_options.word, sides))
+
+
+def _places(places: ArrayLike) -> list[list[float]]:
+    """Rows of three numbers."""
+    import numpy as np
+
+    rows = np.asarray(places, dtype=float)
+    if rows.size == 0:
+        return []
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise ValueError(f"spines: places have three coordinates each, (n, 3), not {rows.shape}")
+    return rows.tolist()
 
 
 def _several(values: Any) -> Iterable[object]:

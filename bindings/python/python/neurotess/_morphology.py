@@ -289,6 +289,12 @@ class Morphology:
         return self._cell.radii
 
     @property
+    def spines(self) -> NDArray[np.float64]:
+        """Places (µm) of spines that the file tells of without tracing them, (n, 3): where each ends, or where it is on
+        its dendrite. ``neurotess.edit(cell, spines="file")`` grows them."""
+        return self._cell.spines
+
+    @property
     def types(self) -> NDArray[np.int32]:
         """SWC types of the points, (n,): 2 axon, 3 basal dendrite, 4 apical dendrite, others as in the file."""
         return self._cell.types

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use neurotess::morphology::Difference;
 use neurotess_cli::embed::EditRecipe;
 use pyo3::exceptions::PyValueError;
@@ -29,10 +30,19 @@ impl Edits {
         self.0.mends_radii()
     }
 
-    /// The mended cell, and a dictionary of what each edit changed.
-    fn apply<'py>(&self, py: Python<'py>, cell: &Cell) -> PyResult<(Cell, Vec<Bound<'py, PyAny>>)> {
+    /// The mended cell, and a dictionary of what each edit changed. `synapses`: places (µm) of spines.
+    fn apply<'py>(
+        &self,
+        py: Python<'py>,
+        cell: &Cell,
+        synapses: Option<Vec<[f64; 3]>>,
+    ) -> PyResult<(Cell, Vec<Bound<'py, PyAny>>)> {
         let (recipe, morphology) = (self.0.clone(), Arc::clone(&cell.morphology));
-        let edited = released(py, None, move || recipe.apply(&morphology))?;
+        let synapses: Option<Vec<DVec3>> =
+            synapses.map(|places| places.into_iter().map(DVec3::from).collect());
+        let edited = released(py, None, move || {
+            recipe.apply_to(&morphology, synapses.as_deref())
+        })?;
         let edited = edited.map_err(PyValueError::new_err)?;
         let reports = edited.reports.iter();
         let reports: PyResult<_> = reports.map(|r| json::serialized(py, r)).collect();

@@ -211,6 +211,15 @@ impl Cell {
         Ok(self.samples.get_or_try_init(py, made)?.clone_ref(py))
     }
 
+    /// Places (µm) of spines that are not in the tree.
+    #[getter]
+    fn spines(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        let cell = &self.morphology;
+        let spines = cell.spines.iter();
+        let places = spines.map(|spine| (cell.origin + spine.as_dvec3()).to_array());
+        arrays::rows(py, places.collect())
+    }
+
     /// Arrays with a value for each section.
     fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let cell = &*self.morphology;

@@ -8,7 +8,7 @@ use neurotess::morphology::{
 use super::Told;
 
 /// Changes with what follows.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// What [`from_bytes`] gives back.
 pub(super) fn to_bytes(cell: &Morphology, format: &str, warnings: &[Told]) -> Vec<u8> {
@@ -45,6 +45,7 @@ pub(super) fn to_bytes(cell: &Morphology, format: &str, warnings: &[Told]) -> Ve
         }
         out.integer(i64::from(section.kind.0));
     });
+    out.all(&cell.spines, |out, &spine| out.ball(spine, 0.0));
     out.all(warnings, |out, told| {
         out.text(&told.code);
         out.text(&told.message);
@@ -72,6 +73,7 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Option<(Morphology, String, Vec<Told>)
         })?,
         sample_ids: from.all(From::integer)?,
         sections: from.all(section)?,
+        spines: from.all(|from| Some(from.ball()?.0))?,
     };
     let warnings = from.all(|from| {
         Some(Told {

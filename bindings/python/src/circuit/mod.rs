@@ -14,6 +14,7 @@ use neurotess::circuit::{
 use neurotess::circuit::{Instance, soma_center};
 use neurotess::mesh::Placed;
 use neurotess_cli::embed::{CellMesh, MeshRecipe};
+use numpy::PyArray2;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -234,6 +235,21 @@ impl Circuit {
             [x, y, z, at.translation[axis]]
         };
         Ok([row(0), row(1), row(2)])
+    }
+
+    /// Places of the synapses that a node gets, in the coordinates of its morphology.
+    fn inputs(&self, py: Python<'_>, population: u32, row: u32) -> PyResult<Py<PyArray2<f64>>> {
+        let instance = self.instance(population, row)?;
+        let template = &self.circuit.templates[instance.template.index()];
+        let read = py.detach(|| template.read());
+        let read = read.map_err(|e| errors::read(py, e))?;
+        let at = instance.world_from_cell(soma_center(&read.morphology));
+        let inputs = py.detach(|| self.circuit.inputs(&[instance]));
+        let inputs = inputs.map_err(|e| unreadable(py, &e))?;
+        let cell_from_world = at.inverse();
+        let places = inputs.iter().flatten();
+        let places = places.map(|&place| cell_from_world.transform_point3(place).to_array());
+        arrays::rows(py, places.collect())
     }
 
     /// Meshes cells of this circuit.

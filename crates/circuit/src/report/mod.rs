@@ -17,7 +17,6 @@
 
 mod axis;
 mod chunks;
-mod place;
 mod spikes;
 
 use std::collections::HashMap;
@@ -25,10 +24,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub use axis::TimeAxis;
-pub use place::{Compartment, Location, SectionOrder};
 pub use spikes::{SpikePopulation, Spikes};
 
 use crate::hdf5::Store;
+use crate::sections::{Compartment, compartments};
 use crate::{Circuit, CircuitError, Fault, NodeRef};
 use chunks::Table;
 
@@ -234,7 +233,7 @@ impl ReportPopulation {
             Some(path) => Some(self.mapping.reals_of(path, start, end - start)?),
             None => None,
         };
-        Ok(place::compartments(&sections, positions.as_deref()))
+        Ok(compartments(&sections, positions.as_deref()))
     }
 
     /// Values of compartments in a frame, in the order that they are asked for. Reads what holds them and

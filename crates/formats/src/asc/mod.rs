@@ -3,8 +3,8 @@
 //! The format has no public specification; `parse.rs` has the grammar of what is in use. The fourth
 //! number of a point is a **diameter**. Outlines named or typed `CellBody` are the soma, several of
 //! them its slices. Children hang on the last point of their parent; how a copy of it at their start
-//! is taken stands in `docs/conventions.md`, as do spines, markers and other contours, which are left
-//! out with a count.
+//! is taken stands in `docs/conventions.md`, as do markers and other contours, which are left out with
+//! a count. Spines are places beside the tree: [`Morphology::spines`].
 
 mod lexer;
 mod parse;

@@ -7,7 +7,7 @@
 //! branch = { point | marker | spine | property } [ '(' branch { '|' branch } ')' ] [ ending ]
 //! point  = '(' x y z [ diameter ] { word } ')'
 //! marker = '(' word … points … ')'
-//! spine  = '<' … '>'
+//! spine  = '<' { point | property } '>'              its end
 //! ```
 //! There is no published grammar; this one is of files. All is read without recursion.
 
@@ -18,7 +18,7 @@ use super::lexer::{Lexer, Token};
 use crate::Fault;
 use crate::sample::Sample;
 use crate::text::{Located, shown};
-use crate::traced::{Traced, Tracing};
+use crate::traced::{SPINES_LEFT_OUT, Traced, Tracing};
 use crate::warning::Warnings;
 
 /// Words after which a branch must not go on.
@@ -243,20 +243,37 @@ impl<'a> Parser<'a, '_> {
         Ok(has_points)
     }
 
+    /// A spine, whose bracket is open: its last point is where it ends.
     fn spine(&mut self) -> Located<()> {
         let line = self.lexer.line();
         let mut depth = 1_u64;
+        let mut tip = None;
         while depth > 0 {
             match self.lexer.next() {
                 Token::SpineOpen => depth += 1,
                 Token::SpineClose => depth -= 1,
+                Token::Open => tip = self.place().or(tip),
                 Token::End => return Err((line, Fault::Unclosed { what: "spine (<)" })),
                 _ => {}
             }
         }
+        self.tracing.spines.extend(tip);
         self.warnings
-            .add(line, "spines_left_out", "spines: left out");
+            .add(line, SPINES_LEFT_OUT.0, SPINES_LEFT_OUT.1);
         Ok(())
+    }
+
+    /// A place, if three numbers come next.
+    fn place(&mut self) -> Option<DVec3> {
+        let mut place = DVec3::ZERO;
+        for axis in 0..3 {
+            let Token::Number(number) = self.lexer.peek() else {
+                return None;
+            };
+            self.lexer.next();
+            place[axis] = in_range(number, axis).ok()?;
+        }
+        Some(place)
     }
 
     /// Points up to the bracket's end.

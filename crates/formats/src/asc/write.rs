@@ -5,8 +5,9 @@ use std::io::{self, BufWriter, Write};
 use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Section};
 
 use crate::Warning;
-use crate::losses::{Losses, outlines};
+use crate::losses::Losses;
 use crate::number::decimal;
+use crate::outlines::outlines;
 
 /// Deepest indentation; deep trees would be all blanks.
 const DEEPEST: usize = 20;

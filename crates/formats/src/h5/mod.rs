@@ -6,9 +6,10 @@
 //! `NAME/STAGE/points`, `NAME/structure/STAGE` and `NAME/structure/sectiontype`, where NAME is usually
 //! `neuron1` and STAGE is `repaired`, `unraveled` or `raw`, the best that is there (Brion and NeuroM
 //! choose so too); `unraveled` may have the structure of `raw`. Perimeters and organelles are left out
-//! with a warning. A **container** has many morphologies of version 1, each in a group, of which one is
+//! with a warning, but for those that tell of spines (`spines.rs`). A **container** has many morphologies of version 1, each in a group, of which one is
 //! named by its path: `merged.h5#cells/a`. HDF5 itself is read by a library in pure Rust.
 
+mod spines;
 mod write;
 
 use std::path::Path;
@@ -92,8 +93,13 @@ fn interpret(
         member => Tables::of_member(&store, member)?,
     };
     tell_what_is_left_out(&store, warnings);
-    tables
-        .tracing(warnings)?
+    let mut tracing = tables.tracing(warnings)?;
+    let path = match member.trim_matches('/') {
+        "" => String::new(),
+        member => format!("{member}/"),
+    };
+    tracing.spines = spines::spines(&store, &path, &tables, warnings)?;
+    tracing
         .build(name, warnings)
         .map_err(|(row, fault)| match fault {
             Fault::OwnAncestor | Fault::OutOfRange { .. } => Fault::Row {
@@ -337,7 +343,7 @@ fn morphologies(store: &Store) -> (usize, String) {
 }
 
 fn tell_what_is_left_out(store: &Store, warnings: &mut Warnings) {
-    if store.has_group("organelles") {
+    if spines::has_other_organelles(store) {
         warnings.add(1, "organelles_left_out", "organelles: left out");
     }
     if store.has("perimeters") {

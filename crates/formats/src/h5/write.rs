@@ -7,7 +7,8 @@ use hdf5_pure::{AttrValue, FileBuilder};
 use neurotess_morphology::{Attachment, Morphology};
 
 use crate::Warning;
-use crate::losses::{Losses, outlines};
+use crate::losses::Losses;
+use crate::outlines::outlines;
 
 /// Writes a morphology as H5 of version 1.3, in `f64`, so that positions and radii come back exactly.
 /// What the format cannot say is returned: numbers of samples, header, somata other than outlines.

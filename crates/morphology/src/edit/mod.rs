@@ -46,14 +46,14 @@ mod simplify;
 mod smooth;
 mod spines;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use thiserror::Error;
 
 pub use report::{BeforeAfter, EditReport};
-pub use spines::SPINE;
+pub use spines::{SPINE, SPINE_REACH};
 
 use crate::smoothing::SmoothingLength;
-use crate::{BuildError, Morphology, NeuriteKind};
+use crate::{BuildError, Morphology, NeuriteKind, SectionId};
 use nodes::{Edits, Nodes};
 
 /// One edit of a tracing.
@@ -105,14 +105,17 @@ pub enum Edit {
         /// Greatest move of the membrane (µm).
         tolerance: f64,
     },
-    /// Grows spines on basal and apical dendrites, samples of type [`SPINE`]: see the module's page. How many had
-    /// no room is [`EditReport::left`].
+    /// Grows spines, samples of type [`SPINE`]. How many had no room, or no dendrite near them, is
+    /// [`EditReport::left`].
     Spines {
-        /// How many for each µm, at most: bases are at least two radii of the dendrite apart.
-        density: f64,
-        /// Another seed gives other places, directions and sizes.
+        /// Where they grow.
+        places: SpinePlaces,
+        /// Another seed gives other directions and sizes, and where a density is given other places.
         seed: u64,
     },
+    /// Places the cell elsewhere, as a circuit does with its cells. Radii are multiplied by the cube root of the
+    /// determinant.
+    Place(DAffine3),
     /// Moves the soma's center, or without a soma the first root, to the origin.
     Recenter,
     /// Turns around an axis through the origin by an angle (radians), counterclockwise as seen from
@@ -130,6 +133,24 @@ pub enum Edit {
     },
 }
 
+/// Where spines grow.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SpinePlaces {
+    /// So many for each µm of basal and apical dendrites, at most: bases are at least two radii of the dendrite
+    /// apart.
+    Density(f64),
+    /// Where the file tells of spines: [`Morphology::spines`], which are in the tree then.
+    File,
+    /// At these places (µm, the file's coordinates), as those of synapses: on the nearest neurite within
+    /// [`SPINE_REACH`] µm, unless that is an axon or the soma. Half a µm and more beyond the membrane, a place is where the spine ends; on
+    /// it, where it leaves the dendrite; near the axis, it says nothing of the direction.
+    At(Vec<DVec3>),
+    /// At these shares of sections' lengths, from 0 at the start to 1 at the end, in random directions. Axons carry
+    /// none.
+    Along(Vec<(SectionId, f64)>),
+}
+
 impl Edit {
     /// Name for machines, like that of the command line's option.
     pub fn name(&self) -> &'static str {
@@ -144,6 +165,7 @@ impl Edit {
             Self::Resample { .. } => "resample",
             Self::Simplify { .. } => "simplify",
             Self::Spines { .. } => "spines",
+            Self::Place(_) => "place",
             Self::Recenter => "recenter",
             Self::Rotate { .. } => "rotate",
             Self::Mirror { .. } => "mirror",
@@ -216,6 +238,12 @@ pub enum EditError {
         /// How many there would be.
         spines: f64,
     },
+    /// More places of spines than a tracing should have.
+    #[error("{places} places of spines are too many: take fewer")]
+    TooManyPlaces {
+        /// How many there are.
+        places: usize,
+    },
     /// The result is no morphology: coordinates grew beyond [`Morphology::MAX_COORDINATE`].
     #[error("the edit makes numbers too large ({0}): check its factor")]
     Build(#[from] BuildError),
@@ -262,7 +290,8 @@ fn apply_one(morphology: &Morphology, nodes: &Nodes, edit: &Edit) -> Result<Edit
         Edit::Smooth(length) => smooth::smooth(morphology, nodes, length),
         Edit::Resample { spacing } => resample::resample(morphology, nodes, spacing),
         Edit::Simplify { tolerance } => simplify::simplify(morphology, nodes, tolerance),
-        Edit::Spines { density, seed } => spines::grow(morphology, nodes, density, seed),
+        Edit::Spines { ref places, seed } => spines::grow(morphology, nodes, places, seed),
+        Edit::Place(ref placement) => place::place(nodes, placement),
         Edit::Recenter => Ok(place::recenter(morphology, nodes)),
         Edit::Rotate { axis, angle } => place::rotate(nodes, axis, angle),
         Edit::Mirror { axis } => place::mirror(nodes, axis),

@@ -1,5 +1,7 @@
 //! A tracing taken apart into the nodes that a file would have, and put together again.
 
+use glam::DVec3;
+
 use super::EditError;
 use crate::{Attachment, BuildError, Morphology, NeuriteKind, Node, Point, SectionId, Soma};
 
@@ -8,6 +10,8 @@ pub(super) struct Nodes {
     pub(super) nodes: Vec<Node>,
     /// So many of them, the first, belong to somata. Parents of the others stand before their children.
     pub(super) somata: usize,
+    /// Places of spines that are not in the tree (µm, the file's coordinates).
+    pub(super) spines: Vec<DVec3>,
     /// Whether the somata were traced as outlines.
     outlined: bool,
 }
@@ -15,6 +19,8 @@ pub(super) struct Nodes {
 /// What an edit makes of nodes.
 pub(super) struct Edits {
     pub(super) nodes: Vec<Node>,
+    /// Places of spines that are not in the tree, where they are others now.
+    pub(super) spines: Option<Vec<DVec3>>,
     /// How far the tracing has moved (µm), where its nodes do not tell because others have taken their places.
     pub(super) largest_move: Option<f64>,
     /// Samples or pieces that the edit could not mend.
@@ -28,6 +34,7 @@ impl Edits {
     pub(super) fn in_place(nodes: Vec<Node>) -> Self {
         Self {
             nodes,
+            spines: None,
             largest_move: None,
             left: 0,
             renumbered: false,
@@ -71,10 +78,13 @@ impl Nodes {
                 });
             }
         }
+        let spines = morphology.spines.iter();
+        let spines = spines.map(|spine| morphology.origin + spine.as_dvec3());
         let as_samples = |soma: &Soma| Soma::from_samples(soma.samples.clone()) == *soma;
         Self {
             nodes,
             somata,
+            spines: spines.collect(),
             outlined: !morphology.somata.iter().all(as_samples),
         }
     }
@@ -91,6 +101,9 @@ impl Nodes {
             false => Morphology::from_nodes(name, header, &edits.nodes),
         };
         let mut rebuilt = built?.morphology;
+        let spines = edits.spines.as_ref().unwrap_or(&self.spines).iter();
+        let spines = spines.map(|&spine| (spine - rebuilt.origin).as_vec3());
+        rebuilt.spines = spines.filter(|spine| spine.is_finite()).collect();
         if edits.renumbered {
             number_anew(&mut rebuilt);
         }
@@ -158,7 +171,7 @@ impl Nodes {
 }
 
 /// A point in the file's coordinates (µm).
-pub(super) fn global(morphology: &Morphology, point: &Point) -> glam::DVec3 {
+pub(super) fn global(morphology: &Morphology, point: &Point) -> DVec3 {
     morphology.origin + point.position.as_dvec3()
 }
 

@@ -1,6 +1,6 @@
 //! Edits of each sample by itself: types, units, and where the cell is.
 
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::nodes::{Edits, Nodes, global};
 use super::{EditError, positive};
@@ -22,10 +22,26 @@ pub(super) fn scale(nodes: &Nodes, factors: DVec3) -> Result<Edits, EditError> {
         true => factors.x,
         false => (factors.x * factors.y).sqrt(),
     };
-    Ok(each(nodes, |node| {
-        node.position *= factors;
+    let mut edits = moved(nodes, |place| place * factors);
+    for node in &mut edits.nodes {
         node.radius *= in_plane;
-    }))
+    }
+    Ok(edits)
+}
+
+pub(super) fn place(nodes: &Nodes, placement: &DAffine3) -> Result<Edits, EditError> {
+    let factor = positive("the scale", placement.matrix3.determinant().abs().cbrt())?;
+    // A rotation leaves radii as they are, to the last digit.
+    let factor = if (factor - 1.0).abs() < 1e-12 {
+        1.0
+    } else {
+        factor
+    };
+    let mut edits = moved(nodes, |place| placement.transform_point3(place));
+    for node in &mut edits.nodes {
+        node.radius *= factor;
+    }
+    Ok(edits)
 }
 
 pub(super) fn recenter(morphology: &Morphology, nodes: &Nodes) -> Edits {
@@ -35,7 +51,7 @@ pub(super) fn recenter(morphology: &Morphology, nodes: &Nodes) -> Edits {
         (None, Some(root)) => global(morphology, root),
         (None, None) => DVec3::ZERO,
     };
-    each(nodes, |node| node.position -= center)
+    moved(nodes, |place| place - center)
 }
 
 pub(super) fn rotate(nodes: &Nodes, axis: DVec3, angle: f64) -> Result<Edits, EditError> {
@@ -54,7 +70,7 @@ pub(super) fn rotate(nodes: &Nodes, axis: DVec3, angle: f64) -> Result<Edits, Ed
         });
     }
     let turn = exact_quarters(DMat3::from_axis_angle(axis, angle));
-    Ok(each(nodes, |node| node.position = turn * node.position))
+    Ok(moved(nodes, |place| turn * place))
 }
 
 /// Entries that are a rounding error from 0, 1 and −1 become these: a quarter turn around an axis then moves
@@ -72,9 +88,18 @@ pub(super) fn mirror(nodes: &Nodes, axis: usize) -> Result<Edits, EditError> {
         return Err(EditError::Axis { axis });
     }
     // Not −0, which files would show.
-    Ok(each(nodes, |node| {
-        node.position[axis] = 0.0 - node.position[axis];
+    Ok(moved(nodes, |mut place| {
+        place[axis] = 0.0 - place[axis];
+        place
     }))
+}
+
+/// Samples, and spines that are not in the tree, at other places.
+fn moved(nodes: &Nodes, to: impl Fn(DVec3) -> DVec3) -> Edits {
+    Edits {
+        spines: Some(nodes.spines.iter().map(|&spine| to(spine)).collect()),
+        ..each(nodes, |node| node.position = to(node.position))
+    }
 }
 
 fn each(nodes: &Nodes, edit: impl Fn(&mut Node)) -> Edits {

@@ -6,6 +6,7 @@ use neurotess::morphology::NeuriteKind;
 use neurotess::morphology::edit::Edit;
 use neurotess::morphology::smoothing::SmoothingLength;
 
+use super::spines::{self, SpinesArg};
 use crate::options::numbers::positive;
 use crate::options::types::Types;
 
@@ -51,10 +52,12 @@ pub(crate) struct EditArgs {
     /// Peucker with radii; forks and ends stay
     #[arg(long, value_name = "TOLERANCE", value_parser = positive, allow_negative_numbers = true)]
     simplify: Option<f64>,
-    /// Grow DENSITY spines on each µm of basal and apical dendrites, as far as there is room, at random places; another
-    /// SEED [default: 1] gives others. They are of type 7
-    #[arg(long, value_name = "DENSITY[,SEED]", value_parser = spines, allow_negative_numbers = true)]
-    spines: Option<(f64, u64)>,
+    /// Grow spines, as far as there is room: so many on each µm of basal and apical dendrites, at random places (a number);
+    /// those that an ASC or H5 file tells of (file); at places of a table, CSV or TSV, with x, y and z (µm) or section
+    /// and position; or at the synapses that cells of a circuit get (synapses). Another SEED [default: 1] gives others.
+    /// They are of type 7
+    #[arg(long, value_name = "WHERE[,SEED]", value_parser = spines::parse, allow_negative_numbers = true)]
+    spines: Option<SpinesArg>,
     /// Move the soma, or without one the first root, to the origin
     #[arg(long)]
     recenter: bool,
@@ -75,8 +78,13 @@ struct Renamed {
 }
 
 impl EditArgs {
-    /// The edits in their order.
-    pub(super) fn edits(&self) -> Vec<Edit> {
+    /// Where spines are to grow.
+    pub(super) fn spines(&self) -> Option<&SpinesArg> {
+        self.spines.as_ref()
+    }
+
+    /// The edits in their order; `spines`: the one that grows spines.
+    pub(super) fn edits(&self, spines: Option<Edit>) -> Vec<Edit> {
         let mut edits = Vec::new();
         if !self.types.is_empty() {
             let pairs = |renamed: &Renamed| {
@@ -98,8 +106,7 @@ impl EditArgs {
         edits.extend(self.smooth.map(Edit::Smooth));
         edits.extend(self.resample.map(|spacing| Edit::Resample { spacing }));
         edits.extend(self.simplify.map(|tolerance| Edit::Simplify { tolerance }));
-        let spines = self.spines;
-        edits.extend(spines.map(|(density, seed)| Edit::Spines { density, seed }));
+        edits.extend(spines);
         edits.extend(self.recenter.then_some(Edit::Recenter));
         edits.extend(self.rotate.iter().map(|&(axis, degrees)| Edit::Rotate {
             axis: DVec3::AXES[axis],
@@ -174,14 +181,6 @@ fn smoothing(text: &str) -> Result<SmoothingLength, String> {
     }
 }
 
-fn spines(text: &str) -> Result<(f64, u64), String> {
-    let (density, seed) = text.split_once(',').unwrap_or((text, "1"));
-    match (positive(density.trim()), seed.trim().parse()) {
-        (Ok(density), Ok(seed)) => Ok((density, seed)),
-        _ => Err("spines for each µm are needed, and maybe a seed, as in 1.5 or 1.5,7".into()),
-    }
-}
-
 fn axis(text: &str) -> Result<usize, String> {
     let axes = ["x", "y", "z"].iter();
     let mut named = axes
@@ -202,6 +201,8 @@ fn rotation(text: &str) -> Result<(usize, f64), String> {
 
 #[cfg(test)]
 mod tests {
+    use neurotess::morphology::edit::SpinePlaces;
+
     use super::*;
 
     #[test]
@@ -226,13 +227,6 @@ mod tests {
         assert!(factor("1").is_err() && factor("nan").is_err());
         assert_eq!(distance("inf"), Ok(f64::INFINITY));
         assert!(smoothing("0").is_err());
-        assert_eq!(
-            (spines("0.5"), spines("2, 7")),
-            (Ok((0.5, 1)), Ok((2.0, 7)))
-        );
-        for wrong in ["0", "-1", "1,", "1,-2", "1,2,3", ""] {
-            assert!(spines(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]
@@ -252,7 +246,16 @@ mod tests {
         let all = "x --mirror x --rotate z=1 --recenter --spines 1 --simplify 1 --resample 1 --smooth auto --subtree 1 \
                    --join 1 --reroot 1 --mend-radii --scale 2 --types 1=2";
         let all: All = clap::Parser::parse_from(all.split_whitespace());
-        let edits: Vec<&str> = all.edits.edits().iter().map(Edit::name).collect();
+        let spines = Edit::Spines {
+            places: SpinePlaces::File,
+            seed: 1,
+        };
+        let edits: Vec<&str> = all
+            .edits
+            .edits(Some(spines))
+            .iter()
+            .map(Edit::name)
+            .collect();
         assert_eq!(edits, helped);
     }
 }

@@ -1,10 +1,12 @@
 //! Tracings that stay in memory: the edits of `neurotess convert` without its files.
 
 use clap::Parser;
+use glam::DVec3;
 use neurotess::morphology::Morphology;
-use neurotess::morphology::edit::{self, Edit, Edited};
+use neurotess::morphology::edit::{self, Edited};
 
 use super::edits::EditArgs;
+use super::spines::SpinesOption;
 use crate::io::morphologies::OF_UNIT;
 
 /// The options alone, without the program around them.
@@ -17,9 +19,8 @@ struct Options {
 /// How tracings are mended: the edits of `neurotess convert`, checked.
 #[derive(Clone, Debug)]
 pub struct EditRecipe {
-    edits: Vec<Edit>,
-    mends_radii: bool,
-    changes_units: bool,
+    edits: EditArgs,
+    spines: Option<SpinesOption>,
 }
 
 impl EditRecipe {
@@ -31,21 +32,35 @@ impl EditRecipe {
         let words = ["convert".to_owned()].into_iter().chain(options);
         let Options { edits } =
             Options::try_parse_from(words).map_err(|e| crate::report::first_paragraph(&e))?;
+        Self::of(&edits)
+    }
+
+    /// Takes options that are read, and reads the table of places that they name.
+    pub(super) fn of(edits: &EditArgs) -> Result<Self, String> {
         Ok(Self {
-            edits: edits.edits(),
-            mends_radii: edits.mends_radii(),
-            changes_units: edits.changes_units(),
+            spines: edits.spines().map(SpinesOption::read).transpose()?,
+            edits: edits.clone(),
         })
+    }
+
+    /// Whether spines grow at synapses, whose places [`apply_to`](Self::apply_to) needs.
+    pub fn needs_synapses(&self) -> bool {
+        self.spines.as_ref().is_some_and(SpinesOption::of_synapses)
+    }
+
+    /// Whether places of spines are those of one cell.
+    pub(super) fn is_of_one_cell(&self) -> bool {
+        self.spines.as_ref().is_some_and(SpinesOption::of_one_cell)
     }
 
     /// Whether radii that are no numbers may be read (`ReadOptions::zero_for_bad_radii`), since they are mended.
     pub fn mends_radii(&self) -> bool {
-        self.mends_radii
+        self.edits.mends_radii()
     }
 
     /// Whether a reader's warning of this code has no meaning any more, since the edits deal with what it is of.
     pub fn settles(&self, code: &str) -> bool {
-        self.changes_units && code == OF_UNIT
+        self.edits.changes_units() && code == OF_UNIT
     }
 
     /// The edited tracing, and what each edit changed.
@@ -53,7 +68,29 @@ impl EditRecipe {
     /// # Errors
     /// Why an edit cannot be done.
     pub fn apply(&self, morphology: &Morphology) -> Result<Edited, String> {
-        edit::apply(morphology, &self.edits).map_err(|e| e.to_string())
+        self.apply_to(morphology, None)
+    }
+
+    /// The same of a cell whose synapses are known. `synapses`: their places (µm, the file's coordinates).
+    ///
+    /// # Errors
+    /// Why an edit cannot be done.
+    pub fn apply_to(
+        &self,
+        morphology: &Morphology,
+        synapses: Option<&[DVec3]>,
+    ) -> Result<Edited, String> {
+        let spines = self.spines.as_ref();
+        let spines = spines.map(|spines| spines.edit(morphology, synapses));
+        let (spines, left) = spines.transpose()?.unzip();
+        let edits = self.edits.edits(spines);
+        let edited = edit::apply(morphology, &edits);
+        let mut edited = edited.map_err(|e| e.to_string())?;
+        let mut reports = edited.reports.iter_mut();
+        if let Some(report) = reports.find(|report| report.edit == "spines") {
+            report.left += left.unwrap_or(0);
+        }
+        Ok(edited)
     }
 }
 

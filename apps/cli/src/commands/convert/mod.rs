@@ -1,8 +1,10 @@
 //! `neurotess convert`: morphologies in another format, and mended on the way.
 
+mod circuit;
 mod edits;
 mod in_memory;
 mod report;
+mod spines;
 
 use std::collections::BTreeMap;
 use std::io;
@@ -10,17 +12,20 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use neurotess::formats::{self, Format, ReadOptions};
-use neurotess::morphology::edit::{self, Edit, EditReport};
+use neurotess::morphology::edit::{EditReport, Edited};
 use serde::Serialize;
 
 use crate::io::batch::each;
+use crate::io::circuits::partition;
 use crate::io::inputs::{Input, Inputs};
 use crate::io::morphologies::{
-    MORPHOLOGIES, ReaderWarning, read_morphology, readable, write_morphology, written,
+    MORPHOLOGIES, ReaderWarning, read_morphology, readable, write_morphology,
+    written as written_formats,
 };
 use crate::io::output::{self, OutputError};
 use crate::io::targets;
-use crate::report::{Entry, Failure, Reporter, usage};
+use crate::options::cells::CellArgs;
+use crate::report::{Entry, Failed, Failure, Reporter, usage};
 use edits::EditArgs;
 pub use in_memory::EditRecipe;
 
@@ -31,7 +36,7 @@ pub use in_memory::EditRecipe;
     the order of the file.")]
 pub(crate) struct ConvertArgs {
     /// Morphology files, folders (searched recursively) or globs; FILE.h5#PATH for one cell of a container; -
-    /// for standard input
+    /// for standard input; or one circuit, whose cells are written in its coordinates
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// A file for one input, - for standard output; a folder for several, or for a folder, whose
@@ -52,6 +57,8 @@ pub(crate) struct ConvertArgs {
     pub(crate) dry_run: bool,
     #[command(flatten)]
     pub(crate) edits: EditArgs,
+    #[command(flatten)]
+    pub(crate) cells: CellArgs,
 }
 
 /// One object of the JSON list.
@@ -67,21 +74,65 @@ struct Converted {
     edits: Vec<EditReport>,
     /// Whether nothing was written.
     dry_run: bool,
+    /// The node of a circuit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    node: Option<NodeName>,
+}
+
+/// A node of a circuit.
+#[derive(Serialize)]
+struct NodeName {
+    population: String,
+    node_id: u64,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &ConvertArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    let recipe = match EditRecipe::of(&args.edits) {
+        Ok(recipe) => recipe,
+        Err(error) => {
+            reporter.failure(&Failure(error.clone()));
+            let file = "--spines".to_owned();
+            let failed: Entry<Converted> = Entry::Failed(Failed { file, error });
+            return reporter.document(&[failed]);
+        }
+    };
+    let (circuits, others) = partition(&args.inputs);
+    match &circuits[..] {
+        [] => {}
+        [path] if others.is_empty() => return circuit::run(args, path, &recipe, reporter),
+        _ => return usage("a circuit is converted alone: leave out the other inputs"),
+    }
+    if args.cells.any() {
+        return usage("no input is a circuit: leave out what chooses cells of one");
+    }
+    if recipe.needs_synapses() {
+        return usage(
+            "--spines synapses is of the cells of a circuit: name one, or a table of places",
+        );
+    }
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
+    if recipe.is_of_one_cell() && !inputs.one_file {
+        return usage("a table of places is of one cell: give one input file");
+    }
     let target = args
         .out
         .as_deref()
         .map(|out| target(out, args, &inputs, reporter))
         .transpose()?;
-    let edits = args.edits.edits();
     let converted = each(&inputs, reporter, |input| {
-        convert(input, args, target.as_ref(), &edits)
+        convert(input, args, target.as_ref(), &recipe)
     })?;
-    for entry in &converted {
+    tell_all(&converted, args, reporter)
+}
+
+/// Says what was done with each input.
+fn tell_all(
+    converted: &[Entry<Converted>],
+    args: &ConvertArgs,
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    for entry in converted {
         if let Entry::Done(done) = entry {
             tell(done, args, reporter);
         }
@@ -118,40 +169,55 @@ fn convert(
     input: &Input,
     args: &ConvertArgs,
     target: Option<&Target>,
-    edits: &[Edit],
+    recipe: &EditRecipe,
 ) -> Result<Converted, Failure> {
     let file = input.path.display().to_string();
-    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
     readable(&input.path)?;
-    let out = target.map(|target| target.outs[&input.path].as_path());
-    if let Some(out) = out {
-        output::check(out, args.force).map_err(failed)?;
+    let out = target.map(|target| (target.outs[&input.path].as_path(), target.format));
+    if let Some((out, _)) = out {
+        output::check(out, args.force).map_err(|e| Failure(format!("{file}: {e}")))?;
     }
+    let read = read(&input.path, args)?;
+    let edited = recipe.apply(&read.morphology);
+    let edited = edited.map_err(|e| Failure(format!("{file}: {e}")))?;
+    written(file, read.warnings, edited, args, out)
+}
+
+fn read(path: &Path, args: &ConvertArgs) -> Result<formats::Read, Failure> {
     let options = ReadOptions {
         strict: args.strict,
         zero_for_bad_radii: args.edits.mends_radii(),
     };
-    let read = read_morphology(&input.path, None, &options)?;
-    let edited = edit::apply(&read.morphology, edits);
-    let edited = edited.map_err(|e| Failure(format!("{file}: {e}")))?;
-    let format = target.map(|target| target.format);
-    let lost = match (out, format) {
-        (Some(out), Some(format)) if args.dry_run => {
+    read_morphology(path, None, &options)
+}
+
+/// Writes an edited tracing, unless this is a dry run.
+fn written(
+    file: String,
+    warnings: Vec<formats::Warning>,
+    edited: Edited,
+    args: &ConvertArgs,
+    out: Option<(&Path, Format)>,
+) -> Result<Converted, Failure> {
+    let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    let lost = match out {
+        Some((out, format)) if args.dry_run => {
             formats::write(&edited.morphology, format, io::sink())
                 .map_err(|e| failed(OutputError::broken(out, e)))?
         }
-        (Some(out), Some(format)) => {
+        Some((out, format)) => {
             write_morphology(&edited.morphology, format, out, args.force).map_err(failed)?
         }
-        _ => Vec::new(),
+        None => Vec::new(),
     };
     Ok(Converted {
-        out: out.map(|out| out.display().to_string()),
-        format: format.map(|format| format.extensions()[0]),
+        out: out.map(|(out, _)| out.display().to_string()),
+        format: out.map(|(_, format)| format.extensions()[0]),
         lost: lost.into_iter().map(ReaderWarning::from).collect(),
-        warnings: read.warnings.into_iter().map(ReaderWarning::from).collect(),
+        warnings: warnings.into_iter().map(ReaderWarning::from).collect(),
         edits: edited.reports,
         dry_run: args.dry_run,
+        node: None,
         file,
     })
 }
@@ -218,5 +284,5 @@ fn format(out: &Path, args: &ConvertArgs, inputs: &Inputs) -> anyhow::Result<For
     } else {
         format!("morphologies cannot be written as '{name}'")
     };
-    usage(format!("{name}: use {}", written().join(", ")))
+    usage(format!("{name}: use {}", written_formats().join(", ")))
 }

@@ -28,7 +28,7 @@ pub(super) fn line(report: &EditReport) -> String {
     if report.left > 0 {
         add(match report.edit {
             "join" => format!("{} too far from others", count(report.left, "piece")),
-            "spines" => format!("{} without room", count(report.left, "spine")),
+            "spines" => format!("{} without room on a dendrite", count(report.left, "spine")),
             _ => format!(
                 "{} without a good radius in their neurite",
                 count(report.left, "sample")

@@ -5,7 +5,7 @@
 //! circuit ─select─▶ instances ─by morphology─▶ workers: prepare once ─▶ finish for each instance
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -95,35 +95,16 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
     reporter.document(&entries)
 }
 
-/// Names the file of each cell: population and id; the row too where several rows share an id.
+/// The file of each cell.
 fn plan(
     circuit: &Circuit,
     instances: &[Instance],
     folder: &Path,
     extension: &str,
 ) -> Vec<InstanceJob> {
-    let mut taken: BTreeSet<PathBuf> = BTreeSet::new();
-    let job = |instance: &Instance| {
+    let outs = circuits::files(circuit, instances, folder, extension);
+    let job = |(instance, out): (&Instance, PathBuf)| {
         let population = &circuit.populations[instance.node.population as usize].name;
-        // A population's name comes from the file and may contain any characters.
-        let plain: String = population
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || "-_.".contains(c) {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
-        let plain = plain.trim_start_matches('.');
-        let id = instance.id;
-        let mut out = folder.join(format!("{plain}_{id}.{extension}"));
-        if !taken.insert(out.clone()) {
-            let row = instance.node.row;
-            out = folder.join(format!("{plain}_{id}_row{row}.{extension}"));
-            taken.insert(out.clone());
-        }
         let input = circuit.templates[instance.template.index()].path.clone();
         InstanceJob {
             instance: *instance,
@@ -134,11 +115,11 @@ fn plan(
             },
             node: NodeName {
                 population: population.clone(),
-                node_id: id,
+                node_id: instance.id,
             },
         }
     };
-    instances.iter().map(job).collect()
+    instances.iter().zip(outs).map(job).collect()
 }
 
 /// Meshes each morphology once and writes it for all of its cells. Entries are in the order of the

@@ -7,7 +7,7 @@ use neurotess::render::Placement;
 
 use crate::model::document::{
     Detail, Dimension, Document, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, SourceId,
-    TracePlace,
+    SpineEdit, TracePlace,
 };
 
 /// A change of the document.
@@ -42,6 +42,10 @@ pub enum Edit {
     SetRing(SourceId, u32, Option<f64>),
     /// Leaves the positions of all first rings to the generator.
     ResetRings(SourceId),
+    /// Grows spines on cells, or removes them.
+    SetSpines(Vec<SourceId>, Option<SpineEdit>),
+    /// The same for the selected neurons, or for all if none is selected.
+    GrowSpines(Option<SpineEdit>),
     /// Changes colors and light.
     SetLook(Box<Look>),
     /// Changes the level of detail.
@@ -100,6 +104,8 @@ impl Edit {
             Self::Duplicate(_) => "Duplicate",
             Self::SetSoma(..) => "Soma",
             Self::SetRing(..) | Self::ResetRings(_) => "First ring",
+            Self::SetSpines(_, Some(_)) | Self::GrowSpines(Some(_)) => "Spines",
+            Self::SetSpines(_, None) | Self::GrowSpines(None) => "Remove spines",
             Self::SetLook(_) => "Look",
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
@@ -128,6 +134,7 @@ impl Edit {
             Self::Place(_)
                 | Self::SetSoma(..)
                 | Self::SetRing(..)
+                | Self::SetSpines(..)
                 | Self::SetLook(_)
                 | Self::SetDetail(_)
                 | Self::SetMarkers(_)
@@ -176,10 +183,17 @@ impl Edit {
             Self::Duplicate(way) => document.duplicate_selected(way),
             Self::SetSoma(sources, edit) => {
                 for source in sources {
-                    // Each cell keeps its own rings.
-                    let rings = document.soma(source).rings;
+                    // Each cell keeps its own rings and spines.
+                    let SomaEdit { rings, spines, .. } = document.soma(source);
                     let edit = edit.clone();
-                    document.set_soma(source, SomaEdit { rings, ..edit });
+                    document.set_soma(
+                        source,
+                        SomaEdit {
+                            rings,
+                            spines,
+                            ..edit
+                        },
+                    );
                 }
             }
             Self::SetRing(source, neurite, position) => {
@@ -194,6 +208,15 @@ impl Edit {
                 let mut edit = document.soma(source);
                 edit.rings.clear();
                 document.set_soma(source, edit);
+            }
+            Self::SetSpines(sources, spines) => document.set_spines(&sources, spines),
+            Self::GrowSpines(spines) => {
+                let sources = match document.neurons.selected_sources() {
+                    [] => document.neurons.sources(),
+                    selected => selected,
+                };
+                let sources = sources.to_vec();
+                document.set_spines(&sources, spines);
             }
             Self::SetLook(look) => document.look = *look,
             Self::SetDetail(detail) => document.detail = detail,

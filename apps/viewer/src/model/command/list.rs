@@ -7,6 +7,7 @@ use neurotess::render::Side;
 use neurotess::synth::Kind;
 
 use super::{Command, Edit, FilePurpose, PlotOf, Tab};
+use crate::model::document::{SpineEdit, SpinePlaces};
 
 /// A command of the menus and the palette.
 pub struct Listed {
@@ -32,6 +33,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
         keys: keys.map(|(modifiers, key)| KeyboardShortcut::new(modifiers, key)),
         command,
     };
+    let grow = |places| Command::from(Edit::GrowSpines(Some(SpineEdit::at(places))));
     let samples = Kind::ALL.into_iter().zip(SAMPLE_TITLES);
     let samples = samples.map(|(kind, title)| item(title, None, Command::OpenSample(kind)));
     let choose =
@@ -172,6 +174,22 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::CopyDimensions(None),
                 ),
                 item("Remove all dimensions", None, Edit::ClearDimensions.into()),
+                item(
+                    "Grow spines at random (1 for each µm of dendrites)",
+                    None,
+                    grow(SpinePlaces::Random),
+                ),
+                item(
+                    "Grow the spines that the file tells of (ASC, H5)",
+                    None,
+                    grow(SpinePlaces::File),
+                ),
+                item(
+                    "Grow spines at synapses (inputs of a circuit's cell)",
+                    None,
+                    grow(SpinePlaces::Synapses),
+                ),
+                item("Remove spines", None, Edit::GrowSpines(None).into()),
                 item(
                     "Remove all traces of the plot",
                     None,

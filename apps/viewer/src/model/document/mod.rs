@@ -9,6 +9,7 @@ mod neurons;
 mod placement;
 mod saved_view;
 mod soma;
+mod spines;
 mod traces;
 
 use std::path::PathBuf;
@@ -28,6 +29,7 @@ pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use saved_view::SavedView;
 pub use soma::{Method, SomaEdit};
+pub use spines::{SpineEdit, SpinePlaces};
 pub use traces::{Trace, TracePlace};
 
 /// All that edits change.
@@ -35,7 +37,7 @@ pub use traces::{Trace, TracePlace};
 pub struct Document {
     /// The neurons, in the order of the list.
     pub neurons: Neurons,
-    /// Somata that are not generated in the default way, by source.
+    /// Somata that are not generated in the default way, and cells with spines, by source.
     pub somata: Tracked<Vec<(SourceId, SomaEdit)>>,
     /// Colors, light, and which parts of cells are shown.
     pub look: Look,
@@ -108,6 +110,20 @@ impl Document {
             self.somata.push((source, edit));
             self.somata.sort_by_key(|(id, _)| *id);
         }
+    }
+
+    /// Sets which spines grow on cells.
+    pub(crate) fn set_spines(&mut self, sources: &[SourceId], spines: Option<SpineEdit>) {
+        for &source in sources {
+            let edit = self.soma(source);
+            self.set_soma(source, SomaEdit { spines, ..edit });
+        }
+    }
+
+    /// The spines that a source is drawn with: none while a recording shows, which numbers the sections of the tracing
+    /// itself.
+    pub fn drawn_spines(&self, source: SourceId) -> Option<SpineEdit> {
+        self.soma(source).spines.filter(|_| self.report.is_none())
     }
 
     /// Shows the values of a recording, or none.

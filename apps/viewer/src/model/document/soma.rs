@@ -1,9 +1,11 @@
-//! How a soma is generated.
+//! How a soma is generated, and what else a cell grows that was not traced.
 
 use std::collections::BTreeMap;
 
 use neurotess::generate::{GenerateOptions, SomaMethod, SphereKind};
 use serde::{Deserialize, Serialize};
+
+use super::SpineEdit;
 
 /// How a soma is made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,9 @@ pub struct SomaEdit {
     /// [`GenerateOptions::rings`]. In a session's file: a list, with numbers from 1.
     #[serde(with = "rings", skip_serializing_if = "BTreeMap::is_empty")]
     pub rings: BTreeMap<u32, f64>,
+    /// Spines of the cell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spines: Option<SpineEdit>,
 }
 
 /// How a soma is made.
@@ -49,6 +54,7 @@ impl Default for SomaEdit {
             octahedron: false,
             level: 0,
             rings: BTreeMap::new(),
+            spines: None,
         }
     }
 }

@@ -13,7 +13,9 @@ use super::meshes::MeshesKey;
 use super::traces::PlotKey;
 use crate::model::document::{self, Neuron, NeuronRevisions, SourceId};
 use crate::model::ids::CircuitId;
+use crate::model::markers::MarkerRef;
 use crate::model::measuring::Figure;
+use crate::model::partners::PartnerPath;
 use crate::model::revision::{Memo, Revision};
 use crate::model::sources::extent;
 use crate::model::totals::{self, Totals};
@@ -53,8 +55,12 @@ pub(super) struct Derived {
     kinds: Memo<Revision, BTreeSet<i32>>,
     pub(super) circuits: Memo<Revision, Vec<CircuitId>>,
     pub(super) figures: Memo<FiguresKey, Vec<Option<Figure>>>,
+    pub(super) partners: Memo<PartnersKey, Vec<PartnerPath>>,
     pub(super) traces: Memo<PlotKey, Plot>,
 }
+
+/// What paths of partners depend on: the synapse, what was read of synapses, placements and tracings.
+type PartnersKey = (Option<MarkerRef>, Revision, PlacementsKey, Revision);
 
 /// Revisions that figures of dimensions depend on: of the dimensions, placements and tracings.
 type FiguresKey = (Revision, PlacementsKey, Revision);

@@ -8,6 +8,7 @@ mod dimensions;
 mod effect;
 mod markers;
 mod meshes;
+mod partners;
 mod picked;
 mod placing;
 mod plots;
@@ -16,7 +17,9 @@ mod traces;
 mod views;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::render::Side;
 
 use crate::model::circuits::Circuits;
@@ -385,6 +388,17 @@ impl State {
     pub fn source_of(&self, neuron: usize) -> Option<&Source> {
         let neuron = self.document.neurons.get(neuron)?;
         self.sources.get(neuron.source)
+    }
+
+    /// The node of a circuit that has a tracing for itself.
+    pub(crate) fn node_of(&self, source: SourceId) -> Option<(Arc<Circuit>, NodeRef)> {
+        let neurons = self.document.neurons.iter();
+        let mut neurons = neurons.filter(|neuron| neuron.source == source);
+        let node = match (neurons.next(), neurons.next()) {
+            (Some(neuron), None) => neuron.node?,
+            _ => return None,
+        };
+        Some((self.circuits.shared(node.circuit)?, node.node))
     }
 
     /// Notes how saving ended.

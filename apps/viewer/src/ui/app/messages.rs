@@ -1,12 +1,13 @@
 //! Messages from the background tasks, and requests to them.
 
-use super::Viewer;
-use neurotess::generate::Generated;
+use std::sync::Arc;
 
+use super::Viewer;
+use crate::io::remesh::MeshRequest;
 use crate::io::worker::Message;
 use crate::model::command::Edit;
-use crate::model::document::{SomaEdit, SourceId};
 use crate::model::markers::MarkerSource;
+use crate::model::sources::Meshed;
 
 impl Viewer {
     pub(super) fn take(&mut self, message: Message) {
@@ -36,7 +37,7 @@ impl Viewer {
                     self.state.problem(file.unwrap_or_default(), kept);
                 }
             },
-            Message::Soma(id, edit, generated) => self.remeshed(id, edit, *generated),
+            Message::Meshed(request, meshed) => self.remeshed(request, *meshed),
             Message::Markers(source, content) => self.state.set_markers(source, *content),
             Message::Mesh(file, read) => self.state.set_mesh(file, *read),
             Message::Files(files) => {
@@ -49,21 +50,34 @@ impl Viewer {
         }
     }
 
-    fn remeshed(&mut self, id: SourceId, edit: SomaEdit, generated: Result<Generated, String>) {
+    fn remeshed(&mut self, request: MeshRequest, meshed: Result<Meshed, String>) {
         let empty = "this soma leaves nothing to draw: choose another method";
-        let drawn = generated.and_then(|generated| match generated.mesh.patches.is_empty() {
+        let drawn = meshed.and_then(|meshed| match meshed.generated.mesh.patches.is_empty() {
             true => Err(empty.to_owned()),
-            false => Ok(generated),
+            false => Ok(meshed),
         });
+        let (id, spines) = (request.id, request.spines);
         let name = self.state.sources.get(id).map(|s| s.name.clone());
-        let (generated, why) = match drawn {
-            Ok(generated) => (Some(generated), None),
+        let name = name.unwrap_or_default();
+        let (meshed, why) = match drawn {
+            Ok(meshed) => (Some(meshed), None),
             Err(why) => (None, Some(why)),
         };
-        // A soma that failed is not generated again until its edit changes.
-        self.state.sources.set_soma(id, edit, generated);
+        let left = meshed
+            .as_ref()
+            .and_then(|meshed| Some(meshed.grown.as_ref()?.left));
+        // What failed is not made again until its edit changes.
+        let edit = (request.soma, spines);
+        self.state.sources.set_meshed(id, edit, meshed);
+        if let (Some(left), Some(_), Some(source)) = (left, spines, self.state.sources.get(id)) {
+            let grown = format!("{name}: {} spines", source.spine_count());
+            self.state.status = match left {
+                0 => grown,
+                left => format!("{grown}, {left} without room on a dendrite"),
+            };
+        }
         if let Some(why) = why {
-            self.state.problem(name.unwrap_or_default(), why);
+            self.state.problem(name, why);
         }
     }
 
@@ -117,17 +131,27 @@ impl Viewer {
             document.somata.revision(),
             self.state.sources.geometry(),
         ];
+        let key = (key, document.report.is_some());
         if self.somata_checked == Some(key) {
             return;
         }
         let mut used = document.neurons.sources().iter();
         let due = used.find_map(|&id| {
             let source = self.state.sources.get(id)?;
-            let edit = document.soma(id);
-            (source.soma != edit).then(|| (id, source.morphology.clone(), edit))
+            let (soma, spines) = (document.soma(id), document.drawn_spines(id));
+            let same_spines = source.spines == spines;
+            (source.soma != soma || !same_spines).then(|| MeshRequest {
+                id,
+                traced: Arc::clone(&source.traced),
+                drawn: Arc::clone(&source.morphology),
+                node: self.state.node_of(id),
+                soma,
+                spines,
+                same_spines,
+            })
         });
         match due {
-            Some((id, morphology, edit)) => self.worker.remesh(id, morphology, edit),
+            Some(request) => self.worker.remesh(request),
             None => self.somata_checked = Some(key),
         }
     }

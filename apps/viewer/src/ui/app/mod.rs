@@ -66,7 +66,7 @@ pub struct Viewer {
     /// Folder that the session is saved in when the program must end.
     rescue: PathBuf,
     /// Revisions of neurons, edits of somata and meshes at which all meshes fitted their edits.
-    somata_checked: Option<[Revision; 3]>,
+    somata_checked: Option<([Revision; 3], bool)>,
     listener: Option<CommandListener>,
 }
 

@@ -5,7 +5,7 @@ use neurotess::circuit::SynapseSide;
 
 use super::number::slider;
 use super::tip::Tip;
-use super::{color_map, figures, grouped, heading};
+use super::{color_map, figures, grouped, heading, partners};
 use crate::model::command::{Command, Edit, FilePurpose};
 use crate::model::document::{Look, MarkerOptions};
 use crate::model::state::State;
@@ -172,6 +172,7 @@ pub(super) fn picked(state: &mut State, ui: &mut Ui) {
     };
     heading(ui, &facts.title);
     figures(ui, "marker", &facts.rows);
+    partners::figures(state, ui);
     let titles = ["Select its cell", "Select the other cell"];
     ui.horizontal_wrapped(|ui| {
         for (title, neuron) in titles.into_iter().zip(facts.neurons) {

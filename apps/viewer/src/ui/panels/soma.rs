@@ -4,7 +4,7 @@ use eframe::egui::{Button, Ui};
 
 use super::number::slider;
 use super::tip::Tip;
-use super::{figures, heading, measured, rings};
+use super::{figures, heading, measured, rings, spines};
 use crate::model::command::Edit;
 use crate::model::document::{Method, SomaEdit, SourceId};
 use crate::model::state::State;
@@ -64,6 +64,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     ui.add_space(6.0);
     let usual = SomaEdit {
         rings: edit.rings.clone(),
+        spines: edit.spines,
         ..SomaEdit::default()
     };
     if ui
@@ -92,6 +93,11 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
             }
         }
     }
+    let sources = match state.document.neurons.selected_sources() {
+        [] => state.document.neurons.sources(),
+        selected => selected,
+    };
+    spines::show(state, &sources.to_vec(), ui);
     measures(state, first, &edit, ui);
 }
 
@@ -175,13 +181,14 @@ fn reference(edit: &mut SomaEdit, ui: &mut Ui) {
     }
 }
 
-fn measures(state: &State, source: SourceId, edit: &SomaEdit, ui: &mut Ui) {
-    let Some(source) = state.sources.get(source) else {
+fn measures(state: &State, id: SourceId, edit: &SomaEdit, ui: &mut Ui) {
+    let Some(source) = state.sources.get(id) else {
         return;
     };
     ui.add_space(4.0);
     ui.separator();
-    if source.soma != *edit {
+    let waits = source.spines != state.document.drawn_spines(id);
+    if source.soma != *edit || waits {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.weak("updating…");

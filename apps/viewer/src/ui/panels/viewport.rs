@@ -7,7 +7,8 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::{
-    Screen, area, cell_tip, crossings, gizmo, marks, measuring, overlay, plate, tip, traces,
+    Screen, area, cell_tip, crossings, gizmo, marks, measuring, overlay, partners, plate, tip,
+    traces,
 };
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
@@ -384,6 +385,7 @@ fn over(screen: &Screen<'_>, pane: Pane, rect: Rect, ui: &mut Ui) {
     }
     let painter = ui.painter().with_clip_rect(rect);
     marks::rings(screen.state, rect, &painter);
+    partners::show(screen.state, rect, &painter);
     crossings::marks(screen.state, rect, &painter);
     traces::marks(screen.state, rect, &painter);
     gizmo::show(screen.state, rect, &painter);

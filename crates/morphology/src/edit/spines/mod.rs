@@ -1,4 +1,4 @@
-//! Spines on dendrites: short twigs with a head, at random places of a given density.
+//! Spines on dendrites: short twigs with a head, at random places of a given density or where they are known to be.
 //!
 //! ```text
 //!        ●        head: a sphere whose far half is the twig's round end
@@ -7,8 +7,9 @@
 //! ```
 //!
 //! **Theory.** Sizes are those that K. M. Harris and J. K. Stevens measured in the hippocampus (Dendritic
-//! spines of CA1 pyramidal cells in the rat hippocampus, 1989): see `shape.rs`. Places are as far apart as the
-//! density says, give or take a half, in directions that are random around the dendrite.
+//! spines of CA1 pyramidal cells in the rat hippocampus, 1989): see `shape.rs`. Of a density (`density.rs`), places are
+//! as far apart as it says, give or take a half, in directions that are random around the dendrite. A given place
+//! (`given.rs`), as that of a synapse, is on the nearest neurite, in the direction in which it lies.
 //!
 //! **Practice.** A spine is a twig of the tracing, so whatever meshes, draws or measures tracings does the same
 //! with spines. The surface at a fork needs room along its branch: bases are at least two radii apart, and as
@@ -16,160 +17,64 @@
 //! would touch a neurite, a soma or another spine is turned around its dendrite; after eight tries it is left out.
 //! Time grows with the samples, the lengths by the radii, and the spines.
 
+mod base;
+mod density;
+mod given;
+mod line;
 mod room;
 mod shape;
 
-use glam::DVec3;
-
 use super::nodes::{Edits, Nodes};
-use super::{EditError, positive};
-use crate::random::Random;
-use crate::{Morphology, NeuriteKind, Node, SectionId};
+use super::{EditError, SpinePlaces};
+use crate::{Morphology, NeuriteKind, Node};
+use base::Base;
+pub use given::SPINE_REACH;
 use room::Room;
-use shape::Spine;
 
 /// Type of spines' samples, which is free in SWC files (5 and above).
 pub const SPINE: NeuriteKind = NeuriteKind(7);
 
-/// Bases are at least so many radii of the dendrite from one another, forks and somata. In meshes of level 2 of a
-/// pyramidal cell with 3,200 to 7,000 spines, 20,600 pairs of triangles crossed at a share of 0.3, 157 at 1, 6 at 2.
-const APART: f64 = 2.0;
-/// Directions that are tried.
-const TRIES: usize = 8;
 /// Most spines: some gigabytes.
 const MOST: f64 = 1e7;
 
-/// A spine's place on the way from a node's parent to the node.
-struct Base {
-    center: DVec3,
-    radius: f64,
-    /// Unit vector away from the dendrite.
-    outwards: DVec3,
-    spine: Spine,
+/// Spines that have a place, and those that have none.
+struct Grown {
+    /// By node: the spines between its parent and itself, in their order.
+    bases: Vec<Vec<Base>>,
+    room: Room,
+    /// How many there was no room for.
+    left: usize,
 }
 
-/// Grows spines on dendrites, so many for each µm.
+/// Grows spines on dendrites.
 pub(super) fn grow(
     morphology: &Morphology,
     nodes: &Nodes,
-    density: f64,
+    places: &SpinePlaces,
     seed: u64,
 ) -> Result<Edits, EditError> {
-    positive("the density of spines", density)?;
-    let dendrites = || {
-        let ids = (0..morphology.sections.len() as u32).map(SectionId);
-        ids.filter(|id| is_dendrite(morphology.sections[id.index()].kind))
+    let mut grown = Grown {
+        bases: Vec::new(),
+        room: Room::new(morphology, nodes),
+        left: 0,
     };
-    let lines = dendrites().map(|id| length(nodes, &nodes.of_section(morphology, id)));
-    let spines = density * lines.sum::<f64>();
-    if spines > MOST {
-        return Err(EditError::TooManySpines { density, spines });
-    }
-    let mut room = Room::new(morphology, nodes);
-    // By node: the spines between its parent and itself, in their order.
-    let mut bases: Vec<Vec<Base>> = Vec::new();
-    bases.resize_with(nodes.nodes.len(), Vec::new);
-    let mut left = 0;
-    for id in dendrites() {
-        // A stream for each section, so that one that is edited leaves the others' spines as they are.
-        let mut random = Random::new(seed, u64::from(id.0));
-        let line = nodes.of_section(morphology, id);
-        left += grow_on(nodes, &line, density, &mut random, &mut room, &mut bases);
+    grown.bases.resize_with(nodes.nodes.len(), Vec::new);
+    match places {
+        SpinePlaces::Density(density) => {
+            density::grow(morphology, nodes, *density, seed, &mut grown)?;
+        }
+        SpinePlaces::File => given::grow_at(morphology, nodes, &nodes.spines, seed, &mut grown)?,
+        SpinePlaces::At(places) => given::grow_at(morphology, nodes, places, seed, &mut grown)?,
+        SpinePlaces::Along(shares) => {
+            given::grow_along(morphology, nodes, shares, seed, &mut grown)?;
+        }
     }
     Ok(Edits {
         largest_move: Some(0.0),
-        left,
-        ..Edits::in_place(with_spines(nodes, &bases))
+        left: grown.left,
+        spines: (*places == SpinePlaces::File).then(Vec::new),
+        ..Edits::in_place(with_spines(nodes, &grown.bases))
     })
-}
-
-fn is_dendrite(kind: NeuriteKind) -> bool {
-    [NeuriteKind::BASAL_DENDRITE, NeuriteKind::APICAL_DENDRITE].contains(&kind)
-}
-
-fn length(nodes: &Nodes, line: &[usize]) -> f64 {
-    let ways = line.windows(2);
-    ways.map(|way| {
-        let [from, to] = [way[0], way[1]].map(|i| nodes.nodes[i].position);
-        from.distance(to)
-    })
-    .sum()
-}
-
-/// Grows spines along a section. Returns how many there was no room for.
-fn grow_on(
-    nodes: &Nodes,
-    line: &[usize],
-    density: f64,
-    random: &mut Random,
-    room: &mut Room,
-    bases: &mut [Vec<Base>],
-) -> usize {
-    let total = length(nodes, line);
-    let mut left = 0;
-    // Distances (µm) from the start of the section: of the node before, and of the next base.
-    let mut before = 0.0;
-    let radius_of = |i: usize| nodes.nodes[i].radius;
-    let (Some(&first), Some(&last)) = (line.first(), line.last()) else {
-        return 0;
-    };
-    let mut next = (APART * radius_of(first)).max(random.unit() / density);
-    let end = total - APART * radius_of(last);
-    for way in line.windows(2) {
-        let [from, to] = [way[0], way[1]].map(|i| &nodes.nodes[i]);
-        let step = from.position.distance(to.position);
-        while next < (before + step).min(end) {
-            let share = (next - before) / step;
-            let radius = from.radius + share * (to.radius - from.radius);
-            let base = Base {
-                center: from.position.lerp(to.position, share),
-                radius,
-                outwards: DVec3::ZERO,
-                spine: Spine::new(radius, random),
-            };
-            let axis = (to.position - from.position) / step;
-            // As thick as the way is where it is thickest, so that necks begin outside.
-            let widest = from.radius.max(to.radius);
-            match turned(base, axis, widest, random, room) {
-                Some(base) => bases[way[1]].push(base),
-                None => left += 1,
-            }
-            next += ((0.5 + random.unit()) / density).max(APART * radius);
-        }
-        before += step;
-    }
-    left
-}
-
-/// The spine in a direction in which it touches nothing, if one of a few is.
-fn turned(
-    mut base: Base,
-    axis: DVec3,
-    widest: f64,
-    random: &mut Random,
-    room: &mut Room,
-) -> Option<Base> {
-    let aside = axis.any_orthonormal_vector();
-    let across = axis.cross(aside);
-    base.spine.begin_outside(widest);
-    for _ in 0..TRIES {
-        let angle = std::f64::consts::TAU * random.unit();
-        base.outwards = libm::cos(angle) * aside + libm::sin(angle) * across;
-        let spheres = base.spine.spheres();
-        let there =
-            |&(distance, radius): &(f64, f64)| (base.center + distance * base.outwards, radius);
-        let spheres: Vec<(DVec3, f64)> = spheres.iter().map(there).collect();
-        if spheres
-            .iter()
-            .all(|&(center, radius)| room.is_free(center, radius))
-        {
-            for (center, radius) in spheres {
-                room.take(center, radius);
-            }
-            return Some(base);
-        }
-    }
-    None
 }
 
 /// The nodes with a new one for each base, on which the spine's hang.
@@ -209,7 +114,7 @@ impl Made {
     fn push(
         &mut self,
         kind: NeuriteKind,
-        position: DVec3,
+        position: glam::DVec3,
         radius: f64,
         parent: Option<u32>,
     ) -> u32 {

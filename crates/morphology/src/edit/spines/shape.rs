@@ -24,23 +24,43 @@ pub(super) struct Spine {
 /// Necks are at most this share of their dendrite's radius and of their head's.
 const NECK_OF_DENDRITE: f64 = 0.5;
 const NECK_OF_HEAD: f64 = 0.6;
+/// The nearer sample of a head is so many of its radii before its center.
+const NEAR: f64 = 0.52;
 /// Samples nearer to one another than this share of the larger radius are left out by meshing.
 const SPACING: f64 = 0.5;
 
+/// Room (µm) from the membrane that a spine of known length needs: the smallest head and a neck that is outside.
+const LEAST: f64 = 0.5;
+/// Gap (µm) between the dendrite and what has left it.
+const OUTSIDE: f64 = 1.5 * GAP;
+
 impl Spine {
-    /// One for a dendrite of this radius (µm).
-    pub(super) fn new(dendrite: f64, random: &mut Random) -> Self {
-        let length = skewed(random, (0.45, 0.29), (0.08, 1.6));
-        let neck = skewed(random, (0.15, 0.06), (0.04, 0.46)) / 2.0;
+    /// One for a dendrite of this radius (µm). `tip`: how far (µm) from the dendrite's center line it ends, if that is
+    /// known and beyond the membrane; neck and head are smaller then, if there is no room for more.
+    pub(super) fn new(dendrite: f64, tip: Option<f64>, random: &mut Random) -> Self {
+        let mut length = skewed(random, (0.45, 0.29), (0.08, 1.6));
+        let mut neck = skewed(random, (0.15, 0.06), (0.04, 0.46)) / 2.0;
         let volume = skewed(random, (0.051, 0.08), (0.003, 0.55));
-        let head = (0.75 * volume / PI).cbrt();
+        let mut head = (0.75 * volume / PI).cbrt();
+        let room = tip.map(|tip| tip - dendrite);
+        let room = room.filter(|room| *room >= LEAST);
+        if let Some(room) = room {
+            neck = neck.min(0.15 * room);
+            // Half of the neck's length takes it outside; the head is as far from the dendrite as its near sample.
+            head = head.min(room / 2.0 - OUTSIDE - neck);
+            head = head.min((room - OUTSIDE) / (1.0 + NEAR + (1.0 - NEAR * NEAR).sqrt()));
+        }
         let neck = neck
             .min(NECK_OF_DENDRITE * dendrite)
             .min(NECK_OF_HEAD * head);
-        let mut samples = vec![(dendrite + 0.5 * length, neck), (dendrite + length, neck)];
         // The neck ends in the sphere of the head, whose far half is the round end of the twig.
-        let center = dendrite + length + (head * head - neck * neck).sqrt();
-        for before in [0.52_f64, 0.0] {
+        let rise = (head * head - neck * neck).sqrt();
+        if let Some(room) = room {
+            length = room - head - rise;
+        }
+        let mut samples = vec![(dendrite + 0.5 * length, neck), (dendrite + length, neck)];
+        let center = dendrite + length + rise;
+        for before in [NEAR, 0.0] {
             let radius = head * (1.0 - before * before).sqrt();
             let distance = center - before * head;
             let near = samples
@@ -60,8 +80,8 @@ impl Spine {
 
     /// Moves it outwards as far as a dendrite that is this thick (µm) close by needs.
     pub(super) fn begin_outside(&mut self, dendrite: f64) {
-        let least = dendrite + self.samples[0].1 + 1.5 * GAP;
-        let more = (least - self.samples[0].0).max(0.0);
+        let missing = |&(distance, radius): &(f64, f64)| dendrite + radius + OUTSIDE - distance;
+        let more = self.samples.iter().map(missing).fold(0.0, f64::max);
         for (distance, _) in &mut self.samples {
             *distance += more;
         }

@@ -1,4 +1,4 @@
-//! Where on a neuron a compartment of a report is.
+//! Sections as reports and edges number them, and where on a neuron a compartment is.
 //!
 //! **Theory.** Reports number sections as NEURON does: 0 is the soma, then all sections of the axon,
 //! of the basal dendrites, of the apical ones, and of the rest, each kind in depth-first order (SONATA
@@ -6,7 +6,8 @@
 //! numbers are counted anew here. A section that is reported in `n` compartments has them at
 //! (k + ½) / n of its length; `element_pos` says it otherwise.
 
-use neurotess_morphology::{Morphology, NeuriteKind, SectionId};
+use glam::DVec3;
+use neurotess_morphology::{Morphology, NeuriteKind, Point, SectionId, shape};
 
 /// A compartment: a piece of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,10 +56,39 @@ impl SectionOrder {
         Some(Location::Section(*section, compartment.along))
     }
 
+    /// The place of a compartment in the file's coordinates (µm): on the axis of its section, or the soma's center.
+    pub fn position(&self, morphology: &Morphology, compartment: Compartment) -> Option<DVec3> {
+        match self.place(compartment)? {
+            Location::Soma => {
+                let soma = morphology.soma()?;
+                Some(morphology.origin + soma.center.as_dvec3())
+            }
+            Location::Section(section, along) => along_section(morphology, section, along.into()),
+        }
+    }
+
     /// The sections in this order: the first has number 1.
     pub fn sections(&self) -> &[SectionId] {
         &self.0
     }
+}
+
+/// The place (µm) at a share of a section's length; none if that is no share.
+fn along_section(morphology: &Morphology, section: SectionId, share: f64) -> Option<DVec3> {
+    let at = |point: &Point| morphology.origin + point.position.as_dvec3();
+    let links = shape::links(morphology, section).map(|(from, to)| (at(from), at(to)));
+    let length: f64 = links.clone().map(|(from, to)| from.distance(to)).sum();
+    let mut rest = share.clamp(0.0, 1.0) * length;
+    let mut last = morphology.section_points(section).last().map(at);
+    for (from, to) in links.filter(|_| !share.is_nan()) {
+        let step = from.distance(to);
+        if rest <= step && step > 0.0 {
+            return Some(from.lerp(to, rest / step));
+        }
+        rest -= step;
+        last = Some(to);
+    }
+    last.filter(|_| !share.is_nan())
 }
 
 /// Elements that follow one another with the same number share its section.
@@ -92,11 +122,15 @@ mod tests {
         assert_eq!(along(&[0, 1], Some(&[0.1, f64::NAN])), [0.1, 0.5]);
     }
 
-    #[test]
-    fn sections_are_numbered_by_kind() {
+    fn read_cell() -> Morphology {
         let text = b"1 1 0 0 0 5 -1\n2 4 0 6 0 1 1\n3 4 0 9 0 1 2\n4 2 0 -6 0 1 1\n5 3 6 0 0 1 1\n";
         let read = neurotess_formats::swc::read_bytes(text, "c.swc", &Default::default());
-        let order = SectionOrder::of(&read.expect("a cell").morphology);
+        read.expect("a cell").morphology
+    }
+
+    #[test]
+    fn sections_are_numbered_by_kind() {
+        let order = SectionOrder::of(&read_cell());
         let place = |section| {
             let along = 0.5;
             order.place(Compartment { section, along })
@@ -107,6 +141,14 @@ mod tests {
         let expected = [1, 2, 0].map(|id| Some(Location::Section(SectionId(id), 0.5)));
         assert_eq!(ids, expected);
         assert_eq!(place(4), None);
+        let cell = read_cell();
+        let order = SectionOrder::of(&cell);
+        let at = |section, along| order.position(&cell, Compartment { section, along });
+        // The second section of the file has 3 µm along y from 6 to 9.
+        assert_eq!(at(0, 0.3), Some(DVec3::ZERO));
+        assert_eq!(at(3, 0.5), Some(DVec3::new(0.0, 7.5, 0.0)));
+        assert_eq!(at(3, 1.0), Some(DVec3::new(0.0, 9.0, 0.0)));
+        assert_eq!((at(4, 0.5), at(3, f32::NAN)), (None, None));
         assert_eq!(order.sections()[2], SectionId(0));
     }
 }
