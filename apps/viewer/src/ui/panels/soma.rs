@@ -96,8 +96,9 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let sources = match state.document.neurons.selected_sources() {
         [] => state.document.neurons.sources(),
         selected => selected,
-    };
-    spines::show(state, &sources.to_vec(), ui);
+    }
+    .to_vec();
+    spines::show(state, &sources, ui);
     measures(state, first, &edit, ui);
 }
 
