@@ -125,7 +125,30 @@ def test_no_edit_of_the_command_is_missing() -> None:
     flags = {flag.replace("-", "_") for flag in re.findall(r"^\s+(?:-\w, )?--([a-z-]+)", helped, re.M)}
     files = {"out", "force", "format", "strict", "dry_run", "threads", "help"}
     common = {"json", "quiet", "verbose", "no_progress", "color"}
-    assert flags - files - common == set(inspect.signature(nt.edit).parameters) - {"cell"}
+    # In Python a circuit's cells are selected by `Circuit.select`.
+    cells = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
+    assert flags - files - common - cells == set(inspect.signature(nt.edit).parameters) - {"cell"}
+
+
+def test_spines_grow_where_they_are_asked_for(tmp_path: Path) -> None:
+    dendrite = b"1 1 0 0 0 5 -1\n" + b"".join(
+        b"%d 3 %d 0 0 0.8 %d\n" % (i, 3 * i, i - 1) for i in range(2, 40)
+    )
+    (tmp_path / "dendrite.swc").write_bytes(dendrite)
+    plain = nt.read(tmp_path / "dendrite.swc")
+    places = np.array([[30.0, 1.0, 0.0], [60.0, 0.0, 1.0], [90.0, -1.0, 0.0]])
+    grown = nt.edit(plain, spines=places)
+    assert grown.edits[0]["edit"] == "spines"
+    types = np.asarray(grown.types)
+    heads = np.asarray(grown.points)[types == 7]
+    for place in places:
+        assert np.min(np.abs(heads[:, 0] - place[0])) < 1.0
+    table = tmp_path / "places.csv"
+    table.write_text("x,y,z\n" + "".join(f"{x},{y},{z}\n" for x, y, z in places))
+    assert np.sum(np.asarray(nt.edit(plain, spines=table).types) == 7) == len(heads)
+    assert nt.mesh(grown, level=1).check()["closed"]
+    with pytest.raises(ValueError, match="three coordinates"):
+        nt.edit(plain, spines=np.zeros((2, 2)))
 
 
 def test_edited_cells_are_pickled(cell: nt.Morphology) -> None:
