@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import importlib
 import inspect
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -105,3 +106,11 @@ def test_the_stub_is_that_of_the_module() -> None:
     pytest.importorskip("mypy")
     checked = python("-m", "mypy.stubtest", "neurotess._neurotess", "--concise")
     assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_the_command_starts_itself_again() -> None:
+    small = ["--neurons", "20", "--morphologies", "2", "--points", "100", "--json"]
+    line = [sys.executable, "-m", "neurotess", "bench", "opening", *small]
+    ran = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    assert json.loads(ran.stdout)

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use neurotess::circuit::{Circuit, Instance, is_circuit};
+use neurotess::circuit::{Circuit, Instance, NodeRef, is_circuit};
 
 use crate::report::{Failure, Reporter};
 
@@ -22,6 +22,24 @@ pub(crate) fn open(path: &Path, reporter: &Reporter) -> Result<Circuit, Failure>
         reporter.warning(&warning.to_string());
     }
     Ok(circuit)
+}
+
+/// Instances of chosen nodes; warns of those that have no morphology or place.
+pub(crate) fn instances(
+    circuit: &Circuit,
+    nodes: &[NodeRef],
+    reporter: &Reporter,
+) -> Vec<Instance> {
+    let instances = circuit.instances(nodes, None);
+    if instances.len() < nodes.len() {
+        let without = nodes.len() - instances.len();
+        let total = nodes.len();
+        reporter.warning(&format!(
+            "{}: {without} of {total} chosen cells have no morphology or place: left out",
+            circuit.file
+        ));
+    }
+    instances
 }
 
 /// A file for each cell: population and id; the row too where several rows share an id.

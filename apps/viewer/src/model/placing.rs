@@ -102,11 +102,11 @@ impl Handle {
 
 /// Whether an arrow along an axis can be seen from the side, so that the mouse can follow it.
 pub(crate) fn can_follow(view: &View, pivot: DVec3, index: usize) -> bool {
-    axis(index).cross(sight(view, pivot)).length() > APART
+    axis(index).cross(ray_to(view, pivot)).length() > APART
 }
 
 /// The direction in which the camera sees a place.
-pub(crate) fn sight(view: &View, place: DVec3) -> DVec3 {
+pub(crate) fn ray_to(view: &View, place: DVec3) -> DVec3 {
     let camera = view.camera();
     let forward = -camera.axes()[2];
     match view.orthographic {
@@ -171,7 +171,7 @@ impl Drag {
     /// lines.
     fn along(&self, index: usize, at: [f64; 2]) -> f64 {
         let place = self.under(at);
-        let way = sight(&self.view, place);
+        let way = ray_to(&self.view, place);
         let (axis, apart) = (axis(index), self.pivot - place);
         let slanted = axis.dot(way);
         let sine = 1.0 - slanted * slanted;
@@ -181,13 +181,13 @@ impl Drag {
     /// The angle about an axis from where the drag began.
     fn angle(&self, index: usize, to: [f64; 2]) -> f64 {
         let axis = axis(index);
-        let sight = sight(&self.view, self.pivot);
-        if axis.dot(sight).abs() < FACING {
-            return self.along_the_front(axis, sight, to);
+        let ray = ray_to(&self.view, self.pivot);
+        if axis.dot(ray).abs() < FACING {
+            return self.along_the_front(axis, ray, to);
         }
         let [from, to] = [self.from, to].map(|at| {
             let place = self.under(at);
-            let way = self::sight(&self.view, place);
+            let way = ray_to(&self.view, place);
             // Where the line of sight meets the ring's plane.
             place + way * (self.pivot - place).dot(axis) / way.dot(axis) - self.pivot
         });
@@ -196,8 +196,8 @@ impl Drag {
     }
 
     /// The angle of a ring that is seen from the side: as far as its front goes with the mouse.
-    fn along_the_front(&self, axis: DVec3, sight: DVec3, to: [f64; 2]) -> f64 {
-        let front = -(sight - axis * sight.dot(axis));
+    fn along_the_front(&self, axis: DVec3, ray: DVec3, to: [f64; 2]) -> f64 {
+        let front = -(ray - axis * ray.dot(axis));
         let along = axis.cross(front.try_normalize().unwrap_or(DVec3::ZERO)) * RING;
         let [right, up, _] = self.view.camera().axes();
         let (x, y) = (along.dot(right), -along.dot(up));

@@ -150,7 +150,11 @@ fn open(
 fn start<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> anyhow::Result<()> {
     let program = std::env::current_exe().context("this program")?;
     let mut command = Command::new(program);
-    command.args(arguments).stdout(Stdio::null());
+    // In the Python package the program is Python: its script, or `-m neurotess`, comes before the command's name.
+    let before = std::env::args_os()
+        .skip(1)
+        .take_while(|word| word != "bench");
+    command.args(before).args(arguments).stdout(Stdio::null());
     let status = command.status().context("this program")?;
     anyhow::ensure!(status.success(), "an opening failed: see above");
     Ok(())

@@ -90,15 +90,7 @@ fn open(
 ) -> Result<Cells, Failure> {
     let circuit = circuits::open(path, reporter)?;
     let nodes = args.cells.select(&circuit)?;
-    let instances = circuit.instances(&nodes, None);
-    if instances.len() < nodes.len() {
-        let without = nodes.len() - instances.len();
-        let total = nodes.len();
-        reporter.warning(&format!(
-            "{}: {without} of {total} chosen cells have no morphology or place: left out",
-            circuit.file
-        ));
-    }
+    let instances = circuits::instances(&circuit, &nodes, reporter);
     let synapses = match recipe.needs_synapses() {
         true => circuit.inputs(&instances),
         false => Ok(vec![Vec::new(); instances.len()]),

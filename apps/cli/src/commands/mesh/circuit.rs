@@ -57,15 +57,7 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
             return reporter.document(&[failed]);
         }
     };
-    let instances = circuit.instances(&nodes, None);
-    if instances.len() < nodes.len() {
-        let without = nodes.len() - instances.len();
-        let total = nodes.len();
-        reporter.warning(&format!(
-            "{}: {without} of {total} chosen cells have no morphology or place: left out",
-            circuit.file
-        ));
-    }
+    let instances = circuits::instances(&circuit, &nodes, reporter);
     if in_one_file {
         return circuit_glb::run(args, &circuit, &instances, reporter);
     }

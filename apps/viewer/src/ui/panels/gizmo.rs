@@ -148,7 +148,7 @@ impl Gizmo {
         let middle = marks::at(&camera, rect, pivot)?;
         let pixel = placing::pixel(view, pivot, f64::from(rect.height()));
         let at = |offset: DVec3| marks::at(&camera, rect, pivot + offset * pixel);
-        let sight = placing::sight(view, pivot);
+        let ray = placing::ray_to(view, pivot);
         let arrow = |index: usize| {
             let along = placing::axis(index) * ARROW;
             let there = placing::can_follow(view, pivot, index);
@@ -161,10 +161,10 @@ impl Gizmo {
                 u * angle.cos() + v * angle.sin()
             };
             // A ring that faces the camera is in front all around.
-            let faces = placing::axis(index).dot(sight).abs() > FACES;
+            let faces = placing::axis(index).dot(ray).abs() > FACES;
             let piece = |i: usize| {
                 let [a, b] = [place(i), place(i + 1)];
-                Some(([at(a)?, at(b)?], faces || (a + b).dot(sight) < 0.1 * RING))
+                Some(([at(a)?, at(b)?], faces || (a + b).dot(ray) < 0.1 * RING))
             };
             (0..ROUND).filter_map(piece).collect()
         };
