@@ -7,14 +7,23 @@
 //! Robust Triangle-Triangle Overlap Test Using Orientation Predicates, 2003, decide the same with
 //! fewer determinants; ours come after a box test that leaves few pairs, and one test for edges
 //! also serves the triangles that share a vertex).
+//!
+//! Nearly all pairs are far from touching, seen from the nearer of the two: a plane parts them by
+//! much more than what rounding can amount to. Such planes are looked for first (`parting.rs`).
 
 use glam::DVec3;
 use robust::{Coord, Coord3D};
+
+use crate::parting::{flat_fold_is_excluded, plane_parts_fans, plane_parts_triangles};
 
 type Triangle = [DVec3; 3];
 
 /// Whether triangles without a common vertex meet.
 pub(crate) fn triangles_meet(a: &Triangle, b: &Triangle) -> bool {
+    !plane_parts_triangles(a, b) && triangles_meet_exactly(a, b)
+}
+
+fn triangles_meet_exactly(a: &Triangle, b: &Triangle) -> bool {
     let a_beside_b = a.map(|p| side(b, p));
     if apart(a_beside_b) {
         return false;
@@ -29,12 +38,16 @@ pub(crate) fn triangles_meet(a: &Triangle, b: &Triangle) -> bool {
 /// Whether triangles whose first corners are one and the same meet elsewhere: then the edge of one
 /// that lies opposite meets the other.
 pub(crate) fn fans_meet(a: &Triangle, b: &Triangle) -> bool {
+    !plane_parts_fans(a, b) && fans_meet_exactly(a, b)
+}
+
+fn fans_meet_exactly(a: &Triangle, b: &Triangle) -> bool {
     segment_meets(a[1], a[2], b) || segment_meets(b[1], b[2], a)
 }
 
 /// Whether triangles whose first two corners are the same, in either order, lie upon each other.
 pub(crate) fn folded(a: &Triangle, b: &Triangle) -> bool {
-    if side(a, b[2]) != 0.0 {
+    if flat_fold_is_excluded(a, b) || side(a, b[2]) != 0.0 {
         return false;
     }
     let axis = flat_axis(a);
@@ -149,4 +162,54 @@ fn turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
         _ => Coord { x: p.x, y: p.y },
     });
     robust::orient2d(a, b, c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of a small grid, so that many are in one plane, on one line or the same; and some
+    /// far from the origin, where coordinates round.
+    fn points(seed: u32) -> impl Iterator<Item = DVec3> {
+        let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(12_345);
+        let mut next = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state >> 16
+        };
+        let shift = if seed % 3 == 0 { 1000.1 } else { 0.0 };
+        let scale = if seed % 2 == 0 { 1.0 } else { 0.1 };
+        let mut number = move || ((next() % 5) as f32 * scale + shift) as f64;
+        std::iter::from_fn(move || Some(DVec3::new(number(), number(), number())))
+    }
+
+    #[test]
+    fn what_a_plane_parts_is_apart_exactly() {
+        let (mut parted, mut left) = ([0; 3], [0; 3]);
+        for seed in 0..60_000 {
+            let p: Vec<DVec3> = points(seed).take(6).collect();
+            let (a, b) = ([p[0], p[1], p[2]], [p[3], p[4], p[5]]);
+            let (fan, wing) = ([p[0], p[4], p[5]], [p[0], p[1], p[5]]);
+            if !(has_area(&a) && has_area(&b) && has_area(&fan) && has_area(&wing)) {
+                continue;
+            }
+            let found = [
+                (
+                    plane_parts_triangles(&a, &b),
+                    triangles_meet_exactly(&a, &b),
+                ),
+                (plane_parts_fans(&a, &fan), fans_meet_exactly(&a, &fan)),
+                (flat_fold_is_excluded(&a, &wing), side(&a, wing[2]) == 0.0),
+            ];
+            for (n, (excluded, meet)) in found.into_iter().enumerate() {
+                assert!(!(excluded && meet), "{seed}: {n}");
+                parted[n] += usize::from(excluded);
+                left[n] += usize::from(!excluded && !meet);
+            }
+        }
+        // It pays only if it parts most of those that are apart.
+        assert!(
+            (0..3).all(|n| parted[n] > 2 * left[n]),
+            "{parted:?} {left:?}"
+        );
+    }
 }

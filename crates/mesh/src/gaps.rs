@@ -26,11 +26,14 @@ pub(crate) fn gaps(positions: &[Vec3], triangles: &[[u32; 3]]) -> Gaps {
         .par_iter()
         .filter_map(|face| Face::new(face.map(|corner| positions[corner as usize])))
         .collect();
-    let boxes: Vec<Bounds> = faces.iter().map(|face| Bounds::of(face.corners)).collect();
-    let tree = Bvh::new(&boxes);
-    let found: Vec<f64> = faces
+    let boxes: Vec<Bounds> = faces
         .par_iter()
-        .filter_map(|face| nearest(face, &faces, &tree))
+        .map(|face| Bounds::of(face.corners))
+        .collect();
+    let tree = Bvh::new(&boxes);
+    let found: Vec<f64> = (0..tree.group_count())
+        .into_par_iter()
+        .flat_map_iter(|group| nearest(group, &faces, &tree))
         .collect();
     Gaps {
         share: found.len() as f64 / triangles.len().max(1) as f64,
@@ -61,6 +64,19 @@ impl Face {
         })
     }
 
+    /// The distance from the middle to another face if each is in front of the other, and they are no
+    /// neighbors.
+    fn gap(&self, other: &Self) -> Option<f64> {
+        let facing = self.normal.dot(other.normal) < 0.0;
+        // Most others are the far wall of the same tube: this one is behind them.
+        let before_other = other.normal.dot(self.middle - other.corners[0].as_dvec3()) > 0.0;
+        if !facing || !before_other || self.is_neighbor(other) {
+            return None;
+        }
+        let way = closest(self.middle, other.corners.map(Vec3::as_dvec3)) - self.middle;
+        (self.normal.dot(way) > 0.0).then(|| way.length())
+    }
+
     fn is_neighbor(&self, other: &Self) -> bool {
         self.corners
             .iter()
@@ -68,30 +84,33 @@ impl Face {
     }
 }
 
-/// The gap in front of a face over the mean length of its sides, if it is below 1.
-fn nearest(face: &Face, faces: &[Face], tree: &Bvh) -> Option<f64> {
-    let reach = Vec3::splat(face.side as f32);
-    let middle = face.middle.as_vec3();
-    let query = Bounds {
-        low: middle - reach,
-        high: middle + reach,
+/// For the faces of a group the gaps in front of them over the mean lengths of their sides, those below 1.
+fn nearest(group: usize, faces: &[Face], tree: &Bvh) -> Vec<f64> {
+    let query = |n: u32| {
+        let face = &faces[n as usize];
+        let (middle, reach) = (face.middle.as_vec3(), Vec3::splat(face.side as f32));
+        Bounds {
+            low: middle - reach,
+            high: middle + reach,
+        }
     };
-    let (mut least, mut looks) = (face.side, 0);
-    tree.overlaps_of(&query, |n| {
-        looks += 1;
-        let other = &faces[n as usize];
-        let facing = face.normal.dot(other.normal) < 0.0;
-        if !facing || face.is_neighbor(other) {
-            return looks < LOOKS;
+    let mut found = Vec::new();
+    let mut now = (u32::MAX, 0, f64::INFINITY);
+    tree.overlaps_of_group(group, query, |n, other| {
+        let (face, other) = (&faces[n as usize], &faces[other as usize]);
+        if now.0 != n {
+            found.extend((now.2 < 1.0).then_some(now.2));
+            now = (n, 0, f64::INFINITY);
         }
-        let way = closest(face.middle, other.corners.map(Vec3::as_dvec3)) - face.middle;
-        let before_both = face.normal.dot(way) > 0.0 && other.normal.dot(way) < 0.0;
-        if before_both {
-            least = least.min(way.length());
+        let (_, looks, least) = &mut now;
+        *looks += 1;
+        if let Some(gap) = face.gap(other) {
+            *least = least.min(gap / face.side);
         }
-        looks < LOOKS
+        *looks < LOOKS
     });
-    (least < face.side).then(|| least / face.side)
+    found.extend((now.2 < 1.0).then_some(now.2));
+    found
 }
 
 /// The point of a triangle that is closest to `p` (C. Ericson, Real-Time Collision Detection, 2005, 5.1.5).

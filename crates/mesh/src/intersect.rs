@@ -18,7 +18,7 @@
 //! those are some tens for each face; but thousands of pieces in one place are all within one another, and
 //! 300,000 of them would take hours. So a [`Search`] stops when it has found more pairs than there are faces
 //! (and than a million), or has looked at 256 pairs of boxes for each triangle; then what it has is "at
-//! least". Batches of the tree's leaves are searched in order, and their size depends on what was found
+//! least". Batches of the tree's blocks are searched in order, and their size depends on what was found
 //! before and on nothing else: an unfinished search is the same on every machine.
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -159,8 +159,7 @@ impl Limits {
     }
 }
 
-/// Leaves in the first batch, and in any.
-const FIRST_BATCH: usize = 8;
+/// Most blocks in a batch; the first has one. Enough for many threads, few enough to stop soon.
 const MOST_BATCH: u64 = 256;
 
 fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() -> bool) -> Search {
@@ -170,9 +169,9 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() ->
         .map(|triangle| Bounds::of(triangle.corners.map(|corner| positions[corner as usize])))
         .collect();
     let tree = Bvh::new(&boxes);
-    let of_leaf = |leaf: usize| {
+    let of_block = |block: usize| {
         let (mut pairs, mut looked_at) = (Vec::new(), 0);
-        tree.overlaps_of_leaf(leaf, |a, b| {
+        tree.overlaps_of_block(block, |a, b| {
             looked_at += 1;
             let (a, b) = (&triangles[a as usize], &triangles[b as usize]);
             if a.face != b.face && a.crosses(b, positions) {
@@ -186,15 +185,15 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() ->
         (a.0, a.1 + b.1)
     };
     let (mut pairs, mut looked_at) = (Vec::new(), 0);
-    let leaves = tree.leaf_count();
-    let (mut next, mut batch) = (0, FIRST_BATCH);
+    let blocks = tree.block_count();
+    let (mut next, mut batch) = (0, 1);
     let within =
         |pairs: &[_], looked_at| pairs.len() < limits.pairs && looked_at < limits.looked_at;
-    while next < leaves && within(&pairs, looked_at) && go_on() {
-        let end = leaves.min(next + batch);
+    while next < blocks && within(&pairs, looked_at) && go_on() {
+        let end = blocks.min(next + batch);
         let found = (next..end)
             .into_par_iter()
-            .map(of_leaf)
+            .map(of_block)
             .reduce(Default::default, joined);
         (pairs, looked_at) = joined((pairs, looked_at), found);
         next = end;
@@ -207,7 +206,7 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() ->
     pairs.dedup();
     Search {
         pairs,
-        complete: next == leaves,
+        complete: next == blocks,
         looked_at,
     }
 }

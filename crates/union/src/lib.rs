@@ -6,7 +6,8 @@
 //! points of **winding number** 1 or more. All other faces, and their vertices with all attributes, stay to
 //! the bit. Then splinters are left out, sheets that touch are parted, needles and caps at the **seams** are
 //! tidied, seams are smoothed a little, and the result is checked; what still crosses after rounding to 32
-//! bits is cut once more.
+//! bits is cut once more. On request ([`UnionOptions::least_angle`]) narrow triangles are made wider, wherever
+//! they are.
 //!
 //! Merging makes **handles**: two branches that cross grow together. [`UnionReport::places`] names each place.
 //!
@@ -14,7 +15,7 @@
 //! the arrangement of the faces near crossings only: the winding numbers of its cells follow from one ray
 //! through the whole surface for each set of cells that hang together.
 //!
-//! **Practice.** Time grows with the faces (a search for crossings, twice or more) and with the crossings.
+//! **Practice.** Time grows with the faces (a search for crossings among all of them, and further ones among those that changed) and with the crossings.
 //!
 //! ```
 //! use neurotess_mesh::{SurfaceMesh, SurfaceVertex};
@@ -40,6 +41,7 @@
 
 mod cells;
 mod engine;
+mod improve;
 mod merge;
 mod options;
 mod parts;
@@ -49,6 +51,7 @@ mod report;
 mod sheets;
 mod smooth;
 mod splice;
+mod stars;
 mod tidy;
 mod touch;
 mod winding;

@@ -1,5 +1,6 @@
 //! The recipe: find, cut, mend, check, and once more.
 
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess_mesh::{
@@ -7,6 +8,7 @@ use neurotess_mesh::{
     topology,
 };
 
+use crate::improve::improve;
 use crate::options::{UnionError, UnionOptions};
 use crate::parts::{drop_hidden, drop_splinters, least_volume};
 use crate::places::places;
@@ -57,6 +59,7 @@ pub fn union_stoppable(
     check()?;
     let mut report = before(&work)?;
     let mut pairs = crossings(&work, stopped)?;
+    let crossed = corners_of(&work, &pairs);
     report.pairs_before = pairs.len();
     report.places = places(&work, &pairs);
     report.dropped = drop_hidden(&mut work, &pairs);
@@ -93,8 +96,13 @@ pub fn union_stoppable(
     if report.rounds > 0 && pairs.is_empty() {
         report.smoothed = smooth(&mut work, options.smoothing);
     }
+    check()?;
+    if options.least_angle > 0.0 && pairs.is_empty() {
+        report.improved = improve(&mut work, options.least_angle).total();
+    }
     renew_normals(&mut work);
-    report.pairs = crossings(&work, stopped)?.len();
+    check()?;
+    report.pairs = crossings_of_changed(&work).len() + crossings_that_stayed(&work, &crossed);
     after(&work, &mut report);
     report.faces_changed = changed(mesh, &work);
     Ok(Union {
@@ -125,7 +133,36 @@ fn crossings(work: &Work, stopped: &AtomicBool) -> Result<Vec<[u32; 2]>, UnionEr
 
 /// Crossings of faces that are not of the input: the others' were all cut.
 fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
-    self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces())
+    match work.changed_faces() {
+        none if none.is_empty() => Vec::new(),
+        changed => self_intersections_of(&work.positions(), &work.faces(), &changed),
+    }
+}
+
+/// Corners of the faces of pairs. Faces of the input keep them, whatever becomes of their numbers.
+fn corners_of(work: &Work, pairs: &[[u32; 2]]) -> Vec<[[u32; 3]; 2]> {
+    let corners = |face: u32| work.triangles[face as usize];
+    pairs.iter().map(|pair| pair.map(corners)).collect()
+}
+
+/// How many of the pairs of the input that crossed are both still there. Together with those of changed faces
+/// they are all that cross: two faces of the input that did not cross do not begin to.
+fn crossings_that_stayed(work: &Work, crossed: &[[[u32; 3]; 2]]) -> usize {
+    let mut stays: HashMap<[u32; 3], bool> = crossed
+        .iter()
+        .flatten()
+        .map(|&face| (face, false))
+        .collect();
+    for (face, &changed) in work.triangles.iter().zip(&work.changed) {
+        if !changed
+            && !work.is_fresh(face)
+            && let Some(stays) = stays.get_mut(face)
+        {
+            *stays = true;
+        }
+    }
+    let both = |pair: &&[[u32; 3]; 2]| pair.iter().all(|face| stays[face]);
+    crossed.iter().filter(both).count()
 }
 
 /// Rounds after which crossings are no longer cut only, but pressed apart too. Real cells need two at most.

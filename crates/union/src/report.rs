@@ -39,6 +39,8 @@ pub struct UnionReport {
     pub parted: usize,
     /// Vertices at seams that were smoothed.
     pub smoothed: usize,
+    /// Edges flipped, edges collapsed and vertices moved to make small angles larger, anywhere.
+    pub improved: usize,
 }
 
 impl UnionReport {

@@ -100,14 +100,7 @@ fn put_back(work: &mut Work, before: &[(u32, Vec3)], faces: &[u32], rings: usize
             .iter()
             .for_each(|&corner| near[corner as usize] = true);
     }
-    for _ in 0..rings.min(TRIES - 1) {
-        let last = near.clone();
-        for face in &work.triangles {
-            if face.iter().any(|&corner| last[corner as usize]) {
-                face.iter().for_each(|&corner| near[corner as usize] = true);
-            }
-        }
-    }
+    let near = work.widened(near, rings.min(TRIES - 1));
     for &(vertex, position) in before {
         if near[vertex as usize] {
             work.vertices[vertex as usize].position = position;

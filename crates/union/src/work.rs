@@ -7,6 +7,7 @@ use crate::UnionError;
 
 /// Triangles with what is known of where they come from. Vertices that no triangle names stay until
 /// [`Work::finish`], so that numbers hold.
+#[derive(Clone)]
 pub(crate) struct Work {
     origin: DVec3,
     pub(crate) vertices: Vec<SurfaceVertex>,
@@ -121,6 +122,20 @@ impl Work {
             .filter(|&(_, changed)| changed)
             .map(|(face, _)| face)
             .collect()
+    }
+
+    /// A set of vertices together with those up to `rings` edges away.
+    pub(crate) fn widened(&self, mut vertices: Vec<bool>, rings: usize) -> Vec<bool> {
+        for _ in 0..rings {
+            let last = vertices.clone();
+            for face in &self.triangles {
+                if face.iter().any(|&corner| last[corner as usize]) {
+                    face.iter()
+                        .for_each(|&corner| vertices[corner as usize] = true);
+                }
+            }
+        }
+        vertices
     }
 
     /// Keeps those triangles for which `keep` holds.

@@ -97,6 +97,11 @@ proptest! {
         let (again, _) = merged(&union.mesh, &UnionOptions::default());
         prop_assert_eq!(again.report.rounds, 0);
         prop_assert_eq!(again.mesh.faces, union.mesh.faces);
+        // Wider triangles are as many pieces with as many handles, and still do not cross.
+        let options = UnionOptions { least_angle: 20.0, ..UnionOptions::default() };
+        let (wider, _) = merged(&mesh, &options);
+        prop_assert_eq!(wider.report.components, union.report.components);
+        prop_assert_eq!(wider.report.handles, union.report.handles);
     }
 
     #[test]

@@ -15,6 +15,10 @@ use serde::Serialize;
 use super::options::{MeshLevels, MeshOptions};
 use crate::report::Failure;
 
+/// Angles (degrees) of a mesh for simulators that are made larger where the surface allows it. Tetrahedra on
+/// narrower triangles are poor ones.
+const LEAST_ANGLE: f64 = 20.0;
+
 /// A surface to be written, and what is known of it.
 pub(super) struct CellSurface<'m> {
     pub(super) surface: Box<dyn Surface + 'm>,
@@ -50,9 +54,13 @@ impl<'m> CellSurface<'m> {
                 seconds: clock.elapsed().as_secs_f64(),
             });
         }
+        let union_options = UnionOptions {
+            least_angle: if options.simulation { LEAST_ANGLE } else { 0.0 },
+            ..UnionOptions::default()
+        };
         let merged = SurfaceMesh::collect_stoppable(&*surface, stopped)
             .ok_or(UnionError::Stopped)
-            .and_then(|whole| union_stoppable(&whole, &UnionOptions::default(), stopped));
+            .and_then(|whole| union_stoppable(&whole, &union_options, stopped));
         let merged = merged.map_err(|e| Failure(format!("what crosses cannot be merged: {e}")))?;
         if merged.report.pairs > 0 {
             let at = merged.report.places.first().map(|p| p.points);

@@ -1,0 +1,88 @@
+//! Narrow triangles are made wider, and the surface stays where it is.
+
+mod shapes;
+
+use glam::Vec3;
+use neurotess_mesh::{SurfaceMesh, check};
+use neurotess_union::UnionOptions;
+use shapes::{BARE, assert_near, merged, straight, together, tube};
+
+const WIDE: UnionOptions = UnionOptions {
+    least_angle: 20.0,
+    ..BARE
+};
+
+/// A tube with a slight bend whose rings come in pairs, much nearer to one another than its radius.
+fn paired_rings(sides: u32) -> SurfaceMesh {
+    let line: Vec<Vec3> = (0..24)
+        .map(|n| {
+            let along = (n / 2) as f32 + 0.03 * (n % 2) as f32;
+            Vec3::new(along, 0.005 * along * along, 0.0)
+        })
+        .collect();
+    tube(&line, 1.0, sides, 1)
+}
+
+#[test]
+fn narrow_triangles_become_wide() {
+    let mesh = paired_rings(9);
+    let (as_it_was, before) = merged(&mesh, &BARE);
+    assert!(before.quality.min_angle < 3.0 && as_it_was.report.improved == 0);
+    let (wider, after) = merged(&mesh, &WIDE);
+    assert!(wider.report.improved > 0);
+    assert!(after.quality.min_angle > 19.0, "{:?}", after.quality);
+    assert_near(after.volume, before.volume, 0.01);
+    assert_near(after.area, before.area, 0.01);
+    // Every vertex lies on the tube as before, within the reach of its sample.
+    for vertex in &wider.mesh.vertices {
+        let near = mesh.vertices.iter().any(|other| {
+            other.point == vertex.point && other.position.distance(vertex.position) < 1.0
+        });
+        assert!(near, "{vertex:?}");
+    }
+}
+
+#[test]
+fn wide_triangles_stay_to_the_bit() {
+    let line: Vec<Vec3> = (0..9).map(|n| Vec3::X * n as f32 * 0.7).collect();
+    let mesh = tube(&line, 1.0, 9, 1);
+    assert!(check(&mesh).quality.min_angle > 20.0);
+    let (union, _) = merged(&mesh, &WIDE);
+    assert_eq!(union.report.improved, 0);
+    assert_eq!(union.mesh.vertices, mesh.vertices);
+}
+
+#[test]
+fn what_would_cross_another_branch_stays() {
+    // Two tubes with narrow faces side by side, a thousandth of a radius apart.
+    let one = paired_rings(32);
+    let mut other = one.clone();
+    for vertex in &mut other.vertices {
+        vertex.position.z += 2.001;
+        vertex.section = 2;
+    }
+    let (union, report) = merged(&together(&[one, other]), &WIDE);
+    assert!(union.report.improved > 0);
+    assert_eq!(report.components, 2);
+}
+
+#[test]
+fn seams_are_made_wider_too() {
+    let mesh = together(&[
+        straight([-4.0, 0.0, 0.0], [4.0, 0.0, 0.0], 1.0, 1),
+        straight([0.1, -4.0, 0.2], [0.3, 4.0, 0.1], 0.7, 2),
+    ]);
+    let (_, before) = merged(&mesh, &UnionOptions::default());
+    let options = UnionOptions {
+        least_angle: 20.0,
+        ..UnionOptions::default()
+    };
+    let (_, after) = merged(&mesh, &options);
+    assert!(
+        before.quality.min_angle < 11.0 && after.quality.min_angle > 19.5,
+        "{:?} {:?}",
+        before.quality,
+        after.quality
+    );
+    assert_near(after.volume, before.volume, 0.01);
+}
