@@ -16,6 +16,7 @@ mod model;
 mod scene;
 mod ui;
 
+pub use io::background::wait_for_background;
 pub use model::command::Command;
 pub use model::{
     command, crossings, document, markers, measuring, partners, placing, playback, plots, save,

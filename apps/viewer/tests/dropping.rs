@@ -150,4 +150,4 @@ fn files_held_over_the_window_are_announced() {
     snapshot(&mut window, "held");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -215,4 +215,4 @@ fn soma_at(window: &mut Window) -> Pos2 {
     rect.min + Vec2::new(x as f32, y as f32)
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

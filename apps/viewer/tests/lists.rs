@@ -298,4 +298,4 @@ fn crossings_are_marked_in_the_picture() {
     snapshot(&mut window, "crossings");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

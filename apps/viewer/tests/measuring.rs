@@ -296,4 +296,4 @@ fn dimensions_go_with_neurons_sessions_and_saved_pictures() {
     assert!(viewer(&mut changed).fatal.is_none());
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -231,4 +231,4 @@ fn meshes_are_listed_with_their_looks() {
     snapshot(&mut window, "meshes");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

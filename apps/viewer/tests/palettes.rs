@@ -176,4 +176,4 @@ fn palettes_and_sessions_carry_own_colors() {
     window.get_by_label("This file exists");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

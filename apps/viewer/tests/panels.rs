@@ -132,4 +132,4 @@ fn looking_at_numbers_that_are_not_round_changes_nothing() {
     window.get_by_label("Save session…");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

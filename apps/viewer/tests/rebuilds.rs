@@ -108,4 +108,4 @@ fn only_what_a_change_concerns_is_made_again() {
     assert!(rebuilds(&mut window).templates > thicker.templates);
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -436,4 +436,4 @@ fn a_film_that_is_stopped_leaves_whole_pictures() {
     );
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -94,4 +94,4 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

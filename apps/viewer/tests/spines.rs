@@ -127,4 +127,4 @@ fn spines_grow_where_a_cell_of_a_circuit_gets_synapses() {
     assert!(state(&mut window).problems.is_empty());
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -99,4 +99,4 @@ fn ghosts_and_what_is_hidden_are_another_picture() {
     assert!(!viewer(&mut window).stage.is_static(), "hidden");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -422,4 +422,4 @@ fn reading_can_be_stopped() {
     assert!(problem.why.contains("SONATA circuit"), "{problem:?}");
 }
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

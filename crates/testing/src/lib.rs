@@ -45,17 +45,22 @@ pub use shared::{shared, shared_data};
 pub use inventory as registry;
 
 /// The `main` of a test program. It runs all functions of the program with the attribute
-/// `#[neurotess_testing::test]`.
+/// `#[neurotess_testing::test]`. `main!(finally: …)` evaluates an expression after them.
 #[macro_export]
 macro_rules! main {
     () => {
+        $crate::main!(finally: ());
+    };
+    (finally: $finally:expr) => {
         /// Without it, a test with the attribute does not compile: nobody would run it.
         #[doc(hidden)]
         #[allow(non_upper_case_globals, reason = "its name is the compiler's message")]
         pub(crate) const END_THIS_FILE_WITH_neurotess_testing_main: () = ();
 
         fn main() -> ::std::process::ExitCode {
-            $crate::run()
+            let code = $crate::run();
+            $finally;
+            code
         }
     };
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use neurotess::coloring::{Recording, VisibleValues};
 use neurotess::render::color::InstanceValues;
 
+use crate::io::background::spawn;
 use crate::io::task::caught;
 
 /// Number of pictures that are read ahead.
@@ -123,7 +124,7 @@ impl FrameReader {
     pub(crate) fn new(recording: Arc<Recording>, wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let (own, of) = (Arc::clone(&shared), Arc::clone(&recording));
-        std::thread::spawn(move || read(&own, &of, &wake));
+        spawn(move || read(&own, &of, &wake));
         Self { shared, recording }
     }
 

@@ -7,6 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+use crate::io::background::spawn;
+
 /// Progress of a task.
 #[derive(Clone, Debug)]
 pub(crate) struct Progress {
@@ -74,7 +76,7 @@ impl<T: Send + 'static> Task<T> {
     ) -> Self {
         let (sender, result) = channel();
         let own = progress.clone();
-        std::thread::spawn(move || {
+        spawn(move || {
             // If the window is closed, nothing receives it.
             let _ = sender.send(caught(|| work(&own)));
             wake();
@@ -93,6 +95,13 @@ impl<T: Send + 'static> Task<T> {
 
     pub(crate) fn progress(&self) -> &Progress {
         &self.progress
+    }
+}
+
+impl<T> Drop for Task<T> {
+    /// Nobody waits for the result any more.
+    fn drop(&mut self) {
+        self.progress.cancel();
     }
 }
 

@@ -315,10 +315,15 @@ impl Worker {
             return;
         }
         let (watched, send) = (Arc::downgrade(&self.watched), self.message_sender());
-        let task = self.start(Progress::new("watching", "files", 0), move |_| {
+        let task = self.start(Progress::new("watching", "files", 0), move |progress| {
             let mut known: Vec<(SourceId, Option<Stale>)> = Vec::new();
             loop {
-                std::thread::sleep(Duration::from_secs(2));
+                for _ in 0..20 {
+                    std::thread::sleep(Duration::from_millis(100));
+                    if progress.is_canceled() {
+                        return Ok(());
+                    }
+                }
                 // The window was closed, or all files were.
                 let Some(watched) = watched.upgrade() else {
                     return Ok(());

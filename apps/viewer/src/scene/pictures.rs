@@ -13,6 +13,7 @@ use neurotess::render::{
     PictureError, PictureOptions, PngWriter, StaticError, StillRenderer, Viewpoint, Watch,
 };
 
+use crate::io::background::spawn;
 use crate::io::save::existing;
 use crate::io::task::Progress;
 use crate::model::film::FilmFrame;
@@ -130,7 +131,7 @@ pub(crate) fn pictures(
             Ok(()) => {}
             Err(PictureError::Stopped) => {
                 // Dropping the device waits for its current tile: done on another thread.
-                std::thread::spawn(move || drop((renderer, adaptive, markers, meshes, own)));
+                spawn(move || drop((renderer, adaptive, markers, meshes, own)));
                 return Err(stopped());
             }
             Err(e) => return Err(e.to_string()),

@@ -11,6 +11,7 @@ use neurotess::render::DeviceError;
 use neurotess::render::adapter::{device_descriptor, select_adapter};
 use thiserror::Error;
 
+use crate::io::background::wait_for_background;
 use crate::model::command::{Command, Edit};
 use crate::model::document::{MarkerOptions, MeshEntry, SomaEdit};
 use crate::model::settings::Settings;
@@ -89,6 +90,7 @@ pub fn run(options: Options, listener: Option<CommandListener>) -> Result<(), Vi
         )
     }));
     drop(take_hook());
+    wait_for_background(PATIENCE);
     if let Some(why) = taken(&fatal) {
         return Err(ViewError::Lost(why));
     }
@@ -148,6 +150,9 @@ const LOSE: &str = "NEUROTESS_TEST_LOSE_DEVICE";
 
 /// How many times a device is checked for being lost, every 10 ms.
 const LOST_POLLS: usize = 100;
+
+/// How long threads are waited for at the end; they were asked to stop.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 struct Window {
     viewer: Viewer,

@@ -20,11 +20,19 @@ use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::Look;
 use neurotess_viewer::settings::Settings;
 use neurotess_viewer::state::State;
-use neurotess_viewer::{Command, Viewer, wgpu_setup};
+use neurotess_viewer::{Command, Viewer, wait_for_background, wgpu_setup};
 
 pub(crate) const SIZE: Vec2 = Vec2::new(1180.0, 740.0);
 
 pub(crate) type Window = Harness<'static, Option<Viewer>>;
+
+/// Waits for the threads of windows that tests have closed: ending the program under them crashes some drivers.
+pub(crate) fn wait_for_threads() {
+    assert!(
+        wait_for_background(Duration::from_secs(60)),
+        "threads of closed windows end"
+    );
+}
 
 /// The need of tests that open a window.
 pub(crate) fn gpu() -> Result<(), String> {

@@ -5,4 +5,4 @@ mod common;
 mod measures;
 mod traces;
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());

@@ -13,4 +13,4 @@ mod placing;
 mod shows;
 mod two_views;
 
-neurotess_testing::main!();
+neurotess_testing::main!(finally: common::wait_for_threads());
