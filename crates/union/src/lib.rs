@@ -6,8 +6,8 @@
 //! points of **winding number** 1 or more. All other faces, and their vertices with all attributes, stay to
 //! the bit. Then splinters are left out, sheets that touch are parted, needles and caps at the **seams** are
 //! tidied, seams are smoothed a little, and the result is checked; what still crosses after rounding to 32
-//! bits is cut once more. On request ([`UnionOptions::least_angle`]) narrow triangles are made wider, wherever
-//! they are.
+//! bits is cut once more. On request surfaces that cross a little are pressed in instead
+//! ([`UnionOptions::press`]), and narrow triangles are made wider, wherever they are ([`UnionOptions::least_angle`]).
 //!
 //! Merging makes **handles**: two branches that cross grow together. [`UnionReport::places`] names each place.
 //!
@@ -46,6 +46,7 @@ mod merge;
 mod options;
 mod parts;
 mod places;
+mod press;
 mod region;
 mod report;
 mod sheets;

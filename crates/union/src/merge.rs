@@ -12,6 +12,7 @@ use crate::improve::improve;
 use crate::options::{UnionError, UnionOptions};
 use crate::parts::{drop_hidden, drop_splinters, least_volume};
 use crate::places::places;
+use crate::press::press_in;
 use crate::region::around;
 use crate::report::{Place, UnionReport};
 use crate::smooth::{renew_normals, smooth};
@@ -65,6 +66,17 @@ pub fn union_stoppable(
     report.dropped = drop_hidden(&mut work, &pairs);
     if !report.dropped.is_empty() {
         pairs = crossings(&work, stopped)?;
+    }
+    if options.press > 0.0 && !pairs.is_empty() {
+        check()?;
+        let crossed = places(&work, &pairs);
+        report.pressed = press_in(&mut work, &pairs, options.press);
+        pairs.retain(|pair| !pair.iter().any(|&face| work.is_changed(face)));
+        pairs.extend(crossings_of_changed(&work));
+        report.places = places(&work, &pairs);
+        let is_left = |place: &Place| report.places.iter().any(|left| left.points == place.points);
+        let pressed = crossed.into_iter().filter(|place| !is_left(place));
+        report.pressed_places = pressed.collect();
     }
 
     let mut needles = options.needles;

@@ -14,6 +14,8 @@ pub struct UnionOptions {
     /// How far vertices of seams go to the middle of their neighbors in each of three steps: 0 not at all,
     /// 1 all the way.
     pub smoothing: f64,
+    /// Surfaces that cross are pressed in by up to this share of their radius before they are merged; 0: not.
+    pub press: f64,
     /// Angles (degrees) below this are made larger where the surface allows it, wherever they are; 0 leaves all
     /// as they are.
     pub least_angle: f64,
@@ -26,6 +28,7 @@ impl Default for UnionOptions {
             rounds: 8,
             needles: 0.05,
             smoothing: 0.4,
+            press: 0.0,
             least_angle: 0.0,
         }
     }

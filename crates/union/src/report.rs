@@ -21,8 +21,10 @@ pub struct UnionReport {
     pub handles_before: i64,
     /// Handles of all components together; none if the result is not a closed manifold.
     pub handles: Option<i64>,
-    /// Where surfaces crossed, in the order of the faces.
+    /// Where surfaces crossed and were merged, in the order of the faces.
     pub places: Vec<Place>,
+    /// Where surfaces crossed and were pressed in instead.
+    pub pressed_places: Vec<Place>,
     /// Components that were left out.
     pub dropped: Vec<Part>,
     /// Components that hung together with others before and are too large to be left out.
@@ -39,6 +41,8 @@ pub struct UnionReport {
     pub parted: usize,
     /// Vertices at seams that were smoothed.
     pub smoothed: usize,
+    /// Vertices pressed in where surfaces would have grown together.
+    pub pressed: usize,
     /// Edges flipped, edges collapsed and vertices moved to make small angles larger, anywhere.
     pub improved: usize,
 }

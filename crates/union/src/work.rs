@@ -113,15 +113,15 @@ impl Work {
         face.iter().any(|&corner| self.fresh[corner as usize])
     }
 
+    /// Whether a triangle is not of the input as it is.
+    pub(crate) fn is_changed(&self, face: u32) -> bool {
+        self.changed[face as usize] || self.is_fresh(&self.triangles[face as usize])
+    }
+
     /// Triangles that are not of the input as they are, in order.
     pub(crate) fn changed_faces(&self) -> Vec<u32> {
-        let faces = self.triangles.iter().zip(&self.changed);
-        let changed = faces.map(|(face, &changed)| changed || self.is_fresh(face));
-        (0..)
-            .zip(changed)
-            .filter(|&(_, changed)| changed)
-            .map(|(face, _)| face)
-            .collect()
+        let faces = 0..self.triangles.len() as u32;
+        faces.filter(|&face| self.is_changed(face)).collect()
     }
 
     /// A set of vertices together with those up to `rings` edges away.

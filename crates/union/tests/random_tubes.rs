@@ -102,6 +102,8 @@ proptest! {
         let (wider, _) = merged(&mesh, &options);
         prop_assert_eq!(wider.report.components, union.report.components);
         prop_assert_eq!(wider.report.handles, union.report.handles);
+        // Pressed in first, they may be other pieces, but as sound.
+        merged(&mesh, &UnionOptions { press: 0.6, ..options });
     }
 
     #[test]

@@ -125,6 +125,7 @@ pub(crate) const BARE: UnionOptions = UnionOptions {
     rounds: 8,
     needles: 0.0,
     smoothing: 0.0,
+    press: 0.0,
     least_angle: 0.0,
 };
 

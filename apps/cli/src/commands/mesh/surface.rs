@@ -15,6 +15,10 @@ use serde::Serialize;
 use super::options::{MeshLevels, MeshOptions};
 use crate::report::Failure;
 
+/// How far surfaces of a mesh for simulators that cross are pressed in, of the radius: what is left of them after
+/// branches were moved apart is less deep.
+const PRESS: f64 = 0.6;
+
 /// Angles (degrees) of a mesh for simulators that are made larger where the surface allows it. Tetrahedra on
 /// narrower triangles are poor ones.
 const LEAST_ANGLE: f64 = 20.0;
@@ -54,9 +58,13 @@ impl<'m> CellSurface<'m> {
                 seconds: clock.elapsed().as_secs_f64(),
             });
         }
-        let union_options = UnionOptions {
-            least_angle: if options.simulation { LEAST_ANGLE } else { 0.0 },
-            ..UnionOptions::default()
+        let union_options = match options.simulation {
+            true => UnionOptions {
+                press: PRESS,
+                least_angle: LEAST_ANGLE,
+                ..UnionOptions::default()
+            },
+            false => UnionOptions::default(),
         };
         let merged = SurfaceMesh::collect_stoppable(&*surface, stopped)
             .ok_or(UnionError::Stopped)
@@ -109,7 +117,10 @@ pub(crate) struct CrossingsReport {
     components_before: usize,
     /// Handles that merging made: each is a short circuit.
     handles_made: Option<i64>,
+    /// Where surfaces were merged.
     places: Vec<PlaceReport>,
+    /// Where they were pressed in instead.
+    pressed: Vec<PlaceReport>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -148,6 +159,7 @@ impl CrossingsReport {
             components_before: report.components_before,
             handles_made: report.handles_made(),
             places: report.places.iter().map(place).collect(),
+            pressed: report.pressed_places.iter().map(place).collect(),
         }
     }
 }

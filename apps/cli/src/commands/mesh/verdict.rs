@@ -65,6 +65,18 @@ pub(super) fn warnings(report: &UnionReport) -> Vec<CellWarning> {
             ),
         ));
     }
+    if let Some(first) = report.pressed_places.first() {
+        let ([a, b], places) = (first.points, report.pressed_places.len());
+        warnings.push(warning(
+            "branches_pressed",
+            a,
+            places,
+            format!(
+                "branches that cross were pressed in, thinner there than traced, in {places} places, first at \
+                 samples {a} and {b}"
+            ),
+        ));
+    }
     let handles = report.handles_made().unwrap_or(0);
     if handles > 0 {
         let first = report.places.first().map_or(-1, |place| place.points[0]);
