@@ -67,6 +67,11 @@ impl Format {
         extension.parse()
     }
 
+    /// Whether files of this format tell what each face belongs to, so that mesh generators find walls in them.
+    pub fn has_regions(self) -> bool {
+        matches!(self, Self::Msh | Self::Poly | Self::Smesh)
+    }
+
     /// Whether files of this format can hold quads.
     pub fn has_quads(self) -> bool {
         matches!(self, Self::Ply | Self::Obj | Self::Off | Self::Vtu)

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Faces, Placed, Surface, SurfaceVertex, Unit};
+use crate::{Faces, Placed, Region, Surface, SurfaceVertex, Unit};
 
 /// A surface in µm with coordinates and radii in another unit. Nothing is copied.
 pub struct InUnit<'a> {
@@ -27,6 +27,10 @@ impl Surface for InUnit<'_> {
 
     fn unit(&self) -> Unit {
         self.unit
+    }
+
+    fn regions(&self) -> Vec<Region> {
+        self.placed.regions()
     }
 
     fn vertex_count(&self) -> usize {

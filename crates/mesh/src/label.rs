@@ -12,7 +12,7 @@
 
 use std::borrow::Cow;
 
-use crate::SurfaceVertex;
+use crate::{SurfaceVertex, WALL};
 
 /// What a face shows of the cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,6 +71,7 @@ pub fn region_name(kind: i32) -> Cow<'static, str> {
         2 => "axon".into(),
         3 => "basal_dendrite".into(),
         4 => "apical_dendrite".into(),
+        WALL => "wall".into(),
         custom => format!("custom_{custom}").into(),
     }
 }

@@ -44,6 +44,7 @@ mod surface;
 mod table;
 mod topology;
 mod unit;
+mod walls;
 mod weld;
 mod write;
 
@@ -68,5 +69,6 @@ pub use surface::{Faces, Surface, SurfaceMesh, SurfaceVertex};
 pub use table::{SurfaceTriangle, write_triangles};
 pub use topology::{Topology, genus_by_component, topology};
 pub use unit::Unit;
+pub use walls::{Region, WALL, Walled, with_walls};
 pub use weld::merge_identical;
 pub use write::{GlbNode, WriteError, write, write_glb};

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3, Mat3};
 
-use crate::{Faces, Surface, SurfaceVertex, Unit};
+use crate::{Faces, Region, Surface, SurfaceVertex, Unit};
 
 /// A surface under a rotation, a uniform scale and a translation. Nothing is copied: blocks are moved
 /// when they are asked for.
@@ -39,6 +39,15 @@ impl Surface for Placed<'_> {
 
     fn unit(&self) -> Unit {
         self.surface.unit()
+    }
+
+    fn regions(&self) -> Vec<Region> {
+        let mut regions = self.surface.regions();
+        for region in &mut regions {
+            let offset = (region.seed - self.surface.origin()).as_vec3();
+            region.seed = self.origin + (self.linear * offset).as_dvec3();
+        }
+        regions
     }
 
     fn vertex_count(&self) -> usize {

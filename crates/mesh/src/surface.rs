@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec3, Vec3};
 
-use crate::Unit;
+use crate::{Region, Unit};
 
 /// A vertex of a surface with the attributes that are exported.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,6 +40,10 @@ pub trait Surface: Sync {
     /// The unit of positions and radii, which files name where they can.
     fn unit(&self) -> Unit {
         Unit::Micrometer
+    }
+    /// Parts of the inside that walls keep apart ([`with_walls`](crate::with_walls)); formats that name them do.
+    fn regions(&self) -> Vec<Region> {
+        Vec::new()
     }
     /// Number of vertices of all blocks.
     fn vertex_count(&self) -> usize;

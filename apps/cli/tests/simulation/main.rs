@@ -1,8 +1,9 @@
-//! Files for simulators: what `docs/simulation.md` shows, and what `--unit` and `--table` write.
+//! Files for simulators: what `docs/simulation.md` shows, and what `--unit`, `--table` and `--walls` write.
 
 mod page;
 mod table;
 mod unit;
+mod walls;
 
 use std::path::PathBuf;
 use std::process::Command;

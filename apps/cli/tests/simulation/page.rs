@@ -81,7 +81,7 @@ fn sections(path: &Path) -> BTreeMap<i32, f64> {
 fn the_page_runs_from_tracing_to_calcium() {
     let folder = tempfile::tempdir().expect("a folder");
     let commands = blocks("sh");
-    assert_eq!(commands.len(), 5, "the commands of the page");
+    assert_eq!(commands.len(), 6, "the commands of the page");
     let printed = run(folder.path(), &commands.concat());
     assert!(
         printed.contains("self-intersecting pairs of faces: 0"),
@@ -112,6 +112,17 @@ fn the_page_runs_from_tracing_to_calcium() {
     assert_eq!(filled.triangles, surface.triangles);
     assert!(filled.closed && filled.oriented && filled.vertices == surface.vertices);
     tetrahedra_are_in_meters(&out.join("steps.msh"), surface.volume * 1e-18);
+
+    // Soma and neurites are all that is inside.
+    let regions = printed.lines().filter(|line| line.starts_with("region "));
+    let volume = |line: &str| -> f64 {
+        let words: Vec<&str> = line.split(' ').collect();
+        words[words.len() - 2].parse().expect(line)
+    };
+    let volumes: Vec<f64> = regions.map(volume).collect();
+    assert_eq!(volumes.len(), 6, "the soma and five neurites: {printed}");
+    let all = volumes.iter().sum::<f64>();
+    assert!((all / surface.volume - 1.0).abs() < 1e-3, "{all}");
 }
 
 /// meshio and Gmsh read a file in meters: the group of the tetrahedra, and their volume in m³.

@@ -2,8 +2,8 @@
 //! 5.2.2 and 5.2.3: <https://wias-berlin.de/software/tetgen/fformats.html>.
 //!
 //! Points and facets count from 0, as the faces of all our files. Each triangle is a facet whose marker
-//! is the code of its type ([`region_code`]). There are no holes and no regions: the surface is closed,
-//! and all that is inside is one cell.
+//! is the code of its type ([`region_code`]). There are no holes, and no regions unless the surface has walls:
+//! else it is closed, and all that is inside is one cell.
 
 use super::corners::{Corners, VertexBlocks, triangles};
 use super::{File, WriteError, push_index, push_position};
@@ -11,39 +11,28 @@ use crate::{Surface, region_code};
 
 /// Lines of a facet in POLY: its polygons, holes and marker, then its corners.
 pub(super) fn write_poly(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
-    write(
-        surface,
-        file,
-        "# holes\n0\n# regions\n0\n",
-        |text, corners, triangle| {
-            text.extend_from_slice(b"1 0 ");
-            push_index(text, marker(corners, triangle));
-            text.push(b'\n');
-            push_corners(text, triangle);
-            text.push(b'\n');
-        },
-    )
+    write(surface, file, |text, corners, triangle| {
+        text.extend_from_slice(b"1 0 ");
+        push_index(text, marker(corners, triangle));
+        text.push(b'\n');
+        push_corners(text, triangle);
+        text.push(b'\n');
+    })
 }
 
 /// One line for each facet: its corners, then its marker.
 pub(super) fn write_smesh(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
-    write(
-        surface,
-        file,
-        "# holes\n0\n# regions\n0\n",
-        |text, corners, triangle| {
-            push_corners(text, triangle);
-            text.push(b' ');
-            push_index(text, marker(corners, triangle));
-            text.push(b'\n');
-        },
-    )
+    write(surface, file, |text, corners, triangle| {
+        push_corners(text, triangle);
+        text.push(b' ');
+        push_index(text, marker(corners, triangle));
+        text.push(b'\n');
+    })
 }
 
 fn write(
     surface: &dyn Surface,
     file: &mut File<'_>,
-    end: &str,
     push_facet: impl Fn(&mut Vec<u8>, &Corners, [u32; 3]) + Sync,
 ) -> Result<(), WriteError> {
     let blocks = VertexBlocks::find(surface)?;
@@ -70,7 +59,21 @@ fn write(
             push_facet(text, &corners, triangle);
         }
     })?;
-    file.put(&mut places[0], end.as_bytes())
+    file.put(&mut places[0], &holes_and_regions(surface))
+}
+
+/// No holes; regions by a point in each, their attribute being the code of their type.
+fn holes_and_regions(surface: &dyn Surface) -> Vec<u8> {
+    let regions = surface.regions();
+    let mut text = format!(
+        "# holes\n0\n# regions, their attribute by type\n{}\n",
+        regions.len()
+    );
+    for (n, region) in regions.iter().enumerate() {
+        let [x, y, z] = region.seed.to_array();
+        text += &format!("{n} {x} {y} {z} {}\n", region_code(region.kind));
+    }
+    text.into_bytes()
 }
 
 fn marker(corners: &Corners, triangle: [u32; 3]) -> u64 {

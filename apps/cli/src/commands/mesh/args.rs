@@ -132,6 +132,9 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, default_value_t = UnitArg::Um, value_name = "UNIT",
           help_heading = "Output")]
     pub(crate) unit: UnitArg,
+    /// Walls inside, between the soma and each neurite, so that tetrahedra get regions (msh, poly, smesh)
+    #[arg(long, help_heading = "Output")]
+    pub(crate) walls: bool,
     /// Also write a row for each triangle: its sample, section, place along the section and SWC type
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["quads", "resume", "shard"],
           help_heading = "Output")]

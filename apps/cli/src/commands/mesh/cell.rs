@@ -7,7 +7,9 @@ use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::{self, Generated};
-use neurotess::mesh::{self as surfaces, CoarseMesh, InUnit, Placed, Surface, Unit, WriteError};
+use neurotess::mesh::{
+    self as surfaces, CoarseMesh, InUnit, Placed, Surface, SurfaceMesh, Unit, WriteError,
+};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
@@ -209,7 +211,14 @@ pub(super) fn finish(
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
     seconds.refine = cell_surface.seconds;
     let to = (out, &mut output);
-    let surface = &*cell_surface.surface;
+    let walled = options.walls.then(|| {
+        let whole = SurfaceMesh::collect(&*cell_surface.surface);
+        surfaces::with_walls(whole)
+    });
+    let surface: &dyn Surface = match &walled {
+        Some(walled) => walled,
+        None => &*cell_surface.surface,
+    };
     let written = write(
         surface,
         options,
@@ -243,7 +252,10 @@ pub(super) fn finish(
         separation: generated.separation.as_ref().map(SeparationReport::from),
         quality: cell_surface.quality,
         seconds,
-        warnings: warnings(&prepared.read, generated, cell_surface),
+        warnings: warnings(&prepared.read, generated, cell_surface)
+            .into_iter()
+            .chain(walled.iter().filter_map(verdict::of_walls))
+            .collect(),
     };
     Ok((cell, output))
 }

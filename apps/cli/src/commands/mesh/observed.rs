@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use neurotess::mesh::{Faces, Format, Surface, SurfaceVertex, Unit};
+use neurotess::mesh::{Faces, Format, Region, Surface, SurfaceVertex, Unit};
 
 use crate::report::Progress;
 
@@ -71,6 +71,10 @@ impl Surface for Observed<'_> {
 
     fn unit(&self) -> Unit {
         self.surface.unit()
+    }
+
+    fn regions(&self) -> Vec<Region> {
+        self.surface.regions()
     }
 
     fn vertex_count(&self) -> usize {

@@ -36,6 +36,8 @@ pub(crate) struct MeshOptions {
     pub(crate) refine: RefineOptions,
     pub(crate) format: Format,
     pub(crate) unit: Unit,
+    /// Whether walls part the soma from neurites.
+    pub(crate) walls: bool,
     /// Where a row for each triangle goes.
     pub(crate) table: Option<PathBuf>,
     pub(crate) force: bool,
@@ -55,6 +57,7 @@ impl MeshOptions {
             refine,
             format,
             unit,
+            walls,
             strict: _,
             table: _,
             force: _,
@@ -77,7 +80,8 @@ impl MeshOptions {
         };
         let merged = if *merge { " merged" } else { "" };
         let simulation = if *simulation { " simulation" } else { "" };
-        format!("{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}")
+        let walls = if *walls { " walls" } else { "" };
+        format!("{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}{walls}")
     }
 
     /// Checks the options together and translates them.
@@ -91,6 +95,11 @@ impl MeshOptions {
         let crossings = crossings(args);
         if crossings != CrossingsArg::Keep && args.quads {
             return usage("merging leaves triangles only: leave out --quads or --crossings");
+        }
+        if args.walls && !format.has_regions() {
+            return usage(format!(
+                "{format} cannot tell walls from the membrane: leave out --walls, or write msh, poly or smesh"
+            ));
         }
         if args.table.is_some() && levels(args)? == MeshLevels::Coarse && format.has_quads() {
             return usage(format!(
@@ -122,6 +131,7 @@ impl MeshOptions {
             },
             format,
             unit: args.unit.unit(),
+            walls: args.walls,
             table: args.table.clone(),
             force: args.out.force,
             measure,
@@ -254,6 +264,7 @@ mod tests {
             refine: RefineOptions::default(),
             format: Format::Ply,
             unit: Unit::Micrometer,
+            walls: false,
             table: None,
             force: false,
             measure: false,

@@ -1,6 +1,7 @@
 //! What is said of a merged surface, and what a mesh for simulators must be.
 
 use neurotess::generate::Generated;
+use neurotess::mesh::Walled;
 use neurotess::union::{Kin, Part, UnionReport};
 
 use super::surface::CellSurface;
@@ -118,4 +119,29 @@ pub(super) fn of_triangles(surface: &CellSurface<'_>) -> Option<CellWarning> {
         ),
         count: 1,
     })
+}
+
+/// What is said of walls that are not there.
+pub(super) fn of_walls(walled: &Walled) -> Option<CellWarning> {
+    let warning = |sample: Option<i32>, count: usize, message: &str| CellWarning {
+        line: None,
+        sample: sample.map(i64::from),
+        code: "no_wall",
+        message: message.to_owned(),
+        count: count as u64,
+    };
+    let first = walled.left_out.first();
+    match first {
+        Some(_) => Some(warning(
+            first.copied(),
+            walled.left_out.len(),
+            "the border between soma and neurite is no simple ring, or a wall would cross the membrane: no wall there",
+        )),
+        None if walled.regions.is_empty() => Some(warning(
+            None,
+            1,
+            "no neurite leaves a soma: there are no walls",
+        )),
+        None => None,
+    }
 }
