@@ -10,6 +10,7 @@ use eframe::egui::{Modifiers, Pos2};
 use egui_kittest::kittest::Queryable;
 use neurotess::circuit::SynapseSide;
 use neurotess::coloring::ColorTarget;
+use neurotess::render::MarkerShape;
 use neurotess::synth::Kind;
 use neurotess::synth::circuit::EDGES;
 use neurotess_viewer::command::{Edit, Tab};
@@ -269,6 +270,57 @@ fn a_click_tells_which_synapse_it_is() {
     assert_eq!(state(&mut window).picked_marker, None);
     assert!(state(&mut window).partner_paths().is_empty());
     assert!(window.query_by_label("Select its cell").is_none());
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn contact_discs_are_picked_and_undone() {
+    let (mut window, _folder) = with_synapses();
+    set_markers(&mut window, |markers| {
+        markers.synapses = true;
+        markers.edges = vec![EDGES.into()];
+        markers.size = 4.0;
+    });
+    // Near enough for discs.
+    run(&mut window, Edit::Select(vec![5], false));
+    run(&mut window, Edit::Isolate);
+    run(&mut window, Command::Focus);
+    run(&mut window, Command::Show(Tab::Look));
+    rest(&mut window);
+    let spheres = drawn(&mut window);
+    let places = viewer(&mut window).stage.marker_positions();
+    window.get_by_label("Contact discs").click();
+    window.run_steps(2);
+    settle(&mut window);
+    rest(&mut window);
+    assert_eq!(
+        state(&mut window).document.markers.shape,
+        MarkerShape::Contact
+    );
+    let contacts = drawn(&mut window);
+    assert!(differing(&spheres, &contacts) > 500);
+    // Synthetic synapses lie on the membrane already.
+    let laid = viewer(&mut window).stage.marker_positions();
+    assert_eq!(laid.len(), EACH);
+    let way = |(a, b): (&glam::DVec3, &glam::DVec3)| a.distance(*b);
+    let most = places.iter().zip(&laid).map(way).fold(0.0, f64::max);
+    assert!(most < 0.5, "{most} µm");
+    snapshot(&mut window, "contacts");
+    // A disc is its synapse: some are seen where their sphere is not.
+    let found = seen(&mut window);
+    assert!(found.len() > EACH / 2, "{} are seen", found.len());
+    let (marker, at) = found[0];
+    click(&mut window, at, Modifiers::NONE);
+    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    run(&mut window, Command::Undo);
+    rest(&mut window);
+    assert_eq!(
+        state(&mut window).document.markers.shape,
+        MarkerShape::Sphere
+    );
+    // By the palette, with synapses that are shown by it.
+    run(&mut window, Edit::ShowSynapses(false));
+    run(&mut window, Edit::ShowContacts(true));
+    assert_eq!(all(&mut window), Some(EACH));
 }
 
 fn write_points(file: &Path) {
