@@ -273,12 +273,13 @@ fn a_click_tells_which_synapse_it_is() {
     assert!(window.query_by_label("Select its cell").is_none());
 }
 
-/// Replaces `edges.h5` by one that only says sections: one onto each cell's soma and one onto its first section.
+/// Replaces `edges.h5` by one that only says sections: one onto each cell's soma and one onto its first section,
+/// but for the last cell a section that it does not have.
 fn write_sections(folder: &Path) {
     let targets: Vec<u64> = (0..CELLS as u64).chain(0..CELLS as u64).collect();
-    let sections: Vec<u64> = (0..2 * CELLS as u64)
-        .map(|row| row / CELLS as u64)
-        .collect();
+    let of_row = |row| row / CELLS as u64;
+    let mut sections: Vec<u64> = (0..2 * CELLS as u64).map(of_row).collect();
+    sections[2 * CELLS - 1] = 100_000;
     let mut file = FileBuilder::new();
     let mut edges = file.create_group("edges");
     let mut population = edges.create_group(EDGES);
@@ -321,7 +322,9 @@ fn synapses_that_only_name_sections_are_shown_picked_and_moved() {
         markers.edges = vec![EDGES.into()];
         markers.size = 12.0;
     });
-    assert_eq!(all(&mut window), Some(2 * CELLS));
+    assert_eq!(all(&mut window), Some(2 * CELLS - 1));
+    let problem = state(&mut window).problems.pop().expect("a problem");
+    assert!(problem.why.contains("name sections"), "{problem:?}");
     // The first ones are on the somata.
     let places = viewer(&mut window).stage.marker_positions();
     for (cell, place) in places.iter().take(CELLS).enumerate() {

@@ -152,6 +152,11 @@ impl MarkerRequest {
     pub(crate) fn markers(&self) -> (SceneMarkers, Option<(String, String)>) {
         let mut problem = None;
         let synapses = self.synapses.as_ref().map(|read| self.of_synapses(read));
+        if synapses.as_ref().is_some_and(|set| set.placeless > 0) {
+            // Without their number, which changes with the selection: it is told once.
+            let why = "some have no place, or name sections that the tracings of their cells do not have: they are left out";
+            problem = Some(("synapses".to_owned(), why.to_owned()));
+        }
         let points = self.points.as_ref().map(|(file, table)| {
             let name = file.display().to_string();
             let column = self.options.column.as_deref();
