@@ -146,6 +146,10 @@ def test_synapses_are_a_table_and_drawn(
     options = {"size": (80, 60), "samples": 1, "legend": False, "nodes": [3]}
     plain, marked = (nt.render(circuit, synapses=shown, **options) for shown in (False, True))
     assert (np.asarray(plain) != np.asarray(marked)).any()
+    dots = nt.render(circuit, synapses=True, marker_shape="point", **options)
+    discs = nt.render(circuit, synapses=True, marker_shape="contact", marker_size=9, **options)
+    assert (np.asarray(plain) != np.asarray(dots)).any()
+    assert (np.asarray(dots) != np.asarray(discs)).any()
     table = tmp_path / "points.csv"
     synapses[synapses.target == 3].to_csv(table, index=False)
     colored = nt.render(circuit, points=table, marker_color_by="delay", **options)

@@ -28,6 +28,11 @@ const PICTURES: &[(&str, &str)] = &[
          --eye=-57,1010,200 --target=-57,990,-37 --scale-bar --marker-size 1.8",
     ),
     (
+        "contacts",
+        "target/pictures/circuit --nodes 0 --synapses --marker-shape contact --size 480x360 \
+         --eye=-42,997,23 --target=-57,982,-37 --fov 30 --scale-bar --marker-size 2.2 --no-legend",
+    ),
+    (
         "spines",
         "target/pictures/spiny.swc --eye=-1.7,356.5,34.3 --target=-9.7,356.5,8.3 --size 480x360 --scale-bar --no-legend",
     ),

@@ -8,10 +8,12 @@ use std::path::Path;
 
 use eframe::egui::{Modifiers, Pos2};
 use egui_kittest::kittest::Queryable;
+use hdf5_pure::{AttrValue, FileBuilder};
 use neurotess::circuit::SynapseSide;
 use neurotess::coloring::ColorTarget;
+use neurotess::render::MarkerShape;
 use neurotess::synth::Kind;
-use neurotess::synth::circuit::EDGES;
+use neurotess::synth::circuit::{EDGES, POPULATION};
 use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::MarkerOptions;
 use neurotess_viewer::markers::MarkerRef;
@@ -269,6 +271,131 @@ fn a_click_tells_which_synapse_it_is() {
     assert_eq!(state(&mut window).picked_marker, None);
     assert!(state(&mut window).partner_paths().is_empty());
     assert!(window.query_by_label("Select its cell").is_none());
+}
+
+/// Replaces `edges.h5` by one that only says sections: one onto each cell's soma and one onto its first section,
+/// but for the last cell a section that it does not have.
+fn write_sections(folder: &Path) {
+    let targets: Vec<u64> = (0..CELLS as u64).chain(0..CELLS as u64).collect();
+    let of_row = |row| row / CELLS as u64;
+    let mut sections: Vec<u64> = (0..2 * CELLS as u64).map(of_row).collect();
+    sections[2 * CELLS - 1] = 100_000;
+    let mut file = FileBuilder::new();
+    let mut edges = file.create_group("edges");
+    let mut population = edges.create_group(EDGES);
+    for end in ["source_node_id", "target_node_id"] {
+        population
+            .create_dataset(end)
+            .with_u64_data(&targets)
+            .set_attr(
+                "node_population",
+                AttrValue::VarLenString(POPULATION.into()),
+            );
+    }
+    let mut group = population.create_group("0");
+    group
+        .create_dataset("afferent_section_id")
+        .with_u64_data(&sections);
+    group
+        .create_dataset("afferent_section_pos")
+        .with_f64_data(&[0.5; 2 * CELLS]);
+    population.add_group(group.finish());
+    edges.add_group(population.finish());
+    file.add_group(edges.finish());
+    let bytes = file.finish().expect("bytes");
+    fs::write(folder.join("edges.h5"), bytes).expect("written");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn synapses_that_only_name_sections_are_shown_picked_and_moved() {
+    let mut window = window();
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_with_synapses(folder.path(), CELLS, 3, EACH);
+    write_sections(folder.path());
+    run(
+        &mut window,
+        Command::Open(vec![folder.path().to_path_buf()]),
+    );
+    set_markers(&mut window, |markers| {
+        markers.synapses = true;
+        markers.edges = vec![EDGES.into()];
+        markers.size = 12.0;
+    });
+    assert_eq!(all(&mut window), Some(2 * CELLS - 1));
+    let problem = state(&mut window).problems.pop().expect("a problem");
+    assert!(problem.why.contains("name sections"), "{problem:?}");
+    // The first ones are on the somata.
+    let places = viewer(&mut window).stage.marker_positions();
+    for (cell, place) in places.iter().take(CELLS).enumerate() {
+        let soma = state(&mut window).middle_of(cell).expect("a soma");
+        let away = soma.distance(*place);
+        assert!((1.0..20.0).contains(&away), "{away} µm");
+    }
+    let (marker, at) = seen(&mut window)[0];
+    click(&mut window, at, Modifiers::NONE);
+    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    let facts = state(&mut window).marker_facts(marker).expect("facts");
+    assert!(facts.neurons[0].is_some(), "{facts:?}");
+    // They go along with a cell that is moved.
+    let mut placement = state(&mut window).document.neurons[0].placement;
+    placement.translation.z += 50.0;
+    run(&mut window, Edit::Place(vec![(0, placement)]));
+    let moved = viewer(&mut window).stage.marker_positions();
+    let way = moved[0] - places[0];
+    assert!(way.distance(glam::DVec3::Z * 50.0) < 1e-6, "{way}");
+    assert_eq!(moved[1], places[1]);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn contact_discs_are_picked_and_undone() {
+    let (mut window, _folder) = with_synapses();
+    set_markers(&mut window, |markers| {
+        markers.synapses = true;
+        markers.edges = vec![EDGES.into()];
+        markers.size = 4.0;
+    });
+    // Near enough for discs.
+    run(&mut window, Edit::Select(vec![5], false));
+    run(&mut window, Edit::Isolate);
+    run(&mut window, Command::Focus);
+    run(&mut window, Command::Show(Tab::Look));
+    rest(&mut window);
+    let spheres = drawn(&mut window);
+    let places = viewer(&mut window).stage.marker_positions();
+    window.get_by_label("Contact discs").click();
+    window.run_steps(2);
+    settle(&mut window);
+    rest(&mut window);
+    assert_eq!(
+        state(&mut window).document.markers.shape,
+        MarkerShape::Contact
+    );
+    let contacts = drawn(&mut window);
+    assert!(differing(&spheres, &contacts) > 500);
+    // Synthetic synapses lie on the membrane already.
+    let laid = viewer(&mut window).stage.marker_positions();
+    assert_eq!(laid.len(), EACH);
+    let way = |(a, b): (&glam::DVec3, &glam::DVec3)| a.distance(*b);
+    let most = places.iter().zip(&laid).map(way).fold(0.0, f64::max);
+    assert!(most < 0.5, "{most} µm");
+    snapshot(&mut window, "contacts");
+    // A disc is its synapse: some are seen where their sphere is not.
+    let found = seen(&mut window);
+    assert!(found.len() > EACH / 2, "{} are seen", found.len());
+    let (marker, at) = found[0];
+    click(&mut window, at, Modifiers::NONE);
+    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    run(&mut window, Command::Undo);
+    rest(&mut window);
+    assert_eq!(
+        state(&mut window).document.markers.shape,
+        MarkerShape::Sphere
+    );
+    // By the palette, with synapses that are shown by it.
+    run(&mut window, Edit::ShowSynapses(false));
+    run(&mut window, Edit::ShowContacts(true));
+    assert_eq!(all(&mut window), Some(EACH));
 }
 
 fn write_points(file: &Path) {

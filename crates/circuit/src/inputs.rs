@@ -6,8 +6,6 @@ use glam::DVec3;
 
 use crate::edges::{Edges, SynapseSide};
 use crate::model::{Circuit, Instance};
-use crate::sections::SectionOrder;
-use crate::template::soma_center;
 use crate::{CircuitError, Fault};
 
 impl Circuit {
@@ -63,15 +61,13 @@ impl Circuit {
         }
         for (number, rows) in of_number {
             let instance = &instances[number];
-            // A morphology that cannot be read is reported by whoever reads it to show it.
-            let Ok(read) = self.templates[instance.template.index()].read() else {
+            let Some(membrane) = self.membrane(instance.template) else {
                 continue;
             };
-            let order = SectionOrder::of(&read.morphology);
-            let placed = instance.world_from_cell(soma_center(&read.morphology));
-            let place = |&row: &usize| order.position(&read.morphology, shares[row]);
+            let placed = instance.world_from_cell(membrane.soma_center());
+            let place = |&row: &usize| membrane.place(shares[row]);
             let places = rows.iter().filter_map(place);
-            inputs[number].extend(places.map(|place| placed.transform_point3(place)));
+            inputs[number].extend(places.map(|place| placed.transform_point3(place.center)));
         }
         Ok(())
     }

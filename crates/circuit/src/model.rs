@@ -78,6 +78,21 @@ impl Instance {
 }
 
 impl Circuit {
+    /// The node of an id in a population.
+    pub fn node(&self, population: &str, id: u64) -> Option<NodeRef> {
+        let mut populations = self.populations.iter();
+        let place = populations.position(|p| p.name == population)?;
+        let ids = &self.populations[place].ids;
+        // Most files count from 0.
+        let own = usize::try_from(id).ok();
+        let own = own.filter(|&row| ids.get(row) == Some(&id));
+        let row = own.or_else(|| ids.iter().position(|&other| other == id))?;
+        Some(NodeRef {
+            population: place as u32,
+            row: row as u32,
+        })
+    }
+
     /// How many nodes there are.
     pub fn n_neurons(&self) -> usize {
         self.populations.iter().map(Population::len).sum()

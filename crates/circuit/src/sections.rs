@@ -6,8 +6,7 @@
 //! numbers are counted anew here. A section that is reported in `n` compartments has them at
 //! (k + ½) / n of its length; `element_pos` says it otherwise.
 
-use glam::DVec3;
-use neurotess_morphology::{Morphology, NeuriteKind, Point, SectionId, shape};
+use neurotess_morphology::{Membrane, MembranePlace, Morphology, NeuriteKind, SectionId};
 
 /// A compartment: a piece of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,14 +55,15 @@ impl SectionOrder {
         Some(Location::Section(*section, compartment.along))
     }
 
-    /// The place of a compartment in the file's coordinates (µm): on the axis of its section, or the soma's center.
-    pub fn position(&self, morphology: &Morphology, compartment: Compartment) -> Option<DVec3> {
+    /// The place of a compartment on a cell's membrane; `None` if the cell has no such section.
+    pub fn on_membrane(
+        &self,
+        membrane: &Membrane<'_>,
+        compartment: Compartment,
+    ) -> Option<MembranePlace> {
         match self.place(compartment)? {
-            Location::Soma => {
-                let soma = morphology.soma()?;
-                Some(morphology.origin + soma.center.as_dvec3())
-            }
-            Location::Section(section, along) => along_section(morphology, section, along.into()),
+            Location::Soma => membrane.in_soma(),
+            Location::Section(section, along) => membrane.on_section(section, along.into()),
         }
     }
 
@@ -71,24 +71,6 @@ impl SectionOrder {
     pub fn sections(&self) -> &[SectionId] {
         &self.0
     }
-}
-
-/// The place (µm) at a share of a section's length; none if that is no share.
-fn along_section(morphology: &Morphology, section: SectionId, share: f64) -> Option<DVec3> {
-    let at = |point: &Point| morphology.origin + point.position.as_dvec3();
-    let links = shape::links(morphology, section).map(|(from, to)| (at(from), at(to)));
-    let length: f64 = links.clone().map(|(from, to)| from.distance(to)).sum();
-    let mut rest = share.clamp(0.0, 1.0) * length;
-    let mut last = morphology.section_points(section).last().map(at);
-    for (from, to) in links.filter(|_| !share.is_nan()) {
-        let step = from.distance(to);
-        if rest <= step && step > 0.0 {
-            return Some(from.lerp(to, rest / step));
-        }
-        rest -= step;
-        last = Some(to);
-    }
-    last.filter(|_| !share.is_nan())
 }
 
 /// Elements that follow one another with the same number share its section.
@@ -110,6 +92,8 @@ pub(crate) fn compartments(sections: &[u64], positions: Option<&[f64]>) -> Vec<C
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     #[test]
@@ -143,7 +127,11 @@ mod tests {
         assert_eq!(place(4), None);
         let cell = read_cell();
         let order = SectionOrder::of(&cell);
-        let at = |section, along| order.position(&cell, Compartment { section, along });
+        let membrane = Membrane::of(&cell);
+        let at = |section, along| {
+            let place = order.on_membrane(&membrane, Compartment { section, along });
+            place.map(|place| place.center)
+        };
         // The second section of the file has 3 µm along y from 6 to 9.
         assert_eq!(at(0, 0.3), Some(DVec3::ZERO));
         assert_eq!(at(3, 0.5), Some(DVec3::new(0.0, 7.5, 0.0)));

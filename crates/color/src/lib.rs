@@ -45,8 +45,8 @@ pub use cut::{cuts, with_middles};
 pub use film::{Film, FilmError};
 #[cfg(feature = "circuit")]
 pub use markers::{
-    EdgeSynapses, MarkerError, MarkerRow, MarkerSet, ShownCells, SynapseFacts, SynapseOptions,
-    points, synapse_markers, synapses,
+    EdgeSynapses, MarkerError, MarkerRow, MarkerSet, ShownCell, ShownCells, SynapseFacts,
+    SynapseOptions, SynapsesOf, points, synapse_markers, synapses,
 };
 pub use meshes::mesh_color;
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};

@@ -15,7 +15,8 @@
 //!
 //! Readers and generators hand over flat **nodes** and get the arrays from
 //! [`Morphology::from_nodes`]. [`Measures::of`] measures a cell, the functions of [`shape`] its sections, [`sholl`]
-//! its reach and [`barcode`](mod@barcode) its branching, [`paths`] what lies between two of its locations; [`edit`] mends tracings and [`Difference`] compares two.
+//! its reach and [`barcode`](mod@barcode) its branching, [`paths`] what lies between two of its locations,
+//! and a [`Membrane`] gives places on it; [`edit`] mends tracings and [`Difference`] compares two.
 //!
 //! ```
 //! use glam::DVec3;
@@ -46,7 +47,9 @@ pub mod edit;
 mod frustum;
 mod kind;
 mod measures;
+mod membrane;
 mod model;
+mod nearest;
 pub mod paths;
 pub mod random;
 pub mod shape;
@@ -58,5 +61,6 @@ pub use build::{BuildError, BuildNote, Built, Node, Oddity};
 pub use diff::{Difference, Differing, MatchedBy, Retyped, SomaDifference};
 pub use kind::NeuriteKind;
 pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
+pub use membrane::{Membrane, MembranePlace};
 pub use model::{Attachment, Morphology, Point, Section, SectionId, Soma, SomaKind, SomaSample};
 pub use soma::soma_area_volume;

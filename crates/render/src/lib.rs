@@ -104,7 +104,7 @@ pub use sources::budgeted::{
     DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET, Proxy,
 };
 pub use sources::combined::Combined;
-pub use sources::markers::{Marker, MarkerSettings, Markers};
+pub use sources::markers::{Marker, MarkerSettings, MarkerShape, Markers};
 pub use sources::meshes::{MeshGeometry, MeshLook, Meshes};
 pub use sources::prerefined::{Place, Prerefined, PrerefinedSurface, Resident};
 pub use sources::{SourceKey, VertexSource};

@@ -262,7 +262,12 @@ fn marker_shaders_are_valid_in_every_language_and_have_our_structs() {
             ..PipelineKey::default()
         };
         let (module, _) = testing::check(&shade_shader(&source, key));
-        assert_layout!(&module, "StoredMarker", StoredMarker, [x, y, z, color_key]);
+        assert_layout!(
+            &module,
+            "StoredMarker",
+            StoredMarker,
+            [x, y, z, color_key, outwards]
+        );
         assert_layout!(
             &module,
             "MarkerFrame",
@@ -275,7 +280,9 @@ fn marker_shaders_are_valid_in_every_language_and_have_our_structs() {
                 up,
                 least,
                 backward,
-                first
+                first,
+                pixel_slope,
+                pixel_flat
             ]
         );
     }
@@ -334,7 +341,17 @@ fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
         &select,
         "Shape",
         Shape,
-        [center, reach, first_chunk, chunks, somata, soma_radius]
+        [
+            center,
+            reach,
+            first_chunk,
+            chunks,
+            somata,
+            soma_radius,
+            before_twigs,
+            twig_length,
+            pad
+        ]
     );
     assert_layout!(
         &select,

@@ -10,8 +10,8 @@ use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::color::{ColorTable, category};
 use neurotess_render::{
-    Camera, Combined, Frame, Gpu, Image, KeyColors, Look, Marker, MarkerSettings, Markers,
-    PictureOptions, Placement, StillRenderer, VertexSource, Viewpoint,
+    Camera, Combined, Frame, Gpu, Image, KeyColors, Look, Marker, MarkerSettings, MarkerShape,
+    Markers, PictureOptions, Placement, StillRenderer, VertexSource, Viewpoint,
 };
 use pictured::{CELL, by_type, camera, mesh};
 use renderer::source;
@@ -69,6 +69,7 @@ fn row(view: &Viewpoint, key: u32, count: u32) -> Vec<Marker> {
     let marker = |i: u32| Marker {
         position: near + (f64::from(i) - 0.5 * f64::from(count)) * 4.0 * right,
         color_key: key + i % 2,
+        ..Marker::default()
     };
     (0..count).map(marker).collect()
 }
@@ -111,6 +112,49 @@ fn markers_are_drawn_in_their_colors_and_leave_the_cells_as_they_are() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
+fn contacts_are_discs_across_their_direction() {
+    let gpu = device();
+    let mesh = mesh(CELL);
+    let (table, key) = table(&mesh);
+    let view = viewpoint(&mesh);
+    let [right, _, backward] = view.camera.axes();
+    let place = row(&view, key, 1)[0].position;
+    let radius = 20.0 * 0.7 * view.camera.pixel_at_target(f64::from(SIZE[1]));
+    let mut cells = source(&gpu, &mesh, &[]);
+    let mut picture = |outwards: glam::Vec3, shape: MarkerShape| {
+        let settings = MarkerSettings {
+            shape,
+            radius,
+            ..MarkerSettings::default()
+        };
+        let marker = Marker {
+            position: place,
+            outwards,
+            color_key: key,
+        };
+        let mut markers = Markers::new(&gpu, &[marker], settings).expect("uploaded");
+        let mut both = Combined::new(&mut cells).with_markers(Some(&mut markers));
+        drawn(&gpu, &mut both, &view, &table)
+    };
+    let covered = |image: &Image| {
+        let is = |p: &&[u8]| p[..3] != [255; 3];
+        image.pixels.chunks(4).filter(is).count() as f64
+    };
+    let sphere = picture(backward.as_vec3(), MarkerShape::Sphere);
+    let one = covered(&sphere);
+    // From above, a disc of twice the sphere's radius; from the side, the sphere and the disc's edge.
+    let above = covered(&picture(backward.as_vec3(), MarkerShape::Contact)) / one;
+    assert!((3.7..4.3).contains(&above), "{above} of the sphere");
+    let aside = picture(right.as_vec3(), MarkerShape::Contact);
+    let share = covered(&aside) / one;
+    assert!((1.1..1.5).contains(&share), "{share} of the sphere");
+    // Without a direction it stays a sphere; points are dots.
+    assert_eq!(picture(glam::Vec3::ZERO, MarkerShape::Contact), sphere);
+    let dot = covered(&picture(backward.as_vec3(), MarkerShape::Point));
+    assert!((1.0..12.0).contains(&dot), "{dot} pixels");
+}
+
+#[neurotess_testing::test(needs(gpu))]
 fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
     let gpu = device();
     let mesh = mesh(CELL);
@@ -125,6 +169,7 @@ fn far_markers_keep_a_least_size_and_are_thinned_out_to_the_budget() {
             Marker {
                 position: view.camera.target() + x * right + y * up,
                 color_key: key,
+                ..Marker::default()
             }
         })
         .collect();

@@ -180,6 +180,7 @@ fn spheres_and_tubes_have_one_size_and_the_scale_bar_is_theirs() {
             if i == 0 { -300.0 } else { 400.0 },
         ),
         color_key: category(key + i),
+        ..Marker::default()
     };
     let none: &mut dyn VertexSource = &mut Exploration::new(&gpu, 1).expect("a source");
     for (radius, expected) in [(5.0, 10.0 / pixel), (1e-3, 8.0)] {

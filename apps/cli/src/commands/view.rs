@@ -13,7 +13,7 @@ use crate::options::cache::CacheArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::meshes::{MeshArg, MeshArgs};
 use crate::options::rings::RingArgs;
-use crate::report::{Reporter, usage};
+use crate::report::Reporter;
 
 /// `neurotess view`
 #[derive(Args, Debug)]
@@ -85,10 +85,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
 
 /// What the window shows of synapses and points.
 fn markers(asked: &MarkerArgs) -> anyhow::Result<MarkerOptions> {
-    let options = asked.marker_color_by.is_some() || asked.marker_size.is_some();
-    if options && !asked.any() {
-        return usage("--marker-color-by and --marker-size are for --synapses or --points");
-    }
+    asked.check()?;
     let usual = MarkerOptions::default();
     let by = asked.marker_color_by.clone();
     Ok(MarkerOptions {
@@ -98,6 +95,7 @@ fn markers(asked: &MarkerArgs) -> anyhow::Result<MarkerOptions> {
         property: by.clone().filter(|_| asked.synapses.is_some()),
         column: by.filter(|_| asked.points.is_some()),
         points: asked.points.clone(),
+        shape: asked.shape(),
         size: asked.marker_size.map_or(usual.size, |size| size as f32),
         ..usual
     })

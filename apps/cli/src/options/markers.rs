@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use neurotess::circuit::SynapseSide;
+use neurotess::render::MarkerShape;
+
+use crate::report::usage;
 
 /// Which synapses and points.
 #[derive(Args, Clone, Debug, Default)]
@@ -23,7 +26,10 @@ pub(crate) struct MarkerArgs {
     /// Color synapses or points by a number that each has, such as delay or conductance, or a column of the table
     #[arg(long, value_name = "NAME")]
     pub(crate) marker_color_by: Option<String>,
-    /// Diameter (µm) of synapses and points [default: 1]
+    /// What synapses and points are drawn as: contact discs lie on the membrane, of synapses only [default: sphere]
+    #[arg(long, value_enum, value_name = "SHAPE")]
+    pub(crate) marker_shape: Option<ShapeArg>,
+    /// Diameter (µm) of synapses and points; discs are twice as wide [default: 1]
     #[arg(long, value_name = "UM", value_parser = super::numbers::positive,
           allow_negative_numbers = true)]
     pub(crate) marker_size: Option<f64>,
@@ -39,6 +45,27 @@ pub(crate) enum SideArg {
     Efferent,
 }
 
+/// Shape of a synapse or point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShapeArg {
+    /// Dots of three pixels
+    Point,
+    /// Spheres
+    Sphere,
+    /// Spheres on flat discs
+    Contact,
+}
+
+impl From<ShapeArg> for MarkerShape {
+    fn from(shape: ShapeArg) -> Self {
+        match shape {
+            ShapeArg::Point => Self::Point,
+            ShapeArg::Sphere => Self::Sphere,
+            ShapeArg::Contact => Self::Contact,
+        }
+    }
+}
+
 impl From<SideArg> for SynapseSide {
     fn from(side: SideArg) -> Self {
         match side {
@@ -52,6 +79,34 @@ impl MarkerArgs {
     /// Whether anything is shown.
     pub(crate) fn any(&self) -> bool {
         self.synapses.is_some() || self.points.is_some()
+    }
+
+    /// Refuses options that nothing has.
+    ///
+    /// # Errors
+    /// Wrong usage.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        let options = [
+            self.marker_color_by.is_some(),
+            self.marker_size.is_some(),
+            self.marker_shape.is_some(),
+        ];
+        if !self.any() && options.contains(&true) {
+            return usage(
+                "--marker-color-by, --marker-size and --marker-shape are for --synapses or --points",
+            );
+        }
+        if self.points.is_some() && self.shape() == MarkerShape::Contact {
+            return usage(
+                "--marker-shape contact is for --synapses: points of a table lie on no membrane",
+            );
+        }
+        Ok(())
+    }
+
+    /// What they are drawn as.
+    pub(crate) fn shape(&self) -> MarkerShape {
+        self.marker_shape.map_or(MarkerShape::default(), Into::into)
     }
 
     /// Populations of edges; empty for all.

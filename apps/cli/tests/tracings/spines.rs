@@ -40,6 +40,21 @@ fn spines_that_an_asc_file_tells_of_are_grown() {
         (&true.into(), &1.into())
     );
     assert_eq!(judged["self_intersections"], 0, "{judged}");
+    // A mesh may leave them out: as many faces as that of the cell without them, give or take the bases' points.
+    let faces = |file: &str, options: &str| {
+        let made = work.run(&format!(
+            "mesh {file} -o {file}.ply --level 1 --force --json {options}"
+        ));
+        let json = made.exits(0).json();
+        json[0]["triangles"].as_i64().expect("a number")
+    };
+    let types = "--types axon,dendrite";
+    let [all, without] = ["", types].map(|options| faces("spiny.swc", options));
+    let plain = faces("plain.swc", "");
+    assert!(
+        all > without && without <= plain + 64,
+        "{all} {without} {plain}"
+    );
 }
 
 #[neurotess_testing::test]

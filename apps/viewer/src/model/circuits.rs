@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use neurotess::circuit::{Circuit, Instance, NodeRef, soma_center};
+use neurotess::circuit::{Circuit, Instance, soma_center};
 use neurotess::coloring::{self, Node};
 use neurotess::morphology::Morphology;
 use neurotess::render::Placement;
@@ -64,24 +64,6 @@ impl Circuits {
         all.map(|(name, file)| (name.clone(), file.clone()))
             .collect()
     }
-}
-
-/// The node of an id in a population.
-pub(crate) fn node(circuit: &Circuit, population: &str, id: u64) -> Option<NodeRef> {
-    let place = circuit
-        .populations
-        .iter()
-        .position(|p| p.name == population)?;
-    let ids = &circuit.populations[place].ids;
-    // Most files count from 0.
-    let own = usize::try_from(id)
-        .ok()
-        .filter(|&row| ids.get(row) == Some(&id));
-    let row = own.or_else(|| ids.iter().position(|&other| other == id))?;
-    Some(NodeRef {
-        population: place as u32,
-        row: row as u32,
-    })
 }
 
 /// Where a circuit places an instance of a morphology.

@@ -8,6 +8,7 @@ use neurotess::circuit::{PointTable, SynapseSide};
 use neurotess::coloring::{EdgeSynapses, MarkerRow, SynapseFacts};
 use neurotess::render::BoundingSphere;
 
+use crate::model::circuits::Circuits;
 use crate::model::ids::CircuitId;
 use crate::model::numbers::significant;
 use crate::model::revision::Revision;
@@ -165,26 +166,32 @@ impl MarkerData {
         [synapses, points].map(|why| why.map(String::as_str))
     }
 
-    /// What is known of a synapse, and of which side its place is.
-    pub(crate) fn synapse(&self, marker: MarkerRef) -> Option<(SynapseFacts, SynapseSide)> {
+    /// What is known of a synapse, and of which side its place is. `circuits`: those that are open.
+    pub(crate) fn synapse(
+        &self,
+        marker: MarkerRef,
+        circuits: &Circuits,
+    ) -> Option<(SynapseFacts, SynapseSide)> {
         let MarkerRef::Synapse(MarkerRow { table, row }) = marker else {
             return None;
         };
         let of = self.synapses()?.get(table as usize)?;
-        Some((of.edges.facts(row)?, self.synapse_key()?.side))
+        let facts = of.edges.facts(row, circuits.get(of.circuit)?)?;
+        Some((facts, self.synapse_key()?.side))
     }
 
     /// What is known of a marker. `neuron`: the index of a cell's neuron, by circuit, population and id.
     pub(crate) fn facts(
         &self,
         marker: MarkerRef,
+        circuits: &Circuits,
         neuron: impl Fn(CircuitId, &str, u64) -> Option<usize>,
     ) -> Option<MarkerFacts> {
         match marker {
             MarkerRef::Synapse(MarkerRow { table, row }) => {
                 let of = self.synapses()?.get(table as usize)?;
                 let key = self.synapse_key()?;
-                let facts = of.edges.facts(row)?;
+                let facts = of.edges.facts(row, circuits.get(of.circuit)?)?;
                 let EdgeSynapses {
                     name,
                     cells,

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, EulerRot};
 use neurotess::render::Placement;
 
 use crate::model::view::View;
@@ -29,6 +29,15 @@ pub struct Placing {
     pub under: Option<Handle>,
     /// The drag of a handle.
     pub drag: Option<Drag>,
+}
+
+/// Where the selected cells are, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaceNumbers {
+    /// The middle of their somata (µm).
+    pub position: DVec3,
+    /// Angles (degrees) of the first of them about x, y and z: R = Rx Ry Rz.
+    pub rotation: DVec3,
 }
 
 /// A handle. Axes are those of the world: 0 is x.
@@ -82,6 +91,29 @@ impl fmt::Display for Step {
             }
         }
     }
+}
+
+/// Where something is after a turn about a place.
+pub(crate) fn turned(before: &Placement, pivot: DVec3, turn: DQuat) -> Placement {
+    Placement {
+        // Many turns in a row must not make it a scale.
+        rotation: (turn * before.rotation).normalize(),
+        translation: pivot + turn * (before.translation - pivot),
+        ..*before
+    }
+}
+
+/// The rotation of angles (degrees) about x, y and z, as circuits and scenes have it: R = Rx Ry Rz.
+pub(crate) fn rotation(degrees: DVec3) -> DQuat {
+    let [x, y, z] = degrees.to_array().map(f64::to_radians);
+    DQuat::from_euler(EulerRot::XYZ, x, y, z)
+}
+
+/// Angles (degrees) of a rotation.
+pub(crate) fn degrees(rotation: DQuat) -> DVec3 {
+    let (x, y, z) = rotation.to_euler(EulerRot::XYZ);
+    // Rounding leaves no -0.
+    DVec3::new(x, y, z).map(|angle| angle.to_degrees() + 0.0)
 }
 
 /// The direction of an axis.
@@ -147,12 +179,7 @@ impl Drag {
             },
             Step::Turned(index, angle) => {
                 let turn = DQuat::from_axis_angle(axis(index), angle);
-                Placement {
-                    // Many turns in a row must not make it a scale.
-                    rotation: (turn * before.rotation).normalize(),
-                    translation: self.pivot + turn * (before.translation - self.pivot),
-                    ..*before
-                }
+                turned(before, self.pivot, turn)
             }
         };
         let before = self.before.iter();
@@ -291,6 +318,15 @@ mod tests {
             let beside = place.world_from_cell(drag.pivot + DVec3::X);
             assert!(beside.distance(drag.pivot + DVec3::Y) < 1e-9);
         }
+    }
+
+    #[test]
+    fn angles_are_those_of_scenes() {
+        let angles = DVec3::new(10.0, -20.0, 130.0);
+        let [x, y, z] = angles.to_array().map(f64::to_radians);
+        let all = DQuat::from_rotation_x(x) * DQuat::from_rotation_y(y) * DQuat::from_rotation_z(z);
+        assert!(rotation(angles).angle_between(all) < 1e-6);
+        assert!(degrees(all).distance(angles) < 1e-9);
     }
 
     #[test]

@@ -152,7 +152,7 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
         shared: false,
         content,
         markers: markers.map(Arc::new),
-        radius: state.document.markers.radius(),
+        form: state.document.markers.form(),
         look: state.document.look.clone(),
         states: content::states(&state.document),
         spheres: state.spheres(),

@@ -7,11 +7,14 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use neurotess::circuit::{NodeRef, PointTable};
 use neurotess::coloring::{
-    self, ColorScheme, ColoredThing, MarkerRow, MarkerSet, OwnColors, ShownCells,
+    self, ColorScheme, ColoredThing, MarkerRow, MarkerSet, OwnColors, ShownCell, ShownCells,
+    SynapseOptions, SynapsesOf,
 };
 use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::overlay::Legend;
-use neurotess::render::{DeviceError, Gpu, Marker, MarkerSettings, Markers, Placement};
+use neurotess::render::{
+    DeviceError, Gpu, Marker, MarkerSettings, MarkerShape, Markers, Placement,
+};
 
 use crate::model::circuits::Circuits;
 use crate::model::document::MarkerOptions;
@@ -64,8 +67,13 @@ impl MarkerInputs {
         Some(Self {
             data: data.revision(),
             options: MarkerOptions {
-                // How large they are is told to the device when they are drawn.
+                // How large they are is told to the device when they are drawn, and so is their shape, but for
+                // where contacts lie.
                 size: 0.0,
+                shape: match options.shape {
+                    MarkerShape::Contact => MarkerShape::Contact,
+                    MarkerShape::Point | MarkerShape::Sphere => MarkerShape::Sphere,
+                },
                 ..options.clone()
             },
             cells: CellsKey {
@@ -144,6 +152,11 @@ impl MarkerRequest {
     pub(crate) fn markers(&self) -> (SceneMarkers, Option<(String, String)>) {
         let mut problem = None;
         let synapses = self.synapses.as_ref().map(|read| self.of_synapses(read));
+        if synapses.as_ref().is_some_and(|set| set.placeless > 0) {
+            // Without their number, which changes with the selection: it is told once.
+            let why = "some have no place, or name sections that the tracings of their cells do not have: they are left out";
+            problem = Some(("synapses".to_owned(), why.to_owned()));
+        }
         let points = self.points.as_ref().map(|(file, table)| {
             let name = file.display().to_string();
             let column = self.options.column.as_deref();
@@ -192,13 +205,26 @@ impl MarkerRequest {
                 cells.insert(population.name.clone(), HashMap::new());
             }
             if let Some(cells) = cells.get_mut(&population.name) {
-                cells.insert(population.ids[node.row as usize], moved);
+                let cell = ShownCell { node, moved };
+                cells.insert(population.ids[node.row as usize], cell);
             }
         }
         let none = ShownCells::new();
         let cells = |id: &CircuitId| shown.get(id).unwrap_or(&none);
-        let of: Vec<_> = read.iter().map(|r| (&r.edges, cells(&r.circuit))).collect();
-        coloring::synapse_markers(&of, self.options.property.as_deref(), &self.scheme)
+        let of = read.iter().filter_map(|read| {
+            Some(SynapsesOf {
+                edges: &read.edges,
+                circuit: self.circuits.get(read.circuit)?,
+                shown: cells(&read.circuit),
+            })
+        });
+        let of: Vec<SynapsesOf<'_>> = of.collect();
+        let options = SynapseOptions {
+            property: self.options.property.clone(),
+            contacts: self.options.shape == MarkerShape::Contact,
+            ..SynapseOptions::default()
+        };
+        coloring::synapse_markers(&of, &options, &self.scheme)
     }
 }
 
@@ -288,12 +314,13 @@ impl SceneMarkers {
 /// How markers are drawn. `sub_pixels`: width of a pixel; `budget`: triangles of the cells, if there is a
 /// most; `most`: of markers, if there is none.
 pub(crate) fn settings(
-    radius: f64,
+    (shape, radius): (MarkerShape, f64),
     sub_pixels: f64,
     budget: Option<u32>,
     most: usize,
 ) -> MarkerSettings {
     MarkerSettings {
+        shape,
         radius,
         least: 0.5 * LEAST * sub_pixels,
         most_triangles: budget.map_or(most, |n| (SHARE_OF_BUDGET * f64::from(n)) as usize),

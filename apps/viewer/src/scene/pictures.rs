@@ -152,10 +152,14 @@ fn markers(
         return Ok(None);
     };
     let mut markers = markers.upload(gpu).map_err(|e| e.to_string())?;
-    let radius = still_scene.radius;
     let most = MarkerSettings::default().most_triangles;
     if let Some(markers) = &mut markers {
-        markers.set_settings(settings(radius, f64::from(sub_pixels), None, most));
+        markers.set_settings(settings(
+            still_scene.form,
+            f64::from(sub_pixels),
+            None,
+            most,
+        ));
     }
     Ok(markers)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::{Annotations, Legend, Overlay, OverlayOptions};
-use neurotess::render::{BoundingSphere, Camera, Gpu};
+use neurotess::render::{BoundingSphere, Camera, Gpu, MarkerShape};
 
 use crate::model::document::Look;
 use crate::model::film::FilmFrame;
@@ -32,8 +32,8 @@ pub(crate) struct StillScene {
     pub(crate) meshes: Vec<SceneMesh>,
     /// Synapses and points; the content has their colors and legend, too.
     pub(crate) markers: Option<Arc<SceneMarkers>>,
-    /// Their radius (µm).
-    pub(crate) radius: f64,
+    /// Their shape and radius (µm).
+    pub(crate) form: (MarkerShape, f64),
     /// Dimensions that show.
     pub(crate) figures: Vec<Figure>,
 }

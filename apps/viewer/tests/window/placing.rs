@@ -7,7 +7,7 @@ use glam::DVec3;
 use neurotess::render::Placement;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::Edit;
+use neurotess_viewer::command::{Edit, Tab};
 
 use crate::common::{
     Window, differing, drawn, gpu, hit_at, run, settle, snapshot, state, with_samples,
@@ -136,6 +136,58 @@ fn handles_move_and_turn_copies_and_undo_puts_them_back() {
     assert_eq!(state(&mut window).document.neurons[1].placement, before);
     run(&mut window, Command::Undo);
     assert_eq!(state(&mut window).document.neurons.len(), 1);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn numbers_place_a_cell_and_each_is_one_step_of_undo() {
+    let mut window = with_samples(&[Kind::Star]);
+    run(&mut window, Edit::Select(vec![0], false));
+    run(&mut window, Command::Show(Tab::Inspect));
+    // Those of the position come first.
+    let type_in = |window: &mut Window, (row, before): (usize, &str), text: &str| {
+        let fields: Vec<_> = window.get_all_by_value(before).collect();
+        fields[row].click();
+        window.run_steps(2);
+        window.event(Event::Text(text.into()));
+        window.run_steps(2);
+        window.key_press(Key::Enter);
+        window.run_steps(3);
+        settle(window);
+    };
+    let soma = state(&mut window).middle_of(0).expect("a soma");
+    type_in(&mut window, (0, "x 0.0"), "120");
+    let moved = state(&mut window).middle_of(0).expect("a soma");
+    assert!(moved.distance(soma + DVec3::X * 120.0) < 1e-9, "{moved}");
+    type_in(&mut window, (1, "y 0.0"), "120");
+    let turned = state(&mut window).document.neurons[0].placement;
+    let z = turned.rotation * DVec3::Z;
+    let expected = DVec3::new(60.0_f64.to_radians().sin(), 0.0, -0.5);
+    assert!(z.distance(expected) < 1e-9, "{z}");
+    let still = state(&mut window).middle_of(0).expect("a soma");
+    assert!(still.distance(moved) < 1e-9, "{still}");
+    let numbers = state(&mut window).place_numbers().expect("numbers");
+    assert_eq!(numbers.rotation, DVec3::new(0.0, 120.0, 0.0));
+    run(&mut window, Command::Home);
+    snapshot(&mut window, "placing_by_numbers");
+    // Sessions keep it.
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("mine.neurotess");
+    run(&mut window, Command::SaveSession(file.clone()));
+    let mut other = crate::common::window();
+    other.step();
+    run(&mut other, Command::Open(vec![file]));
+    let kept = state(&mut other).document.neurons[0].placement;
+    assert!(kept.rotation.angle_between(turned.rotation) < 1e-6);
+    assert!(kept.translation.distance(turned.translation) < 1e-3);
+    run(&mut window, Command::Undo);
+    let back = state(&mut window).document.neurons[0].placement;
+    assert_eq!(back.rotation, Placement::default().rotation);
+    assert!(back.translation.distance(DVec3::X * 120.0) < 1e-9);
+    run(&mut window, Command::Undo);
+    assert_eq!(
+        state(&mut window).document.neurons[0].placement,
+        Placement::default()
+    );
 }
 
 #[neurotess_testing::test(needs(gpu))]

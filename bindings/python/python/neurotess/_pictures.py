@@ -204,6 +204,7 @@ def render(
     synapse_side: Literal["afferent", "efferent"] | None = None,
     points: str | os.PathLike[str] | None = None,
     marker_color_by: str | None = None,
+    marker_shape: Literal["point", "sphere", "contact"] | None = None,
     marker_size: float | None = None,
     meshes: Meshes | None = None,
     light: str | Sequence[float] | None = None,
@@ -243,8 +244,9 @@ def render(
     direction), `ao` (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
 
     Synapses of a circuit's cells: `synapses` (True, or names of `Circuit.edges`), `synapse_side`; or the `points` of
-    a CSV file with columns x, y and z (µm). `marker_color_by` is a number that each has; `marker_size` the diameter
-    (µm).
+    a CSV file with columns x, y and z (µm). `marker_color_by` is a number that each has; `marker_shape`
+    ``"sphere"``, ``"point"``, or of synapses ``"contact"``: spheres on discs that lie on the membrane; `marker_size` the
+    diameter (µm).
 
     Other `meshes` of the scene, such as brain regions, segments of electron microscopy or a pipette: files (PLY, OBJ,
     STL, GLB, …), a `Mesh`, or anything with `vertices` and `faces` (µm); or dictionaries like ``{"mesh": "region.obj",
@@ -284,6 +286,7 @@ def render(
         "synapse_side": synapse_side,
         "points": points,
         "marker_color_by": marker_color_by,
+        "marker_shape": marker_shape,
         "marker_size": marker_size,
         "meshes": meshes,
         "light": light,

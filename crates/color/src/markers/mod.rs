@@ -3,7 +3,9 @@
 //! A marker's color key is a category, in a part of the color table that follows the cells' own
 //! ([`Coloring::add_markers`]). Numbers are colored in steps of the scale.
 
+mod edges;
 mod points;
+mod sites;
 mod synapses;
 
 use glam::DVec3;
@@ -15,10 +17,9 @@ use neurotess_render::{BoundingSphere, Marker};
 use crate::own_colors::{ColorTarget, ColoredThing};
 use crate::scheme::{ColorScheme, Coloring, NOTHING};
 
+pub use edges::{EdgeSynapses, ShownCell, ShownCells, SynapseFacts, SynapsesOf};
 pub use points::points;
-pub use synapses::{
-    EdgeSynapses, ShownCells, SynapseFacts, SynapseOptions, synapse_markers, synapses,
-};
+pub use synapses::{SynapseOptions, synapse_markers, synapses};
 
 /// Markers, and what their colors mean.
 #[derive(Clone, Debug)]
@@ -33,6 +34,9 @@ pub struct MarkerSet {
     pub rows: Vec<MarkerRow>,
     /// How many were left out, because their cell is not drawn.
     pub left_out: usize,
+    /// How many were left out, because they have no place on their cell: their section is not there, or the tracing
+    /// cannot be read.
+    pub placeless: usize,
     /// What has a color that one may set.
     things: Vec<ColoredThing>,
     /// Whether they lie on cells that are drawn.
@@ -67,7 +71,7 @@ pub enum MarkerError {
     /// A file of edges does not say where its synapses are.
     #[error(
         "{file}: edges '{name}' do not say where their synapses are: it needs columns such as \
-         {side}_surface_x, _y and _z"
+         {side}_surface_x, _y and _z, or {side}_section_id and {side}_section_pos"
     )]
     NoPlaces {
         /// The file of edges.
@@ -115,6 +119,7 @@ fn by_name(markers: Vec<Marker>, names: Vec<String>, scheme: &ColorScheme) -> Ma
         things,
         rows: Vec::new(),
         left_out: 0,
+        placeless: 0,
         on_cells: false,
     }
 }
@@ -160,6 +165,7 @@ fn by_number(
         things: Vec::new(),
         rows: Vec::new(),
         left_out: 0,
+        placeless: 0,
         on_cells: false,
     }
 }
@@ -215,126 +221,4 @@ impl Coloring {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::collections::HashMap;
-
-    use neurotess_circuit::PointTable;
-    use neurotess_render::color::{CATEGORY_BIT, ColorMap, Palette};
-
-    use super::*;
-
-    fn scheme() -> ColorScheme {
-        ColorScheme {
-            palette: Palette::NeuroM,
-            background: None,
-            scale: ColorMap::Viridis.scale(),
-            range: None,
-            own_colors: crate::OwnColors::default(),
-        }
-    }
-
-    fn table(values: &[f64]) -> PointTable {
-        PointTable {
-            positions: values.iter().map(|&x| DVec3::X * x).collect(),
-            columns: vec![("w".into(), values.to_vec())],
-        }
-    }
-
-    #[test]
-    fn numbers_are_colored_from_end_to_end_and_missing_ones_gray() {
-        let mut values: Vec<f64> = (0..100).map(f64::from).collect();
-        values.extend([1e9, f64::NAN]);
-        let set = points("p.csv", &table(&values), Some("w"), &scheme()).expect("markers");
-        let color = |index: usize| {
-            let key = set.markers[index].color_key & !CATEGORY_BIT;
-            set.colors[key as usize]
-        };
-        let scale = ColorMap::Viridis.scale();
-        assert_eq!(color(0), scale[0]);
-        assert_eq!(color(99), scale[scale.len() - 1]);
-        assert_eq!(color(100), color(99), "far beyond the others");
-        assert_eq!(color(101), NOTHING);
-        let middle = color(50)[1];
-        assert!(scale[100][1] < middle && middle < scale[160][1]);
-    }
-
-    #[test]
-    fn colors_of_markers_follow_those_that_cells_use() {
-        let mut set = points("p.csv", &table(&[1.0, 2.0]), None, &scheme()).expect("markers");
-        // Its cells use a category beyond the end of the table.
-        let mut coloring = Coloring {
-            color_keys: vec![vec![category(0), category(4)]],
-            table: neurotess_render::color::ColorTable {
-                categories: vec![[1; 3], [2; 3]],
-                ..Default::default()
-            },
-            legend: Legend::swatches("", []),
-            things: Vec::new(),
-        };
-        coloring.add_markers(&mut set);
-        let categories = &coloring.table.categories;
-        assert_eq!(categories[..5], [[1; 3], [2; 3], [2; 3], [2; 3], [2; 3]]);
-        assert_eq!(categories.len(), 6);
-        assert!(
-            set.markers
-                .iter()
-                .all(|marker| marker.color_key == category(5))
-        );
-        assert_eq!(categories[5], set.colors[0]);
-    }
-
-    #[test]
-    fn a_column_that_is_not_there_is_named_beside_those_that_are() {
-        let missing = points("p.csv", &table(&[1.0]), Some("size"), &scheme());
-        let said = missing.expect_err("none").to_string();
-        assert_eq!(said, "p.csv: has no number 'size': it has w");
-        let set = points("p.csv", &table(&[3.0, 3.0]), Some("w"), &scheme()).expect("markers");
-        assert_eq!(set.bounds(), Some((DVec3::X * 3.0, 0.0)));
-    }
-
-    fn edges(folder: &std::path::Path) -> neurotess_circuit::Edges {
-        let at = |x: f64| DVec3::new(x, 1.0, 2.0);
-        let synapses = neurotess_circuit::Synapses {
-            sources: vec![7, 8, 9, 7],
-            targets: vec![1, 2, 1, 3],
-            positions: vec![at(0.0), at(10.0), at(20.0), DVec3::NAN],
-        };
-        let file = folder.join("edges.h5");
-        let delays = [("delay", vec![0.5, 1.5, 2.5, 3.5])];
-        let to = std::fs::File::create(&file).expect("a file");
-        neurotess_circuit::write::edges("syn", ["pre", "post"], &synapses, &delays, to)
-            .expect("written");
-        neurotess_circuit::Edges {
-            name: "syn".into(),
-            file,
-            source: "pre".into(),
-            target: "post".into(),
-            count: 4,
-        }
-    }
-
-    #[test]
-    fn synapses_are_read_once_and_shown_in_part() {
-        use neurotess_circuit::SynapseSide::Afferent;
-        let folder = tempfile::tempdir().expect("a folder");
-        let edges = edges(folder.path());
-        let read = EdgeSynapses::read(&edges, Afferent, Some("delay")).expect("read");
-        assert_eq!(read.len(), 4);
-        let facts = read.facts(2).expect("a synapse");
-        assert_eq!((facts.cell, facts.partner, facts.number), (1, 9, Some(2.5)));
-        assert_eq!(read.facts(4), None);
-        // Cell 1 was turned and moved, cell 3 has a synapse without a place.
-        let turned = glam::DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
-        let moved = glam::DAffine3::from_rotation_translation(turned, DVec3::Y * 100.0);
-        let shown = HashMap::from([(1, moved), (3, glam::DAffine3::IDENTITY)]);
-        let shown = ShownCells::from([("post".to_owned(), shown)]);
-        let set = synapse_markers(&[(&read, &shown)], Some("delay"), &scheme());
-        let rows: Vec<u64> = set.rows.iter().map(|row| row.row).collect();
-        assert_eq!((rows, set.left_out), (vec![0, 2], 2));
-        let place = DVec3::new(-1.0, 120.0, 2.0);
-        assert!(set.markers[1].position.distance(place) < 1e-9);
-        assert!(set.legend.is_bar() && set.bounds().is_none());
-        let missing = EdgeSynapses::read(&edges, Afferent, Some("size")).expect_err("none");
-        assert!(missing.to_string().contains("it has delay"), "{missing}");
-    }
-}
+mod tests;

@@ -22,6 +22,7 @@ pub fn points(
     let marker = |&position| Marker {
         position,
         color_key: category(0),
+        ..Marker::default()
     };
     let markers: Vec<Marker> = table.positions.iter().map(marker).collect();
     let rows = (0..markers.len() as u64).map(|row| MarkerRow { table: 0, row });

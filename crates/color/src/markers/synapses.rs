@@ -1,12 +1,14 @@
-//! Synapses of a circuit, read once from their file and shown in part.
+//! Markers of synapses: of those that were read and whose cells are shown.
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use neurotess_circuit::{Circuit, Edges, NodeRef, SynapseSide};
 use neurotess_render::Marker;
 use neurotess_render::color::category;
 
+use super::edges::{EdgeSynapses, ShownCell, ShownCells, SynapsesOf};
+use super::sites::placed;
 use super::{MarkerError, MarkerRow, MarkerSet, by_name, by_number, listed};
 use crate::scheme::ColorScheme;
 
@@ -19,96 +21,8 @@ pub struct SynapseOptions {
     pub side: SynapseSide,
     /// A number of each synapse, such as `delay`; none: colors tell the population.
     pub property: Option<String>,
-}
-
-/// Synapses of a population of edges on one side, as the file has them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EdgeSynapses {
-    /// Name of the population of edges.
-    pub name: String,
-    /// Population of the cells that they lie on.
-    pub cells: String,
-    /// Population of the cells at their other side.
-    pub partners: String,
-    nodes: Vec<u64>,
-    others: Vec<u64>,
-    positions: Vec<DVec3>,
-    numbers: Option<Vec<f64>>,
-}
-
-/// What is known of a synapse.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SynapseFacts {
-    /// Id of the cell that it lies on.
-    pub cell: u64,
-    /// Id of the cell at its other side.
-    pub partner: u64,
-    /// Where it is (µm, in the circuit's coordinates).
-    pub position: DVec3,
-    /// Its number, if one was read.
-    pub number: Option<f64>,
-}
-
-/// By population: the ids of cells whose synapses are shown, and how each was moved (µm) and turned from where
-/// the circuit places it.
-pub type ShownCells = HashMap<String, HashMap<u64, DAffine3>>;
-
-impl EdgeSynapses {
-    /// Reads places and both cells of each synapse, and a number of each. Needs 48 bytes for each.
-    ///
-    /// # Errors
-    /// The file does not have these, or is invalid.
-    pub fn read(
-        edges: &Edges,
-        side: SynapseSide,
-        property: Option<&str>,
-    ) -> Result<Self, MarkerError> {
-        let read = edges.synapses_on(side)?;
-        let targets = (edges.target.clone(), read.targets);
-        let sources = (edges.source.clone(), read.sources);
-        let ((cells, nodes), (partners, others), name) = match side {
-            SynapseSide::Afferent => (targets, sources, "afferent"),
-            SynapseSide::Efferent => (sources, targets, "efferent"),
-        };
-        if read.positions.is_empty() && !nodes.is_empty() {
-            return Err(MarkerError::NoPlaces {
-                file: edges.file.display().to_string(),
-                name: edges.name.clone(),
-                side: name,
-            });
-        }
-        let numbers = property.map(|name| numbers(edges, name)).transpose()?;
-        Ok(Self {
-            name: edges.name.clone(),
-            cells,
-            partners,
-            nodes,
-            others,
-            positions: read.positions,
-            numbers,
-        })
-    }
-
-    /// Number of synapses.
-    pub fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
-    }
-
-    /// What is known of one, by its number in the file.
-    pub fn facts(&self, row: u64) -> Option<SynapseFacts> {
-        let row = usize::try_from(row).ok()?;
-        Some(SynapseFacts {
-            cell: *self.nodes.get(row)?,
-            partner: *self.others.get(row)?,
-            position: *self.positions.get(row)?,
-            number: self.numbers.as_ref().and_then(|n| n.get(row).copied()),
-        })
-    }
+    /// Whether markers lie on the membranes and know their directions, for contact discs.
+    pub contacts: bool,
 }
 
 /// Synapses of the cells that are drawn.
@@ -127,47 +41,53 @@ pub fn synapses(
     let read = read.map(|edges| EdgeSynapses::read(edges, options.side, property));
     let read: Vec<EdgeSynapses> = read.collect::<Result<_, _>>()?;
     let shown = where_placed(circuit, drawn);
-    let of: Vec<_> = read.iter().map(|edges| (edges, &shown)).collect();
-    Ok(synapse_markers(&of, property, scheme))
+    let of = read.iter().map(|edges| SynapsesOf {
+        edges,
+        circuit,
+        shown: &shown,
+    });
+    let of: Vec<SynapsesOf<'_>> = of.collect();
+    Ok(synapse_markers(&of, options, scheme))
 }
 
 /// Markers of synapses that were read: of the cells that are shown. The table of a marker's row is the index in
-/// `of`. `property`: the number's name, if colors tell it.
+/// `of`. Colors tell the property of the options, if there is one. Morphologies are used where places or contacts ask
+/// for them: each is read once, if it was not.
 pub fn synapse_markers(
-    of: &[(&EdgeSynapses, &ShownCells)],
-    property: Option<&str>,
+    of: &[SynapsesOf<'_>],
+    options: &SynapseOptions,
     scheme: &ColorScheme,
 ) -> MarkerSet {
     let mut markers = Vec::new();
     let mut rows = Vec::new();
     let mut values = Vec::new();
-    let mut left_out = 0;
-    for ((edges, shown), table) in of.iter().zip(0..) {
-        let here = shown.get(&edges.cells);
-        let placed = edges.nodes.iter().zip(&edges.positions);
-        for ((node, &position), row) in placed.zip(0_u64..) {
-            let moved = here.and_then(|ids| ids.get(node));
-            let Some(moved) = moved.filter(|_| position.is_finite()) else {
-                left_out += 1;
-                continue;
-            };
+    let (mut left_out, mut placeless) = (0, 0);
+    for (one, table) in of.iter().zip(0..) {
+        let placed = placed(one, options.contacts);
+        left_out += one.edges.len() - placed.of_shown;
+        placeless += placed.of_shown - placed.sites.len();
+        for (row, site) in placed.sites {
             markers.push(Marker {
-                position: moved.transform_point3(position),
+                position: site.position,
+                outwards: site.outwards,
                 color_key: category(table),
             });
-            rows.push(MarkerRow { table, row });
-            let numbers = edges.numbers.as_ref();
-            values.push(numbers.map_or(f64::NAN, |numbers| numbers[row as usize]));
+            rows.push(MarkerRow {
+                table,
+                row: row as u64,
+            });
+            values.push(one.edges.number(row));
         }
     }
-    let mut set = match property {
+    let mut set = match options.property.as_deref() {
         Some(name) => by_number(markers, &values, name, scheme),
         None => {
-            let names = of.iter().map(|(edges, _)| edges.name.clone());
+            let names = of.iter().map(|one| one.edges.name.clone());
             by_name(markers, names.collect(), scheme)
         }
     };
-    (set.rows, set.left_out, set.on_cells) = (rows, left_out, true);
+    set.rows = rows;
+    (set.left_out, set.placeless, set.on_cells) = (left_out, placeless, true);
     set
 }
 
@@ -193,26 +113,18 @@ fn chosen<'c>(circuit: &'c Circuit, names: &[String]) -> Result<Vec<&'c Edges>, 
 /// Cells that are drawn where the circuit places them.
 fn where_placed(circuit: &Circuit, nodes: &[NodeRef]) -> ShownCells {
     let mut shown = ShownCells::new();
-    for node in nodes {
+    for &node in nodes {
         let population = &circuit.populations[node.population as usize];
         let id = population.ids[node.row as usize];
         if !shown.contains_key(&population.name) {
             shown.insert(population.name.clone(), HashMap::new());
         }
+        let cell = ShownCell {
+            node,
+            moved: DAffine3::IDENTITY,
+        };
         let ids = shown.get_mut(&population.name);
-        ids.map(|ids| ids.insert(id, DAffine3::IDENTITY));
+        ids.map(|ids| ids.insert(id, cell));
     }
     shown
-}
-
-fn numbers(edges: &Edges, name: &str) -> Result<Vec<f64>, MarkerError> {
-    let there = edges.properties()?;
-    if there.iter().any(|known| known == name) {
-        return Ok(edges.property(name)?);
-    }
-    Err(MarkerError::NoNumbers {
-        file: edges.file.display().to_string(),
-        name: name.to_owned(),
-        there: listed(there.iter().map(String::as_str)),
-    })
 }

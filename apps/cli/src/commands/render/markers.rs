@@ -2,7 +2,7 @@
 
 use neurotess::circuit::PointTable;
 use neurotess::coloring::{self, ColorScheme, MarkerSet, SynapseOptions};
-use neurotess::render::{Gpu, MarkerSettings, Markers, PictureOptions};
+use neurotess::render::{Gpu, MarkerSettings, MarkerShape, Markers, PictureOptions};
 
 use super::args::RenderArgs;
 use super::circuit_instances::CircuitInstances;
@@ -24,12 +24,9 @@ pub(super) fn read(
     reporter: &Reporter,
 ) -> anyhow::Result<Option<MarkerSet>> {
     let asked = &args.markers;
+    asked.check()?;
     if !asked.any() {
-        let alone = asked.marker_color_by.is_some() || asked.marker_size.is_some();
-        return match alone {
-            true => usage("--marker-color-by and --marker-size are for --synapses or --points"),
-            false => Ok(None),
-        };
+        return Ok(None);
     }
     // The message only: with its source, it would be printed twice.
     let whole = |e: &dyn std::fmt::Display| anyhow::anyhow!("{e}");
@@ -48,6 +45,7 @@ pub(super) fn read(
         populations: asked.populations(),
         side: asked.synapse_side.into(),
         property: property.map(str::to_owned),
+        contacts: asked.shape() == MarkerShape::Contact,
     };
     let drawn: Vec<_> = instances.instances.iter().map(|i| i.node).collect();
     let set = coloring::synapses(&instances.circuit, &drawn, &options, scheme);
@@ -58,6 +56,12 @@ pub(super) fn read(
         count(shown, "synapse"),
         set.left_out
     ));
+    if set.placeless > 0 {
+        reporter.warning(&format!(
+            "{} left out: they name sections that the tracings of their cells do not have",
+            count(set.placeless, "synapse")
+        ));
+    }
     if shown == 0 {
         reporter.warning("no synapse belongs to a cell that is drawn");
     }
@@ -77,6 +81,7 @@ pub(super) fn upload(
 ) -> anyhow::Result<Markers> {
     let usual = MarkerSettings::default();
     let settings = MarkerSettings {
+        shape: args.markers.shape(),
         radius: 0.5 * args.markers.marker_size.unwrap_or(2.0 * usual.radius),
         least: 0.5 * LEAST * f64::from(options.sub_pixels(gpu)),
         most_triangles: budget.map_or(usual.most_triangles, |budget| {

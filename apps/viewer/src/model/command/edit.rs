@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
-use neurotess::render::Placement;
+use neurotess::render::{MarkerShape, Placement};
 
 use crate::model::document::{
     Detail, Dimension, Document, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, SourceId,
@@ -58,6 +58,8 @@ pub enum Edit {
     SetMarkers(Box<MarkerOptions>),
     /// Shows synapses, or none.
     ShowSynapses(bool),
+    /// Draws synapses as spheres on discs, or as spheres alone.
+    ShowContacts(bool),
     /// Shows the points of a table, or none.
     SetPoints(Option<PathBuf>),
     /// Shows meshes beside the cells.
@@ -110,9 +112,10 @@ impl Edit {
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
             Self::SetReport(_) => "Report",
-            Self::SetMarkers(_) | Self::ShowSynapses(_) | Self::SetPoints(_) => {
-                "Synapses and points"
-            }
+            Self::SetMarkers(_)
+            | Self::ShowSynapses(_)
+            | Self::ShowContacts(_)
+            | Self::SetPoints(_) => "Synapses and points",
             Self::AddMeshes(_) => "Mesh",
             Self::SetMesh(..) => "Look of a mesh",
             Self::RemoveMesh(_) | Self::ClearMeshes => "Remove mesh",
@@ -224,6 +227,13 @@ impl Edit {
             Self::SetReport(report) => document.set_report(report),
             Self::SetMarkers(markers) => document.markers = *markers,
             Self::ShowSynapses(show) => document.markers.synapses = show,
+            Self::ShowContacts(show) => {
+                document.markers.synapses = true;
+                document.markers.shape = match show {
+                    true => MarkerShape::Contact,
+                    false => MarkerShape::Sphere,
+                };
+            }
             Self::SetPoints(points) => {
                 // Another table has other columns.
                 if points != document.markers.points {

@@ -145,6 +145,11 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     Command::SetPlacing(!now.placing),
                 ),
                 item(
+                    "Position and rotation of selected (numbers, coordinates, angles)…",
+                    None,
+                    Command::Show(Tab::Inspect),
+                ),
+                item(
                     "Duplicate selected (copy of a cell)",
                     Some((CTRL, Key::D)),
                     Command::Duplicate,
@@ -312,6 +317,15 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                     ),
                     Some((PLAIN, Key::X)),
                     Edit::ShowSynapses(!now.synapses).into(),
+                ),
+                item(
+                    choose(
+                        now.contacts,
+                        "Draw synapses as contact discs (boutons, on the membrane)",
+                        "Draw synapses as spheres, without contact discs",
+                    ),
+                    None,
+                    Edit::ShowContacts(!now.contacts).into(),
                 ),
                 item(
                     choose(now.playing, "Play the report", "Stop the report"),
@@ -484,6 +498,8 @@ pub struct Toggles {
     pub measuring: bool,
     /// Whether synapses are shown.
     pub synapses: bool,
+    /// Whether synapses are drawn with contact discs.
+    pub contacts: bool,
     /// Whether values over time are plotted.
     pub traces: bool,
     /// Whether places where surfaces cross themselves are listed.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use neurotess::circuit::SynapseSide;
+use neurotess::render::MarkerShape;
 use serde::{Deserialize, Serialize};
 
 /// Which synapses and points are shown beside the cells, and how.
@@ -28,6 +29,9 @@ pub struct MarkerOptions {
     /// The column of the table that colors tell; none: all points have one color.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
+    /// What each is drawn as.
+    #[serde(with = "shape")]
+    pub shape: MarkerShape,
     /// Diameter (µm).
     pub size: f32,
 }
@@ -42,6 +46,7 @@ impl Default for MarkerOptions {
             of_selected: true,
             points: None,
             column: None,
+            shape: MarkerShape::Sphere,
             size: 1.0,
         }
     }
@@ -53,9 +58,9 @@ impl MarkerOptions {
         self.synapses || self.points.is_some()
     }
 
-    /// Radius (µm).
-    pub(crate) fn radius(&self) -> f64 {
-        0.5 * f64::from(self.size.clamp(0.01, 1000.0))
+    /// Shape and radius (µm).
+    pub(crate) fn form(&self) -> (MarkerShape, f64) {
+        (self.shape, 0.5 * f64::from(self.size.clamp(0.01, 1000.0)))
     }
 }
 
@@ -87,6 +92,36 @@ mod side {
     }
 }
 
+mod shape {
+    use neurotess::render::MarkerShape;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(
+        shape: &MarkerShape,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(match shape {
+            MarkerShape::Point => "point",
+            MarkerShape::Sphere => "sphere",
+            MarkerShape::Contact => "contact",
+        })
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<MarkerShape, D::Error> {
+        match String::deserialize(deserializer)?.as_str() {
+            "point" => Ok(MarkerShape::Point),
+            "sphere" => Ok(MarkerShape::Sphere),
+            "contact" => Ok(MarkerShape::Contact),
+            other => Err(serde::de::Error::unknown_variant(
+                other,
+                &["point", "sphere", "contact"],
+            )),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,11 +131,13 @@ mod tests {
         let options = MarkerOptions {
             synapses: true,
             side: SynapseSide::Efferent,
+            shape: MarkerShape::Contact,
             points: Some("spines.csv".into()),
             ..MarkerOptions::default()
         };
         let text = toml::to_string_pretty(&options).expect("written");
         assert!(text.contains("side = \"efferent\""), "{text}");
+        assert!(text.contains("shape = \"contact\""), "{text}");
         assert!(!text.contains("property"), "{text}");
         assert_eq!(toml::from_str(&text), Ok(options));
         assert_eq!(toml::from_str(""), Ok(MarkerOptions::default()));

@@ -291,7 +291,7 @@ impl Session {
         let file = self.circuit.get(said.circuit)?.path.as_path();
         let mut ids = open.iter().map(|(id, _)| id);
         let circuit = ids.find(|&id| open.file(id) == Some(file))?;
-        let node = circuits::node(open.get(circuit)?, &said.population, said.id)?;
+        let node = open.get(circuit)?.node(&said.population, said.id)?;
         Some(CircuitNode { circuit, node })
     }
 

@@ -71,15 +71,15 @@ impl State {
 
     /// What is known of a synapse or point.
     pub fn marker_facts(&self, marker: MarkerRef) -> Option<MarkerFacts> {
-        self.marker_data.facts(marker, |circuit, population, id| {
-            let of = self.circuits.get(circuit)?;
-            let node = crate::model::circuits::node(of, population, id)?;
-            let mut neurons = self.document.neurons.iter();
-            neurons.position(|n| {
-                n.node
-                    .is_some_and(|n| n.circuit == circuit && n.node == node)
+        self.marker_data
+            .facts(marker, &self.circuits, |circuit, population, id| {
+                let node = self.circuits.get(circuit)?.node(population, id)?;
+                let mut neurons = self.document.neurons.iter();
+                neurons.position(|n| {
+                    n.node
+                        .is_some_and(|n| n.circuit == circuit && n.node == node)
+                })
             })
-        })
     }
 
     /// Forgets a synapse or point that does not show any more.

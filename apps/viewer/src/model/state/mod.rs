@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use neurotess::circuit::{Circuit, NodeRef};
-use neurotess::render::Side;
+use neurotess::render::{MarkerShape, Side};
 
 use crate::model::circuits::Circuits;
 use crate::model::command::{Command, Edit, Tab, Toggles};
@@ -103,6 +103,8 @@ pub struct State {
     pub measuring: Option<Measuring>,
     /// The handles that move and turn the selected cells, while they show.
     pub placing: Option<Placing>,
+    /// Angles (degrees) by which cells were turned last.
+    pub(crate) typed_angles: Option<glam::DVec3>,
     /// Whether the window presents: the whole screen, and no panels.
     pub presenting: bool,
     /// Whether the scene turns slowly.
@@ -174,6 +176,7 @@ impl State {
             picked_marker: None,
             measuring: None,
             placing: None,
+            typed_angles: None,
             presenting: false,
             turning: false,
             full_screen: false,
@@ -209,6 +212,7 @@ impl State {
             playing: self.playback.playing,
             measuring: self.measuring.is_some(),
             synapses: self.document.markers.synapses,
+            contacts: self.document.markers.shape == MarkerShape::Contact,
             traces: self.traces.open,
             crossings: self.crossings.open,
             lasso: self.settings.lasso,

@@ -24,7 +24,7 @@ impl State {
     }
 
     fn paths_of(&self, marker: MarkerRef) -> Vec<PartnerPath> {
-        let synapse = self.marker_data.synapse(marker);
+        let synapse = self.marker_data.synapse(marker, &self.circuits);
         let Some((facts, (synapse, side))) = self.marker_facts(marker).zip(synapse) else {
             return Vec::new();
         };

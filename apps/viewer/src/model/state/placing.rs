@@ -5,7 +5,7 @@ use neurotess::render::Placement;
 
 use super::{Effect, State};
 use crate::model::command::Edit;
-use crate::model::placing::{Drag, Handle, Placing};
+use crate::model::placing::{self, Drag, Handle, PlaceNumbers, Placing};
 use crate::model::sources::extent;
 
 /// Space between a copy and what it was copied of, as a share of their width.
@@ -25,12 +25,50 @@ impl State {
     /// show.
     pub fn pivot(&self) -> Option<DVec3> {
         self.placing.as_ref()?;
+        self.middle_of_selected()
+    }
+
+    /// The middle (µm) of the somata of the selected cells; none side by side, where cells cannot be moved.
+    fn middle_of_selected(&self) -> Option<DVec3> {
         if self.document.grid {
             return None;
         }
         let places = self.document.selected().filter_map(|n| self.middle_of(n));
         let (sum, count) = places.fold((DVec3::ZERO, 0), |(sum, n), place| (sum + place, n + 1));
         (count > 0).then(|| sum / f64::from(count))
+    }
+
+    /// Where the selected cells are, in numbers; none if there are none, or they cannot be moved.
+    pub fn place_numbers(&self) -> Option<PlaceNumbers> {
+        let position = self.middle_of_selected()?;
+        let &first = self.document.neurons.selected().first()?;
+        let rotation = self.document.neurons.get(first)?.placement.rotation;
+        // One rotation has many angles: those that were typed stay.
+        let typed = self.typed_angles;
+        let typed = typed.filter(|&typed| placing::rotation(typed).angle_between(rotation) < 1e-6);
+        Some(PlaceNumbers {
+            position,
+            rotation: typed.unwrap_or_else(|| placing::degrees(rotation)),
+        })
+    }
+
+    /// What moves and turns the selected cells, together, to where they are by other numbers.
+    pub(crate) fn placed_at(&mut self, numbers: PlaceNumbers) -> Option<Edit> {
+        let now = self.place_numbers()?;
+        self.typed_angles = Some(numbers.rotation);
+        let turn = placing::rotation(numbers.rotation) * placing::rotation(now.rotation).inverse();
+        let turns = numbers.rotation != now.rotation;
+        let neurons = &self.document.neurons;
+        let places = neurons.selected().iter().map(|&neuron| {
+            let before = neurons[neuron].placement;
+            let mut place = match turns {
+                true => placing::turned(&before, now.position, turn),
+                false => before,
+            };
+            place.translation += numbers.position - now.position;
+            (neuron, place)
+        });
+        Some(Edit::Place(places.collect()))
     }
 
     /// Shows or hides the handles.
@@ -141,6 +179,44 @@ mod tests {
         }
         state.run(Edit::Select(vec![1], false));
         state
+    }
+
+    #[test]
+    fn numbers_place_cells_about_their_somata() {
+        let mut state = state();
+        let begin = state.place_numbers().expect("one is selected");
+        assert_eq!(begin.rotation, DVec3::ZERO);
+        let to = PlaceNumbers {
+            position: DVec3::new(100.0, -20.0, 5.0),
+            // Beyond a quarter turn about y, where angles are not those that a rotation gives back.
+            rotation: DVec3::new(30.0, 120.0, -45.0),
+        };
+        let edit = state.placed_at(to).expect("an edit");
+        state.run(edit);
+        let now = state.place_numbers().expect("numbers");
+        assert!(now.position.distance(to.position) < 1e-9, "{now:?}");
+        assert_eq!(now.rotation, to.rotation);
+        assert_eq!(state.document.neurons[0].placement, Placement::default());
+        // Two together: their distance stays.
+        state.run(Edit::SelectAll);
+        let apart = |state: &State| {
+            let [a, b] = [0, 1].map(|n| state.middle_of(n).expect("a soma"));
+            a.distance(b)
+        };
+        let before = (apart(&state), state.place_numbers().expect("numbers"));
+        let edit = state.placed_at(PlaceNumbers {
+            rotation: DVec3::new(0.0, 0.0, 90.0),
+            ..before.1
+        });
+        state.run(edit.expect("an edit"));
+        assert!((apart(&state) - before.0).abs() < 1e-9);
+        let now = state.place_numbers().expect("numbers");
+        assert!(now.position.distance(before.1.position) < 1e-9);
+        let x = state.document.neurons[0].placement.rotation * DVec3::X;
+        assert!(x.distance(DVec3::Y) < 1e-9, "{x}");
+        // Side by side, nothing is placed.
+        state.run(Edit::SetGrid(true));
+        assert_eq!(state.place_numbers(), None);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::time::Duration;
 use eframe::egui;
 use neurotess::coloring::{ClosestColors, closest};
 use neurotess::render::overlay::Legend;
-use neurotess::render::{DeviceError, Frame, Markers, ViewParams};
+use neurotess::render::{DeviceError, Frame, MarkerShape, Markers, ViewParams};
 
 use super::Stage;
 use super::cost_model::RestMode;
@@ -54,7 +54,7 @@ struct MadeMarkers {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MarkersKey {
     revision: Revision,
-    radius: f64,
+    form: (MarkerShape, f64),
 }
 
 impl StageMarkers {
@@ -74,7 +74,7 @@ impl StageMarkers {
         self.device.as_ref()?;
         Some(MarkersKey {
             revision: self.revision,
-            radius: state.document.markers.radius(),
+            form: state.document.markers.form(),
         })
     }
 
@@ -86,9 +86,9 @@ impl StageMarkers {
         sub_pixels: f64,
         budget: Option<u32>,
     ) -> Option<&mut Markers> {
-        let radius = key?.radius;
+        let form = key?.form;
         let markers = self.device.as_mut()?;
-        markers.set_settings(settings(radius, sub_pixels, budget, self.most));
+        markers.set_settings(settings(form, sub_pixels, budget, self.most));
         Some(markers)
     }
 

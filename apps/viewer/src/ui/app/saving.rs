@@ -143,7 +143,7 @@ impl Viewer {
             shared: true,
             content,
             markers,
-            radius: self.state.document.markers.radius(),
+            form: self.state.document.markers.form(),
             look: self.state.document.look.clone(),
             states: content::states(&self.state.document),
             spheres: self.state.spheres(),

@@ -5,7 +5,9 @@ use neurotess::morphology::{Measures, NeuriteKind};
 
 use super::cells::{count, kind_name};
 use super::tip::Tip;
-use super::{crossings, dimension_list, figures, grouped, heading, markers, measured, measures};
+use super::{
+    crossings, dimension_list, figures, grouped, heading, markers, measured, measures, place,
+};
 use crate::model::command::{Command, Edit};
 use crate::model::sources::Source;
 use crate::model::state::{CellPart, State};
@@ -28,6 +30,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
                 ui.weak(source.file.display().to_string());
             }
             buttons(state, ui);
+            place::show(state, ui);
             measures::show(state, ui);
             crossings::show(state, ui);
             part(state, one, ui);
@@ -39,6 +42,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
             let many = state.document.neurons.selected().len();
             ui.label(RichText::new(count(many, "neuron")).size(16.0).strong());
             buttons(state, ui);
+            place::show(state, ui);
             measures::show(state, ui);
             crossings::show(state, ui);
             sums(state, ui);

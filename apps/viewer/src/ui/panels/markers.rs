@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, ComboBox, RichText, Ui};
 use neurotess::circuit::SynapseSide;
+use neurotess::render::MarkerShape;
 
 use super::number::slider;
 use super::tip::Tip;
@@ -33,6 +34,7 @@ pub(super) fn show(state: &mut State, look: Option<&mut Look>, released: bool, u
         });
     }
     if options.any() {
+        shapes(&mut options, ui);
         slider(ui, &mut options.size, 0.1..=20.0, Some(1), |slider| {
             slider.text("size (µm)").logarithmic(true)
         })
@@ -59,6 +61,30 @@ pub(super) fn show(state: &mut State, look: Option<&mut Look>, released: bool, u
     } else if released {
         state.history.end_joining();
     }
+}
+
+/// What each is drawn as.
+fn shapes(options: &mut MarkerOptions, ui: &mut Ui) {
+    let mut all = vec![
+        (
+            MarkerShape::Point,
+            "Points",
+            "Dots of 3 pixels, however near they are",
+        ),
+        (MarkerShape::Sphere, "Spheres", "Spheres of the size below"),
+    ];
+    // Points of a table lie on no membrane.
+    if options.synapses {
+        let tip = "Spheres of the size below, each on a flat disc that lies on the membrane";
+        all.push((MarkerShape::Contact, "Contact discs", tip));
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.label("as");
+        for (shape, name, tip) in all {
+            ui.selectable_value(&mut options.shape, shape, name)
+                .tip(tip);
+        }
+    });
 }
 
 fn synapses(state: &State, edges: &[String], options: &mut MarkerOptions, ui: &mut Ui) {

@@ -24,6 +24,7 @@ mod overlay;
 mod own_colors;
 mod panes;
 mod partners;
+mod place;
 mod rings;
 mod save;
 mod saved_views;

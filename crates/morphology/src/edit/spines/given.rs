@@ -3,9 +3,7 @@
 //! Each place belongs to the neurite whose surface is nearest. Along a section, places are taken in their order, and
 //! where two are too close for the surface, the farther one moves on by up to [`SLIDE`].
 
-use std::collections::HashMap;
-
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 
 use super::base::Base;
 use super::line::{APART, Line, Site};
@@ -13,11 +11,12 @@ use super::shape::Spine;
 use super::{Grown, MOST, SPINE};
 use crate::edit::EditError;
 use crate::edit::nodes::Nodes;
+use crate::nearest::{Link, Links, REACH};
 use crate::random::Random;
 use crate::{Attachment, Morphology, NeuriteKind, SectionId};
 
 /// A place is at most so far (µm) from the membrane of its dendrite: longer than all spines that were measured.
-pub const SPINE_REACH: f64 = 5.0;
+pub const SPINE_REACH: f64 = REACH;
 
 /// A base moves along its dendrite at most so far (µm), if there is no room where it should be.
 const SLIDE: f64 = 2.0;
@@ -36,11 +35,11 @@ pub(super) fn grow_at(
     grown: &mut Grown,
 ) -> Result<(), EditError> {
     let lines = lines(morphology, nodes, places.len())?;
-    let pieces = Pieces::new(&lines);
+    let links = links_of(&lines);
     let somata = somata(morphology);
     let mut wanted: Vec<Wanted> = vec![Vec::new(); lines.len()];
     for &place in places {
-        let found = pieces.nearest(place).filter(|found| {
+        let found = links.nearest(place).filter(|found| {
             let on_soma = distance_to_soma(morphology, somata[found.section], place);
             let carries = carries(morphology.sections[found.section].kind);
             carries && found.far <= on_soma.min(SPINE_REACH)
@@ -88,6 +87,18 @@ fn lines<'n>(
     }
     let ids = (0..morphology.sections.len() as u32).map(SectionId);
     Ok(ids.map(|id| Line::new(morphology, nodes, id)).collect())
+}
+
+fn links_of(lines: &[Line<'_>]) -> Links {
+    let all = lines.iter().enumerate().flat_map(|(section, line)| {
+        let link = move |(along, ends)| Link {
+            section,
+            along,
+            ends,
+        };
+        line.links().map(link)
+    });
+    Links::new(all)
 }
 
 fn grow_on_all(lines: &[Line<'_>], wanted: Vec<Wanted>, seed: u64, grown: &mut Grown) {
@@ -162,132 +173,4 @@ fn aim(site: &Site, place: DVec3) -> (Option<DVec3>, Option<f64>) {
         true => (aside.try_normalize(), Some(far)),
         false => (None, None),
     }
-}
-
-/// Side of a cell of the grid (µm).
-const CELL: f64 = 4.0;
-/// Cells along a side of what is searched at most.
-const MOST_SHELLS: i32 = 16;
-
-/// Links of lines in a grid, each in all cells that its axis goes through.
-struct Pieces {
-    cells: HashMap<IVec3, Vec<u32>>,
-    links: Vec<Link>,
-    /// The largest radius (µm).
-    widest: f64,
-}
-
-struct Link {
-    section: usize,
-    /// Distance (µm) of its first end from the start of the section.
-    along: f64,
-    ends: [(DVec3, f64); 2],
-}
-
-/// The place on a neurite that is nearest to another place.
-#[derive(Clone, Copy)]
-struct Found {
-    section: usize,
-    /// Distance (µm) from the start of the section.
-    along: f64,
-    /// Distance (µm) from the surface; below 0 inside.
-    far: f64,
-}
-
-impl Pieces {
-    fn new(lines: &[Line<'_>]) -> Self {
-        let mut pieces = Self {
-            cells: HashMap::new(),
-            links: Vec::new(),
-            widest: 0.0,
-        };
-        for (section, line) in lines.iter().enumerate() {
-            for (along, ends) in line.links() {
-                pieces.add(Link {
-                    section,
-                    along,
-                    ends,
-                });
-            }
-        }
-        pieces
-    }
-
-    fn add(&mut self, link: Link) {
-        let number = self.links.len() as u32;
-        let [(from, thick), (to, thin)] = link.ends;
-        self.widest = self.widest.max(thick).max(thin);
-        let steps = (2.0 * from.distance(to) / CELL).ceil().clamp(1.0, 1e6) as u32;
-        for step in 0..=steps {
-            let at = from.lerp(to, f64::from(step) / f64::from(steps));
-            let there = self.cells.entry(cell(at)).or_default();
-            if there.last() != Some(&number) {
-                there.push(number);
-            }
-        }
-        self.links.push(link);
-    }
-
-    /// What is nearest to a place, if it is near at all. Cells are searched outwards.
-    fn nearest(&self, place: DVec3) -> Option<Found> {
-        if !place.is_finite() {
-            return None;
-        }
-        let mut best: Option<Found> = None;
-        for shell in 0..=MOST_SHELLS {
-            // No link that is not found yet is nearer to the axis: half a cell for its samples.
-            let rest = (f64::from(shell) - 1.5) * CELL - self.widest;
-            if rest > best.map_or(SPINE_REACH, |found| found.far) {
-                break;
-            }
-            for at in around(cell(place), shell) {
-                let links = self.cells.get(&at).into_iter().flatten();
-                for found in links.map(|&number| self.links[number as usize].found(place)) {
-                    if best.is_none_or(|best| found.far < best.far) {
-                        best = Some(found);
-                    }
-                }
-            }
-        }
-        best
-    }
-}
-
-impl Link {
-    fn found(&self, place: DVec3) -> Found {
-        let [(from, radius), (to, other)] = self.ends;
-        let way = to - from;
-        let length = way.length();
-        let share = match length > 0.0 {
-            true => ((place - from).dot(way) / (length * length)).clamp(0.0, 1.0),
-            false => 0.0,
-        };
-        let axis = from.lerp(to, share);
-        Found {
-            section: self.section,
-            along: self.along + share * length,
-            far: axis.distance(place) - (radius + share * (other - radius)),
-        }
-    }
-}
-
-fn cell(place: DVec3) -> IVec3 {
-    (place / CELL).floor().as_ivec3()
-}
-
-/// The cells that are so many cells from one.
-fn around(center: IVec3, shell: i32) -> impl Iterator<Item = IVec3> {
-    let range = move || -shell..=shell;
-    let all = range().flat_map(move |x| range().map(move |y| (x, y)));
-    all.flat_map(move |(x, y)| {
-        let is_side = x.abs() == shell || y.abs() == shell;
-        // Within the sides only the two that close them.
-        let step = match is_side {
-            true => 1,
-            false => 2 * shell.max(1),
-        };
-        range()
-            .step_by(step as usize)
-            .map(move |z| center.wrapping_add(IVec3::new(x, y, z)))
-    })
 }

@@ -269,6 +269,8 @@ struct Offers {
     bins: vec4<u32>,
     quads: vec4<u32>,
     lods: vec4<u32>,
+    // Share of the width that is drawn, before the budget's.
+    width: f32,
 }
 
 // Bin of the histogram for a worth (square pixels per quad). 0: worth nothing.
@@ -302,7 +304,23 @@ fn chance(instance: u32) -> f32 {
 }
 
 fn no_offers() -> Offers {
-    return Offers(vec4<u32>(0u), vec4<u32>(0u), vec4<u32>(0u));
+    return Offers(vec4<u32>(0u), vec4<u32>(0u), vec4<u32>(0u), 1.0);
+}
+
+// How much of twigs of a length (pixels) shows: nothing of the shortest.
+fn twig_share(length: f32) -> f32 {
+    return clamp((length - TWIG_FADES_FROM) / (TWIG_FADES_TO - TWIG_FADES_FROM), 0.0, 1.0);
+}
+
+// How much wider a chunk is drawn where its twigs are left out. `pixel`: its size in the template's coordinates.
+fn wider_without_twigs(chunk: Chunk, pixel: f32) -> f32 {
+    let long = (chunk.flags >> CHUNK_TWIGS_SHIFT) & ((1u << TWIGS_BITS) - 1u);
+    if (long == 0u) {
+        return 1.0;
+    }
+    let wider = (chunk.flags >> CHUNK_WIDER_SHIFT) & ((1u << WIDER_BITS) - 1u);
+    let length = exp2(f32(long) / TWIG_STEPS - TWIG_OFFSET);
+    return mix(exp2(f32(wider) / TWIG_STEPS), 1.0, twig_share(length / pixel));
 }
 
 // Number of strips around the visible half of a tube of this radius (pixels): enough to be within
@@ -343,6 +361,13 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     // Size of a pixel in the template's coordinates: errors and lengths are given in those.
     let near_pixel = nearest / place.scale;
     let far_pixel = pixel / place.scale;
+    var shown = 1.0;
+    if ((chunk.flags & CHUNK_TWIG) != 0u) {
+        shown = twig_share(chunk.length / far_pixel);
+        if (shown == 0.0) {
+            return no_offers();
+        }
+    }
     let mean = chunk.radius * (f32(chunk.flags >> 16u) / 65535.0) / far_pixel;
     var width = 2.0 * mean;
     if (mean < HALF_PIXEL) {
@@ -370,6 +395,7 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     // no chunk is drawn without those that lead to it.
     let worth = 2.0 * chunk.carried / (far_pixel * sqrt(far_pixel)) * chance_factor(instance);
     var all = no_offers();
+    all.width = shown;
     all.bins.x = max(bin_of(worth), 1u);
     all.quads.x = first;
     all.lods.x = packed_lod(WHAT_TUBE, coarse, 0u, 1u, 0u);

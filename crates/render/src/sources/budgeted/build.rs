@@ -6,7 +6,8 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role};
 
 use super::layout::{
-    CHUNK_FREE_END, CHUNK_FREE_START, Chunk, LEVELS, MOST_SEGMENTS, MOST_SWAY, NO_LOD,
+    CHUNK_FREE_END, CHUNK_FREE_START, CHUNK_TWIG, Chunk, LEVELS, LONGEST_TWIG, MOST_SEGMENTS,
+    MOST_SWAY, NO_LOD,
 };
 use super::nested::simplify;
 use super::paths::{PathPoint, TubePath, tube_paths};
@@ -48,6 +49,7 @@ impl Proxy {
             }
         }
         carriers.carry(&mut proxy.chunks);
+        carriers.mark_twigs(&mut proxy.chunks);
         proxy.sort();
         proxy.set_color_keys(color_keys);
         (proxy.center, proxy.reach) = sphere_around(&proxy.chunks);
@@ -115,6 +117,8 @@ struct Carriers {
     chunk_of: Vec<usize>,
     /// By chunk: its carrier, or `usize::MAX`.
     carriers: Vec<usize>,
+    /// By chunk: whether it begins at a fork.
+    forks: Vec<bool>,
 }
 
 impl Carriers {
@@ -123,6 +127,7 @@ impl Carriers {
         Self {
             chunk_of: vec![usize::MAX; mesh.tracing.len()],
             carriers: vec![usize::MAX; somata],
+            forks: vec![false; somata],
         }
     }
 
@@ -134,8 +139,38 @@ impl Carriers {
         };
         let carrier = start.map_or(usize::MAX, |point| self.chunk_of[point as usize]);
         self.carriers.push(carrier);
+        self.forks.push(segments.start == 0 && path.fork.is_some());
         for point in &path.points[segments.start + 1..=segments.end] {
             self.chunk_of[point.tracing as usize] = chunk;
+        }
+    }
+
+    /// Marks chunks that are twigs, and notes them in those that they leave.
+    fn mark_twigs(&self, chunks: &mut [Chunk]) {
+        let mut carries = vec![false; chunks.len()];
+        for &carrier in &self.carriers {
+            if let Some(carries) = carries.get_mut(carrier) {
+                *carries = true;
+            }
+        }
+        let mut twigs = vec![Twigs::default(); chunks.len()];
+        for (index, &carrier) in self.carriers.iter().enumerate() {
+            let inside = chunks.get(carrier).map_or(0.0, Chunk::mean);
+            let chunk = &mut chunks[index];
+            let ends = !carries[index] && chunk.length <= LONGEST_TWIG;
+            // What goes on from the chunk before is the end of a long branch.
+            let Some(of) = twigs.get_mut(carrier).filter(|_| ends && self.forks[index]) else {
+                continue;
+            };
+            chunk.flags |= CHUNK_TWIG;
+            of.count += 1;
+            of.length += chunk.length;
+            of.area += TWIG_INK * 2.0 * chunk.mean() * (chunk.length - inside).max(0.0);
+        }
+        for (chunk, twigs) in chunks.iter_mut().zip(twigs) {
+            if twigs.count > 0 {
+                chunk.note_twigs(twigs.count, twigs.length, twigs.area);
+            }
         }
     }
 
@@ -148,6 +183,19 @@ impl Carriers {
             }
         }
     }
+}
+
+/// Share of twigs' area that their ink amounts to: others lie before or behind the chunk, or are seen from their ends.
+/// Of 1, 0.45 and 0.25, the one with which the ink of a spiny cell changes least (`far_spines_cost_nothing…`).
+const TWIG_INK: f32 = 0.25;
+
+/// Twigs that leave a chunk.
+#[derive(Clone, Copy, Default)]
+struct Twigs {
+    count: u32,
+    /// Of all together (µm, and µm² as seen from the side).
+    length: f32,
+    area: f32,
 }
 
 /// Unit direction of a path at each of its points: the mean of those of the segments before and

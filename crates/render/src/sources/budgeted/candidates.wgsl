@@ -12,14 +12,17 @@ fn soma_radius_at(bin: u32) -> f32 {
 // How many of an instance's chunks may be worth the floor: the first ones, since chunks are sorted
 // by what they carry. `nearest`: size (µm) of a pixel at the instance's nearest point.
 fn chunks_above_floor(shape: Shape, nearest: f32) -> u32 {
+    // Twigs that are left out at the instance's nearest point are left out everywhere.
+    let tiny = shape.twig_length < 0.99 * TWIG_FADES_FROM * nearest;
+    let most = select(shape.chunks, shape.before_twigs, tiny);
     let floor = book.sums.floor;
     if (floor <= 1u) {
-        return shape.chunks;
+        return most;
     }
     // A little less, since two compilations of an expression may round differently.
     let carried = 0.99 * worth_of(floor) * nearest * sqrt(nearest) / (2.0 * MOST_CHANCE);
     var low = shape.somata;
-    var high = shape.chunks;
+    var high = max(most, low);
     while (low < high) {
         let middle = (low + high) / 2u;
         if (chunks[shape.first_chunk + middle].carried >= carried) {

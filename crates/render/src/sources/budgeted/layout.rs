@@ -40,7 +40,37 @@ pub(crate) const CHUNK_FREE_END: u32 = 4;
 /// Flag of a chunk that has a single color key; others have one per point.
 pub(crate) const CHUNK_ONE_COLOR_KEY: u32 = 8;
 
+/// Flag of a **twig**: a short branch that carries nothing, such as a spine. Where it is short in the picture it is left
+/// out, and the chunk that it leaves is as much wider as its twigs have area.
+pub(crate) const CHUNK_TWIG: u32 = 16;
+/// First bits of what a chunk knows of its twigs: how much wider it is without them, `2^(bits / TWIG_STEPS)` times, and
+/// their mean length, `2^(bits / TWIG_STEPS - TWIG_OFFSET)` µm. It has none if the latter is 0.
+pub(crate) const CHUNK_WIDER_SHIFT: u32 = 5;
+pub(crate) const CHUNK_TWIGS_SHIFT: u32 = 10;
+const WIDER_BITS: u32 = CHUNK_TWIGS_SHIFT - CHUNK_WIDER_SHIFT;
+const TWIGS_BITS: u32 = 16 - CHUNK_TWIGS_SHIFT;
+pub(crate) const TWIG_STEPS: f32 = 8.0;
+pub(crate) const TWIG_OFFSET: f32 = 4.0;
+/// Longest twig (µm): longer than all spines that were measured.
+pub(crate) const LONGEST_TWIG: f32 = 5.0;
+/// Length (pixels) up to which a twig is left out, and from which on it has its whole width.
+pub(crate) const TWIG_FADES: [f32; 2] = [0.4, 0.8];
+
 impl Chunk {
+    /// Notes twigs that leave the chunk: how many there are, and their length and area (µm, µm²) in all. Areas are as
+    /// seen from the side.
+    pub(super) fn note_twigs(&mut self, count: u32, length: f32, area: f32) {
+        let own = (2.0 * self.mean() * self.length).max(f32::MIN_POSITIVE);
+        let bits = |exponent: f32, least: u32, bits: u32| {
+            let most = (1 << bits) - 1;
+            ((exponent * TWIG_STEPS).round().max(0.0) as u32).clamp(least, most)
+        };
+        let wider = bits((1.0 + area / own).log2(), 0, WIDER_BITS);
+        let mean = length / count.max(1) as f32;
+        let long = bits(mean.log2() + TWIG_OFFSET, 1, TWIGS_BITS);
+        self.flags |= (wider << CHUNK_WIDER_SHIFT) | (long << CHUNK_TWIGS_SHIFT);
+    }
+
     /// Mean radius (µm).
     pub(crate) fn mean(&self) -> f32 {
         self.radius * ((self.flags >> 16) as f32 / 65_535.0)
@@ -116,6 +146,10 @@ pub(crate) struct Shape {
     /// Number of chunks that are somata, and the greatest radius (µm) of them.
     pub(crate) somata: u32,
     pub(crate) soma_radius: f32,
+    /// Number of chunks before those that are twigs up to the last one, and the greatest length (µm) of these.
+    pub(crate) before_twigs: u32,
+    pub(crate) twig_length: f32,
+    pub(crate) pad: [u32; 2],
 }
 
 /// An instance with its placement. A point p, relative to the template's origin, is in the world at
@@ -218,6 +252,11 @@ pub(crate) fn constants() -> Constants {
         ("CHUNK_FREE_START", CHUNK_FREE_START),
         ("CHUNK_FREE_END", CHUNK_FREE_END),
         ("CHUNK_ONE_COLOR_KEY", CHUNK_ONE_COLOR_KEY),
+        ("CHUNK_TWIG", CHUNK_TWIG),
+        ("CHUNK_WIDER_SHIFT", CHUNK_WIDER_SHIFT),
+        ("WIDER_BITS", WIDER_BITS),
+        ("CHUNK_TWIGS_SHIFT", CHUNK_TWIGS_SHIFT),
+        ("TWIGS_BITS", TWIGS_BITS),
         ("HIDDEN", HIDDEN),
         ("LOD_LEVEL_SHIFT", LOD_LEVEL_SHIFT),
         ("LOD_HALVINGS_SHIFT", LOD_HALVINGS_SHIFT),
@@ -237,6 +276,10 @@ pub(crate) fn constants() -> Constants {
         ("LOWEST_OCTAVE", LOWEST_OCTAVE),
         ("ERROR_STEPS", ERROR_STEPS),
         ("ERROR_OFFSET", ERROR_OFFSET),
+        ("TWIG_STEPS", TWIG_STEPS),
+        ("TWIG_OFFSET", TWIG_OFFSET),
+        ("TWIG_FADES_FROM", TWIG_FADES[0]),
+        ("TWIG_FADES_TO", TWIG_FADES[1]),
         ("CELL", CELL as f32),
     ] {
         constants.f32(name, value);

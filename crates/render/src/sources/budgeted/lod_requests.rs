@@ -5,8 +5,8 @@ use glam::{DQuat, DVec3, Vec3};
 
 use super::ERROR;
 use super::layout::{
-    BINS, BINS_OF_OCTAVE, CHUNK_FREE_END, CHUNK_FREE_START, CHUNK_SOMA, Chunk, ERROR_OFFSET,
-    ERROR_STEPS, LEVELS, LOWEST_OCTAVE,
+    BINS, BINS_OF_OCTAVE, CHUNK_FREE_END, CHUNK_FREE_START, CHUNK_SOMA, CHUNK_TWIG, Chunk,
+    ERROR_OFFSET, ERROR_STEPS, LEVELS, LOWEST_OCTAVE, TWIG_FADES,
 };
 use super::proxy::Proxy;
 use crate::scene::Placement;
@@ -162,6 +162,10 @@ impl View {
             return steps.0;
         }
         let (near_pixel, far_pixel) = (nearest / scale, pixel / scale);
+        let tiny = f64::from(chunk.length) <= f64::from(TWIG_FADES[0]) * far_pixel;
+        if chunk.flags & CHUNK_TWIG != 0 && tiny {
+            return Vec::new();
+        }
         let mean = f64::from(chunk.mean()) / far_pixel;
         let width = match mean < HALF_PIXEL {
             true => 1.0 - (1.0 - (mean / HALF_PIXEL).sqrt()).powi(3),

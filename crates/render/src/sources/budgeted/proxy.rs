@@ -8,7 +8,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::layout::{CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk};
+use super::layout::{CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, CHUNK_TWIG, Chunk};
 use crate::view::frustum::BoundingSphere;
 
 /// A template for exploration mode, computed on the host, ready to be uploaded.
@@ -81,6 +81,18 @@ impl Proxy {
         let neurites = |chunk: &Chunk| chunk.flags & CHUNK_SOMA == 0;
         let somata = self.chunks.iter().position(neurites);
         &self.chunks[..somata.unwrap_or(self.chunks.len())]
+    }
+
+    /// The number of chunks before those that are twigs up to the last one, and the greatest length (µm) of these.
+    pub(super) fn twigs(&self) -> (usize, f32) {
+        let other = |chunk: &Chunk| chunk.flags & CHUNK_TWIG == 0;
+        let before = self
+            .chunks
+            .iter()
+            .rposition(other)
+            .map_or(0, |last| last + 1);
+        let lengths = self.chunks[before..].iter().map(|chunk| chunk.length);
+        (before, lengths.fold(0.0, f32::max))
     }
 
     /// Sorts chunks: somata, then those that carry most. So the first ones of any instance are

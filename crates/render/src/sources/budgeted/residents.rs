@@ -72,6 +72,7 @@ impl Exploration {
                 first_color_key: first_color_key + color_keys.len(),
                 color_keys: proxy.color_keys.len(),
             };
+            let (before_twigs, twig_length) = proxy.twigs();
             shapes.push(Shape {
                 center: known.center.to_array(),
                 reach: known.reach,
@@ -79,6 +80,9 @@ impl Exploration {
                 chunks: known.chunks,
                 somata: proxy.somata().len() as u32,
                 soma_radius: proxy.somata().iter().map(|c| c.radius).fold(0.0, f32::max),
+                before_twigs: before_twigs as u32,
+                twig_length,
+                pad: [0; 2],
             });
             chunks.extend(known.placed(proxy));
             packed.extend(&proxy.packed);

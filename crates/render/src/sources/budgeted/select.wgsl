@@ -192,12 +192,12 @@ fn drawn(offers: Offers) -> Drawn {
     if (lod_what(it.lod) == WHAT_TUBE) {
         // A chunk that is only just within the budget is drawn with part of its width, so that it
         // fades in and out.
-        var width = FULL_WIDTH;
+        var width = offers.width;
         if (threshold > 1u) {
             let over = f32(offers.bins.x - threshold) + 1.0;
-            width = u32(clamp(over / (0.5 * BINS_OF_OCTAVE), 0.1, 1.0) * f32(FULL_WIDTH));
+            width *= clamp(over / (0.5 * BINS_OF_OCTAVE), 0.1, 1.0);
         }
-        it.lod |= width << LOD_WIDTH_SHIFT;
+        it.lod |= u32(width * f32(FULL_WIDTH)) << LOD_WIDTH_SHIFT;
     }
     return it;
 }

@@ -12,6 +12,10 @@ struct Shape {
     // Number of chunks that are somata, which are the first, and the greatest radius of them.
     somata: u32,
     soma_radius: f32,
+    // Number of chunks before those that are twigs up to the last one, and the greatest length of these.
+    before_twigs: u32,
+    twig_length: f32,
+    pad: vec2<u32>,
 }
 
 struct Sums {

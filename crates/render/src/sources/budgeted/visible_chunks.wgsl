@@ -140,7 +140,7 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
     let level = lod_level(visible_chunk.lod);
     let halvings = lod_halvings(visible_chunk.lod);
     let strips = lod_strips(visible_chunk.lod);
-    let width = lod_width(visible_chunk.lod);
+    var width = lod_width(visible_chunk.lod);
     let tube_quads = (segments(chunk, level) << halvings) * strips;
     if (index >= tube_quads) {
         return cap_vertex(visible_chunk, chunk, instance_pose, index - tube_quads, corner);
@@ -153,6 +153,8 @@ fn tube_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
     let there = station(chunk, level, segment, t);
 
     let axis = relative(instance_pose, there.center);
+    let pixel = pixel_at(max(dot(eye.forward, axis), eye.near)) / instance_pose.scale;
+    width *= wider_without_twigs(chunk, pixel);
     let way = turn(instance_pose.rotation, there.direction);
     let to_eye = towards_eye(axis);
     let side = cross(way, to_eye);

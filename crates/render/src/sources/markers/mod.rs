@@ -1,4 +1,5 @@
-//! Markers: spheres that are no part of a membrane, such as synapses, drawn beside any vertex source.
+//! Markers: dots, spheres or contact discs that are no part of a membrane, such as synapses, drawn beside any vertex
+//! source.
 //!
 //! [`Combined`](crate::Combined) draws them with one more shader. Markers are culled by chunks (chunks.rs); each chunk's
 //! size in the picture selects a shape for its markers (shapes.rs), and how many of them are drawn. Markers
@@ -11,12 +12,14 @@ mod shapes;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use neurotess_refine::wgsl::{ShaderParts, WgslFile};
 
 use self::chunks::{CHUNK, Chunk};
-use self::shapes::Shapes;
+pub use self::shapes::MarkerShape;
+use self::shapes::{DISC, GROWS, LIFT, Shapes};
 use super::companion::Companion;
+use super::octahedral::pack_normal;
 use super::pick::PickId;
 use crate::gpu::buffers::{
     UNIFORM_STRIDE, group_layout, group_with_frame, storage, uniform, upload,
@@ -33,6 +36,8 @@ const BLOCK: usize = 2048 * CHUNK;
 const MARKER_BIT: u32 = 1 << 31;
 /// Instance of markers: beyond all instances, so they have neither values nor a state.
 const NO_INSTANCE: u32 = u32::MAX - 1;
+/// Of a marker that knows no direction: no pair of octahedral coordinates, which are at least -32,767.
+const NO_OUTWARDS: u32 = 0x8000_8000;
 /// Most markers of a chunk for each sub-pixel that its bounding sphere covers: further ones could hardly
 /// show.
 const MOST_PER_SUB_PIXEL: f32 = 4.0;
@@ -42,6 +47,8 @@ const MOST_PER_SUB_PIXEL: f32 = 4.0;
 pub struct Marker {
     /// Its center (µm).
     pub position: DVec3,
+    /// Of one that lies on a membrane: the unit vector away from the inside; zero if there is none.
+    pub outwards: Vec3,
     /// What its color is looked up by: see [`ColorTable`](crate::color::ColorTable). Best a category, since
     /// it belongs to no instance that has values.
     pub color_key: u32,
@@ -50,6 +57,8 @@ pub struct Marker {
 /// How markers are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerSettings {
+    /// What they are drawn as.
+    pub shape: MarkerShape,
     /// Radius (µm).
     pub radius: f64,
     /// Least radius (sub-pixels).
@@ -61,6 +70,7 @@ pub struct MarkerSettings {
 impl Default for MarkerSettings {
     fn default() -> Self {
         Self {
+            shape: MarkerShape::Sphere,
             radius: 0.5,
             least: 1.0,
             most_triangles: 20_000_000,
@@ -76,6 +86,7 @@ pub(crate) struct StoredMarker {
     pub(crate) y: f32,
     pub(crate) z: f32,
     pub(crate) color_key: u32,
+    pub(crate) outwards: u32,
 }
 
 /// Twin of `MarkerFrame` in `markers.wgsl`.
@@ -90,6 +101,9 @@ pub(crate) struct MarkerFrame {
     pub(crate) least: f32,
     pub(crate) backward: [f32; 3],
     pub(crate) first: u32,
+    pub(crate) pixel_slope: f32,
+    pub(crate) pixel_flat: f32,
+    pub(crate) unused: [u32; 2],
 }
 
 /// Markers whose positions are stored relative to one origin, in one buffer.
@@ -162,10 +176,21 @@ impl Markers {
             let stored = part.iter().map(|&index| {
                 let Marker {
                     position,
+                    outwards,
                     color_key,
                 } = markers[index as usize];
                 let [x, y, z] = (position - origin).as_vec3().to_array();
-                StoredMarker { x, y, z, color_key }
+                let outwards = match outwards == Vec3::ZERO {
+                    true => NO_OUTWARDS,
+                    false => pack_normal(outwards),
+                };
+                StoredMarker {
+                    x,
+                    y,
+                    z,
+                    color_key,
+                    outwards,
+                }
             });
             let stored: Vec<StoredMarker> = stored.collect();
             let stored = upload(gpu, "markers", wgpu::BufferUsages::STORAGE, &stored);
@@ -225,6 +250,22 @@ impl Markers {
         Some(*index as usize)
     }
 
+    /// Radius (µm): none of points, which have the least size.
+    fn radius(&self) -> f64 {
+        match self.settings.shape {
+            MarkerShape::Point => 0.0,
+            MarkerShape::Sphere | MarkerShape::Contact => self.settings.radius,
+        }
+    }
+
+    /// How far (µm) what is drawn for a marker reaches from its place.
+    fn reach(&self) -> f64 {
+        match self.settings.shape {
+            MarkerShape::Contact => self.radius() * f64::from(DISC.max(1.0 + LIFT) + 0.1),
+            MarkerShape::Point | MarkerShape::Sphere => self.radius(),
+        }
+    }
+
     fn select(&mut self, frame: &Frame) {
         let whole = Frame {
             tile: Tile {
@@ -241,7 +282,7 @@ impl Markers {
         let (eye, pixel) = (frame.camera.eye(), frame.pixel());
         let seen = |chunk: &Chunk, planes: &[glam::Vec4; 5]| {
             let center = chunk.relative(eye);
-            let reach = chunk.reach + self.settings.radius;
+            let reach = chunk.reach + self.reach();
             let around = margin.at(f64::from(center.length()) + reach);
             shows(planes, center, (reach + around) as f32)
         };
@@ -252,10 +293,10 @@ impl Markers {
             .map(|chunk| {
                 let depth = frame.camera.depth(chunk.center);
                 let nearest = (depth - chunk.reach).max(frame.near);
-                let radius = (self.settings.radius / pixel.at(nearest)).max(self.settings.least);
+                let radius = (self.radius() / pixel.at(nearest)).max(self.settings.least);
                 (
                     *chunk,
-                    Shapes::of_radius(radius as f32),
+                    Shapes::of_radius(self.settings.shape, radius as f32),
                     fitting(chunk, pixel.at(depth.max(frame.near))),
                 )
             })
@@ -312,13 +353,16 @@ impl Companion for Markers {
         for (index, block) in self.blocks.iter().enumerate() {
             let uniforms = MarkerFrame {
                 relative_from_block: (block.origin - frame.camera.eye()).as_vec3().to_array(),
-                radius: self.settings.radius.max(least.flat) as f32,
+                radius: self.radius().max(least.flat) as f32,
                 right,
                 near: frame.near as f32,
                 up,
                 least: least.slope as f32,
                 backward,
                 first: block.first,
+                pixel_slope: frame.pixel().slope as f32,
+                pixel_flat: frame.pixel().flat as f32,
+                unused: [0; 2],
             };
             let bytes = bytemuck::bytes_of(&uniforms);
             gpu.queue
@@ -332,7 +376,7 @@ impl Companion for Markers {
             let center = chunk.relative(eye);
             let least = frame.pixel().times(self.settings.least);
             let least = least.at(f64::from(center.length()));
-            (chunk.reach + self.settings.radius.max(least)) as f32
+            (chunk.reach + self.reach().max(least)) as f32
         };
         let mut chunks = self.chunks.iter();
         chunks.any(|chunk| shows(&planes, chunk.relative(eye), reach(chunk)))
@@ -362,6 +406,11 @@ pub(crate) fn vertex_shader() -> ShaderParts {
     let mut parts = ShaderParts::new(&[shader::file("markers.wgsl")]);
     parts.constants.u32("NO_INSTANCE", NO_INSTANCE);
     parts.constants.u32("MARKER_BIT", MARKER_BIT);
+    parts.constants.u32("NO_OUTWARDS", NO_OUTWARDS);
+    parts.constants.f32("GROWS_FROM", GROWS[0]);
+    parts.constants.f32("GROWS_TO", GROWS[1]);
+    parts.constants.f32("DISC", DISC);
+    parts.constants.f32("LIFT", LIFT);
     parts
 }
 

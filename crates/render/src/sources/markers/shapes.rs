@@ -1,5 +1,5 @@
 //! The triangles that markers are drawn with: a square and a dome, which face the viewer, and spheres of ever
-//! more triangles.
+//! more triangles; for contacts these spheres with a disc.
 
 use std::f32::consts::TAU;
 use std::ops::Range;
@@ -9,8 +9,20 @@ use glam::Vec3;
 /// Corners of all shapes, three to a triangle, and in the last component what they are relative to.
 pub(super) struct Shapes {
     pub(super) corners: Vec<[f32; 4]>,
-    /// By shape, the simplest first: its range of the corners.
+    /// By shape, the simplest first: its range of the corners. After those of spheres, those of contacts, as many.
     pub(super) ranges: Vec<Range<u32>>,
+}
+
+/// What a marker is drawn as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum MarkerShape {
+    /// A dot of the least size, however near it is.
+    Point,
+    /// A sphere.
+    #[default]
+    Sphere,
+    /// A sphere on a flat disc that lies on the membrane, for markers that know which way is outwards.
+    Contact,
 }
 
 /// Radius (sub-pixels) from which on a marker has the shape of this index. With 8, 80, 320 and 1,280 triangles
@@ -22,8 +34,21 @@ const IN_WORLD: f32 = 0.0;
 const IN_VIEW: f32 = 1.0;
 /// Of a corner of a square: the same, but its normal is backward.
 const FLAT: f32 = 2.0;
+/// Of a corner of a sphere that lies on a disc: a unit vector in the world.
+const LIFTED: f32 = 3.0;
+/// Of a corner of a disc: a unit vector along the membrane, and how far outwards it is.
+const TOP: f32 = 4.0;
+const EDGE: f32 = 5.0;
+const BOTTOM: f32 = 6.0;
 /// Triangles of a dome.
 const SIDES: usize = 8;
+/// Radius (sub-pixels) of a sphere from which on its disc shows, and from which on it is whole.
+pub(super) const GROWS: [f32; 2] = [6.0, 12.0];
+/// Radius of a disc and how far its sphere is lifted, in radii of the sphere.
+pub(super) const DISC: f32 = 2.0;
+pub(super) const LIFT: f32 = 0.9;
+/// Half the thickness of a disc, in radii of the sphere.
+const HALF: f32 = 0.12;
 
 impl Shapes {
     pub(super) fn new() -> Self {
@@ -40,11 +65,24 @@ impl Shapes {
         };
         shapes.push(square);
         shapes.push(dome);
+        let (flat, mut contacts) = (shapes.ranges.clone(), Vec::new());
         let mut triangles = icosahedron();
         while shapes.ranges.len() < FROM.len() {
             triangles = triangles.into_iter().flat_map(quartered).collect();
-            let corners = triangles.iter().flatten();
-            shapes.push(corners.map(|c| [c.x, c.y, c.z, IN_WORLD]));
+            let sphere = |kind| {
+                triangles
+                    .iter()
+                    .flatten()
+                    .map(move |c| [c.x, c.y, c.z, kind])
+            };
+            let round = disc(12 << contacts.len());
+            contacts.push(sphere(LIFTED).chain(round).collect::<Vec<_>>());
+            shapes.push(sphere(IN_WORLD).collect::<Vec<_>>());
+        }
+        // Small ones are like those of spheres.
+        shapes.ranges.extend(flat);
+        for contact in contacts {
+            shapes.push(contact);
         }
         shapes
     }
@@ -55,15 +93,41 @@ impl Shapes {
         self.ranges.push(first..self.corners.len() as u32);
     }
 
-    /// The shape of a marker of this radius (sub-pixels).
-    pub(super) fn of_radius(radius: f32) -> usize {
-        FROM.iter().rposition(|&from| radius >= from).unwrap_or(0)
+    /// The index of what is drawn for a marker of this radius (sub-pixels).
+    pub(super) fn of_radius(shape: MarkerShape, radius: f32) -> usize {
+        let level = FROM.iter().rposition(|&from| radius >= from).unwrap_or(0);
+        match shape {
+            MarkerShape::Point => 0,
+            MarkerShape::Sphere => level,
+            MarkerShape::Contact => FROM.len() + level,
+        }
     }
 
     /// Number of triangles of a shape.
     pub(super) fn triangles(&self, shape: usize) -> usize {
         self.ranges[shape].len() / 3
     }
+}
+
+/// Corners of a flat disc with this many corners around.
+fn disc(sides: usize) -> impl Iterator<Item = [f32; 4]> {
+    let rim = move |k: usize, height: f32, kind: f32| {
+        let (y, x) = (TAU * k as f32 / sides as f32).sin_cos();
+        [x, y, height, kind]
+    };
+    (0..sides).flat_map(move |k| {
+        let [top, low] = [(HALF, TOP), (-HALF, BOTTOM)].map(|(height, kind)| {
+            [
+                [0.0, 0.0, height, kind],
+                rim(k, height, kind),
+                rim(k + 1, height, kind),
+            ]
+        });
+        let [a, b] = [k, k + 1].map(|k| [rim(k, -HALF, EDGE), rim(k, HALF, EDGE)]);
+        let turned = [low[0], low[2], low[1]];
+        let edge = [a[0], b[0], b[1], a[0], b[1], a[1]];
+        top.into_iter().chain(turned).chain(edge)
+    })
 }
 
 fn quartered([a, b, c]: [Vec3; 3]) -> [[Vec3; 3]; 4] {
@@ -110,7 +174,7 @@ mod tests {
         let shapes = Shapes::new();
         let counts: Vec<usize> = (0..FROM.len()).map(|s| shapes.triangles(s)).collect();
         assert_eq!(counts, [2, 8, 80, 320, 1280]);
-        for range in &shapes.ranges[2..] {
+        for range in &shapes.ranges[2..FROM.len()] {
             let corners = &shapes.corners[range.start as usize..range.end as usize];
             let volume: f32 = corners
                 .chunks(3)
@@ -125,7 +189,27 @@ mod tests {
 
     #[test]
     fn larger_markers_have_finer_shapes() {
-        let shapes: Vec<usize> = [0.3, 2.0, 6.0, 20.0, 1e4].map(Shapes::of_radius).to_vec();
-        assert_eq!(shapes, [0, 1, 2, 3, 4]);
+        let of = |shape| [0.3, 2.0, 6.0, 20.0, 1e4].map(|radius| Shapes::of_radius(shape, radius));
+        assert_eq!(of(MarkerShape::Sphere), [0, 1, 2, 3, 4]);
+        assert_eq!(of(MarkerShape::Contact), [5, 6, 7, 8, 9]);
+        assert_eq!(of(MarkerShape::Point), [0; 5]);
+    }
+
+    #[test]
+    fn contacts_have_a_closed_disc_that_faces_outwards() {
+        let shapes = Shapes::new();
+        let counts: Vec<usize> = (5..10).map(|s| shapes.triangles(s)).collect();
+        assert_eq!(counts, [2, 8, 80 + 48, 320 + 96, 1280 + 192]);
+        let range = &shapes.ranges[9];
+        let corners = &shapes.corners[range.start as usize..range.end as usize];
+        let of_disc = corners.chunks(3).filter(|t| t[0][3] > LIFTED);
+        let volume: f32 = of_disc
+            .map(|t| {
+                let [a, b, c] = [0, 1, 2].map(|k: usize| Vec3::new(t[k][0], t[k][1], t[k][2]));
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum();
+        let whole = std::f32::consts::PI * 2.0 * HALF;
+        assert!((0.95 * whole..whole).contains(&volume), "{volume}");
     }
 }
