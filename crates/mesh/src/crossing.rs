@@ -176,8 +176,8 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             state >> 16
         };
-        let shift = if seed % 3 == 0 { 1000.1 } else { 0.0 };
-        let scale = if seed % 2 == 0 { 1.0 } else { 0.1 };
+        let shift = if seed.is_multiple_of(3) { 1000.1 } else { 0.0 };
+        let scale = if seed.is_multiple_of(2) { 1.0 } else { 0.1 };
         let mut number = move || ((next() % 5) as f32 * scale + shift) as f64;
         std::iter::from_fn(move || Some(DVec3::new(number(), number(), number())))
     }

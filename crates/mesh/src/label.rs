@@ -12,7 +12,7 @@
 
 use std::borrow::Cow;
 
-use crate::{SurfaceVertex, WALL};
+use crate::SurfaceVertex;
 
 /// What a face shows of the cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,6 +41,9 @@ impl FaceLabel {
         first.unwrap_or(a)
     }
 }
+
+/// The type of walls within a cell, as SWC types are given.
+pub const WALL: i32 = -1_000_000;
 
 /// Codes from here on stand for types that are no positive numbers.
 const FIRST_OTHER: i32 = 1_000_000;

@@ -60,15 +60,15 @@ pub use intersect::{
     Search, search_self_intersections, search_self_intersections_stoppable, self_intersections,
     self_intersections_of,
 };
-pub use label::{FaceLabel, region_code, region_name, type_of_region};
+pub use label::{FaceLabel, WALL, region_code, region_name, type_of_region};
 pub use measure::{Measure, measure, measure_surface};
 pub use placed::Placed;
 pub use quality::{Quality, quality};
 pub use read::{FilePosition, ReadError, read, read_as, read_bytes};
-pub use surface::{Faces, Surface, SurfaceMesh, SurfaceVertex};
+pub use surface::{Faces, Region, Surface, SurfaceMesh, SurfaceVertex};
 pub use table::{SurfaceTriangle, write_triangles};
 pub use topology::{Topology, genus_by_component, topology};
 pub use unit::Unit;
-pub use walls::{Region, WALL, Walled, with_walls};
+pub use walls::{Walled, with_walls};
 pub use weld::merge_identical;
 pub use write::{GlbNode, WriteError, write, write_glb};

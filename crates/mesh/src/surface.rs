@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec3, Vec3};
 
-use crate::{Region, Unit};
+use crate::Unit;
 
 /// A vertex of a surface with the attributes that are exported.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,6 +30,17 @@ pub struct Faces {
     pub triangles: Vec<[u32; 3]>,
     /// Quads.
     pub quads: Vec<[u32; 4]>,
+}
+
+/// A part of the inside of a surface with walls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// A point within it, in the coordinates of the tracing.
+    pub seed: DVec3,
+    /// SWC type of its membrane at the wall.
+    pub kind: i32,
+    /// Section of its membrane at the wall; 0 for a soma.
+    pub section: i32,
 }
 
 /// A surface that is made block by block, so that a writer needs memory for one block and not for

@@ -12,21 +12,9 @@ use std::collections::{HashMap, HashSet};
 use glam::{DVec3, Vec3};
 
 use crate::forest::Forest;
-use crate::{FaceLabel, Faces, Surface, SurfaceMesh, SurfaceVertex, self_intersections_of};
-
-/// The type of walls, as SWC types are given.
-pub const WALL: i32 = -1_000_000;
-
-/// A part of the inside of a mesh with walls.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Region {
-    /// A point within it, in the coordinates of the tracing.
-    pub seed: DVec3,
-    /// SWC type of its membrane at the wall.
-    pub kind: i32,
-    /// Section of its membrane at the wall; 0 for a soma.
-    pub section: i32,
-}
+use crate::{
+    FaceLabel, Faces, Region, Surface, SurfaceMesh, SurfaceVertex, WALL, self_intersections_of,
+};
 
 /// A mesh with walls.
 #[derive(Clone, Debug, Default, PartialEq)]
