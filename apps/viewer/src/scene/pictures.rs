@@ -61,12 +61,6 @@ pub(crate) fn pictures(
         wireframe: picture.look.wire > 0.0,
         ..Default::default()
     });
-    if let Some(film_frame) = film_frames.first() {
-        let tiles = picture.tiles(gpu, &film_frame.view.camera());
-        progress
-            .all
-            .store(tiles * film_frames.len(), Ordering::Relaxed);
-    }
     let mut renderer = StillRenderer::new();
     renderer.set_states(&still_scene.states);
     renderer.set_watch(Watch {
@@ -75,6 +69,8 @@ pub(crate) fn pictures(
     });
     let overlay = still_scene.overlay(film_frames, options);
     let mut film = None;
+    // Of the first picture; others may have more or fewer.
+    let mut tiles = 0;
     for (number, (film_frame, file)) in film_frames.iter().zip(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
         if progress.is_canceled() {
@@ -101,6 +97,14 @@ pub(crate) fn pictures(
             Some(_) => ColorTable::default(),
             None => still_scene.table(film_frame.time)?,
         };
+        if number == 0 {
+            let source = Combined::new(&mut adaptive)
+                .with_markers(markers.as_mut())
+                .with_meshes(meshes.as_mut());
+            tiles = picture.tiles(gpu, &source, &view);
+            let all = tiles * film_frames.len();
+            progress.all.store(all, Ordering::Relaxed);
+        }
         let mut drawn = Ok(());
         if number == 0 && film::is_static(still_scene, film_frames, options) {
             let mut source = Combined::new(&mut adaptive)
@@ -137,6 +141,8 @@ pub(crate) fn pictures(
         }
         png.finish().map_err(broken)?;
         output.finish().map_err(|e| e.to_string())?;
+        let done = tiles * (number + 1);
+        progress.done.store(done, Ordering::Relaxed);
     }
     Ok(files)
 }

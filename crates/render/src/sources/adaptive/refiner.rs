@@ -211,13 +211,14 @@ impl Refiner {
     }
 }
 
-/// Constants of the shaders that compute vertices; DRAWS says which kind of patches vertices.wgsl
-/// draws.
+/// Constants of the shaders that compute vertices; flags say which kind of patches vertices.wgsl draws.
 pub(crate) fn drawing_constants(shader: usize) -> Constants {
     let mut constants = constants();
-    constants.u32("DRAWS", shader as u32);
-    constants.u32("DRAWS_FLAT", 0);
-    constants.u32("DRAWS_TUBES", 1);
+    match shader {
+        0 => constants.flag("DRAWS_FLAT"),
+        1 => constants.flag("DRAWS_TUBES"),
+        _ => {}
+    }
     constants
 }
 
