@@ -42,6 +42,8 @@ pub struct SourceKey {
     pub name: &'static str,
     /// Number of the variant, for a source that has several.
     pub variant: u32,
+    /// Whether another source draws some instances more finely, by its own shaders.
+    pub finer: bool,
     /// Whether markers are drawn beside it, by one more shader.
     pub markers: bool,
     /// Whether meshes are drawn beside it, by one more shader.
