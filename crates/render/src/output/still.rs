@@ -13,7 +13,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
-use crate::output::options::{PictureOptions, Viewpoint};
+use crate::output::options::{PictureOptions, Viewpoint, samples_in_sub_pixel};
 use crate::output::static_picture::StaticPicture;
 use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
 use crate::output::tiles::TileRenderer;
@@ -91,15 +91,29 @@ impl StillRenderer {
         self.watch = Some(watch);
     }
 
+    /// Makes the pipelines of a picture, which it then need not make.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub fn make_pipelines(
+        &mut self,
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        table: &ColorTable,
+        options: &PictureOptions,
+    ) -> Result<(), DeviceError> {
+        self.renderer(gpu, source, table, options).map(|_| ())
+    }
+
     fn renderer(
         &mut self,
         gpu: &Gpu,
         source: &dyn VertexSource,
         table: &ColorTable,
         options: &PictureOptions,
-        tiling: &Tiling,
     ) -> Result<&mut TileRenderer, DeviceError> {
-        let key = PipelineKey::new(source.key(), tiling.samples, table, &options.look);
+        let samples = samples_in_sub_pixel(gpu, options.samples_taken());
+        let key = PipelineKey::new(source.key(), samples, table, &options.look);
         let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {
@@ -130,7 +144,7 @@ impl StillRenderer {
         let clock = Instant::now();
         let tiling = Tiling::new(gpu, &*source, view, options);
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, table, options, &tiling)?;
+        let renderer = self.renderer(gpu, source, table, options)?;
         renderer.timer.reset();
         let finishing = tiling.finishing(options);
         let empty = finishing.empty_pixel();
@@ -180,7 +194,7 @@ impl StillRenderer {
         }
         let tiling = Tiling::new(gpu, &*source, view, options);
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, table, options, &tiling)?;
+        let renderer = self.renderer(gpu, source, table, options)?;
         let collector = renderer.collector(gpu, source);
         let mut collector = collector.ok_or(StaticError::Source)?;
         let finishing = tiling.finishing(options);

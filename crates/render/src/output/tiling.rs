@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::gpu::device::Gpu;
 use crate::output::extent::{Rectangle, extent};
-use crate::output::options::{PictureOptions, Viewpoint, samples_in_sub_pixel};
+use crate::output::options::{PictureOptions, Viewpoint};
 use crate::output::tiles::{Finishing, KeptTile};
 use crate::shading::finish::BLUR;
 use crate::shading::shade::GUARD;
@@ -21,8 +21,6 @@ use crate::view::frame::{Frame, Tile};
 pub(crate) struct Tiling {
     /// Sub-pixels per pixel along a side.
     scale: u32,
-    /// Samples of a sub-pixel.
-    pub(crate) samples: u32,
     /// The whole picture.
     frame: Frame,
     /// Across and down; none if nothing shows.
@@ -58,7 +56,6 @@ impl Tiling {
         let sides = shown.and_then(|shown| Some([side(0, shown)?, side(1, shown)?]));
         Self {
             scale,
-            samples: samples_in_sub_pixel(gpu, options.samples_taken()),
             frame,
             sides: sides.map(|shown| divided(&shown, most)),
             occlusion,
@@ -161,7 +158,7 @@ impl Band {
 }
 
 /// Most pixels of a band that has rows in which nothing shows.
-const MOST_BAND: u32 = 1 << 24;
+const MOST_BAND: u32 = 1 << 22;
 
 impl PictureOptions {
     /// Number of tiles of a picture.
@@ -354,7 +351,6 @@ mod tests {
         let shown = shown.map(|shown| shown.expect("it shows"));
         let tiling = Tiling {
             scale: 1,
-            samples: 1,
             frame: Frame::whole(camera, 0.1, size),
             sides: Some(divided(
                 &shown,
@@ -376,7 +372,7 @@ mod tests {
         let bands = bands_of([100, 1_000_000], [500_000, 500_090]);
         let tiles: Vec<_> = bands.iter().filter(|(_, tiles)| tiles.is_some()).collect();
         assert_eq!(tiles.len(), 1);
-        assert!(bands.iter().all(|(rows, _)| rows.len() <= (1 << 24) / 100));
+        assert!(bands.iter().all(|(rows, _)| rows.len() <= (1 << 22) / 100));
         let ends = bands.iter().map(|(rows, _)| rows.end);
         let starts = bands.iter().map(|(rows, _)| rows.start);
         assert!(std::iter::once(0).chain(ends).eq(starts.chain([1_000_000])));
