@@ -261,7 +261,7 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 item(
                     choose(
                         now.clamped,
-                        "Clamp selected: fine while the camera moves (pin, keep in focus)",
+                        "Clamp selected: fine while moving (pin)",
                         "Unclamp selected (unpin)",
                     ),
                     Some((PLAIN, Key::C)),
