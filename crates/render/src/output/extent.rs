@@ -11,8 +11,11 @@ pub(crate) type Rectangle = [[i32; 2]; 2];
 
 /// How closely (sub-pixels) it is searched for.
 const STEP: i32 = 8;
+/// Most parts of a source that is asked: an answer for as many takes a millisecond or two.
+const MOST_PARTS: usize = 100_000;
 
-/// The rectangle in a picture and around it in which anything shows; none if nothing does. `widened`: how far
+/// The rectangle in a picture and around it in which anything shows, or all of it if the source has very many parts;
+/// none if nothing shows. `widened`: how far
 /// (sub-pixels) something may be drawn beyond where it is.
 pub(crate) fn extent(source: &dyn VertexSource, whole: &Frame, widened: u32) -> Option<Rectangle> {
     // What sources compute with 32 bits may be a little off.
@@ -20,6 +23,9 @@ pub(crate) fn extent(source: &dyn VertexSource, whole: &Frame, widened: u32) -> 
     let around = whole.around as i32 + spare;
     let all = whole.size.map(|n| [-around, n as i32 + around]);
     let shows = |rectangle: Rectangle| source.shows(&part(whole, rectangle));
+    if source.parts() > MOST_PARTS {
+        return Some(all);
+    }
     shows(all).then(|| {
         let mut found = all;
         for axis in [0, 1] {

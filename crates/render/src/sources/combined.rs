@@ -150,6 +150,12 @@ impl VertexSource for Combined<'_> {
             || companions.any(|companion| companion.shows(frame))
     }
 
+    fn parts(&self) -> usize {
+        let finer = self.finer.as_deref().map_or(0, VertexSource::parts);
+        let companions = self.companions().map(Companion::parts);
+        self.source.parts() + finer + companions.sum::<usize>()
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame) -> Result<usize, DeviceError> {
         self.prepare_companions(gpu, frame);
         let finer = match &mut self.finer {

@@ -98,6 +98,12 @@ pub trait VertexSource {
         true
     }
 
+    /// Number of things that [`VertexSource::shows`] looks at. With many, a picture is not searched for where
+    /// it is empty, which takes some fifty questions.
+    fn parts(&self) -> usize {
+        1
+    }
+
     /// Uploads what a frame needs. Returns the number of rounds: a frame is drawn in rounds, each
     /// first selected, then drawn.
     ///

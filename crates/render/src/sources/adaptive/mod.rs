@@ -191,6 +191,10 @@ impl VertexSource for Adaptive {
         spheres.is_none_or(|spheres| any_shows(spheres, frame))
     }
 
+    fn parts(&self) -> usize {
+        self.bounds.as_ref().map_or(1, Vec::len)
+    }
+
     fn shaders(&self) -> usize {
         Refiner::SHADERS
     }

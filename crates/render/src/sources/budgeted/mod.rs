@@ -224,6 +224,10 @@ impl VertexSource for Exploration {
         })
     }
 
+    fn parts(&self) -> usize {
+        self.instances.len()
+    }
+
     fn key(&self) -> SourceKey {
         SourceKey {
             name: "budgeted",
