@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::{NodeT, Queryable};
 use neurotess::synth::Kind;
+use neurotess_testing::note;
 use neurotess_viewer::Command;
 use neurotess_viewer::save::PictureFile;
 
@@ -41,6 +42,16 @@ fn wait(window: &mut Window, what: &str, until: impl Fn(&mut Window) -> bool) {
     }
 }
 
+/// Stops what is saved.
+fn stop(window: &mut Window, at: &str) {
+    state(window).status.clear();
+    state(window).run(Command::Cancel);
+    let begun = Instant::now();
+    wait(window, "stopped", |w| state(w).status.contains("stopped"));
+    note!("stopped {at} after {:?}", begun.elapsed());
+    settle(window);
+}
+
 #[neurotess_testing::test(needs(gpu))]
 fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     let mut window = with_samples(&[Kind::Star]);
@@ -52,7 +63,7 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
         transparent: false,
         replace: false,
     };
-    state(&mut window).run(Command::SavePicture(picture));
+    state(&mut window).run(Command::SavePicture(picture.clone()));
     wait(&mut window, "the first tile", |window| {
         tiles(window).is_some_and(|[done, _]| done > 0)
     });
@@ -70,18 +81,21 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     assert!(names(folder.path()).contains(&"meanwhile.neurotess".to_owned()));
     let [done, _] = tiles(&window).expect("still drawing");
     assert!(done < all && done >= before);
-    state(&mut window).run(Command::Cancel);
-    settle(&mut window);
-    assert!(
-        state(&mut window).status.contains("stopped"),
-        "{}",
-        state(&mut window).status
-    );
+    stop(&mut window, "in a tile");
     assert_eq!(
         names(folder.path()),
         ["meanwhile.neurotess"],
         "nothing half written"
     );
+    // Before the first tile, while the device and the scene are made ready.
+    for wait in [0, 30, 150] {
+        let again = picture.clone();
+        state(&mut window).run(Command::SavePicture(again));
+        window.step();
+        std::thread::sleep(Duration::from_millis(wait));
+        stop(&mut window, "before the first tile");
+        assert_eq!(names(folder.path()), ["meanwhile.neurotess"]);
+    }
     // And the next one is whole.
     let small = PictureFile {
         out: folder.path().join("small.png"),

@@ -126,12 +126,17 @@ fn edge(kind: u32, a: Corner, b: Corner, path: u32, t: f32) -> Jet {
     if (kind == EDGE_LOFT) {
         return cubic(loft_controls(a, b), t);
     }
-    if (kind == EDGE_RING) {
-        let point = tube_point(a, b, b, a, path, t, 0.0);
-        return Jet(point.position, point.by_x);
+    // One call for both, since compilers write out each: corners beside a and b, and where t runs.
+    let around = kind == EDGE_RING;
+    var beside_a = a;
+    var beside_b = b;
+    if (around) {
+        beside_a = b;
+        beside_b = a;
     }
-    let point = tube_point(a, a, b, b, path, 0.0, t);
-    return Jet(point.position, point.by_y);
+    let place = select(vec2(0.0, t), vec2(t, 0.0), around);
+    let point = tube_point(a, beside_a, b, beside_b, path, place.x, place.y);
+    return Jet(point.position, select(point.by_y, point.by_x, around));
 }
 
 // Control points of a soma edge.
@@ -227,11 +232,16 @@ fn tube_normal(point: TubePoint, otherwise: vec3<f32>) -> vec3<f32> {
 // A point of a side, from `from_corner` to `to_corner` along the patch's coordinate.
 fn side(shape: u32, from_corner: Corner, to_corner: Corner, path: u32, t: f32) -> Jet {
     let kind = shape & SIDE_KIND;
-    if ((shape & SIDE_REVERSED) != 0u) {
-        let jet = edge(kind, to_corner, from_corner, path, 1.0 - t);
-        return Jet(jet.position, -jet.derivative);
+    // One call for both directions, since compilers write out each.
+    let reversed = (shape & SIDE_REVERSED) != 0u;
+    var first = from_corner;
+    var last = to_corner;
+    if (reversed) {
+        first = to_corner;
+        last = from_corner;
     }
-    return edge(kind, from_corner, to_corner, path, t);
+    let jet = edge(kind, first, last, path, select(t, 1.0 - t, reversed));
+    return Jet(jet.position, select(jet.derivative, -jet.derivative, reversed));
 }
 
 // Bilinearly blended Coons patch.

@@ -148,11 +148,8 @@ fn grid_vertex(
 
 // Vertex k of an edge of `level` parts, both ends included.
 fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, level: u32) -> SurfacePoint {
-    if (k == 0u) {
-        return coarse_vertex(source, s.start);
-    }
-    if (k == level) {
-        return coarse_vertex(source, s.end);
+    if (k == 0u || k == level) {
+        return coarse_vertex(source, select(s.end, s.start, k == 0u));
     }
     let a = corner_of(source, s.start);
     let b = corner_of(source, s.end);

@@ -219,13 +219,14 @@ fn picture_shaders_are_valid_in_every_language_and_have_our_structs() {
                 scale,
                 radius,
                 most,
-                margin,
+                tiled,
                 clear,
                 kept,
                 spare,
                 empty,
                 background,
-                flat
+                flat,
+                inset
             ]
         );
     }

@@ -9,6 +9,7 @@ use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface, SwcType};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
+use neurotess_render::bounds::bounds;
 use neurotess_render::color::{ColorTable, Palette, category};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Gpu, Image, Instance, Occlusion, PictureOptions, Placement,
@@ -78,6 +79,63 @@ fn adaptive(
         ..AdaptiveSettings::default()
     };
     Adaptive::new(gpu, scene, settings, 1).expect("a source")
+}
+
+/// A picture with ambient occlusion, and the bytes that its tiles took.
+fn occluded(gpu: &Gpu, source: &mut Adaptive, camera: &Camera, tile: u32) -> (Image, u64) {
+    let options = PictureOptions {
+        size: [300, 200],
+        tile,
+        ..PictureOptions::default()
+    };
+    let table = ColorTable {
+        categories: [3, 1].map(|kind| Palette::default().of_type(kind)).to_vec(),
+        ..ColorTable::default()
+    };
+    let view = Viewpoint {
+        camera: *camera,
+        near: 0.1,
+    };
+    let mut whole = Image::new(300, 200);
+    let take = |top: u32, band: Image| {
+        whole.lay(0, i64::from(top), &band);
+        Ok::<(), std::convert::Infallible>(())
+    };
+    let cost = render_still(gpu, source, &view, &table, &options, take).expect("drawn");
+    (whole, cost.target_bytes)
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn only_where_anything_shows_is_drawn_and_the_picture_is_the_same() {
+    let gpu = device();
+    let mesh = smooth_cell(1);
+    let spheres = bounds(&mesh);
+    let instance = Instance::new(TemplateId(0));
+    let meshes = std::slice::from_ref(&mesh);
+    let mut source = adaptive(&gpu, meshes, &[instance], LodCriterion::Homogeneous(4));
+    let far = before(&mesh, 9.0);
+    // Half of it outside the picture: what is there occludes what is inside.
+    let aside = far.axes()[0] * far.height() * 0.75;
+    let beside = Camera::new(far.eye() + aside, far.target() + aside, DVec3::Y, 0.6);
+    let beside = beside.expect("a camera");
+    for (camera, tile) in [(far, 2048), (far, 160), (beside, 2048), (beside, 160)] {
+        let (unbounded, all) = occluded(&gpu, &mut source, &camera, tile);
+        source.set_bounds(spheres.clone());
+        let (bounded, some) = occluded(&gpu, &mut source, &camera, tile);
+        source.set_bounds(vec![(camera.target(), 1e9)]);
+        let pairs = unbounded.pixels.iter().zip(&bounded.pixels);
+        let differing: Vec<u8> = pairs
+            .map(|(a, b)| a.abs_diff(*b))
+            .filter(|&d| d > 0)
+            .collect();
+        let drawn = unbounded.pixels.chunks(4).filter(|p| p[0] < 250).count();
+        assert!(drawn > 100, "{drawn}");
+        assert!(
+            differing.len() <= 8 && differing.iter().all(|&d| d <= 1),
+            "{differing:?}"
+        );
+        assert!(some < all || tile < 2048, "{some} of {all} bytes");
+    }
 }
 
 fn before(mesh: &CoarseMesh, distance: f64) -> Camera {

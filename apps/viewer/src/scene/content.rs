@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::coloring::{ClosestColors, Coloring, Recording, closest};
+use neurotess::render::bounds::{bounds, merged};
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
 use neurotess::render::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
@@ -11,6 +12,7 @@ use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Clip, DeviceError, Gpu, Instance, Placement, Scene,
     SceneError, Template, TemplateId, Templates,
 };
+use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::model::document::{Document, Look, VisibleParts};
@@ -219,12 +221,34 @@ pub(crate) fn adaptive(
 ) -> Result<Adaptive, BuildError> {
     let templates = templates(gpu, &content.sources, &content.coloring)?;
     let scene = Scene::new(templates, device_instances(&content.instances))?;
-    Ok(Adaptive::new(
-        gpu,
-        scene,
-        AdaptiveSettings::default(),
-        sub_pixels,
-    )?)
+    let mut source = Adaptive::new(gpu, scene, AdaptiveSettings::default(), sub_pixels)?;
+    source.set_bounds(bounding_spheres(content));
+    Ok(source)
+}
+
+/// Most bounding spheres of a scene, and fewest of a cell.
+const SPHERES: [usize; 2] = [400_000, 16];
+
+/// Spheres that hold all that shows, as it is drawn.
+fn bounding_spheres(content: &SceneContent) -> Vec<BoundingSphere> {
+    let [most, fewest] = SPHERES;
+    let most = (most / content.instances.len().max(1)).max(fewest);
+    let sources = content.sources.par_iter();
+    let own: Vec<Vec<BoundingSphere>> = sources
+        .map(|source| merged(&bounds(&source.generated.mesh), most))
+        .collect();
+    let shown = content.instances.iter().filter(|instance| !instance.hidden);
+    let placed = shown.flat_map(
+        |SceneInstance {
+             source, placement, ..
+         }| {
+            let spheres = own.get(*source).into_iter().flatten();
+            spheres.map(|&(center, radius)| {
+                (placement.world_from_cell(center), radius * placement.scale)
+            })
+        },
+    );
+    placed.collect()
 }
 
 /// States of all neurons, for the shading.

@@ -37,6 +37,22 @@ struct BuiltScene {
     content: Revision,
     /// Key of its instances.
     instances: Option<InstancesKey>,
+    /// Indices of the instances that another source draws, ascending.
+    left_out: Arc<[usize]>,
+}
+
+impl BuiltScene {
+    /// Leaves out these instances, and draws those again that were left out before.
+    fn leave_out(&mut self, content: &SceneContent, left_out: &Arc<[usize]>) {
+        let before = std::mem::replace(&mut self.left_out, Arc::clone(left_out));
+        for &index in before.iter().chain(left_out.iter()) {
+            if let Some(instance) = content.instances.get(index) {
+                let leaves = left_out.binary_search(&index).is_ok();
+                self.exploration
+                    .set_hidden(index, instance.hidden || leaves);
+            }
+        }
+    }
 }
 
 impl Explorer {
@@ -59,6 +75,7 @@ impl Explorer {
                         targets,
                         content: key,
                         instances: None,
+                        left_out: Arc::default(),
                     });
                 }
                 // Too large for the device: the adaptive source draws it.
@@ -107,14 +124,15 @@ impl Explorer {
         self.making = Some((content.revision, task));
     }
 
-    /// The vertex source of exploration mode for exactly this content, with all its instances.
-    /// `budget`: most triangles.
+    /// The vertex source of exploration mode for exactly this content, with all its instances but those that are
+    /// left out, given by ascending indices. `budget`: most triangles.
     pub(crate) fn exploration(
         &mut self,
         gpu: &Gpu,
         content: &SceneContent,
         instances_key: Option<InstancesKey>,
         budget: u32,
+        left_out: &Arc<[usize]>,
     ) -> Option<&mut Exploration> {
         let built = self
             .built
@@ -124,6 +142,10 @@ impl Explorer {
             let instances = content::device_instances(&content.instances);
             built.exploration.set_instances(gpu, instances).ok()?;
             built.instances = instances_key;
+            built.left_out = Arc::default();
+        }
+        if built.left_out != *left_out {
+            built.leave_out(content, left_out);
         }
         built.exploration.set_budget(budget);
         Some(&mut built.exploration)

@@ -100,7 +100,7 @@ pub fn draw_session(
     }
     read_markers(&mut state, &mut drawn);
     let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
-    let still_scene = still_scene(Arc::new(gpu), &state, &mut drawn);
+    let still_scene = Arc::new(still_scene(Arc::new(gpu), &state, &mut drawn));
     let film_frame = FilmFrame {
         view,
         time: Some(session.playback.time),

@@ -1,21 +1,24 @@
 //! Saves pictures of the scene.
 
-use std::io::BufWriter;
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
 
 use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
 use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    AdaptiveSettings, BoundingSphere, Combined, Gpu, Image, MarkerSettings, Markers, Occlusion,
-    PictureError, PictureOptions, PngWriter, StaticError, StillRenderer, Viewpoint, Watch,
+    Adaptive, AdaptiveSettings, BoundingSphere, Combined, Gpu, Image, MarkerSettings, Markers,
+    Meshes, Occlusion, PictureError, PictureOptions, PngWriter, StaticError, StillRenderer,
+    Viewpoint, Watch,
 };
 
 use crate::io::background::spawn;
 use crate::io::save::existing;
-use crate::io::task::Progress;
+use crate::io::task::{Progress, caught};
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
 use crate::scene::content;
@@ -27,7 +30,7 @@ pub(crate) use crate::scene::still_scene::StillScene;
 
 /// Writes pictures: one, or a numbered series.
 pub(crate) fn pictures(
-    still_scene: &StillScene,
+    still_scene: &Arc<StillScene>,
     film_frames: &[FilmFrame],
     options: &PictureFile,
     progress: &Progress,
@@ -47,28 +50,17 @@ pub(crate) fn pictures(
     for file in &files {
         existing.check(file).map_err(|e| e.to_string())?;
     }
-    let own = own_gpu(still_scene)?;
+    let Prepared {
+        own,
+        mut adaptive,
+        mut markers,
+        mut meshes,
+        mut renderer,
+        picture,
+    } = prepared(still_scene, film_frames, options, progress)?;
     let gpu = &*own;
-    let picture = picture_options(still_scene, options);
-    let mut adaptive = content::adaptive(gpu, &still_scene.content, picture.sub_pixels(gpu))
-        .map_err(|e| e.to_string())?;
-    let mut markers = markers(still_scene, gpu, picture.sub_pixels(gpu))?;
-    let meshes = meshes::upload(gpu, &still_scene.meshes);
-    let mut meshes = meshes.map_err(|e| e.to_string())?;
     let spheres = still_scene.spheres.iter().chain(&still_scene.around);
     let around: Vec<BoundingSphere> = spheres.copied().collect();
-    adaptive.set_settings(AdaptiveSettings {
-        lod: LodCriterion::PixelError(0.25),
-        wireframe: picture.look.wire > 0.0,
-        ..Default::default()
-    });
-    if let Some(film_frame) = film_frames.first() {
-        let tiles = picture.tiles(gpu, &film_frame.view.camera());
-        progress
-            .all
-            .store(tiles * film_frames.len(), Ordering::Relaxed);
-    }
-    let mut renderer = StillRenderer::new();
     renderer.set_states(&still_scene.states);
     renderer.set_watch(Watch {
         tiles: Arc::clone(&progress.done),
@@ -76,6 +68,8 @@ pub(crate) fn pictures(
     });
     let overlay = still_scene.overlay(film_frames, options);
     let mut film = None;
+    // Of the first picture; others may have more or fewer.
+    let mut tiles = 0;
     for (number, (film_frame, file)) in film_frames.iter().zip(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
         if progress.is_canceled() {
@@ -84,11 +78,9 @@ pub(crate) fn pictures(
         let camera = film_frame.view.camera();
         let legend = still_scene.legend(film_frame.time);
         let overlay = overlay.again(still_scene.look.legend.then_some(&legend), &camera);
-        let mut picture = picture;
-        picture.look.clip = content::clip(&still_scene.look, &still_scene.spheres);
         let near = camera.near(&around);
         let view = Viewpoint { camera, near };
-        let broken = |e: std::io::Error| OutputError::broken(file, e).to_string();
+        let broken = |e: io::Error| OutputError::broken(file, e).to_string();
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
         let to = BufWriter::new(output.file().try_clone().map_err(broken)?);
         let mut png = PngWriter::new(to, options.size, options.transparent).map_err(broken)?;
@@ -96,12 +88,20 @@ pub(crate) fn pictures(
         let mut lay = |top: u32, mut band: Image| {
             annotations.lay_on(top, &mut band);
             overlay.lay_on(top, &mut band);
-            png.write(&band)
+            write(&mut png, &band, progress)
         };
         let table = match &film {
             Some(_) => ColorTable::default(),
             None => still_scene.table(film_frame.time)?,
         };
+        if number == 0 {
+            let source = Combined::new(&mut adaptive)
+                .with_markers(markers.as_mut())
+                .with_meshes(meshes.as_mut());
+            tiles = picture.tiles(gpu, &source, &view);
+            let all = tiles * film_frames.len();
+            progress.all.store(all, Ordering::Relaxed);
+        }
         let mut drawn = Ok(());
         if number == 0 && film::is_static(still_scene, film_frames, options) {
             let mut source = Combined::new(&mut adaptive)
@@ -134,12 +134,111 @@ pub(crate) fn pictures(
                 spawn(move || drop((renderer, adaptive, markers, meshes, own)));
                 return Err(stopped());
             }
+            Err(_) if progress.is_canceled() => return Err(stopped()),
             Err(e) => return Err(e.to_string()),
         }
         png.finish().map_err(broken)?;
         output.finish().map_err(|e| e.to_string())?;
+        let done = tiles * (number + 1);
+        progress.done.store(done, Ordering::Relaxed);
     }
     Ok(files)
+}
+
+/// What is made before the first picture.
+struct Prepared {
+    own: Arc<Gpu>,
+    adaptive: Adaptive,
+    markers: Option<Markers>,
+    meshes: Option<Meshes>,
+    renderer: StillRenderer,
+    picture: PictureOptions,
+}
+
+impl Prepared {
+    fn new(
+        still_scene: &StillScene,
+        first: Option<&FilmFrame>,
+        options: &PictureFile,
+    ) -> Result<Self, String> {
+        let own = own_gpu(still_scene)?;
+        let gpu = &*own;
+        let mut picture = picture_options(still_scene, options);
+        picture.look.clip = content::clip(&still_scene.look, &still_scene.spheres);
+        let mut adaptive = content::adaptive(gpu, &still_scene.content, picture.sub_pixels(gpu))
+            .map_err(|e| e.to_string())?;
+        adaptive.set_settings(AdaptiveSettings {
+            lod: LodCriterion::PixelError(0.25),
+            wireframe: picture.look.wire > 0.0,
+            ..Default::default()
+        });
+        let mut markers = markers(still_scene, gpu, picture.sub_pixels(gpu))?;
+        let meshes = meshes::upload(gpu, &still_scene.meshes);
+        let mut meshes = meshes.map_err(|e| e.to_string())?;
+        let mut renderer = StillRenderer::new();
+        let table = still_scene.table(first.and_then(|frame| frame.time))?;
+        let source = Combined::new(&mut adaptive)
+            .with_markers(markers.as_mut())
+            .with_meshes(meshes.as_mut());
+        renderer
+            .make_pipelines(gpu, &source, &table, &picture)
+            .map_err(|e| e.to_string())?;
+        Ok(Self {
+            own,
+            adaptive,
+            markers,
+            meshes,
+            renderer,
+            picture,
+        })
+    }
+}
+
+/// Time between checks whether saving was canceled.
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
+
+/// What is made before the first picture, on a thread of its own, since it cannot be interrupted: saving stops at
+/// once, and what was being made is dropped when it is there.
+fn prepared(
+    still_scene: &Arc<StillScene>,
+    film_frames: &[FilmFrame],
+    options: &PictureFile,
+    progress: &Progress,
+) -> Result<Prepared, String> {
+    let (sender, made) = channel();
+    let (still_scene, options) = (Arc::clone(still_scene), options.clone());
+    let first = film_frames.first().copied();
+    std::thread::spawn(move || {
+        let made = caught(|| Prepared::new(&still_scene, first.as_ref(), &options));
+        // If saving was canceled, nothing receives it.
+        let _ = sender.send(made);
+    });
+    loop {
+        match made.recv_timeout(CHECK_INTERVAL) {
+            Ok(made) => return made,
+            Err(RecvTimeoutError::Timeout) if !progress.is_canceled() => {}
+            Err(RecvTimeoutError::Timeout) => return Err("stopped before the first picture".into()),
+            Err(RecvTimeoutError::Disconnected) => return Err("no picture could be begun".into()),
+        }
+    }
+}
+
+/// Rows that are written between checks whether saving was canceled.
+const ROWS: usize = 64;
+
+/// Writes a band.
+fn write<W: Write>(png: &mut PngWriter<W>, band: &Image, progress: &Progress) -> io::Result<()> {
+    for rows in band.pixels.chunks(ROWS * 4 * band.width as usize) {
+        if progress.is_canceled() {
+            return Err(io::Error::from(io::ErrorKind::Interrupted));
+        }
+        png.write(&Image {
+            width: band.width,
+            height: (rows.len() / (4 * band.width as usize)) as u32,
+            pixels: rows.to_vec(),
+        })?;
+    }
+    Ok(())
 }
 
 /// Synapses and points on the device, as `neurotess render` draws them.

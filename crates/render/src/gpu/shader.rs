@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 45] = [
+pub(crate) const FILES: [WgslFile; 47] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources", "octahedral.wgsl"),
@@ -55,7 +55,9 @@ pub(crate) const FILES: [WgslFile; 45] = [
     file!("shading", "keyed.wgsl"),
     file!("shading", "srgb.wgsl"),
     file!("shading", "finish.wgsl"),
+    file!("shading", "blocks.wgsl"),
     file!("shading", "occlusion.wgsl"),
+    file!("shading", "gather.wgsl"),
     file!("shading", "accumulate.wgsl"),
     file!("shading", "mask.wgsl"),
     file!("shading", "present.wgsl"),

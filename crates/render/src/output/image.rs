@@ -25,6 +25,15 @@ impl Image {
         }
     }
 
+    /// An image of one color.
+    pub(crate) fn filled(width: u32, height: u32, pixel: [u8; 4]) -> Self {
+        Self {
+            width,
+            height,
+            pixels: pixel.repeat(width as usize * height as usize),
+        }
+    }
+
     /// A pixel.
     ///
     /// # Panics
@@ -34,14 +43,15 @@ impl Image {
         [0, 1, 2, 3].map(|k| self.pixels[i + k])
     }
 
-    /// Copies the rows of a tile from column `left` on, as far as they fit.
-    pub(crate) fn copy_from(&mut self, left: u32, tile: &[u8], tile_width: u32) {
+    /// Copies the rows of a tile, from this column and row on, as far as they fit.
+    pub(crate) fn copy_from(&mut self, [left, top]: [u32; 2], tile: &[u8], tile_width: u32) {
         let row = 4 * self.width as usize;
         let (start, tile_row) = (4 * left as usize, 4 * tile_width as usize);
         let length = tile_row.min(row - start);
         for (to, from) in self
             .pixels
             .chunks_mut(row)
+            .skip(top as usize)
             .zip(tile.chunks(tile_row.max(1)))
         {
             to[start..start + length].copy_from_slice(&from[..length]);

@@ -1,6 +1,7 @@
 //! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; overlays; picking ids.
 
 pub(crate) mod annotation;
+pub(crate) mod extent;
 pub(crate) mod ids;
 pub(crate) mod image;
 pub(crate) mod legend;

@@ -1,8 +1,9 @@
 //! Pictures of any size, tile by tile, band by band.
 //!
 //! A picture is drawn in **tiles** that fit the device and handed over in **bands**: the rows of
-//! pixels that one row of tiles covers. Memory is for one tile and one band, whatever the picture's
-//! size. Tiles overlap by the reach of ambient occlusion, so that they fit together.
+//! pixels that one row of tiles covers, and empty ones beside them. Memory is for one tile and one band, whatever the picture's
+//! size. Tiles overlap by the reach of ambient occlusion, so that they fit together. Where nothing shows there
+//! are none.
 
 use std::time::Instant;
 
@@ -12,7 +13,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
 use crate::output::image::Image;
-use crate::output::options::{PictureOptions, Viewpoint};
+use crate::output::options::{PictureOptions, Viewpoint, samples_in_sub_pixel};
 use crate::output::static_picture::StaticPicture;
 use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
 use crate::output::tiles::TileRenderer;
@@ -90,15 +91,29 @@ impl StillRenderer {
         self.watch = Some(watch);
     }
 
+    /// Makes the pipelines of a picture, which it then need not make.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub fn make_pipelines(
+        &mut self,
+        gpu: &Gpu,
+        source: &dyn VertexSource,
+        table: &ColorTable,
+        options: &PictureOptions,
+    ) -> Result<(), DeviceError> {
+        self.renderer(gpu, source, table, options).map(|_| ())
+    }
+
     fn renderer(
         &mut self,
         gpu: &Gpu,
         source: &dyn VertexSource,
         table: &ColorTable,
         options: &PictureOptions,
-        tiling: &Tiling,
     ) -> Result<&mut TileRenderer, DeviceError> {
-        let key = PipelineKey::new(source.key(), tiling.samples, table, &options.look);
+        let samples = samples_in_sub_pixel(gpu, options.samples_taken());
+        let key = PipelineKey::new(source.key(), samples, table, &options.look);
         let place = match self.renderers.iter().position(|p| p.fits(key)) {
             Some(place) => place,
             None => {
@@ -127,39 +142,35 @@ impl StillRenderer {
         mut take: impl FnMut(u32, Image) -> Result<(), E>,
     ) -> Result<Cost, PictureError<E>> {
         let clock = Instant::now();
-        let tiling = Tiling::new(options, gpu, &view.camera);
-        let step = tiling.step;
+        let tiling = Tiling::new(gpu, &*source, view, options);
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, table, options, &tiling)?;
+        let renderer = self.renderer(gpu, source, table, options)?;
         renderer.timer.reset();
         let finishing = tiling.finishing(options);
-        let [width, height] = options.size.map(|n| n.max(1));
-        let mut tiles = 0;
-        for top in (0..height).step_by(step[1] as usize) {
-            let rows = step[1].min(height - top);
-            let mut band = Image::new(width, rows);
-            for left in (0..width).step_by(step[0] as usize) {
-                let frame = tiling.frame(view, [width, height], [left, top]);
+        let empty = finishing.empty_pixel();
+        for band in tiling.bands() {
+            let rows = band.rows.len() as u32;
+            let mut image = Image::filled(options.size[0].max(1), rows, empty);
+            for (place, tile) in tiling.tiles(&band) {
                 let watch = watch.as_ref();
                 if watch.is_some_and(Watch::is_stopped) {
                     return Err(PictureError::Stopped);
                 }
                 let look = &options.look;
-                let pixels = renderer.render(gpu, source, &frame, look, &finishing, watch)?;
+                let pixels = renderer.render(gpu, source, &tile, look, &finishing, watch)?;
                 let Some(pixels) = pixels else {
                     return Err(PictureError::Stopped);
                 };
-                band.copy_from(left, &pixels, step[0]);
+                image.copy_from(place, &pixels, tile.kept[0]);
                 watch.into_iter().for_each(Watch::note_tile);
-                tiles += 1;
             }
-            take(top, band).map_err(PictureError::Sink)?;
+            take(band.rows.start, image).map_err(PictureError::Sink)?;
         }
         let times = renderer.timer.milliseconds();
         Ok(Cost {
             cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
             gpu_ms: times.map(|times| PASSES.into_iter().zip(times).collect()),
-            tiles,
+            tiles: tiling.len(),
             target_bytes: renderer.target_bytes(),
         })
     }
@@ -181,31 +192,29 @@ impl StillRenderer {
         if options.look.wire > 0.0 {
             return Err(StaticError::Wireframe);
         }
-        let tiling = Tiling::new(options, gpu, &view.camera);
+        let tiling = Tiling::new(gpu, &*source, view, options);
         let watch = self.watch.clone();
-        let renderer = self.renderer(gpu, source, table, options, &tiling)?;
+        let renderer = self.renderer(gpu, source, table, options)?;
         let collector = renderer.collector(gpu, source);
         let mut collector = collector.ok_or(StaticError::Source)?;
         let finishing = tiling.finishing(options);
         let size = options.size.map(|n| n.max(1));
-        let step = tiling.step.map(|n| n as usize);
         let mut matrix = MatrixBuilder::default();
-        for top in (0..size[1]).step_by(step[1]) {
-            let mut band = Weights::new([size[0], tiling.step[1].min(size[1] - top)]);
-            for left in (0..size[0]).step_by(step[0]) {
+        for band in tiling.bands() {
+            let mut weights = Weights::new([size[0], band.rows.len() as u32]);
+            for (place, tile) in tiling.tiles(&band) {
                 if watch.as_ref().is_some_and(Watch::is_stopped) {
                     return Err(StaticError::Stopped);
                 }
-                let frame = tiling.frame(view, size, [left, top]);
                 let look = &options.look;
                 let collected =
-                    renderer.collect(gpu, source, &frame, look, &finishing, &mut collector)?;
+                    renderer.collect(gpu, source, &tile, look, &finishing, &mut collector)?;
                 if let Some(collected) = collected {
-                    band.add([left, 0], &collected);
+                    weights.add(place, &collected);
                 }
                 watch.iter().for_each(Watch::note_tile);
             }
-            matrix.add(&band, 1);
+            matrix.add(&weights, 1);
         }
         let (look, background) = (&options.look, options.background);
         let matrix = matrix.finish();

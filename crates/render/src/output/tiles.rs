@@ -17,7 +17,7 @@ use crate::gpu::timing::{Pass, Timer};
 use crate::output::static_picture::collect::{Collected, Collector, Wanted};
 use crate::output::watch::Watch;
 use crate::scene::color::{ColorTable, Rgb, linear};
-use crate::shading::finish::{BLUR, Finish, Finisher, Last};
+use crate::shading::finish::{Finish, Finisher, Last};
 use crate::shading::shade::{GUARD, Look, PipelineKey, Shade, Shader, TableSizes};
 use crate::shading::targets::Targets;
 use crate::sources::VertexSource;
@@ -28,8 +28,6 @@ use crate::view::frame::Frame;
 pub(crate) struct Finishing {
     /// Sub-pixels per pixel along a side.
     pub(crate) scale: u32,
-    /// Sub-pixels around the part of the tile that is kept.
-    pub(crate) margin: u32,
     /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may reach.
     pub(crate) occlusion: Option<(f32, f32)>,
     /// Color behind everything; none: transparent.
@@ -38,18 +36,8 @@ pub(crate) struct Finishing {
 
 impl Finishing {
     /// Bytes of a pixel where nothing is.
-    fn empty_pixel(&self) -> [u8; 4] {
+    pub(crate) fn empty_pixel(&self) -> [u8; 4] {
         self.background.map_or([0; 4], |[r, g, b]| [r, g, b, 255])
-    }
-
-    /// The frame of the part of the tile that is kept.
-    fn without_margin(&self, frame: &Frame) -> Frame {
-        let mut kept = *frame;
-        kept.tile.x += self.margin as i32;
-        kept.tile.y += self.margin as i32;
-        kept.tile.width -= 2 * self.margin;
-        kept.tile.height -= 2 * self.margin;
-        kept
     }
 }
 
@@ -79,12 +67,27 @@ impl TilePass {
     }
 }
 
-/// A tile whose samples and occlusion are drawn.
-struct Drawn {
-    /// The shading's group, and that of the passes that finish a tile.
-    groups: [wgpu::BindGroup; 2],
-    /// Width and height (pixels) of what is kept of it.
-    kept: [u32; 2],
+/// What is drawn at once, and what is kept of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct KeptTile {
+    /// What is drawn.
+    pub(crate) frame: Frame,
+    /// The upper left sub-pixel of what is kept.
+    pub(crate) inset: [u32; 2],
+    /// Width and height (pixels) of what is kept.
+    pub(crate) kept: [u32; 2],
+}
+
+impl KeptTile {
+    /// The frame of what is kept. `scale`: sub-pixels per pixel along a side.
+    fn without_margin(&self, scale: u32) -> Frame {
+        let mut kept = self.frame;
+        kept.tile.x += self.inset[0] as i32;
+        kept.tile.y += self.inset[1] as i32;
+        kept.tile.width = self.kept[0] * scale;
+        kept.tile.height = self.kept[1] * scale;
+        kept
+    }
 }
 
 /// Draws tiles, with pipelines for one kind of source.
@@ -162,33 +165,33 @@ impl TileRenderer {
         self.targets.as_ref().map_or(0, |targets| targets.bytes)
     }
 
-    /// Draws a tile. Returns its pixels without the margins: four bytes a pixel, straight alpha,
-    /// sRGB; nothing if the watch has stopped the picture.
+    /// Draws a tile. Returns what is kept of it: four bytes a pixel, straight alpha, sRGB; nothing if
+    /// the watch has stopped the picture.
     pub(crate) fn render(
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,
-        frame: &Frame,
+        tile: &KeptTile,
         look: &Look,
         finishing: &Finishing,
         watch: Option<&Watch>,
     ) -> Result<Option<Vec<u8>>, DeviceError> {
-        let size = [frame.tile.width, frame.tile.height];
         let empty = finishing.empty_pixel();
-        if !source.shows(&finishing.without_margin(frame)) {
-            let pixel = finishing.scale * finishing.scale;
-            let [width, height] = size.map(|n| n - 2 * finishing.margin);
-            return Ok(Some(empty.repeat((width * height / pixel) as usize)));
+        let [width, height] = tile.kept;
+        if !source.shows(&tile.without_margin(finishing.scale)) {
+            return Ok(Some(empty.repeat(width as usize * height as usize)));
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let Drawn { groups, kept } =
-            self.draw_tile(gpu, source, frame, look, finishing, &mut encoder)?;
+        let groups = self.draw_tile(gpu, source, tile, look, finishing, &mut encoder)?;
         let Some(targets) = &self.targets else {
             return Ok(None);
         };
-        let gather = [(&self.finisher.last, kept)];
-        self.compute(&gather, &groups[1], Pass::Gather, &mut encoder);
-        let bytes = 4 * u64::from(kept[0]) * u64::from(kept[1]);
+        let bytes = 4 * u64::from(width) * u64::from(height);
+        encoder.clear_buffer(&targets.pixels, 0, Some(bytes));
+        let mut pass = self.compute_pass(Pass::Gather, &mut encoder);
+        pass.set_bind_group(0, &groups[1], &[]);
+        self.finisher.gather(targets, &mut pass);
+        drop(pass);
         encoder.copy_buffer_to_buffer(&targets.pixels, 0, &targets.read, 0, bytes);
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
@@ -199,7 +202,7 @@ impl TileRenderer {
             return Ok(None);
         };
         self.timer.read(gpu)?;
-        Ok(Some(pixels))
+        Ok(Some(filled(pixels, empty)))
     }
 
     /// Draws a tile and collects the color keys of its pixels, without the margins; none if nothing
@@ -208,21 +211,20 @@ impl TileRenderer {
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,
-        frame: &Frame,
+        tile: &KeptTile,
         look: &Look,
         finishing: &Finishing,
         collector: &mut Collector,
     ) -> Result<Option<Collected>, DeviceError> {
-        if !source.shows(&finishing.without_margin(frame)) {
+        if !source.shows(&tile.without_margin(finishing.scale)) {
             return Ok(None);
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let Drawn { groups, kept } =
-            self.draw_tile(gpu, source, frame, look, finishing, &mut encoder)?;
+        let groups = self.draw_tile(gpu, source, tile, look, finishing, &mut encoder)?;
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let groups = [&groups[0], &groups[1]];
-        let collected = collector.collect(gpu, source, frame, groups, kept)?;
+        let collected = collector.collect(gpu, source, &tile.frame, groups, tile.kept)?;
         Ok(Some(collected))
     }
 
@@ -236,29 +238,31 @@ impl TileRenderer {
         Collector::new(gpu, source, &wanted)
     }
 
-    /// Draws a tile's samples and their occlusion.
+    /// Draws a tile's samples and their occlusion. Returns the shading's group, and that of the passes that
+    /// finish a tile.
     fn draw_tile(
         &mut self,
         gpu: &Gpu,
         source: &mut dyn VertexSource,
-        frame: &Frame,
+        tile: &KeptTile,
         look: &Look,
         finishing: &Finishing,
         encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<Drawn, DeviceError> {
+    ) -> Result<[wgpu::BindGroup; 2], DeviceError> {
+        let KeptTile { frame, inset, kept } = tile;
         let size = [frame.tile.width, frame.tile.height];
         let empty = finishing.empty_pixel();
         self.make_targets(gpu, size)?;
         let targets = self.targets.as_ref().expect("targets were just made");
-        let kept = size.map(|n| (n - 2 * finishing.margin) / finishing.scale);
         let (radius, most) = finishing.occlusion.unwrap_or_default();
         let [r, g, b] = linear(finishing.background.unwrap_or_default());
         let finish = Finish {
             radius,
             most,
             scale: finishing.scale,
-            margin: finishing.margin,
-            kept,
+            tiled: 1,
+            kept: *kept,
+            inset: *inset,
             clear: u32::from(finishing.background.is_none()),
             empty: u32::from_le_bytes(empty),
             background: [r, g, b, 1.0],
@@ -277,23 +281,34 @@ impl TileRenderer {
             let part = TilePass::round(round, rounds);
             self.draw(source, &part, targets, &shade_group, encoder);
         }
-        // Without occlusion the passes are empty, since their times are read.
-        let [tile, reached] = match radius > 0.0 {
-            true => {
-                [0, finishing.margin.saturating_sub(BLUR)].map(|less| size.map(|n| n - 2 * less))
-            }
-            false => [[0; 2]; 2],
-        };
-        let [copy_depths, occlude, rows, columns] = self.finisher.occlusion();
-        let occlude = [(copy_depths, tile), (occlude, reached)];
-        let blur = [(rows, reached), (columns, reached)];
-        for (pipelines, name) in [(occlude, Pass::Occlude), (blur, Pass::Blur)] {
-            self.compute(&pipelines, &finish_group, name, encoder);
+        self.occlude(gpu, targets, &finish_group, radius > 0.0, encoder);
+        Ok([shade_group, finish_group])
+    }
+
+    /// Finds out which parts of the targets show anything, and how they are occluded.
+    fn occlude(
+        &self,
+        gpu: &Gpu,
+        targets: &Targets,
+        group: &wgpu::BindGroup,
+        occluded: bool,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let finisher = &self.finisher;
+        finisher.begin(targets, encoder);
+        let mut pass = self.compute_pass(Pass::Occlude, encoder);
+        pass.set_bind_group(0, group, &[]);
+        finisher.find_blocks(gpu, targets, &mut pass);
+        if occluded {
+            finisher.occlude(targets, &mut pass);
         }
-        Ok(Drawn {
-            groups: [shade_group, finish_group],
-            kept,
-        })
+        drop(pass);
+        // Without occlusion the pass is empty, since its times are read.
+        let mut pass = self.compute_pass(Pass::Blur, encoder);
+        pass.set_bind_group(0, group, &[]);
+        if occluded {
+            finisher.blur(targets, &mut pass);
+        }
     }
 
     /// Selects and draws a frame and waits for it, without reading it back: for measurements.
@@ -313,7 +328,7 @@ impl TileRenderer {
         let shade = Shade::new(frame, look, 1, &self.sizes);
         let queue = &gpu.queue;
         queue.write_buffer(&self.shade, 0, bytemuck::bytes_of(&shade));
-        let (shade_group, finish_group) = self.groups(gpu, targets);
+        let shade_group = self.shade_group(gpu);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let rounds = source.prepare(gpu, frame)?.max(1);
         for round in 0..rounds {
@@ -323,7 +338,7 @@ impl TileRenderer {
         }
         // Empty passes, since their times are read with the others'.
         for name in [Pass::Occlude, Pass::Blur, Pass::Gather] {
-            self.compute(&[], &finish_group, name, &mut encoder);
+            self.compute_pass(name, &mut encoder);
         }
         self.timer.resolve(&mut encoder);
         queue.submit([encoder.finish()]);
@@ -348,6 +363,7 @@ impl TileRenderer {
                 entry(4, targets.raw.as_entire_binding()),
                 entry(5, targets.blurred.as_entire_binding()),
                 entry(6, targets.pixels.as_entire_binding()),
+                entry(7, targets.blocks.as_entire_binding()),
             ],
         });
         (shade, finish)
@@ -445,25 +461,28 @@ impl TileRenderer {
         }
     }
 
-    /// A pass of pipelines one after the other, each for so many sub-pixels or pixels.
-    fn compute(
+    /// A compute pass whose times are noted.
+    fn compute_pass<'a>(
         &self,
-        pipelines: &[(&wgpu::ComputePipeline, [u32; 2])],
-        group: &wgpu::BindGroup,
         name: Pass,
-        encoder: &mut wgpu::CommandEncoder,
-    ) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        encoder: &'a mut wgpu::CommandEncoder,
+    ) -> wgpu::ComputePass<'a> {
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
             timestamp_writes: self.timer.compute(name),
-        });
-        pass.set_bind_group(0, group, &[]);
-        for (pipeline, size) in pipelines {
-            let groups = size.map(|n| n.div_ceil(8));
-            pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(groups[0], groups[1], 1);
+        })
+    }
+}
+
+/// Pixels with those that were not written, which are 0, as an empty picture has them. With a background none
+/// that was written is 0; without one, so is the empty pixel.
+fn filled(mut pixels: Vec<u8>, empty: [u8; 4]) -> Vec<u8> {
+    for pixel in pixels.chunks_exact_mut(4) {
+        if pixel == [0; 4] {
+            pixel.copy_from_slice(&empty);
         }
     }
+    pixels
 }
 
 /// Writes to a buffer, which is replaced if it has another size.

@@ -9,7 +9,7 @@ use crate::output::ids::ids_shader;
 use crate::output::static_picture::collect::{self, collect_shader};
 use crate::output::static_picture::recolor::{self, recolor_shader};
 use crate::scene::templates;
-use crate::shading::finish::{self, Last, finish_shader};
+use crate::shading::finish::{self, FINDING, Last, finish_shader};
 use crate::shading::keyed::keyed_shader;
 use crate::shading::present::{gather_entries, mask_shader, present_shader, show_entries};
 use crate::shading::shade::{self, PipelineKey, shade_shader};
@@ -171,8 +171,12 @@ fn pictures_bind_what_their_shaders_have() {
     for samples in [1, 4] {
         for (last, entry) in [(Last::Gather, "gather"), (Last::Accumulate, "accumulate")] {
             let shader = finish_shader(samples, last);
+            let mut groups = vec![finish::entries(samples > 1, last)];
             for entry in ["copy_depths", "occlude", "blur_rows", "blur_columns", entry] {
-                let groups = vec![finish::entries(samples > 1, last)];
+                assert_bindings(&shader, entry, &groups);
+            }
+            groups.push(finish::dispatch_entries());
+            for entry in FINDING {
                 assert_bindings(&shader, entry, &groups);
             }
         }
@@ -227,8 +231,8 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "visible_chunks_id",
         "visible_chunk_keys",
         "shade",
-        "finish",
         "occlusion",
+        "gather",
         "accumulate",
         "mask",
         "present",

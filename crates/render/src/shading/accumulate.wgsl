@@ -5,7 +5,7 @@
 #import occlusion.wgsl
 
 // Linear, premultiplied.
-@group(0) @binding(7) var<storage, read_write> sums: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> sums: array<vec4<f32>>;
 
 @compute @workgroup_size(8, 8)
 fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {

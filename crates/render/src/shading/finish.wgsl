@@ -1,5 +1,4 @@
-// What the passes after the drawing share; and the last of them, from samples to the bytes of a
-// picture. Called by tiles.rs. Rust twin: finish.rs.
+// What the passes after the drawing share. Rust twin: finish.rs.
 
 #import srgb.wgsl
 
@@ -15,8 +14,8 @@ struct Finish {
     // Radius of occlusion (µm), at most `most` sub-pixels; 0: none.
     radius: f32,
     most: f32,
-    // Sub-pixels around the part of the tile that is kept.
-    margin: u32,
+    // 1: a tile of a saved picture, which has occlusion for each of its sub-pixels.
+    tiled: u32,
     // For gather: 1 if the background is transparent. For accumulate: 1 if there is a single step.
     clear: u32,
     // Size of the part that is kept (pixels).
@@ -29,6 +28,8 @@ struct Finish {
     background: vec4<f32>,
     // Size (µm) of a sub-pixel at every depth: 0 with perspective.
     flat: f32,
+    // Upper left sub-pixel of the part that is kept.
+    inset: vec2<u32>,
 }
 
 @group(0) @binding(0) var<uniform> finish: Finish;
@@ -46,6 +47,8 @@ struct Finish {
 // The first share, blurred along rows.
 @group(0) @binding(5) var<storage, read_write> blurred: array<f32>;
 @group(0) @binding(6) var<storage, read_write> pixels: array<u32>;
+// Blocks of 8 × 8 in which anything shows: see blocks.wgsl.
+@group(0) @binding(7) var<storage, read_write> blocks: array<u32>;
 
 // Index of a sub-pixel that is in the tile.
 fn index_of(p: vec2<i32>) -> u32 {
@@ -70,9 +73,9 @@ fn view_at(p: vec2<i32>, depth: f32) -> vec3<f32> {
 // Share of the light that reaches what is drawn at a sub-pixel.
 fn occlusion_at(p: vec2<i32>) -> f32 {
     let here = raw[index_of(p)];
-    // A tile of a saved picture has a margin, and occlusion for each of its sub-pixels. Progressive pictures have that of
-    // their first step, which may have seen nothing here: then it is as at the neighbors.
-    if here.y != 0.0 || finish.margin > 0u {
+    // Progressive pictures have the occlusion of their first step, which may have seen nothing here: then it is as at
+    // the neighbors.
+    if here.y != 0.0 || finish.tiled == 1u {
         return here.x;
     }
     var sum = vec2(0.0);
@@ -85,33 +88,4 @@ fn occlusion_at(p: vec2<i32>) -> f32 {
         }
     }
     return select(1.0, sum.x / sum.y, sum.y > 0.0);
-}
-
-@compute @workgroup_size(8, 8)
-fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= finish.kept) {
-        return;
-    }
-    var sum = vec4(0.0);
-    for (var y = 0u; y < finish.scale; y++) {
-        for (var x = 0u; x < finish.scale; x++) {
-            let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.margin);
-            var color = textureLoad(colors, p, 0);
-            if finish.radius > 0.0 && color.a > 0.0 {
-                color = vec4(color.rgb * occlusion_at(p), color.a);
-            }
-            sum += color;
-        }
-    }
-    let at = id.y * finish.kept.x + id.x;
-    if sum.a == 0.0 {
-        pixels[at] = finish.empty;
-        return;
-    }
-    sum /= f32(finish.scale * finish.scale);
-    var out = vec4(sum.rgb + finish.background.rgb * (1.0 - sum.a), 1.0);
-    if finish.clear == 1u {
-        out = vec4(sum.rgb / sum.a, sum.a);
-    }
-    pixels[at] = screen_bytes(out);
 }

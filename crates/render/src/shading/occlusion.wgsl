@@ -6,12 +6,7 @@
 // theirs too, along rows and then along columns; it stops where the depth jumps.
 
 #import finish.wgsl
-
-// The sub-pixel of an invocation: what is kept of the tile, and what the blur reads around it. Called for
-// as many in tiles.rs.
-fn place(id: vec2<u32>) -> vec2<i32> {
-    return vec2<i32>(id) + max(i32(finish.margin) - BLUR, 0);
-}
+#import blocks.wgsl
 
 // The first sample of a sub-pixel that nothing translucent covers, and the bytes of its depth; 0 if all are covered.
 // It stands for the sub-pixel: what is translucent neither is occluded nor occludes.
@@ -25,21 +20,20 @@ fn solid_sample(p: vec2<i32>) -> vec2<u32> {
     return vec2(0u);
 }
 
-// Of the whole tile: what is around a sub-pixel occludes it, too.
 @compute @workgroup_size(8, 8)
-fn copy_depths(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= finish.tile_size) {
+fn copy_depths(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let id = within_block(COVERED, workgroup, local);
+    if any(id >= finish.tile_size) {
         return;
     }
-    let p = vec2<i32>(id.xy);
+    let p = vec2<i32>(id);
     // The bytes of an f32: see shade.wgsl.
-    let depth = bitcast<f32>(solid_sample(p).y);
-    raw[index_of(p)] = vec2(1.0, depth);
+    raw[index_of(p)] = vec2(1.0, bitcast<f32>(solid_sample(p).y));
 }
 
 @compute @workgroup_size(8, 8)
-fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
-    let p = place(id.xy);
+fn occlude(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let p = vec2<i32>(within_block(OCCLUDED, workgroup, local));
     let depth = depth_at(p);
     if depth == 0.0 {
         return;
@@ -105,8 +99,8 @@ fn blur(p: vec2<i32>, depth: f32, direction: vec2<i32>, columns: bool) -> f32 {
 }
 
 @compute @workgroup_size(8, 8)
-fn blur_rows(@builtin(global_invocation_id) id: vec3<u32>) {
-    let p = place(id.xy);
+fn blur_rows(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let p = vec2<i32>(within_block(OCCLUDED, workgroup, local));
     let depth = depth_at(p);
     if depth != 0.0 {
         blurred[index_of(p)] = blur(p, depth, vec2(1, 0), false);
@@ -114,8 +108,8 @@ fn blur_rows(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 @compute @workgroup_size(8, 8)
-fn blur_columns(@builtin(global_invocation_id) id: vec3<u32>) {
-    let p = place(id.xy);
+fn blur_columns(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let p = vec2<i32>(within_block(OCCLUDED, workgroup, local));
     let depth = depth_at(p);
     if depth != 0.0 {
         raw[index_of(p)].x = blur(p, depth, vec2(0, 1), true);

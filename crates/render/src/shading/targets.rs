@@ -4,6 +4,9 @@ use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::shading::shade::{COLOR_FORMAT, DEPTH_FORMAT, DISTANCE_FORMAT, NORMAL_FORMAT};
 
+/// Bytes of the dispatches: four numbers of 32 bits for each list of blocks.
+const DISPATCH_BYTES: u64 = 3 * 16;
+
 /// Textures and buffers for tiles of one size.
 pub(crate) struct Targets {
     pub(crate) color: wgpu::TextureView,
@@ -14,6 +17,9 @@ pub(crate) struct Targets {
     pub(crate) raw: wgpu::Buffer,
     pub(crate) blurred: wgpu::Buffer,
     pub(crate) pixels: wgpu::Buffer,
+    /// Blocks in which anything shows, and dispatches for them.
+    pub(crate) blocks: wgpu::Buffer,
+    pub(crate) dispatches: wgpu::Buffer,
     pub(crate) read: wgpu::Buffer,
     pub(crate) size: [u32; 2],
     pub(crate) bytes: u64,
@@ -34,6 +40,8 @@ impl Targets {
         let distance = texture(DISTANCE_FORMAT, samples);
         let depth = texture(DEPTH_FORMAT, samples);
         let storage = wgpu::BufferUsages::STORAGE;
+        let cleared = storage | wgpu::BufferUsages::COPY_DST;
+        let blocks: u64 = size.map(|n| u64::from(n.div_ceil(8))).iter().product();
         let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         Self {
             color,
@@ -41,17 +49,24 @@ impl Targets {
             normal,
             distance,
             depth,
-            raw: make(gpu, "occlusion", 8 * pixels, storage),
+            raw: make(gpu, "occlusion", 8 * pixels, cleared),
             blurred: make(gpu, "occlusion", 4 * pixels, storage),
             pixels: make(
                 gpu,
                 "pixels",
                 4 * pixels,
-                storage | wgpu::BufferUsages::COPY_SRC,
+                cleared | wgpu::BufferUsages::COPY_SRC,
+            ),
+            blocks: make(gpu, "blocks", 16 * blocks, cleared),
+            dispatches: make(
+                gpu,
+                "dispatches",
+                DISPATCH_BYTES,
+                cleared | wgpu::BufferUsages::INDIRECT,
             ),
             read: make(gpu, "read back", 4 * pixels, read),
             size,
-            bytes: bytes + 20 * pixels,
+            bytes: bytes + 20 * pixels + 16 * blocks,
         }
     }
 }

@@ -28,6 +28,9 @@ pub(crate) trait Companion {
     /// Whether any of it may show in a frame.
     fn shows(&self, frame: &Frame) -> bool;
 
+    /// As [`VertexSource::parts`](crate::sources::VertexSource::parts).
+    fn parts(&self) -> usize;
+
     /// Selects and uploads what a frame needs.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame);
 

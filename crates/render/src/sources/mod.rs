@@ -42,6 +42,8 @@ pub struct SourceKey {
     pub name: &'static str,
     /// Number of the variant, for a source that has several.
     pub variant: u32,
+    /// Whether another source draws some instances more finely, by its own shaders.
+    pub finer: bool,
     /// Whether markers are drawn beside it, by one more shader.
     pub markers: bool,
     /// Whether meshes are drawn beside it, by one more shader.
@@ -94,6 +96,12 @@ pub trait VertexSource {
     /// Whether anything may show in a frame: tiles in which nothing does are not drawn.
     fn shows(&self, _frame: &Frame) -> bool {
         true
+    }
+
+    /// Number of things that [`VertexSource::shows`] looks at. With many, a picture is not searched for where
+    /// it is empty, which takes some fifty questions.
+    fn parts(&self) -> usize {
+        1
     }
 
     /// Uploads what a frame needs. Returns the number of rounds: a frame is drawn in rounds, each

@@ -10,17 +10,25 @@ use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
 use crate::view::frustum::shows;
 
-/// Number of patches in a sphere. Patches that follow one another are neighbors in the tree.
+/// Most patches in a sphere.
 const TOGETHER: usize = 8;
 /// How far a surface may bulge beyond its corners, as a multiple of their distance from the center.
 const BULGE: f32 = 1.5;
 
 /// Bounding spheres that hold the refined surface of a mesh, whatever its levels.
 pub fn bounds(mesh: &CoarseMesh) -> Vec<BoundingSphere> {
-    mesh.patches
-        .chunks(TOGETHER)
-        .map(|patches| sphere(mesh, patches))
-        .collect()
+    let mut spheres = Vec::with_capacity(mesh.patches.len().div_ceil(TOGETHER));
+    for patches in mesh.patches.chunks(TOGETHER) {
+        let together = sphere(mesh, patches);
+        let alone = || patches.iter().map(|patch| sphere(mesh, &[*patch]));
+        // Patches that follow one another are mostly neighbors in the tree. One sphere around the end of a
+        // branch and the beginning of the next would reach across the cell.
+        match together.1 <= alone().map(|(_, radius)| radius).sum() {
+            true => spheres.push(together),
+            false => spheres.extend(alone()),
+        }
+    }
+    spheres
 }
 
 fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {

@@ -34,6 +34,8 @@ pub struct Frame {
     pub size: [u32; 2],
     /// The part of the picture that is drawn.
     pub tile: Tile,
+    /// Sub-pixels around the whole picture that tiles may hold, too: what is there occludes what is inside.
+    pub around: u32,
 }
 
 impl Frame {
@@ -49,6 +51,7 @@ impl Frame {
                 width: size[0],
                 height: size[1],
             },
+            around: 0,
         }
     }
 
@@ -124,6 +127,7 @@ mod tests {
                 width,
                 height,
             },
+            around: 0,
         };
         let whole = frame(0, 0, 200, 100).frustum();
         for (a, b) in whole.iter().zip(camera.frustum(2.0, near)) {

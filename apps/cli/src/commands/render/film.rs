@@ -48,8 +48,9 @@ impl FixedFilm {
             near: camera.near(spheres),
         };
         let (table, _) = colored.picture(0)?;
-        let made =
-            renderer.render_static(gpu, &mut source.as_vertex_source(), &view, &table, options);
+        let mut source = source.as_vertex_source();
+        let tiles = options.tiles(gpu, &source, &view);
+        let made = renderer.render_static(gpu, &mut source, &view, &table, options);
         let picture = match made {
             Ok(picture) => picture,
             Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),
@@ -60,7 +61,7 @@ impl FixedFilm {
         };
         let cost = Cost {
             cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
-            tiles: options.tiles(gpu, camera),
+            tiles,
             ..Cost::default()
         };
         Ok(Some(Self { film, cost }))

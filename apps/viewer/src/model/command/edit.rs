@@ -30,6 +30,10 @@ pub enum Edit {
     ShowAll,
     /// Hides or shows a neuron.
     SetHidden(usize, bool),
+    /// Clamps the selected neurons, which are then fine whatever the mode; or no longer.
+    Clamp(bool),
+    /// Clamps no neuron any more.
+    UnclampAll,
     /// Removes the selected neurons from the list.
     Remove,
     /// Moves and turns neurons: their indices, and where they are then.
@@ -101,6 +105,8 @@ impl Edit {
             Self::Hide | Self::SetHidden(_, true) => "Hide",
             Self::Isolate => "Isolate",
             Self::ShowAll | Self::SetHidden(_, false) => "Show",
+            Self::Clamp(true) => "Clamp",
+            Self::Clamp(false) | Self::UnclampAll => "Unclamp",
             Self::Remove => "Remove",
             Self::Place(_) => "Move or turn",
             Self::Duplicate(_) => "Duplicate",
@@ -181,6 +187,8 @@ impl Edit {
                 true => (hidden, n.selected && !hidden),
                 false => (n.hidden, n.selected),
             }),
+            Self::Clamp(clamped) => neurons.clamp_selected(clamped),
+            Self::UnclampAll => neurons.unclamp_all(),
             Self::Remove => document.remove_selected(),
             Self::Place(places) => neurons.place(&places),
             Self::Duplicate(way) => document.duplicate_selected(way),

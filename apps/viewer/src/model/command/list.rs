@@ -264,6 +264,16 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
                 ),
                 item("Show all", Some((CTRL, Key::H)), Edit::ShowAll.into()),
                 item(
+                    choose(
+                        now.clamped,
+                        "Clamp selected: fine while moving (pin)",
+                        "Unclamp selected (unpin)",
+                    ),
+                    Some((PLAIN, Key::C)),
+                    Edit::Clamp(!now.clamped).into(),
+                ),
+                item("Unclamp all (unpin)", None, Edit::UnclampAll.into()),
+                item(
                     choose(now.y_down, "y axis down (electron microscopy)", "y axis up"),
                     Some((PLAIN, Key::Y)),
                     Command::SetYDown(!now.y_down),
@@ -506,6 +516,8 @@ pub struct Toggles {
     pub crossings: bool,
     /// Whether a drag that selects draws a lasso.
     pub lasso: bool,
+    /// Whether all selected neurons are clamped.
+    pub clamped: bool,
     /// Whether handles move and turn the selected cells.
     pub placing: bool,
     /// Whether the window presents.

@@ -76,6 +76,8 @@ pub struct Neuron {
     pub hidden: bool,
     /// Whether it is selected.
     pub selected: bool,
+    /// Whether it is clamped: fine whatever the mode, also while the camera moves.
+    pub clamped: bool,
 }
 
 impl Neuron {
@@ -89,6 +91,7 @@ impl Neuron {
             traced: Placement::default(),
             hidden: false,
             selected: false,
+            clamped: false,
         }
     }
 }

@@ -15,6 +15,7 @@ pub struct Neurons {
     list: Vec<Neuron>,
     selected: Vec<usize>,
     hidden: usize,
+    clamped: Vec<usize>,
     sources: Vec<SourceId>,
     selected_sources: Vec<SourceId>,
     revisions: NeuronRevisions,
@@ -29,6 +30,8 @@ pub struct NeuronRevisions {
     pub hidden: Revision,
     /// Of which neurons are selected.
     pub selection: Revision,
+    /// Of which neurons are clamped.
+    pub clamped: Revision,
 }
 
 impl Deref for Neurons {
@@ -81,6 +84,40 @@ impl Neurons {
         self.hidden
     }
 
+    /// Indices of the clamped neurons, ascending.
+    pub fn clamped(&self) -> &[usize] {
+        &self.clamped
+    }
+
+    /// Whether all selected neurons are clamped; false without a selection.
+    pub fn clamps_selected(&self) -> bool {
+        !self.selected.is_empty() && self.selected.iter().all(|&i| self.list[i].clamped)
+    }
+
+    /// Clamps the selected neurons, or no longer.
+    pub fn clamp_selected(&mut self, clamped: bool) {
+        let mut changes = false;
+        for &index in &self.selected {
+            changes |= self.list[index].clamped != clamped;
+            self.list[index].clamped = clamped;
+        }
+        if changes {
+            self.find_clamped();
+            self.revisions.clamped = Revision::next();
+        }
+    }
+
+    /// Clamps no neuron any more.
+    pub fn unclamp_all(&mut self) {
+        if !self.clamped.is_empty() {
+            self.list
+                .iter_mut()
+                .for_each(|neuron| neuron.clamped = false);
+            self.clamped.clear();
+            self.revisions.clamped = Revision::next();
+        }
+    }
+
     /// Tracings of the neurons, each once, sorted.
     pub fn sources(&self) -> &[SourceId] {
         &self.sources
@@ -103,6 +140,9 @@ impl Neurons {
             }
         }
         self.hidden += usize::from(neuron.hidden);
+        if neuron.clamped {
+            self.clamped.push(self.list.len());
+        }
         self.list.push(neuron);
         self.stamp_all();
     }
@@ -154,7 +194,14 @@ impl Neurons {
         self.hidden = self.list.iter().filter(|n| n.hidden).count();
         self.sources = distinct(self.list.iter());
         self.find_selected();
+        self.find_clamped();
         self.stamp_all();
+    }
+
+    fn find_clamped(&mut self) {
+        let neurons = self.list.iter().enumerate();
+        let clamped = neurons.filter(|(_, n)| n.clamped).map(|(i, _)| i);
+        self.clamped = clamped.collect();
     }
 
     fn find_selected(&mut self) {
@@ -171,6 +218,7 @@ impl Neurons {
             members: Revision::next(),
             hidden: Revision::next(),
             selection: Revision::next(),
+            clamped: Revision::next(),
         };
     }
 }
@@ -185,6 +233,37 @@ fn distinct<'a>(neurons: impl Iterator<Item = &'a Neuron>) -> Vec<SourceId> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_clamped_is_known_whatever_happens_to_the_list() {
+        let neuron = |i: u32| Neuron::new(SourceId(i), format!("n{i}"));
+        let mut neurons: Neurons = (0..4).map(neuron).collect();
+        assert!(!neurons.clamps_selected());
+        neurons.set_states(|i, n| (n.hidden, i % 2 == 1));
+        let before = neurons.revisions();
+        neurons.clamp_selected(true);
+        assert_eq!(
+            (neurons.clamped(), neurons.clamps_selected()),
+            (&[1, 3][..], true)
+        );
+        let now = neurons.revisions();
+        assert_ne!(now.clamped, before.clamped);
+        assert_eq!(
+            (now.members, now.selection),
+            (before.members, before.selection)
+        );
+        neurons.clamp_selected(true);
+        assert_eq!(neurons.revisions(), now, "nothing changed");
+        neurons.set_states(|i, n| (n.hidden, i == 0));
+        neurons.retain(|n| !n.selected);
+        neurons.push(Neuron {
+            clamped: true,
+            ..neuron(9)
+        });
+        assert_eq!(neurons.clamped(), [0, 2, 3]);
+        neurons.unclamp_all();
+        assert!(neurons.clamped().is_empty() && neurons.iter().all(|n| !n.clamped));
+    }
 
     #[test]
     fn each_change_stamps_what_it_changes() {

@@ -52,6 +52,9 @@ pub struct NeuronEntry {
     /// Whether it is selected.
     #[serde(default, skip_serializing_if = "is_false")]
     pub selected: bool,
+    /// Whether it is clamped.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub clamped: bool,
     /// Its node, if it belongs to a circuit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub node: Option<NodeEntry>,
@@ -67,6 +70,7 @@ impl NeuronEntry {
             placement: self.place.map(Into::into).unwrap_or_default(),
             hidden: self.hidden,
             selected: self.selected && !self.hidden,
+            clamped: self.clamped,
             ..Neuron::new(source, self.name.clone())
         }
     }

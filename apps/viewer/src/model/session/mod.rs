@@ -154,6 +154,7 @@ impl Session {
             file: used.binary_search(&neuron.source).unwrap_or(0),
             hidden: neuron.hidden,
             selected: neuron.selected,
+            clamped: neuron.clamped,
             place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
         });
         Self {

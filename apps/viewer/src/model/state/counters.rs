@@ -19,6 +19,8 @@ pub struct Counters {
     pub lowered: Option<Lowered>,
     /// Synapses and points that the picture shows, those in view, and all; none without any.
     pub markers: Option<[usize; 3]>,
+    /// Clamped neurons that are drawn finely, and all.
+    pub clamped: [usize; 2],
     /// The picture at rest, once it can be colored anew.
     pub static_picture: Option<StaticFigures>,
 }

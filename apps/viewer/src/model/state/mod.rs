@@ -217,6 +217,7 @@ impl State {
             crossings: self.crossings.open,
             lasso: self.settings.lasso,
             placing: self.placing.is_some(),
+            clamped: self.document.neurons.clamps_selected(),
             split: self.split.is_some(),
             linked: self.split.is_some_and(|split| split.linked),
             presenting: self.presenting,

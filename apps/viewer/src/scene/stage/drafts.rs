@@ -6,7 +6,8 @@ use eframe::egui;
 use neurotess::render::outline::Outlines;
 use neurotess::render::state::OUTLINED;
 use neurotess::render::{
-    AdaptiveSettings, Camera, Clip, Combined, DeviceError, Occlusion, Scene, ViewParams,
+    AdaptiveSettings, Camera, Clip, Combined, DeviceError, Occlusion, Scene, VertexSource,
+    ViewParams,
 };
 
 use super::cost_model::explorable;
@@ -53,6 +54,7 @@ impl Stage {
             detail: state.document.detail,
             states: StatesKey::new(&state.document),
             instances: InstancesKey::new(state, self.content.revision),
+            clamped: state.document.neurons.revisions().clamped,
             markers: self.markers.key(state),
             meshes: self.meshes.key(),
         }
@@ -170,23 +172,37 @@ impl Stage {
     pub(super) fn draw_draft(&mut self, inputs: &PictureInputs) -> Result<(), DeviceError> {
         let mut params = inputs.params;
         let budget = self.explorer.budget();
+        let fine = self.fine(true);
         let explorer = match explorable(&params) {
-            true => self
-                .explorer
-                .exploration(&self.gpu, &self.content, self.instances, budget),
+            true => {
+                self.explorer
+                    .exploration(&self.gpu, &self.content, self.instances, budget, &fine)
+            }
             false => None,
         };
         self.explored = explorer.is_some();
         let key = inputs.markers;
         if let Some(source) = explorer {
+            let mut finer: Option<&mut dyn VertexSource> = None;
+            if !fine.is_empty() {
+                self.adaptive.set_settings(AdaptiveSettings {
+                    lod: inputs.detail.lod(),
+                    smallest: inputs.detail.smallest,
+                    ..AdaptiveSettings::default()
+                });
+                self.adaptive.set_only(Some(fine));
+                finer = Some(&mut self.adaptive);
+            }
             let markers = self.markers.drawn(key, 1.0, Some(budget));
             let mut source = Combined::new(source)
+                .with_finer(finer)
                 .with_markers(markers)
                 .with_meshes(self.meshes.drawn());
             self.progressive.draft(&self.gpu, &mut source, &params)?;
             self.count_markers(&params, key, Some(budget));
             return Ok(());
         }
+        self.adaptive.set_only(None);
         self.adaptive.set_settings(AdaptiveSettings {
             // Leaves out no patches that are drawn at rest, since holes that come and go would look
             // broken.

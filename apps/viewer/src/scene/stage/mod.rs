@@ -2,6 +2,7 @@
 //! picture at rest, and what is under the cursor. Nothing is drawn when nothing changes.
 
 mod building;
+mod clamped;
 mod cost_model;
 mod drafts;
 mod frames;
@@ -34,6 +35,7 @@ use crate::scene::content::{InstancesKey, SceneContent, StatesKey};
 use crate::scene::explorer::Explorer;
 use crate::scene::picks::Picks;
 use building::Built;
+use clamped::Clamped;
 use cost_model::{CostModel, RestMode};
 use markers::{MarkersKey, StageMarkers};
 use meshes::{DrawnMeshes, StageMeshes};
@@ -48,6 +50,7 @@ pub struct Stage {
     progressive: ProgressiveRenderer,
     adaptive: Adaptive,
     explorer: Explorer,
+    clamped: Clamped,
     /// Whether the last draft was drawn in exploration mode.
     explored: bool,
     texture: Option<(egui::TextureId, [u32; 2], bool)>,
@@ -123,6 +126,7 @@ struct PictureInputs {
     detail: Detail,
     states: StatesKey,
     instances: InstancesKey,
+    clamped: Revision,
     markers: Option<MarkersKey>,
     meshes: Option<DrawnMeshes>,
 }
@@ -162,6 +166,7 @@ impl Stage {
             progressive,
             adaptive,
             explorer: Explorer::default(),
+            clamped: Clamped::default(),
             explored: false,
             texture: None,
             content,
@@ -330,6 +335,7 @@ impl Stage {
             return Ok(self.texture_id());
         }
         let inputs = self.inputs(state, size);
+        self.update_clamped(state, inputs.instances);
         if self
             .shape
             .is_some_and(|shape| shape != StaticKey::new(&inputs))

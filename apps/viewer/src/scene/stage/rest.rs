@@ -23,19 +23,29 @@ const SLICE_MS: f64 = 120.0;
 const MOST_SLICES: f64 = 3.0;
 
 /// The source of the picture at rest and the markers and meshes beside it, without borrowing the whole stage; none if exploration mode cannot
-/// draw it any more.
+/// draw it any more. `fine`: neurons that are then refined.
 macro_rules! rest_source {
-    ($stage:ident) => {{
+    ($stage:ident, $fine:expr) => {{
+        let fine: std::sync::Arc<[usize]> = $fine;
         let rest_budget = $stage.rest_budget();
         let key = $stage.drawn.as_ref().and_then(|drawn| drawn.markers);
+        let mut finer: Option<&mut dyn VertexSource> = None;
         let source: Option<&mut dyn VertexSource> = match $stage.rest_mode {
-            RestMode::Refined | RestMode::Coarser => Some(&mut $stage.adaptive),
+            RestMode::Refined | RestMode::Coarser => {
+                $stage.adaptive.set_only(None);
+                Some(&mut $stage.adaptive)
+            }
             RestMode::Explored => {
+                if !fine.is_empty() {
+                    $stage.adaptive.set_only(Some(std::sync::Arc::clone(&fine)));
+                    finer = Some(&mut $stage.adaptive);
+                }
                 let (gpu, content) = (&$stage.gpu, &$stage.content);
                 let budget = $stage.cost_model.budget;
-                let explored = $stage
-                    .explorer
-                    .exploration(gpu, content, $stage.instances, budget);
+                let explored =
+                    $stage
+                        .explorer
+                        .exploration(gpu, content, $stage.instances, budget, &fine);
                 explored.map(|source| source as &mut dyn VertexSource)
             }
         };
@@ -43,6 +53,7 @@ macro_rules! rest_source {
         let meshes = $stage.meshes.drawn();
         source.map(|source| {
             Combined::new(source)
+                .with_finer(finer)
                 .with_markers(markers)
                 .with_meshes(meshes)
         })
@@ -150,7 +161,7 @@ impl Stage {
         if identifies {
             return self.identify(&params);
         }
-        let Some(mut source) = rest_source!(self) else {
+        let Some(mut source) = rest_source!(self, self.fine(true)) else {
             self.phase = RestPhase::Waits;
             return Ok(());
         };
@@ -171,7 +182,8 @@ impl Stage {
 
     /// Draws the ids of the picture at rest.
     pub(super) fn identify(&mut self, params: &ViewParams) -> Result<(), DeviceError> {
-        let Some(mut source) = rest_source!(self) else {
+        // Ids of all neurons come from one source.
+        let Some(mut source) = rest_source!(self, self.fine(false)) else {
             return Ok(());
         };
         self.progressive.identify(&self.gpu, &mut source, params)?;
@@ -201,10 +213,10 @@ impl Stage {
     fn survey(&mut self) -> Result<(), DeviceError> {
         self.learn();
         self.phase = RestPhase::Collects;
-        let budget = self.cost_model.budget;
+        let (budget, fine) = (self.cost_model.budget, self.fine(true));
         let Some(adaptive) =
             self.explorer
-                .exploration(&self.gpu, &self.content, self.instances, budget)
+                .exploration(&self.gpu, &self.content, self.instances, budget, &fine)
         else {
             return Ok(());
         };
@@ -229,6 +241,7 @@ impl Stage {
         let params = drawn.params;
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
         let frame = Frame::whole(camera, near, params.size);
+        self.adaptive.set_only(None);
         self.adaptive.prepare(&self.gpu, &frame)?;
         let stats = self.adaptive.stats(&self.gpu)?;
         self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);

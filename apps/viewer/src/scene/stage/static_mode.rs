@@ -14,6 +14,7 @@ use super::rest::rest_source;
 use super::{DrawnMeshes, MarkersKey, PictureInputs, RestPhase, Stage};
 use crate::io::frames::FrameValues;
 use crate::model::document::Detail;
+use crate::model::revision::Revision;
 use crate::model::state::{State, StaticFigures};
 use crate::scene::content::{CoverageKey, InstancesKey};
 
@@ -24,6 +25,7 @@ pub(super) struct StaticKey {
     detail: Detail,
     coverage: CoverageKey,
     instances: InstancesKey,
+    clamped: Revision,
     markers: Option<MarkersKey>,
     meshes: Option<DrawnMeshes>,
 }
@@ -35,6 +37,7 @@ impl StaticKey {
             detail: inputs.detail,
             coverage: inputs.states.coverage(),
             instances: inputs.instances,
+            clamped: inputs.clamped,
             markers: inputs.markers,
             meshes: inputs.meshes,
         }
@@ -80,7 +83,7 @@ impl Stage {
             return Ok(());
         }
         let steps = self.steps();
-        let Some(mut source) = rest_source!(self) else {
+        let Some(mut source) = rest_source!(self, self.fine(true)) else {
             self.phase = RestPhase::Waits;
             return Ok(());
         };

@@ -1,6 +1,7 @@
 //! Saving of sessions, meshes, pictures and settings.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::Viewer;
 use crate::io::save::{self, MeshPlan, video};
@@ -52,7 +53,7 @@ impl Viewer {
             }
             SaveRequest::Picture(options) => {
                 self.state.settings.picture_size = options.size;
-                let still_scene = self.still_scene();
+                let still_scene = Arc::new(self.still_scene());
                 let film_frame = FilmFrame {
                     view: self.state.view,
                     time: Some(self.state.playback.pace.time),
@@ -86,7 +87,7 @@ impl Viewer {
             self.state.problem("film", why);
             return;
         }
-        let still_scene = self.still_scene();
+        let still_scene = Arc::new(self.still_scene());
         let work = move |progress: &Progress| {
             let files = pictures(&still_scene, &film_frames, &film.picture, progress)?;
             let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());

@@ -107,6 +107,7 @@ fn list(
 fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut egui::Ui) {
     let neuron = &state.document.neurons[index];
     let (name, hidden, selected) = (neuron.name.clone(), neuron.hidden, neuron.selected);
+    let clamped = neuron.clamped;
     let stale = state.source_of(index).and_then(|s| s.stale);
     let warnings = state.source_of(index).map_or(0, |s| {
         let concerns = s.warnings.iter().filter(|w| w.concerns);
@@ -135,6 +136,10 @@ fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut e
                         .tip(format!("{} to check: see Inspect", count(warnings, "note")));
                 }
                 None => {}
+            }
+            if clamped {
+                ui.weak("clamped")
+                    .tip("Drawn finely, also while the camera moves (C)");
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let text = RichText::new(&name);

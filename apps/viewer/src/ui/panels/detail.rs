@@ -160,6 +160,10 @@ fn counters(state: &State, ui: &mut Ui) {
         }
         rows.push(("GPU memory, recoloring", size(picture.bytes)));
     }
+    let [fine, clamped] = c.clamped;
+    if clamped > 0 {
+        rows.push(("clamped neurons", format!("{fine} of {clamped} fine")));
+    }
     rows.push(("GPU memory, neurons", size(c.bytes[0])));
     rows.push(("GPU memory, images", size(c.bytes[1])));
     figures(ui, "counters", &rows);

@@ -346,11 +346,18 @@ fn menu(state: &mut State, ui: &mut Ui) {
     } else {
         "Move and turn selected"
     };
+    let clamps = state.document.neurons.clamps_selected();
+    let clamp = if clamps {
+        "Unclamp selected"
+    } else {
+        "Clamp selected"
+    };
     for (title, command) in [
         (measure, Command::SetMeasuring(!measures)),
         ("Zoom to the selection", Command::Focus),
         ("Hide selected", Edit::Hide.into()),
         ("Isolate selected", Edit::Isolate.into()),
+        (clamp, Edit::Clamp(!clamps).into()),
         (place, Command::SetPlacing(!places)),
         ("Duplicate selected", Command::Duplicate),
         ("Show all", Edit::ShowAll.into()),

@@ -50,7 +50,8 @@ impl Canvas {
                 entry(4, targets.raw.as_entire_binding()),
                 entry(5, targets.blurred.as_entire_binding()),
                 entry(6, targets.pixels.as_entire_binding()),
-                entry(7, self.sums.as_entire_binding()),
+                entry(7, targets.blocks.as_entire_binding()),
+                entry(8, self.sums.as_entire_binding()),
             ],
         })
     }

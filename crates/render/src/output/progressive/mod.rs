@@ -455,18 +455,22 @@ impl ProgressiveRenderer {
         gpu.queue
             .write_buffer(&self.finish, 0, bytemuck::bytes_of(&uniform));
         let group = canvas.group(gpu, finisher, &self.finish);
+        // Steps lie within the same pixel, so occlusion is computed once for all of them.
+        let occluded = uniform.radius > 0.0 && *step == 0;
+        if occluded {
+            finisher.begin(&canvas.targets, encoder);
+        }
         let over = params.size.map(|n| n.div_ceil(8));
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("finish"),
             timestamp_writes: None,
         });
         pass.set_bind_group(0, &group, &[]);
-        // Steps lie within the same pixel, so occlusion is computed once for all of them.
-        if uniform.radius > 0.0 && *step == 0 {
-            for pipeline in finisher.occlusion() {
-                pass.set_pipeline(pipeline);
-                pass.dispatch_workgroups(over[0], over[1], 1);
-            }
+        if occluded {
+            let targets = &canvas.targets;
+            finisher.find_blocks(gpu, targets, &mut pass);
+            finisher.occlude(targets, &mut pass);
+            finisher.blur(targets, &mut pass);
         }
         pass.set_pipeline(&finisher.last);
         pass.dispatch_workgroups(over[0], over[1], 1);

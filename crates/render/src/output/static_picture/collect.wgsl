@@ -81,7 +81,7 @@ fn collect(@builtin(global_invocation_id) id: vec3<u32>) {
     filled = 0u;
     for (var y = 0u; y < finish.scale; y++) {
         for (var x = 0u; x < finish.scale; x++) {
-            let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.margin);
+            let p = vec2<i32>(id.xy * finish.scale + vec2(x, y) + finish.inset);
             // A band has targets of its own for keys, but not for what is finished.
             let finished = p + vec2(0, i32(finish.spare));
             if textureLoad(colors, finished, 0).a == 0.0 {

@@ -42,15 +42,21 @@ pub struct FramePlan {
 }
 
 /// Parts of instances that may show, each with its page; and the number of patches of all instances
-/// that are not hidden.
+/// that are not hidden. `only`: indices of the instances; none: all.
 pub(crate) fn place_all(
     scene: &Scene,
+    only: Option<&[usize]>,
     view: &CullView,
     frame: &FrameUniforms,
 ) -> (Vec<(usize, Placed)>, u64) {
     let mut placed = Vec::new();
     let mut patches = 0;
-    for (i, instance) in scene.instances().iter().enumerate() {
+    let all = 0..only.map_or(scene.instances().len(), <[usize]>::len);
+    let indices = all.map(|k| only.map_or(k, |only| only[k]));
+    for i in indices {
+        let Some(instance) = scene.instances().get(i) else {
+            continue;
+        };
         let Some(template) = scene.templates().template(instance.template) else {
             continue;
         };

@@ -12,6 +12,7 @@ pub(crate) mod resolver;
 pub(crate) mod settings;
 pub(crate) mod work;
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess_refine::wgsl::{ShaderParts, WgslFile};
@@ -80,6 +81,14 @@ impl Adaptive {
     /// Other settings, from the next frame on.
     pub fn set_settings(&mut self, settings: AdaptiveSettings) {
         self.settings = settings;
+    }
+
+    /// Draws these instances only, from the next frame on: their indices; none: all of them.
+    pub fn set_only(&mut self, only: Option<Arc<[usize]>>) {
+        if self.refiner.only() != only.as_deref() {
+            self.refiner.set_only(only);
+            self.kept = None;
+        }
     }
 
     /// Bounding spheres that hold all that the scene shows (µm, in the world). Tiles of a picture
@@ -180,6 +189,10 @@ impl VertexSource for Adaptive {
     fn shows(&self, frame: &Frame) -> bool {
         let spheres = self.bounds.as_ref();
         spheres.is_none_or(|spheres| any_shows(spheres, frame))
+    }
+
+    fn parts(&self) -> usize {
+        self.bounds.as_ref().map_or(1, Vec::len)
     }
 
     fn shaders(&self) -> usize {

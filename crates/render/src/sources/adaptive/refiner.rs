@@ -12,6 +12,8 @@
 //! [`Refiner::select`] in an encoder, then [`Refiner::draw`] in a render pass whose pipeline was
 //! made with [`Refiner::vertex_shader`] and [`Refiner::layout`]. Nothing is read back.
 
+use std::sync::Arc;
+
 use neurotess_refine::wgsl::{Constants, ShaderParts};
 use wgpu::BufferUsages;
 
@@ -43,6 +45,8 @@ pub struct Refiner {
     drawing_groups: Vec<wgpu::BindGroup>,
     /// Whether frames are prepared for shaders that look color keys up.
     keyed: bool,
+    /// Indices of the instances that are drawn; none: all.
+    only: Option<Arc<[usize]>>,
 }
 
 impl Refiner {
@@ -68,6 +72,7 @@ impl Refiner {
             work,
             drawing_groups: Vec::new(),
             keyed: false,
+            only: None,
         })
     }
 
@@ -102,6 +107,16 @@ impl Refiner {
         self.keyed = keyed;
     }
 
+    /// The instances that are drawn from the next frame on; none: all.
+    pub(crate) fn set_only(&mut self, only: Option<Arc<[usize]>>) {
+        self.only = only;
+    }
+
+    /// The instances that are drawn; none: all.
+    pub(crate) fn only(&self) -> Option<&[usize]> {
+        self.only.as_deref()
+    }
+
     /// Culls whole parts, uploads the placements of the others, and cuts them into batches.
     ///
     /// # Errors
@@ -119,7 +134,7 @@ impl Refiner {
             (false, false) => FlatIndices::Places,
         };
         let mut frame = FrameUniforms::new(view, settings, flat);
-        let (mut placed, patches) = place_all(scene, view, &frame);
+        let (mut placed, patches) = place_all(scene, self.only(), view, &frame);
         // A stable sort: within a page the scene's order stays.
         placed.sort_by_key(|&(page, _)| page);
         let (batches, first_explicit) = cut(&mut placed);
@@ -211,13 +226,14 @@ impl Refiner {
     }
 }
 
-/// Constants of the shaders that compute vertices; DRAWS says which kind of patches vertices.wgsl
-/// draws.
+/// Constants of the shaders that compute vertices; flags say which kind of patches vertices.wgsl draws.
 pub(crate) fn drawing_constants(shader: usize) -> Constants {
     let mut constants = constants();
-    constants.u32("DRAWS", shader as u32);
-    constants.u32("DRAWS_FLAT", 0);
-    constants.u32("DRAWS_TUBES", 1);
+    match shader {
+        0 => constants.flag("DRAWS_FLAT"),
+        1 => constants.flag("DRAWS_TUBES"),
+        _ => {}
+    }
     constants
 }
 

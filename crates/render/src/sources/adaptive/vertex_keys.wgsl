@@ -4,11 +4,13 @@
 #import vertices.wgsl
 #import surface_keys.wgsl
 
+#ifdef DRAWS_FLAT
 fn surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys {
-    if (DRAWS == DRAWS_FLAT) {
-        let slot = vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u);
-        return keys_of_patch(slot, vertex_index >> FLAT_CORNER_SHIFT);
-    }
+    let slot = vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u);
+    return keys_of_patch(slot, vertex_index >> FLAT_CORNER_SHIFT);
+}
+#else
+fn surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys {
     let bucket = buckets[vertex_index >> INDEX_BUCKET_SHIFT];
     let k = (vertex_index >> INDEX_PATCH_SHIFT) & INDEX_PATCH_MASK;
     let place = instance_index * bucket.together + k;
@@ -18,11 +20,18 @@ fn surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys {
     let listed = list[bucket.start + place];
     let i = vertex_index & INDEX_PLACE_MASK;
     let j = (vertex_index >> INDEX_ROW_SHIFT) & INDEX_PLACE_MASK;
-    if (DRAWS == DRAWS_TUBES) {
-        let levels = decided_levels(listed.y);
-        let grid = patch_grid(PATCH_LATERAL, frame.levels.caps, levels);
-        return keys_of_tube(listed.x / 4u, levels, grid, min(i, grid.nx), min(j, grid.ny));
-    }
+    return keys_of_drawn(listed, i, j);
+}
+#endif
+
+#ifdef DRAWS_TUBES
+fn keys_of_drawn(listed: vec2<u32>, i: u32, j: u32) -> SurfaceKeys {
+    let levels = decided_levels(listed.y);
+    let grid = patch_grid(PATCH_LATERAL, frame.levels.caps, levels);
+    return keys_of_tube(listed.x / 4u, levels, grid, min(i, grid.nx), min(j, grid.ny));
+}
+#else
+fn keys_of_drawn(listed: vec2<u32>, i: u32, j: u32) -> SurfaceKeys {
     let part = placed[owners[listed.x / CLUSTER]];
     let levels = decided_levels(listed.y);
     let grid = patch_grid(decided_kind(listed.y), frame.levels.caps, levels);
@@ -34,6 +43,7 @@ fn surface_keys(vertex_index: u32, instance_index: u32) -> SurfaceKeys {
     }
     return keys_of_patch(listed.x, corner);
 }
+#endif
 
 fn keys_of_patch(slot: u32, corner: u32) -> SurfaceKeys {
     let part = placed[owners[slot / CLUSTER]];

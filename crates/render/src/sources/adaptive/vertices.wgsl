@@ -24,16 +24,16 @@ struct Bucket {
 @group(0) @binding(8) var<storage, read> buckets: array<Bucket>;
 @group(0) @binding(9) var<storage, read> coarse: array<CoarsePoint>;
 
+// What is not drawn is left out of the shader: drivers compile both sides of a condition before they find out
+// that it is constant.
+#ifdef DRAWS_FLAT
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
-    if (DRAWS == DRAWS_FLAT) {
-        let corner = vertex_index >> FLAT_CORNER_SHIFT;
-        let named = vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u);
-#ifdef KEYED
-        return flat_vertex(place_of_corner(named, corner), grid_of_corner(corner));
+    let corner = vertex_index >> FLAT_CORNER_SHIFT;
+    let named = vertex_index & ((1u << FLAT_CORNER_SHIFT) - 1u);
+    return flat_vertex(named_place(named, corner), grid_of_corner(corner));
+}
 #else
-        return flat_vertex(named, grid_of_corner(corner));
-#endif
-    }
+fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let bucket = buckets[vertex_index >> INDEX_BUCKET_SHIFT];
     let k = (vertex_index >> INDEX_PATCH_SHIFT) & INDEX_PATCH_MASK;
     let place = instance_index * bucket.together + k;
@@ -45,11 +45,29 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     let listed = list[bucket.start + place];
     let i = vertex_index & INDEX_PLACE_MASK;
     let j = (vertex_index >> INDEX_ROW_SHIFT) & INDEX_PLACE_MASK;
-    if (DRAWS == DRAWS_TUBES) {
-        return listed_tube_vertex(listed, i, j);
-    }
+    return drawn_vertex(listed, i, j);
+}
+#endif
+
+#ifdef KEYED
+fn named_place(slot: u32, corner: u32) -> u32 {
+    return place_of_corner(slot, corner);
+}
+#else
+fn named_place(place: u32, corner: u32) -> u32 {
+    return place;
+}
+#endif
+
+#ifdef DRAWS_TUBES
+fn drawn_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
+    return listed_tube_vertex(listed, i, j);
+}
+#else
+fn drawn_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
     return listed_other_vertex(listed, i, j);
 }
+#endif
 
 // Vertex at column i and row j of a patch, given its slot and decision. Columns and rows beyond its
 // grid are the last ones.

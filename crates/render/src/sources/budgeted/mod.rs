@@ -67,9 +67,6 @@ pub const DEFAULT_BUDGET: u32 = 100_000;
 pub const MOST_BUDGET: u32 = 1 << 23;
 /// Greatest distance (pixels) of what is drawn from the true surface.
 const ERROR: f32 = 0.5;
-/// Greatest share of a picture's height by which a tile's margin may reach over the picture's
-/// border.
-const MOST_MARGIN: f64 = 0.1;
 
 /// A source that draws any scene within a budget of triangles.
 #[derive(Debug)]
@@ -176,8 +173,8 @@ impl Exploration {
         size
     }
 
-    fn eye(&self, frame: &Frame, margin: u32) -> Eye {
-        let [width, height] = frame.size;
+    fn eye(&self, frame: &Frame) -> Eye {
+        let ([width, height], margin) = (frame.size, frame.around);
         let around = Frame {
             tile: Tile {
                 x: -(margin as i32),
@@ -225,6 +222,10 @@ impl VertexSource for Exploration {
             let pixels = 8.0 * frame.pixel().at(f64::from(center.length()) + reach);
             !instance.hidden && shows(&planes, center, (reach + pixels) as f32)
         })
+    }
+
+    fn parts(&self) -> usize {
+        self.instances.len()
     }
 
     fn key(&self) -> SourceKey {
@@ -280,10 +281,7 @@ impl VertexSource for Exploration {
             ..*frame
         };
         if *self.stale.get_mut() || self.picture != Some(whole) {
-            // What lies just outside the picture must be drawn too: it occludes what is inside.
-            let most = (MOST_MARGIN * f64::from(frame.size[1])).ceil() as i32;
-            let margin = (-frame.tile.x).max(-frame.tile.y).clamp(0, most) as u32;
-            let eye = self.eye(frame, margin);
+            let eye = self.eye(frame);
             gpu.queue
                 .write_buffer(&self.work.eye, 0, bytemuck::bytes_of(&eye));
             self.picture = Some(whole);

@@ -370,6 +370,10 @@ impl Companion for Markers {
         }
     }
 
+    fn parts(&self) -> usize {
+        self.chunks.len()
+    }
+
     fn shows(&self, frame: &Frame) -> bool {
         let (planes, eye) = (frame.frustum(), frame.camera.eye());
         let reach = |chunk: &Chunk| {

@@ -186,6 +186,14 @@ impl Companion for Meshes {
         true
     }
 
+    fn parts(&self) -> usize {
+        let spheres = self
+            .meshes
+            .iter()
+            .map(|(mesh, look)| mesh.spheres(look.scale).count());
+        spheres.sum()
+    }
+
     fn shows(&self, frame: &Frame) -> bool {
         let (planes, eye) = (frame.frustum(), frame.camera.eye());
         self.meshes.iter().any(|(mesh, look)| {

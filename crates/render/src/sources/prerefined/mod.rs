@@ -313,6 +313,10 @@ impl VertexSource for Prerefined {
         any_shows(&self.bounds, frame)
     }
 
+    fn parts(&self) -> usize {
+        self.bounds.len()
+    }
+
     fn key(&self) -> SourceKey {
         SourceKey {
             name: "prerefined",
