@@ -43,7 +43,7 @@ const TRIES: usize = 6;
 const TURN: f64 = 0.9;
 
 /// How far a vertex may go from where it was, in radii.
-const REACH: f64 = 0.3;
+const REACH: f64 = 0.5;
 
 /// An edit must make the smallest angle larger by this much to be worth it.
 const GAIN: f64 = 1.02;

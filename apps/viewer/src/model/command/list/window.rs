@@ -1,0 +1,70 @@
+//! The menu *Window*.
+
+use eframe::egui::Key;
+
+use super::{CTRL_SHIFT, Listed, PLAIN, Toggles, choose, item};
+use crate::model::command::{Command, Tab};
+
+pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
+    vec![
+        item(
+            "Inspect",
+            Some((CTRL_SHIFT, Key::I)),
+            Command::Show(Tab::Inspect),
+        ),
+        item(
+            "Soma editor",
+            Some((CTRL_SHIFT, Key::S)),
+            Command::Show(Tab::Soma),
+        ),
+        item("Look", Some((CTRL_SHIFT, Key::L)), Command::Show(Tab::Look)),
+        item(
+            "Level of detail",
+            Some((CTRL_SHIFT, Key::D)),
+            Command::Show(Tab::Detail),
+        ),
+        item(
+            choose(now.dark, "Dark theme", "Light theme"),
+            None,
+            Command::SetDark(!now.dark),
+        ),
+        item(
+            choose(
+                now.caches,
+                "Keep caches of circuits",
+                "Keep no caches of circuits",
+            ),
+            None,
+            Command::SetCaches(!now.caches),
+        ),
+        item(
+            choose(now.full_screen, "Full screen", "Leave the full screen"),
+            Some((PLAIN, Key::F11)),
+            Command::SetFullScreen(!now.full_screen),
+        ),
+        item(
+            choose(
+                now.presenting,
+                "Presentation: full screen, no panels, turntable",
+                "End the presentation (turntable)",
+            ),
+            Some((PLAIN, Key::F5)),
+            Command::SetPresenting(!now.presenting),
+        ),
+        item(
+            "Show or hide the panels",
+            Some((PLAIN, Key::Tab)),
+            Command::TogglePanels,
+        ),
+        item("What went wrong", None, Command::ToggleProblems),
+    ]
+    .into_iter()
+    .chain(now.presenting.then(|| {
+        item(
+            "Leave the presentation",
+            Some((PLAIN, Key::Escape)),
+            Command::SetPresenting(false),
+        )
+    }))
+    .collect()
+}
