@@ -275,12 +275,14 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
     }
 }
 
-/// Commands whose titles contain all words, with their menus.
+/// Commands that all words are in, of titles or by which they are looked for, with their menus.
 fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
     let all = state.menus();
     all.into_iter()
         .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
-        .filter(|(menu, item)| matches_words(&format!("{menu} {}", item.title), text))
+        .filter(|(menu, item)| {
+            matches_words(&format!("{menu} {} {}", item.title, item.words()), text)
+        })
         .collect()
 }
 
@@ -330,6 +332,97 @@ fn replace(
 #[cfg(test)]
 mod tests {
     use super::matches_words;
+    use crate::model::command::{Listed, Toggles, listed};
+
+    /// What someone types who wants to do something and was not told how it is called here.
+    #[test]
+    fn features_are_found_by_the_words_of_the_field() {
+        let menus = listed(&Toggles::default());
+        let titles: Vec<String> = menus
+            .iter()
+            .flat_map(|(menu, items)| {
+                let title = |item: &Listed| format!("{menu} {} {}", item.title, item.words());
+                items.iter().map(title).collect::<Vec<_>>()
+            })
+            .collect();
+        for words in [
+            "synapse",
+            "bouton",
+            "contact",
+            "spine",
+            "measure",
+            "distance",
+            "path length",
+            "diameter",
+            "angle",
+            "ruler",
+            "add mesh",
+            "brain region",
+            "pipette",
+            "segment",
+            "opacity",
+            "trace",
+            "voltage",
+            "csv",
+            "svg",
+            "attributes",
+            "sholl",
+            "barcode",
+            "strahler",
+            "tortuosity",
+            "numbers",
+            "color",
+            "palette",
+            "picker",
+            "colorblind",
+            "radius factor",
+            "line width",
+            "scale bar",
+            "orthographic",
+            "perspective",
+            "save view",
+            "two views",
+            "side by side",
+            "link views",
+            "full screen",
+            "turntable",
+            "spin",
+            "presentation",
+            "record",
+            "movie",
+            "video",
+            "film",
+            "lasso",
+            "rectangle",
+            "hide",
+            "isolate",
+            "neurite",
+            "move cell",
+            "rotate",
+            "gizmo",
+            "duplicate",
+            "copy cell",
+            "clamp",
+            "points table",
+            "crossings",
+            "snudda",
+            "circuit",
+            "report",
+            "spikes",
+            "session",
+            "undo",
+            "zoom",
+            "level of detail",
+            "wireframe",
+            "simulation",
+            "export",
+        ] {
+            assert!(
+                titles.iter().any(|title| matches_words(title, words)),
+                "{words}"
+            );
+        }
+    }
 
     #[test]
     fn words_are_found_in_any_order() {

@@ -63,6 +63,52 @@ fn grow(places: SpinePlaces) -> Command {
     Edit::GrowSpines(Some(SpineEdit::at(places))).into()
 }
 
+impl Listed {
+    /// Words by which people look for it, beside those of its title.
+    pub fn words(&self) -> &'static str {
+        let found = WORDS.iter().find(|(title, _)| *title == self.title);
+        found.map_or("", |(_, words)| words)
+    }
+}
+
+const WORDS: [(&str, &str); 11] = [
+    (
+        "Inspect",
+        "sholl barcode strahler tortuosity numbers measures plot attributes crossings copy",
+    ),
+    (
+        "Look",
+        "color colour picker colorblind background light wireframe radius factor thickness line width legend mesh opacity",
+    ),
+    ("Soma editor", "poisson sphere neurite ring"),
+    (
+        "Level of detail",
+        "quality triangles budget memory static exploration mode",
+    ),
+    (
+        "Save mesh, picture or film…",
+        "export record movie video frames ffmpeg png ply stl obj simulation",
+    ),
+    (
+        "Open…",
+        "circuit sonata snudda folder swc asc h5 session import load",
+    ),
+    (
+        "Move and turn selected (handles, gizmo, translate, rotate)",
+        "cell drag",
+    ),
+    (
+        "Select with a lasso (Ctrl + drag, freehand)",
+        "rectangle box",
+    ),
+    (
+        "Orthographic: parallel projection, true scale bar",
+        "perspective",
+    ),
+    ("Isolate selected", "only this section neurite type"),
+    ("Hide selected", "invisible section neurite type"),
+];
+
 /// Saved views that have a key. Menus show those that there are, by their names.
 const SAVED_VIEWS: [(&str, Key); 5] = [
     ("Saved view 1", Key::Num5),
@@ -129,6 +175,18 @@ pub struct Toggles {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_are_of_commands_that_there_are() {
+        let menus = listed(&Toggles::default());
+        let titles: Vec<&str> = menus
+            .iter()
+            .flat_map(|(_, items)| items.iter().map(|item| &*item.title))
+            .collect();
+        for (title, _) in WORDS {
+            assert!(titles.contains(&title), "{title}");
+        }
+    }
 
     #[test]
     fn no_keys_are_used_twice() {
