@@ -167,11 +167,13 @@ fn borders(mesh: &SurfaceMesh) -> (Vec<Border>, Vec<i32>) {
     let mut of_neurite: HashMap<u32, usize> = HashMap::new();
     let is_forked = |vertices: &[u32]| vertices.iter().any(|v| forked.contains(v));
     for (start, label) in starts {
-        let Some(vertices) = walk(&mut next, start) else {
+        let (vertices, closes) = walk(&mut next, start);
+        if vertices.is_empty() {
+            // Its loop was walked from another vertex.
             continue;
-        };
+        }
         *of_neurite.entry(neurites.root(start)).or_default() += 1;
-        if vertices.len() < 3 || is_forked(&vertices) {
+        if !closes || vertices.len() < 3 || is_forked(&vertices) {
             left_out.push(label.point);
         } else {
             loops.push(Border { vertices, label });
@@ -188,15 +190,15 @@ fn borders(mesh: &SurfaceMesh) -> (Vec<Border>, Vec<i32>) {
     (loops, left_out)
 }
 
-/// Takes the loop from a vertex on out of the map of next vertices; none if it was taken or does not close.
-fn walk(next: &mut HashMap<u32, u32>, start: u32) -> Option<Vec<u32>> {
+/// Takes the loop from a vertex on out of the map of next vertices, and tells whether it closes.
+fn walk(next: &mut HashMap<u32, u32>, start: u32) -> (Vec<u32>, bool) {
     let mut vertices = Vec::new();
     let mut at = start;
     while let Some(to) = next.remove(&at) {
         vertices.push(at);
         at = to;
     }
-    (at == start && !vertices.is_empty()).then_some(vertices)
+    (vertices, at == start)
 }
 
 /// A corner of a wall's triangle.

@@ -7,14 +7,19 @@ use glam::{DVec3, IVec3};
 /// A place is at most so far (µm) from a membrane that it belongs to.
 pub(crate) const REACH: f64 = 5.0;
 
-/// Side of a cell of the grid (µm).
-const CELL: f64 = 4.0;
+/// Least side of a cell of the grid (µm).
+const LEAST_CELL: f64 = 4.0;
+/// Cells that a link of mean length goes through at most: tracings in another unit than they should be would fill
+/// all memory.
+const MOST_CELLS: f64 = 8.0;
 /// Cells along a side of what is searched at most.
 const MOST_SHELLS: i32 = 16;
 
 /// Links in a grid, each in all cells that its axis goes through.
 #[derive(Debug)]
 pub(crate) struct Links {
+    /// Side of a cell (µm).
+    side: f64,
     cells: HashMap<IVec3, Vec<u32>>,
     links: Vec<Link>,
     /// The largest radius (µm).
@@ -42,9 +47,12 @@ pub(crate) struct Found {
 
 impl Links {
     pub(crate) fn new(all: impl IntoIterator<Item = Link>) -> Self {
+        let all: Vec<Link> = all.into_iter().collect();
+        let length: f64 = all.iter().map(Link::length).filter(|n| n.is_finite()).sum();
         let mut links = Self {
+            side: LEAST_CELL.max(length / (MOST_CELLS * all.len().max(1) as f64)),
             cells: HashMap::new(),
-            links: Vec::new(),
+            links: Vec::with_capacity(all.len()),
             widest: 0.0,
         };
         for link in all {
@@ -57,10 +65,10 @@ impl Links {
         let number = self.links.len() as u32;
         let [(from, thick), (to, thin)] = link.ends;
         self.widest = self.widest.max(thick).max(thin);
-        let steps = (2.0 * from.distance(to) / CELL).ceil().clamp(1.0, 1e6) as u32;
+        let steps = (2.0 * link.length() / self.side).ceil().clamp(1.0, 1e6) as u32;
         for step in 0..=steps {
             let at = from.lerp(to, f64::from(step) / f64::from(steps));
-            let there = self.cells.entry(cell(at)).or_default();
+            let there = self.cells.entry(cell(at, self.side)).or_default();
             if there.last() != Some(&number) {
                 there.push(number);
             }
@@ -76,11 +84,11 @@ impl Links {
         let mut best: Option<Found> = None;
         for shell in 0..=MOST_SHELLS {
             // No link that is not found yet is nearer to the axis: half a cell for its samples.
-            let rest = (f64::from(shell) - 1.5) * CELL - self.widest;
+            let rest = (f64::from(shell) - 1.5) * self.side - self.widest;
             if rest > best.map_or(REACH, |found| found.far) {
                 break;
             }
-            for at in around(cell(place), shell) {
+            for at in around(cell(place, self.side), shell) {
                 let links = self.cells.get(&at).into_iter().flatten();
                 for found in links.map(|&number| self.links[number as usize].found(place)) {
                     if best.is_none_or(|best| found.far < best.far) {
@@ -94,6 +102,11 @@ impl Links {
 }
 
 impl Link {
+    /// µm.
+    fn length(&self) -> f64 {
+        self.ends[0].0.distance(self.ends[1].0)
+    }
+
     fn found(&self, place: DVec3) -> Found {
         let [(from, radius), (to, other)] = self.ends;
         let way = to - from;
@@ -111,8 +124,8 @@ impl Link {
     }
 }
 
-fn cell(place: DVec3) -> IVec3 {
-    (place / CELL).floor().as_ivec3()
+fn cell(place: DVec3, side: f64) -> IVec3 {
+    (place / side).floor().as_ivec3()
 }
 
 /// The cells that are so many cells from one.
@@ -130,4 +143,43 @@ fn around(center: IVec3, shell: i32) -> impl Iterator<Item = IVec3> {
             .step_by(step as usize)
             .map(move |z| center.wrapping_add(IVec3::new(x, y, z)))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A path of links that turns about, and places beside it.
+    fn path(scale: f64) -> (Links, Vec<DVec3>) {
+        let at = |n: u32| {
+            let turn = f64::from(n) * 0.37;
+            scale * DVec3::new(f64::from(n), 9.0 * turn.sin(), 7.0 * turn.cos())
+        };
+        let link = |n: u32| Link {
+            section: n as usize,
+            along: 0.0,
+            ends: [(at(n), 0.4), (at(n + 1), 0.6)],
+        };
+        let places = (0..200).map(|n| at(n) + DVec3::new(0.3, -1.1, 0.8));
+        (Links::new((0..200).map(link)), places.collect())
+    }
+
+    #[test]
+    fn the_nearest_is_that_of_all() {
+        for scale in [0.1, 1.0, 30.0] {
+            let (links, places) = path(scale);
+            for place in places {
+                let found = links.nearest(place).expect("one is near");
+                let all = links.links.iter().map(|link| link.found(place).far);
+                assert_eq!(found.far, all.fold(f64::INFINITY, f64::min), "{scale}");
+            }
+        }
+    }
+
+    #[test]
+    fn links_in_nanometers_do_not_fill_memory() {
+        let (links, _) = path(1000.0);
+        let named: usize = links.cells.values().map(Vec::len).sum();
+        assert!(named < 20 * links.links.len(), "{named}");
+    }
 }
