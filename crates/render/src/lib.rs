@@ -102,6 +102,7 @@ pub use sources::adaptive::readback::FrameStats;
 pub use sources::adaptive::settings::{AdaptiveSettings, CullView};
 pub use sources::budgeted::{
     DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET, Proxy,
+    StreamedTemplates,
 };
 pub use sources::combined::Combined;
 pub use sources::markers::{Marker, MarkerSettings, MarkerShape, Markers};

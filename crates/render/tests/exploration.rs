@@ -528,37 +528,6 @@ fn instances_hide_and_come_back() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn templates_are_recolored_in_place() {
-    let gpu = device();
-    let mesh = mesh(CELL);
-    let (color_keys, table) = by_type(&mesh);
-    let plain = vec![color_keys[0]; color_keys.len()];
-    let camera = Camera::new(DVec3::Z * 120.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-    // From one color key to many, which needs room, and back; beside another template.
-    let mut proxies = [Proxy::new(&mesh, &plain), Proxy::new(&mesh, &color_keys)];
-    let mut source = explored(&gpu, &proxies, vec![Instance::new(TemplateId(0))]);
-    let before = picture(&gpu, &mut source, &camera, &table);
-    proxies[0].set_color_keys(&color_keys);
-    source
-        .recolor(&gpu, TemplateId(0), &proxies[0])
-        .expect("recolored");
-    let colored = picture(&gpu, &mut source, &camera, &table);
-    assert_ne!(before, colored);
-    source
-        .set_instances(&gpu, vec![Instance::new(TemplateId(1))])
-        .expect("placed");
-    assert_eq!(colored, picture(&gpu, &mut source, &camera, &table));
-    source
-        .set_instances(&gpu, vec![Instance::new(TemplateId(0))])
-        .expect("placed");
-    proxies[0].set_color_keys(&plain);
-    source
-        .recolor(&gpu, TemplateId(0), &proxies[0])
-        .expect("recolored");
-    assert_eq!(before, picture(&gpu, &mut source, &camera, &table));
-}
-
-#[neurotess_testing::test(needs(gpu))]
 fn poor_scenes_are_drawn_and_wrong_ones_are_errors() {
     let gpu = device();
     let camera = Camera::new(DVec3::Z * 50.0, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");

@@ -10,6 +10,7 @@ use neurotess_viewer::document::{MarkerOptions, MeshEntry, SomaEdit};
 use crate::io::inputs::Inputs;
 use crate::io::morphologies::MORPHOLOGIES;
 use crate::options::cache::CacheArgs;
+use crate::options::gpu::GpuArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::meshes::{MeshArg, MeshArgs};
 use crate::options::rings::RingArgs;
@@ -42,9 +43,8 @@ pub(crate) struct ViewArgs {
     pub(crate) meshes: MeshArgs,
     #[command(flatten)]
     pub(crate) cache: CacheArgs,
-    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
 }
 
 /// Runs the command.
@@ -72,7 +72,8 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
         markers: markers(&args.markers)?,
         meshes: args.meshes.mesh.iter().enumerate().map(mesh).collect(),
         without_caches: args.cache.no_cache,
-        adapter: args.adapter.clone(),
+        adapter: args.gpu.adapter.clone(),
+        gpu_memory: args.gpu.gpu_memory,
     };
     let listener = reporter
         .verbose()

@@ -4,6 +4,8 @@
 pub(crate) mod cache;
 pub(crate) mod cells;
 #[cfg(feature = "render")]
+pub(crate) mod gpu;
+#[cfg(feature = "render")]
 pub(crate) mod markers;
 #[cfg(feature = "render")]
 pub(crate) mod meshes;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::coloring::{ClosestColors, Coloring, Recording, closest};
+use neurotess::mesh::CoarseMesh;
 use neurotess::render::bounds::{bounds, merged};
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -181,17 +182,19 @@ pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneIn
     instances.collect()
 }
 
-/// Uploads all sources; the ids of templates are their indices.
+/// Uploads all sources, or if `empty` none of their points; the ids of templates are their indices.
 pub(crate) fn templates(
     gpu: &Gpu,
     sources: &[SceneTemplate],
     coloring: &Coloring,
+    empty: bool,
 ) -> Result<Templates, DeviceError> {
+    let none = CoarseMesh::default();
     let list: Vec<Template<'_>> = sources
         .iter()
         .zip(&coloring.color_keys)
         .map(|(source, color_keys)| Template {
-            mesh: &source.generated.mesh,
+            mesh: if empty { &none } else { &source.generated.mesh },
             color_keys,
             values: &[],
         })
@@ -219,7 +222,7 @@ pub(crate) fn adaptive(
     content: &SceneContent,
     sub_pixels: u32,
 ) -> Result<Adaptive, BuildError> {
-    let templates = templates(gpu, &content.sources, &content.coloring)?;
+    let templates = templates(gpu, &content.sources, &content.coloring, false)?;
     let scene = Scene::new(templates, device_instances(&content.instances))?;
     let mut source = Adaptive::new(gpu, scene, AdaptiveSettings::default(), sub_pixels)?;
     source.set_bounds(bounding_spheres(content));

@@ -25,6 +25,8 @@ pub(crate) struct Explorer {
     /// Content whose proxies do not fit the device; they are not tried again.
     refused: Option<Revision>,
     budget: Option<u32>,
+    /// Most bytes of templates on the device.
+    pub(crate) memory: Option<u64>,
     builds: u64,
 }
 
@@ -104,19 +106,20 @@ impl Explorer {
         });
         let meshes: Vec<(Arc<Generated>, Option<Arc<Proxy>>)> = meshes.collect();
         let coloring = Arc::clone(&content.coloring);
-        let (gpu, ctx) = (Arc::clone(gpu), ctx.clone());
+        let (gpu, ctx, memory) = (Arc::clone(gpu), ctx.clone(), self.memory);
         let work = move |_: &Progress| {
             let cells = meshes.par_iter().zip(&coloring.color_keys);
-            let proxies: Vec<Proxy> = cells
+            let proxies: Vec<Arc<Proxy>> = cells
                 .map(|((generated, proxy), color_keys)| match proxy {
-                    Some(proxy) => proxy.with_color_keys(color_keys),
-                    None => Proxy::new(&generated.mesh, color_keys),
+                    Some(proxy) => Arc::new(proxy.with_color_keys(color_keys)),
+                    None => Arc::new(Proxy::new(&generated.mesh, color_keys)),
                 })
                 .collect();
+            let targets = proxies.iter().map(|proxy| ProxyPickTargets::new(proxy));
+            let targets = targets.collect();
             Ok(Exploration::new(&gpu, 1).and_then(|mut exploration| {
-                exploration.add(&gpu, &proxies)?;
-                let targets = proxies.iter().map(ProxyPickTargets::new);
-                Ok((exploration, targets.collect()))
+                exploration.add_streamed(&gpu, proxies, memory)?;
+                Ok((exploration, targets))
             }))
         };
         let progress = Progress::new("preparing drafts", "cells", 0);
@@ -125,7 +128,8 @@ impl Explorer {
     }
 
     /// The vertex source of exploration mode for exactly this content, with all its instances but those that are
-    /// left out, given by ascending indices. `budget`: most triangles.
+    /// left out, given by ascending indices. `budget`: most triangles. `most_upload`: most bytes that a picture may
+    /// upload where not all templates fit the device.
     pub(crate) fn exploration(
         &mut self,
         gpu: &Gpu,
@@ -133,6 +137,7 @@ impl Explorer {
         instances_key: Option<InstancesKey>,
         budget: u32,
         left_out: &Arc<[usize]>,
+        most_upload: Option<u64>,
     ) -> Option<&mut Exploration> {
         let built = self
             .built
@@ -148,6 +153,7 @@ impl Explorer {
             built.leave_out(content, left_out);
         }
         built.exploration.set_budget(budget);
+        built.exploration.set_most_upload(most_upload);
         Some(&mut built.exploration)
     }
 

@@ -34,6 +34,8 @@ pub struct Options {
     pub without_caches: bool,
     /// Adapter to draw with: a part of its name.
     pub adapter: Option<String>,
+    /// Most memory (bytes) of the adapter for the tracings of large scenes.
+    pub gpu_memory: Option<u64>,
 }
 
 /// Why there is no window, or no more: `what: what to do`.
@@ -174,6 +176,7 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
+        viewer.stage.limit_memory(options.gpu_memory);
         if options.without_caches {
             viewer = viewer.without_caches();
         }

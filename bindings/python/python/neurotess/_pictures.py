@@ -223,6 +223,7 @@ def render(
     sample: int | None = None,
     sample_seed: int | None = None,
     cache: bool = True,
+    gpu_memory: int | str | None = None,
     adapter: str | None = None,
 ) -> Image:
     """Draws cells or a circuit, without a window: a cell, a file, several of them, or a `Circuit`.
@@ -254,7 +255,8 @@ def render(
     the file) and ``"fit"`` (True: the camera fits it even if one can see through it).
 
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
-    `sample` and `sample_seed`; `cache`: whether the meshes of a large circuit are kept beside it for the next time.
+    `sample` and `sample_seed`; `cache`: whether the meshes of a large circuit are kept beside it for the next time;
+    `gpu_memory`: most memory of the adapter for the tracings of large scenes (bytes, or like ``"512MiB"``).
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
@@ -305,6 +307,7 @@ def render(
         "sample": sample,
         "sample_seed": sample_seed,
         "cache": cache,
+        "gpu_memory": gpu_memory,
         "adapter": adapter,
     }
     return next(_pictures(what, options))

@@ -37,6 +37,16 @@ pub enum DeviceError {
         /// Most bytes that the adapter can bind.
         most: u64,
     },
+    /// Not even the coarsest form of all tracings fits the memory.
+    #[error(
+        "all tracings together take {bytes} bytes at least, but there are {most}: allow more memory, or show fewer"
+    )]
+    TooManyTracings {
+        /// Bytes of the coarsest form of all.
+        bytes: u64,
+        /// Bytes that they may take.
+        most: u64,
+    },
     /// The adapter's memory is used up.
     #[error("the adapter's memory is used up: lower the level, the size or the samples")]
     OutOfMemory,

@@ -60,7 +60,8 @@ impl GrowableBuffer {
             .write_buffer(&self.buffer, at, bytemuck::cast_slice(data));
     }
 
-    /// Makes room for this many bytes in all. True if the buffer was replaced by a larger one.
+    /// Makes room for this many bytes in all, or a fourth more, so that not every addition to a growing scene copies
+    /// everything. True if the buffer was replaced by a larger one.
     ///
     /// # Errors
     /// As [`GrowableBuffer::append`].
@@ -68,13 +69,23 @@ impl GrowableBuffer {
         if bytes <= self.buffer.size() {
             return Ok(false);
         }
+        let most = gpu.largest_binding();
+        self.reserve_exactly(gpu, bytes.max((bytes + bytes / 4).min(most / 4 * 4)))
+    }
+
+    /// Makes room for this many bytes in all. True if the buffer was replaced by a larger one.
+    ///
+    /// # Errors
+    /// As [`GrowableBuffer::append`].
+    pub(crate) fn reserve_exactly(&mut self, gpu: &Gpu, bytes: u64) -> Result<bool, DeviceError> {
+        if bytes <= self.buffer.size() {
+            return Ok(false);
+        }
         let (what, most) = (self.what, gpu.largest_binding());
         if bytes > most {
             return Err(DeviceError::TooLarge { what, bytes, most });
         }
-        // A fourth more than needed, so that not every addition to a growing scene copies
-        // everything.
-        let larger = make(gpu, what, (bytes + bytes / 4).min(most / 4 * 4));
+        let larger = make(gpu, what, bytes);
         if self.used > 0 {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&self.buffer, 0, &larger, 0, self.used);
@@ -83,6 +94,12 @@ impl GrowableBuffer {
         self.buffer = larger;
         gpu.check()?;
         Ok(true)
+    }
+
+    /// Counts bytes as used that were reserved.
+    pub(crate) fn take(&mut self, bytes: u64) {
+        self.used += bytes;
+        debug_assert!(self.used <= self.buffer.size(), "reserved before");
     }
 }
 

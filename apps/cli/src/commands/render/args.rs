@@ -13,6 +13,7 @@ use super::times::{MOST, times};
 use super::values::{Fit, LightArg, RgbArg, Triple};
 use crate::options::cache::CacheArgs;
 use crate::options::cells::CellArgs;
+use crate::options::gpu::GpuArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::meshes::MeshArgs;
 use crate::options::rings::RingArgs;
@@ -231,9 +232,8 @@ pub(crate) struct RenderArgs {
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,
-    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
     /// Write what the picture cost to this file (JSON)
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::cells::MeshedCell;
 
 /// Number of placements from which on a cell has a few spheres instead of one per point.
-const MANY: usize = 64;
+pub(super) const MANY: usize = 64;
 
 /// Most spheres of a scene, which take milliseconds to fit a camera to and to test tiles with.
 const MOST_SPHERES: usize = 400_000;
@@ -21,7 +21,7 @@ pub(crate) fn spheres(
     cells: &[&MeshedCell],
     placements: &[(usize, Placement)],
 ) -> Vec<BoundingSphere> {
-    if placements.len() >= MANY {
+    if placements.len() >= MANY || cells.iter().any(|cell| cell.bounds.is_some()) {
         return covering(cells, placements);
     }
     let own: Vec<Vec<BoundingSphere>> = cells.iter().map(|cell| of_cell(cell).collect()).collect();
@@ -36,7 +36,10 @@ pub(crate) fn covering(
     let most = (MOST_SPHERES / placements.len().max(1)).max(FEWEST);
     let own: Vec<Vec<BoundingSphere>> = cells
         .par_iter()
-        .map(|cell| merged(&bounds(&cell.mesh), most))
+        .map(|cell| match &cell.bounds {
+            Some(known) => merged(known, most),
+            None => merged(&bounds(&cell.mesh), most),
+        })
         .collect();
     placed(&own, placements)
 }

@@ -11,9 +11,11 @@ use neurotess::formats::{ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions, Generated};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
-use neurotess::render::Proxy;
+use neurotess::render::bounds::bounds;
+use neurotess::render::{BoundingSphere, Proxy};
 
 use super::args::{LodMode, RenderArgs};
+use super::bounds::MANY;
 use crate::io::batch::each;
 use crate::io::inputs::{Input, Inputs};
 use crate::io::morphologies::read_morphology;
@@ -26,8 +28,12 @@ pub(crate) struct MeshedCell {
     pub(crate) mesh: CoarseMesh,
     /// What exploration draws, if it came with the mesh; all its color keys are 0.
     pub(crate) proxy: Option<Proxy>,
+    /// Bounding spheres of the mesh, if only its tracing points are kept.
+    pub(crate) bounds: Option<Vec<BoundingSphere>>,
     warnings: Vec<Warning>,
     mended: Vec<String>,
+    /// Whether nothing of it can be drawn.
+    is_empty: bool,
 }
 
 /// Reads and meshes all inputs on all cores; reports those that fail. `cuts`: the compartments of
@@ -42,6 +48,7 @@ pub(crate) fn read(
     let meshing = Meshing {
         options: options(args),
         exploring: args.lod == Some(LodMode::Exploration),
+        many: inputs.files.len() >= MANY,
         cache,
         stopped: reporter.stopped(),
     };
@@ -79,6 +86,8 @@ struct Meshing<'a> {
     options: GenerateOptions,
     /// Whether exploration draws them.
     exploring: bool,
+    /// Whether there are so many that what is not drawn is not kept.
+    many: bool,
     cache: Option<&'a Cache>,
     stopped: &'a AtomicBool,
 }
@@ -98,10 +107,13 @@ fn cell(
         options, stopped, ..
     } = meshing;
     let Some(cache) = meshing.cache else {
-        return Ok(MeshedCell {
+        let cell = meshed(file, read.morphology, options, stopped)?;
+        let proxy = meshing.only_proxies().then(|| Proxy::new(&cell.mesh, &[]));
+        return Ok(meshing.kept(MeshedCell {
             warnings: read.warnings,
-            ..meshed(file, read.morphology, options, stopped)?
-        });
+            proxy,
+            ..cell
+        }));
     };
     let generate = || generate::generate_stoppable(&read.morphology, options, || 0.0, stopped);
     let (generated, key) = cache
@@ -110,11 +122,28 @@ fn cell(
     let proxy = meshing
         .exploring
         .then(|| cache.proxy(&key, &generated.mesh));
-    Ok(MeshedCell {
+    Ok(meshing.kept(MeshedCell {
         warnings: read.warnings,
         proxy,
         ..of_mesh(file, read.morphology, generated)
-    })
+    }))
+}
+
+impl Meshing<'_> {
+    /// Whether meshes are needed only for their proxies.
+    fn only_proxies(&self) -> bool {
+        self.exploring && self.many
+    }
+
+    /// What is kept of a cell: of many that are explored, a mesh takes ten times as much memory as its proxy.
+    fn kept(&self, mut cell: MeshedCell) -> MeshedCell {
+        if self.only_proxies() {
+            cell.bounds = Some(bounds(&cell.mesh));
+            cell.mesh.vertices = Vec::new();
+            cell.mesh.patches = Vec::new();
+        }
+        cell
+    }
 }
 
 /// Meshes a cell that is in memory, unless another thread sets `stopped`.
@@ -134,16 +163,18 @@ fn of_mesh(file: String, morphology: Morphology, generated: Generated) -> Meshed
     MeshedCell {
         file,
         mended: mended.map(|w| format!("{w} ({})", w.code)).collect(),
+        is_empty: generated.mesh.patches.is_empty(),
         morphology,
         mesh: generated.mesh,
         proxy: None,
+        bounds: None,
         warnings: Vec::new(),
     }
 }
 
 fn warn(cell: &MeshedCell, all: bool, reporter: &Reporter) {
     let file = &cell.file;
-    if cell.mesh.patches.is_empty() {
+    if cell.is_empty {
         reporter.warning(&format!(
             "{file}: nothing is left to draw: check --types and --soma"
         ));

@@ -85,7 +85,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     spheres.extend(meshes.fitted());
     let cameras = cameras::cameras(args, &spheres)?;
     stages.end(Stage::Frame);
-    let gpu = Gpu::open(args.adapter.as_deref())?;
+    let gpu = Gpu::open(args.gpu.adapter.as_deref())?;
     stages.end(Stage::Adapter);
     if gpu.adapter.software {
         reporter.note(&format!("drawn by the processor: {}", gpu.adapter));

@@ -32,7 +32,7 @@ pub(super) fn draw(
         session,
         &picture,
         args.saved_view.as_deref(),
-        args.adapter.as_deref(),
+        args.gpu.adapter.as_deref(),
         args.cache.no_cache,
     );
     let drawn = drawn.map_err(anyhow::Error::msg)?;

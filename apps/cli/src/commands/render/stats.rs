@@ -115,6 +115,19 @@ struct BudgetStats {
     /// Whether `wanted` and `left_out` may be more: in the largest scenes, not everything is asked.
     at_least: bool,
     neurons_in_picture: u64,
+    /// If not all tracings fit the adapter's memory.
+    streamed: Option<StreamStats>,
+}
+
+/// Tracings of which the adapter's memory does not hold all points at once.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct StreamStats {
+    tracings: usize,
+    /// Those that are there more finely than the others.
+    finer: usize,
+    /// Those that are there with all their points.
+    whole: usize,
+    uploaded_bytes: u64,
 }
 
 /// Synapses and points of the scene, and how many of them the picture draws: they are left out where they lie
@@ -192,6 +205,12 @@ impl Stats {
             left_out: stats.requested - stats.triangles.min(stats.requested),
             at_least: stats.at_least,
             neurons_in_picture: stats.instances,
+            streamed: stats.streamed.map(|there| StreamStats {
+                tracings: there.templates,
+                finer: there.finer,
+                whole: there.whole,
+                uploaded_bytes: there.uploaded,
+            }),
         });
         self.markers = made.markers.map(|[drawn, in_view, all]| MarkerStats {
             drawn,

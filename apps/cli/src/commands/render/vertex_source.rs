@@ -1,6 +1,7 @@
 //! The vertex source for `--lod`, and its statistics.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
@@ -242,17 +243,17 @@ fn budgeted(
         colored,
         ..
     } = *job;
-    let proxies: Vec<Proxy> = cells
+    let proxies: Vec<Arc<Proxy>> = cells
         .par_iter()
         .zip(&colored.coloring.color_keys)
         .map(|(cell, color_keys)| match &cell.proxy {
-            Some(proxy) => proxy.with_color_keys(color_keys),
-            None => Proxy::new(&cell.mesh, color_keys),
+            Some(proxy) => Arc::new(proxy.with_color_keys(color_keys)),
+            None => Arc::new(Proxy::new(&cell.mesh, color_keys)),
         })
         .collect();
     let mut source = Exploration::new(gpu, options.sub_pixels(gpu))?;
     source.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
-    let ids = source.add(gpu, &proxies)?;
+    let ids = source.add_streamed(gpu, proxies, args.gpu.gpu_memory)?;
     let instances = placements.iter().map(|&(cell, placement)| Instance {
         placement,
         ..Instance::new(ids[cell])

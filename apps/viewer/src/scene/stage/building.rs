@@ -8,6 +8,7 @@ use neurotess::coloring::Coloring;
 use neurotess::generate::Generated;
 use neurotess::render::{DeviceError, Scene, Template, TemplateId, Templates};
 
+use super::residency::Residency;
 use super::{Checked, Stage};
 use crate::io::task::{Progress, Task};
 use crate::model::state::State;
@@ -25,6 +26,8 @@ pub(super) type Built = Result<BuiltScene, DeviceError>;
 pub(super) struct BuiltScene {
     /// Templates on the device; none if meshes and color keys are unchanged and only colors differ.
     templates: Option<Templates>,
+    /// Which of them are there, if not all fit.
+    residency: Option<Residency>,
     content: SceneContent,
     colors: ColorInputs,
     /// Key of the instances, apart from the content's revision.
@@ -61,6 +64,7 @@ impl Stage {
                 let instances = content::device_instances(&built.content.instances);
                 let scene = Scene::new(templates, instances);
                 self.adaptive.set_scene(scene.unwrap_or_default());
+                self.residency = built.residency;
                 self.rebuilds.templates += 1;
                 let instances = built.instances.of_content(built.content.revision);
                 self.content = built.content;
@@ -184,17 +188,23 @@ impl Stage {
         let before = Before::of(&self.content);
         let colors = of.2.clone();
         let drawn = self.content.sources.clone();
+        let memory = self.memory.map(|most| most / 2);
         let work = move |_: &Progress| {
             let sources = request.meshed(sources, &drawn);
             let mut colored = request.colors(&sources);
             let problem = colored.problem.take();
             let content = SceneContent::new(sources, instances, colored);
+            let residency = Residency::new(&content.sources, memory);
             let templates = match before.fits(&content) {
                 true => Ok(None),
-                false => content::templates(&gpu, &content.sources, &content.coloring).map(Some),
+                false => {
+                    let empty = residency.is_some();
+                    content::templates(&gpu, &content.sources, &content.coloring, empty).map(Some)
+                }
             };
             let built = templates.map(|templates| BuiltScene {
                 templates,
+                residency,
                 content,
                 colors,
                 instances: instances_key,

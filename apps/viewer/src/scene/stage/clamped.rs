@@ -5,6 +5,8 @@
 
 use std::sync::Arc;
 
+use neurotess::render::DeviceError;
+
 use super::Stage;
 use crate::model::revision::Revision;
 use crate::model::state::State;
@@ -26,7 +28,14 @@ pub(super) struct Clamped {
 
 impl Stage {
     /// Finds out which clamped neurons the budget has room for: those first in the list.
-    pub(super) fn update_clamped(&mut self, state: &mut State, instances: InstancesKey) {
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub(super) fn update_clamped(
+        &mut self,
+        state: &mut State,
+        instances: InstancesKey,
+    ) -> Result<(), DeviceError> {
         let neurons = &state.document.neurons;
         let key = Some((neurons.revisions().clamped, instances));
         if self.clamped.key != key {
@@ -46,9 +55,13 @@ impl Stage {
                 key,
                 fine: fitting(shown, most).into(),
             };
+            if !self.clamped.fine.is_empty() {
+                self.bring(&[])?;
+            }
         }
         let all = state.document.neurons.clamped().len();
         state.counters.clamped = [self.clamped.fine.len(), all];
+        Ok(())
     }
 
     /// The clamped neurons that are drawn finely beside those that are explored, or none.

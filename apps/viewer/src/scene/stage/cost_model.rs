@@ -120,8 +120,8 @@ impl Stage {
         self.cost_model.most_patches = most;
     }
 
-    /// Patches of all neurons that may be in view.
-    pub(super) fn patches_in(&self, state: &State, params: &ViewParams) -> u64 {
+    /// Finds the patches and the templates of all neurons that may be in view.
+    pub(super) fn look(&mut self, state: &State, params: &ViewParams) {
         let (camera, near) = params.frozen.unwrap_or((params.camera, params.near));
         let frame = Frame::whole(camera, near, params.size);
         let shows = |instance: &&SceneInstance| {
@@ -142,16 +142,25 @@ impl Stage {
             .iter()
             .filter(|s| !s.hidden)
             .filter(shows);
-        let patches =
-            seen.map(|s| self.content.sources[s.source].generated.mesh.patches.len() as u64);
-        patches.sum()
+        let (mut patches, mut templates) = (0, vec![false; self.content.sources.len()]);
+        for instance in seen {
+            let mesh = &self.content.sources[instance.source].generated.mesh;
+            patches += mesh.patches.len() as u64;
+            templates[instance.source] = true;
+        }
+        self.patches = patches;
+        let templates = (0..).zip(templates);
+        self.in_view = templates.filter(|t| t.1).map(|t| t.0).collect();
     }
 
     /// How the picture at rest is drawn.
     pub(super) fn select_rest_mode(&mut self, params: &ViewParams, choice: RestChoice) -> RestMode {
         let has_proxies = explorable(params) && self.explorer.fits(&self.content);
-        let too_many = self.cost_model.too_many(self.patches);
+        let residency = self.residency.as_ref();
+        let too_large = residency.is_some_and(|residency| !residency.fit(&self.in_view));
+        let too_many = too_large || self.cost_model.too_many(self.patches);
         match (choice, has_proxies) {
+            (RestChoice::Full, true) if too_large => RestMode::Explored,
             (RestChoice::Full, _) => RestMode::Refined,
             (RestChoice::Budget, true) => RestMode::Explored,
             (RestChoice::Automatic, _) | (RestChoice::Budget, false) if !too_many => {

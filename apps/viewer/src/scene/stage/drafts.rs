@@ -20,6 +20,8 @@ use crate::scene::content::{self, InstancesKey, StatesKey};
 
 /// Longest time (ms) that a draft should take.
 const DRAFT_MS: f64 = 40.0;
+/// Most bytes of finer points that a draft uploads, where not all fit the device.
+const DRAFT_UPLOAD: u64 = 8 << 20;
 /// Drafts that are coarser than this have half the width and height.
 const HALF_FROM: f32 = 6.0;
 /// Number of frame times that are shown.
@@ -105,10 +107,10 @@ impl Stage {
         if self.instances != Some(inputs.instances) {
             self.set_instances(state, inputs.instances);
         }
-        self.patches = self.patches_in(state, &inputs.params);
+        self.look(state, &inputs.params);
         if self.explorer.is_making()
             && explorable(&inputs.params)
-            && self.cost_model.too_many(self.patches)
+            && (self.residency.is_some() || self.cost_model.too_many(self.patches))
         {
             // Refining even a draft would take seconds: waits for the proxies.
             ctx.request_repaint_after(Duration::from_millis(15));
@@ -175,8 +177,10 @@ impl Stage {
         let fine = self.fine(true);
         let explorer = match explorable(&params) {
             true => {
+                let (gpu, content, instances) = (&self.gpu, &self.content, self.instances);
+                let upload = Some(DRAFT_UPLOAD);
                 self.explorer
-                    .exploration(&self.gpu, &self.content, self.instances, budget, &fine)
+                    .exploration(gpu, content, instances, budget, &fine, upload)
             }
             false => None,
         };

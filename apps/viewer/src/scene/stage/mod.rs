@@ -9,6 +9,7 @@ mod frames;
 mod markers;
 mod meshes;
 mod pointing;
+pub(crate) mod residency;
 mod rest;
 mod static_mode;
 
@@ -41,6 +42,7 @@ use markers::{MarkersKey, StageMarkers};
 use meshes::{DrawnMeshes, StageMeshes};
 pub(crate) use pointing::OUTLINES;
 use pointing::{MaskKey, Resolver};
+use residency::Residency;
 use static_mode::StaticKey;
 
 /// Draws the picture in the window.
@@ -107,8 +109,13 @@ pub struct Stage {
     counts: Option<[u64; 3]>,
     cost_model: CostModel,
     rest_mode: RestMode,
-    /// Patches of the neurons in the picture.
+    /// Patches of the neurons in the picture, and their templates.
     patches: u64,
+    in_view: Vec<usize>,
+    /// Most bytes of templates on the device.
+    memory: Option<u64>,
+    /// Which templates refined pictures have, if not all fit.
+    residency: Option<Residency>,
     /// In exploration mode: triangles drawn, and those needed for half a pixel, once they are
     /// known.
     surveyed: Option<[u64; 2]>,
@@ -204,6 +211,9 @@ impl Stage {
             cost_model: CostModel::new(software),
             rest_mode: RestMode::Refined,
             patches: 0,
+            in_view: Vec::new(),
+            memory: None,
+            residency: None,
             surveyed: None,
             timed: false,
         })
@@ -214,7 +224,16 @@ impl Stage {
     /// # Errors
     /// The device reports an error.
     pub(crate) fn another(&self) -> Result<Self, DeviceError> {
-        Self::new(self.render.clone())
+        let mut another = Self::new(self.render.clone())?;
+        another.limit_memory(self.memory);
+        Ok(another)
+    }
+
+    /// Limits the memory (bytes) that tracings take on the device: one half for drafts, the other for refined pictures.
+    /// Tracings that are opened from then on keep to it.
+    pub fn limit_memory(&mut self, most: Option<u64>) {
+        self.memory = most;
+        self.explorer.memory = most.map(|most| most / 2);
     }
 
     /// Gives its picture back to egui, which must not show it any more.
@@ -335,7 +354,7 @@ impl Stage {
             return Ok(self.texture_id());
         }
         let inputs = self.inputs(state, size);
-        self.update_clamped(state, inputs.instances);
+        self.update_clamped(state, inputs.instances)?;
         if self
             .shape
             .is_some_and(|shape| shape != StaticKey::new(&inputs))

@@ -42,10 +42,10 @@ macro_rules! rest_source {
                 }
                 let (gpu, content) = (&$stage.gpu, &$stage.content);
                 let budget = $stage.cost_model.budget;
-                let explored =
-                    $stage
-                        .explorer
-                        .exploration(gpu, content, $stage.instances, budget, &fine);
+                let instances = $stage.instances;
+                let explored = $stage
+                    .explorer
+                    .exploration(gpu, content, instances, budget, &fine, None);
                 explored.map(|source| source as &mut dyn VertexSource)
             }
         };
@@ -91,7 +91,7 @@ impl Stage {
                 // While a recording is played, a picture would be of many times.
                 self.phase = match state.playback.playing {
                     true => RestPhase::Collects,
-                    false => self.begin(params, detail),
+                    false => self.begin(params, detail)?,
                 };
                 ctx.request_repaint();
             }
@@ -111,12 +111,18 @@ impl Stage {
         Ok(())
     }
 
-    fn begin(&mut self, params: ViewParams, detail: Detail) -> RestPhase {
+    fn begin(&mut self, params: ViewParams, detail: Detail) -> Result<RestPhase, DeviceError> {
+        if self.rest_mode != RestMode::Explored {
+            let in_view = std::mem::take(&mut self.in_view);
+            let brought = self.bring(&in_view);
+            self.in_view = in_view;
+            brought?;
+        }
         self.set_rest_detail(&params, detail);
         self.progressive.begin(params, self.steps());
         self.cost_model.begin();
         self.timed = false;
-        RestPhase::Slices
+        Ok(RestPhase::Slices)
     }
 
     /// Sets the detail of the picture at rest.
@@ -214,10 +220,14 @@ impl Stage {
         self.learn();
         self.phase = RestPhase::Collects;
         let (budget, fine) = (self.cost_model.budget, self.fine(true));
-        let Some(adaptive) =
-            self.explorer
-                .exploration(&self.gpu, &self.content, self.instances, budget, &fine)
-        else {
+        let Some(adaptive) = self.explorer.exploration(
+            &self.gpu,
+            &self.content,
+            self.instances,
+            budget,
+            &fine,
+            None,
+        ) else {
             return Ok(());
         };
         let stats = adaptive.stats(&self.gpu)?;

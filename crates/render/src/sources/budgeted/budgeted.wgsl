@@ -110,6 +110,11 @@ fn segments(chunk: Chunk, level: u32) -> u32 {
     return byte_of(chunk.counts, level);
 }
 
+// Whether a chunk is without its finest polylines (streaming/reduced.rs): its polyline 0 is then not its path.
+fn is_reduced(chunk: Chunk) -> bool {
+    return byte_of(chunk.errors, LEVELS) != NO_LOD;
+}
+
 // Greatest distance (µm) of a polyline from the curved path; polyline 0 always exists.
 fn lod_error(chunk: Chunk, level: u32) -> f32 {
     let byte = byte_of(chunk.errors, level);
@@ -379,7 +384,7 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     let coarse = lod_within(chunk, 4.0 * eye.error * near_pixel);
     let fine = lod_within(chunk, eye.error * near_pixel);
     var halvings = 0u;
-    if (fine == 0u) {
+    if (fine == 0u && !is_reduced(chunk)) {
         let off = lod_error(chunk, 0u) / (eye.error * near_pixel);
         halvings = u32(clamp(ceil(0.5 * log2(max(off, 1.0))), 0.0, 3.0));
     }

@@ -16,14 +16,15 @@
 //!
 //! **Practice.** [`Proxy::new`] on any thread, [`Exploration::add`] once for each template,
 //! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
-//! [`Exploration::set_state`], [`Exploration::set_budget`] and [`Exploration::recolor`] at any
-//! time: pipelines are made once. A frame uploads 144 bytes and what changed; if camera, size and
+//! [`Exploration::set_state`] and [`Exploration::set_budget`] at any time: pipelines are made once.
+//! Templates that may not fit the device: [`Exploration::add_streamed`] instead. A frame uploads 144 bytes and what changed; if camera, size and
 //! scene are those of the frame before, it keeps that frame's selection.
 //!
 //! Why not the patches of [`Adaptive`](crate::Adaptive)? They form a closed surface at any levels,
 //! for which they need eight triangles a segment. When a whole neuron fits the screen, the
 //! difference cannot be seen.
 
+mod buffers;
 mod build;
 mod bytes;
 pub(crate) mod layout;
@@ -37,6 +38,7 @@ mod quantized;
 mod residents;
 mod somata;
 pub(crate) mod stats;
+mod streaming;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,14 +54,16 @@ use crate::scene::Instance;
 use crate::sources::{SourceKey, VertexSource};
 use crate::view::frame::{Frame, Tile};
 use crate::view::frustum::shows;
+use buffers::Buffers;
 use layout::{CELL, Eye, GpuInstance};
 use passes::{Groups, Passes, Resident, Size, Work, vertex_shader};
 use residents::Known;
+use streaming::Streaming;
 
 pub use pick::{ProxyPickResolver, ProxyPickTargets};
 pub use proxy::Proxy;
 pub use residents::ExplorationError;
-pub use stats::ExplorationStats;
+pub use stats::{ExplorationStats, StreamedTemplates};
 
 /// Triangles of a frame by default: so many a laptop draws smoothly.
 pub const DEFAULT_BUDGET: u32 = 100_000;
@@ -72,12 +76,11 @@ const ERROR: f32 = 0.5;
 #[derive(Debug)]
 pub struct Exploration {
     passes: Passes,
-    chunks: GrowableBuffer,
-    shapes: GrowableBuffer,
+    buffers: Buffers,
     gpu_instances: GrowableBuffer,
-    packed: GrowableBuffer,
-    color_keys: GrowableBuffer,
     known: Vec<Known>,
+    /// Templates that are there in part, if not all fit.
+    streaming: Option<Streaming>,
     instances: Vec<Instance>,
     /// Instances that were edited and are still to be uploaded.
     edited: Range<usize>,
@@ -102,12 +105,10 @@ impl Exploration {
         let budget = DEFAULT_BUDGET;
         Ok(Self {
             passes: Passes::new(gpu)?,
-            chunks: GrowableBuffer::new(gpu, "chunks", 0),
-            shapes: GrowableBuffer::new(gpu, "shapes", 0),
+            buffers: Buffers::new(gpu),
             gpu_instances: GrowableBuffer::new(gpu, "instances", 0),
-            packed: GrowableBuffer::new(gpu, "points of exploration", 0),
-            color_keys: GrowableBuffer::new(gpu, "color_keys", 0),
             known: Vec::new(),
+            streaming: None,
             instances: Vec::new(),
             edited: 0..0,
             work: Work::new(gpu, Size::default())?,
@@ -141,10 +142,11 @@ impl Exploration {
 
     /// Bytes on the device by the name of the buffer.
     pub fn bytes(&self) -> Vec<(&'static str, u64)> {
+        let [chunks, points, color_keys] = self.buffers.used().by_buffer();
         let mut bytes = vec![
-            ("chunks", self.chunks.used() + self.shapes.used()),
-            ("points", self.packed.used()),
-            ("color_keys", self.color_keys.used()),
+            ("chunks", chunks + self.buffers.shapes.used()),
+            ("points", points),
+            ("color_keys", color_keys),
             ("instances", self.gpu_instances.used()),
         ];
         bytes.extend(self.work.bytes());
@@ -154,9 +156,7 @@ impl Exploration {
     /// Bytes of templates per tracing point outside somata.
     pub fn bytes_per_point(&self) -> f64 {
         let points: usize = self.known.iter().map(|known| known.points).sum();
-        let bytes =
-            self.chunks.used() + self.shapes.used() + self.packed.used() + self.color_keys.used();
-        bytes as f64 / points.max(1) as f64
+        self.buffers.bytes() as f64 / points.max(1) as f64
     }
 
     /// What a frame would select from if all instances showed.
@@ -260,6 +260,13 @@ impl VertexSource for Exploration {
                 instances.iter().map(|i| self.cull_instances(i)).collect();
             self.gpu_instances.write(gpu, edited.start, &gpu_instances);
         }
+        let whole = Frame {
+            tile: Tile::default(),
+            ..*frame
+        };
+        if *self.stale.get_mut() || self.picture != Some(whole) || self.is_pending() {
+            self.stream(gpu, frame);
+        }
         let size = self.size();
         if !self.work.holds(&size) {
             self.work = Work::new(gpu, size)?;
@@ -267,19 +274,12 @@ impl VertexSource for Exploration {
         }
         if self.groups.is_none() {
             let resident = Resident {
-                chunks: &self.chunks,
-                shapes: &self.shapes,
+                buffers: &self.buffers,
                 gpu_instances: &self.gpu_instances,
-                packed: &self.packed,
-                color_keys: &self.color_keys,
             };
             self.groups = Some(self.passes.groups(gpu, &self.work, &resident));
             *self.stale.get_mut() = true;
         }
-        let whole = Frame {
-            tile: Tile::default(),
-            ..*frame
-        };
         if *self.stale.get_mut() || self.picture != Some(whole) {
             let eye = self.eye(frame);
             gpu.queue

@@ -5,6 +5,7 @@ use neurotess_refine::gpu;
 use neurotess_refine::wgsl::{Shader, ShaderParts};
 use wgpu::BufferUsages;
 
+use super::buffers::Buffers;
 use super::layout::{
     BINS, BINS_OF_OCTAVE, BLOCK, CLUSTER, Extent, Eye, LOWEST_OCTAVE, ROW, Sums, VisibleChunk,
     WIDE, constants,
@@ -46,11 +47,8 @@ pub(crate) struct Arguments {
 
 /// What the passes read: templates and instances.
 pub(crate) struct Resident<'a> {
-    pub(crate) chunks: &'a GrowableBuffer,
-    pub(crate) shapes: &'a GrowableBuffer,
+    pub(super) buffers: &'a Buffers,
     pub(crate) gpu_instances: &'a GrowableBuffer,
-    pub(crate) packed: &'a GrowableBuffer,
-    pub(crate) color_keys: &'a GrowableBuffer,
 }
 
 /// A pass: its entry point, and the bindings that it uses.
@@ -191,11 +189,11 @@ impl Passes {
     pub(crate) fn groups(&self, gpu: &Gpu, work: &Work, resident: &Resident<'_>) -> Groups {
         let buffer = |binding: u32| match binding {
             0 => &work.eye,
-            1 => &resident.chunks.buffer,
-            2 => &resident.shapes.buffer,
+            1 => &resident.buffers.chunks.buffer,
+            2 => &resident.buffers.shapes.buffer,
             3 => &resident.gpu_instances.buffer,
             4 => &work.book,
-            5 => &resident.packed.buffer,
+            5 => &resident.buffers.packed.buffer,
             6 => &work.arguments,
             7 => &work.measured,
             8 => &work.histogram,
@@ -223,12 +221,12 @@ impl Passes {
         });
         let drawn = vec![
             (0, &work.eye),
-            (1, &resident.chunks.buffer),
+            (1, &resident.buffers.chunks.buffer),
             (2, &work.visible_chunks),
             (3, &resident.gpu_instances.buffer),
             (4, &work.quads),
-            (5, &resident.packed.buffer),
-            (6, &resident.color_keys.buffer),
+            (5, &resident.buffers.packed.buffer),
+            (6, &resident.buffers.color_keys.buffer),
         ];
         Groups {
             passes: passes.collect(),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Exploration;
 use super::layout::CHUNK_SOMA;
 use super::proxy::Proxy;
+use super::streaming::{Residence, Streaming};
 use crate::sources::pick::PickId;
 use crate::sources::pick::{POINT_BITS, PickHit, PickTarget};
 
@@ -53,6 +54,8 @@ pub struct ProxyPickResolver {
     targets: Arc<[ProxyPickTargets]>,
     /// By instance: its template, and the template's first chunk.
     instances: Vec<(u32, u32)>,
+    /// How finely streamed templates were there.
+    residence: Option<Residence>,
 }
 
 impl ProxyPickResolver {
@@ -61,9 +64,13 @@ impl ProxyPickResolver {
         let instance = first.checked_sub(1)?;
         let &(template, first_chunk) = self.instances.get(instance as usize)?;
         let chunk = (second >> POINT_BITS).checked_sub(first_chunk)?;
-        let point = second & ((1 << POINT_BITS) - 1);
-        let targets = self.targets.get(template as usize)?;
-        let target = targets.target(chunk as usize, point as usize)?;
+        let (template, chunk) = (template as usize, chunk as usize);
+        let point = (second & ((1 << POINT_BITS) - 1)) as usize;
+        let point = match &self.residence {
+            Some(residence) => residence.point(template, chunk, point),
+            None => point,
+        };
+        let target = self.targets.get(template)?.target(chunk, point)?;
         Some(PickHit { instance, target })
     }
 }
@@ -79,6 +86,7 @@ impl Exploration {
         ProxyPickResolver {
             targets,
             instances: instances.collect(),
+            residence: self.streaming.as_ref().map(Streaming::residence),
         }
     }
 }

@@ -1,14 +1,19 @@
 //! What exploration mode keeps on the device, and how it changes: templates, their colors,
 //! instances.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
-use super::layout::{Chunk, GpuInstance, HIDDEN, Shape};
-use super::proxy::{self, Proxy};
+use super::buffers::{Counts, shape_of};
+use super::layout::{GpuInstance, HIDDEN, Shape};
+use super::proxy::Proxy;
+use super::streaming::Streaming;
 use super::{Exploration, in_cells};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::{Instance, SceneError, TemplateId, check_placement};
+use crate::view::frame::Frame;
 
 /// Why a scene cannot be drawn in exploration mode.
 #[derive(Debug, thiserror::Error)]
@@ -28,22 +33,22 @@ pub(super) struct Known {
     pub(super) center: Vec3,
     pub(super) reach: f32,
     pub(super) points: usize,
+    /// Its first chunk on the device, now.
     pub(super) first_chunk: u32,
+    /// Number of its chunks, all of which are on the device if it is not streamed.
     pub(super) chunks: u32,
-    /// Where its packed u32s and its color keys begin, and how many color keys there is room for.
-    first_packed: usize,
-    first_color_key: usize,
-    color_keys: usize,
 }
 
 impl Known {
-    /// The proxy's chunks, with indices into the buffers on the device.
-    fn placed<'s>(&self, proxy: &'s Proxy) -> impl Iterator<Item = Chunk> + use<'s> {
-        let at = (self.first_packed, self.first_color_key);
-        proxy
-            .chunks
-            .iter()
-            .map(move |chunk| proxy::moved(chunk, at))
+    fn new(proxy: &Proxy, shape: &Shape) -> Self {
+        Self {
+            origin: proxy.origin,
+            center: proxy.center,
+            reach: proxy.reach,
+            points: proxy.point_count(),
+            first_chunk: shape.first_chunk,
+            chunks: proxy.chunks.len() as u32,
+        }
     }
 }
 
@@ -54,82 +59,111 @@ impl Exploration {
     /// All templates together are larger than a buffer that the device can bind, or the device
     /// reports another error.
     pub fn add(&mut self, gpu: &Gpu, proxies: &[Proxy]) -> Result<Vec<TemplateId>, DeviceError> {
-        let first = self.known.len();
-        let (mut chunks, mut shapes) = (Vec::new(), Vec::new());
-        let (mut packed, mut color_keys): (Vec<u32>, Vec<u32>) = (Vec::new(), Vec::new());
-        let first_chunk = self.chunks.used() as usize / size_of::<Chunk>();
-        let first_packed = self.packed.used() as usize / size_of::<u32>();
-        let first_color_key = self.color_keys.used() as usize / size_of::<u32>();
-        for proxy in proxies {
-            let known = Known {
-                origin: proxy.origin,
-                center: proxy.center,
-                reach: proxy.reach,
-                points: proxy.point_count(),
-                first_chunk: (first_chunk + chunks.len()) as u32,
-                chunks: proxy.chunks.len() as u32,
-                first_packed: first_packed + packed.len(),
-                first_color_key: first_color_key + color_keys.len(),
-                color_keys: proxy.color_keys.len(),
-            };
-            let (before_twigs, twig_length) = proxy.twigs();
-            shapes.push(Shape {
-                center: known.center.to_array(),
-                reach: known.reach,
-                first_chunk: known.first_chunk,
-                chunks: known.chunks,
-                somata: proxy.somata().len() as u32,
-                soma_radius: proxy.somata().iter().map(|c| c.radius).fold(0.0, f32::max),
-                before_twigs: before_twigs as u32,
-                twig_length,
-                pad: [0; 2],
-            });
-            chunks.extend(known.placed(proxy));
-            packed.extend(&proxy.packed);
-            color_keys.extend(&proxy.color_keys);
-            self.known.push(known);
+        self.add_whole(gpu, proxies.iter())
+    }
+
+    /// Uploads templates as far as they fit `memory` (bytes) and the device's bindings. If not all points do, the rest
+    /// comes and goes by what the camera is near: see [`Exploration::prepare`](crate::VertexSource::prepare) and
+    /// [`Exploration::is_pending`]. Without `memory` only the bindings count. The memory is that of all templates, those
+    /// that are there already included; instances and lists of what is drawn come on top ([`Exploration::bytes`]).
+    ///
+    /// # Errors
+    /// Templates are streamed already, or not even their coarsest form fits, or the device reports another error.
+    pub fn add_streamed(
+        &mut self,
+        gpu: &Gpu,
+        proxies: Vec<Arc<Proxy>>,
+        memory: Option<u64>,
+    ) -> Result<Vec<TemplateId>, DeviceError> {
+        let used = self.buffers.used();
+        let counts = proxies.iter().map(|proxy| Counts::of(proxy));
+        let counts = counts.fold(Counts::default(), |sum, one| sum.plus(&one));
+        let all = used.plus(&counts);
+        let shapes = self.buffers.shapes.used() + (proxies.len() * size_of::<Shape>()) as u64;
+        let memory = memory.unwrap_or(u64::MAX);
+        let bound = all
+            .by_buffer()
+            .iter()
+            .all(|&bytes| bytes <= gpu.largest_binding());
+        if bound && all.bytes() + shapes <= memory && self.streaming.is_none() {
+            return self.add_whole(gpu, proxies.iter().map(Arc::as_ref));
         }
-        let grown = [
-            self.chunks.append(gpu, &chunks)?,
-            self.shapes.append(gpu, &shapes)?,
-            self.packed.append(gpu, &packed)?,
-            self.color_keys.append(gpu, &color_keys)?,
-        ];
-        self.changed(grown.contains(&true));
+        let left = memory.saturating_sub(used.bytes() + shapes);
+        if self.streaming.is_some() {
+            let (bytes, most) = (counts.bytes(), 0);
+            return Err(DeviceError::TooManyTracings { bytes, most });
+        }
+        let first = self.known.len();
+        let streaming = Streaming::new(gpu, &mut self.buffers, first, proxies.clone(), left)?;
+        let shapes: Vec<Shape> = (0..proxies.len())
+            .map(|index| streaming.base_shape(index))
+            .collect();
+        self.streaming = Some(streaming);
+        self.register(gpu, proxies.iter().map(Arc::as_ref).zip(shapes), true)
+    }
+
+    fn add_whole<'p>(
+        &mut self,
+        gpu: &Gpu,
+        proxies: impl Iterator<Item = &'p Proxy> + Clone,
+    ) -> Result<Vec<TemplateId>, DeviceError> {
+        let (rooms, grown) = self.buffers.append(gpu, proxies.clone())?;
+        let shapes: Vec<Shape> = proxies
+            .clone()
+            .zip(&rooms)
+            .map(|(proxy, room)| shape_of(proxy, room))
+            .collect();
+        self.register(gpu, proxies.zip(shapes), grown)
+    }
+
+    /// Notes templates that were uploaded. `grown`: some buffer was replaced by a larger one.
+    fn register<'p>(
+        &mut self,
+        gpu: &Gpu,
+        added: impl Iterator<Item = (&'p Proxy, Shape)>,
+        grown: bool,
+    ) -> Result<Vec<TemplateId>, DeviceError> {
+        let first = self.known.len();
+        let mut shapes = Vec::new();
+        for (proxy, shape) in added {
+            self.known.push(Known::new(proxy, &shape));
+            shapes.push(shape);
+        }
+        let grown = grown | self.buffers.shapes.append(gpu, &shapes)?;
+        self.changed(grown);
         gpu.check()?;
         Ok((first..self.known.len())
             .map(|id| TemplateId(id as u32))
             .collect())
     }
 
-    /// Uploads the color keys of a template's proxy, which [`Proxy::set_color_keys`] has changed.
-    ///
-    /// # Errors
-    /// The device reports an error.
-    ///
-    /// # Panics
-    /// If there is no such template, or the proxy is another template's.
-    pub fn recolor(
-        &mut self,
-        gpu: &Gpu,
-        template: TemplateId,
-        proxy: &Proxy,
-    ) -> Result<(), DeviceError> {
-        let known = &mut self.known[template.0 as usize];
-        assert_eq!(known.chunks as usize, proxy.chunks.len(), "its own proxy");
-        let mut grown = false;
-        if proxy.color_keys.len() <= known.color_keys {
-            self.color_keys
-                .write(gpu, known.first_color_key, &proxy.color_keys);
-        } else {
-            known.first_color_key = self.color_keys.used() as usize / size_of::<u32>();
-            known.color_keys = proxy.color_keys.len();
-            grown = self.color_keys.append(gpu, &proxy.color_keys)?;
+    /// Uploads what a picture shows more finely than it is there, if templates are streamed.
+    pub(super) fn stream(&mut self, gpu: &Gpu, frame: &Frame) {
+        let Some(streaming) = &mut self.streaming else {
+            return;
+        };
+        let pixel = frame.pixel().times(self.sub_pixels);
+        let changed = streaming.follow(gpu, &self.buffers, &self.instances, frame, pixel);
+        for (template, shape) in changed {
+            self.known[template].first_chunk = shape.first_chunk;
+            self.buffers.shapes.write(gpu, template, &[shape]);
+            *self.stale.get_mut() = true;
         }
-        let chunks: Vec<Chunk> = known.placed(proxy).collect();
-        self.chunks.write(gpu, known.first_chunk as usize, &chunks);
-        self.changed(grown);
-        gpu.check()
+    }
+
+    /// Limits what a picture may upload of streamed templates (bytes), so that none takes long: the rest follows with the
+    /// next pictures. Without a limit every picture has all that it shows.
+    pub fn set_most_upload(&mut self, bytes: Option<u64>) {
+        if let Some(streaming) = &mut self.streaming {
+            streaming.most_upload = bytes.unwrap_or(u64::MAX);
+        }
+    }
+
+    /// Whether the picture that was prepared last would be finer with what is still to be uploaded.
+    pub fn is_pending(&self) -> bool {
+        self.streaming
+            .as_ref()
+            .is_some_and(|streaming| streaming.is_pending)
     }
 
     /// Notes that something changed. `buffers`: some buffer was replaced by a larger one.

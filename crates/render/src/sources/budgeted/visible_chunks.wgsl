@@ -89,7 +89,7 @@ fn direction(chunk: Chunk, level: u32, index: u32, here: vec3<f32>) -> vec3<f32>
         return normalize_or(before + after, normalize_or(before, vec3<f32>(1.0, 0.0, 0.0)));
     }
     let kept = from_octahedral(unpack2x16snorm(select(chunk.end, chunk.start, index == 0u)));
-    if (level == 0u) {
+    if (level == 0u && !is_reduced(chunk)) {
         return kept;
     }
     let other = stored(chunk, level, select(last - 1u, 1u, index == 0u)).position;
