@@ -5,10 +5,7 @@ use neurotess::render::bounds::{bounds, merged};
 use neurotess::render::{BoundingSphere, Placement};
 use rayon::prelude::*;
 
-use super::cells::MeshedCell;
-
-/// Number of placements from which on a cell has a few spheres instead of one per point.
-pub(super) const MANY: usize = 64;
+use super::cells::{MANY, MeshedCell};
 
 /// Most spheres of a scene, which take milliseconds to fit a camera to and to test tiles with.
 const MOST_SPHERES: usize = 400_000;

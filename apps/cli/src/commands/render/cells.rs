@@ -15,11 +15,13 @@ use neurotess::render::bounds::bounds;
 use neurotess::render::{BoundingSphere, Proxy};
 
 use super::args::{LodMode, RenderArgs};
-use super::bounds::MANY;
 use crate::io::batch::each;
 use crate::io::inputs::{Input, Inputs};
 use crate::io::morphologies::read_morphology;
 use crate::report::{Entry, Failure, Reporter, place};
+
+/// Number of cells, or of placements of cells, from which on a cell has a few bounding spheres instead of one per point.
+pub(super) const MANY: usize = 64;
 
 /// A cell that can be drawn.
 pub(crate) struct MeshedCell {

@@ -63,7 +63,8 @@ use streaming::Streaming;
 pub use pick::{ProxyPickResolver, ProxyPickTargets};
 pub use proxy::Proxy;
 pub use residents::ExplorationError;
-pub use stats::{ExplorationStats, StreamedTemplates};
+pub use stats::ExplorationStats;
+pub use streaming::StreamedTemplates;
 
 /// Triangles of a frame by default: so many a laptop draws smoothly.
 pub const DEFAULT_BUDGET: u32 = 100_000;

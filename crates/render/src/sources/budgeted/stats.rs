@@ -2,7 +2,7 @@
 
 use super::Exploration;
 use super::layout::{Sums, VisibleChunk};
-use super::streaming::Streaming;
+use super::streaming::{StreamedTemplates, Streaming};
 use crate::gpu::buffers::read_back;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
@@ -30,19 +30,6 @@ pub struct ExplorationStats {
     pub all_instances: u64,
     /// If not all templates fit the device: what is there.
     pub streamed: Option<StreamedTemplates>,
-}
-
-/// What is on the device of templates that do not fit it as a whole.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct StreamedTemplates {
-    /// Templates that are streamed.
-    pub templates: usize,
-    /// Those that are there more finely than at first.
-    pub finer: usize,
-    /// Those that are there with all their points.
-    pub whole: usize,
-    /// Bytes of finer points that were uploaded since the start.
-    pub uploaded: u64,
 }
 
 /// A chunk or a soma that was drawn.

@@ -19,7 +19,6 @@ use std::sync::Arc;
 use super::buffers::{Buffers, Counts, Room, shape_of};
 use super::layout::{Chunk, MOST_SEGMENTS, Shape};
 use super::proxy::Proxy;
-use super::stats::StreamedTemplates;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::Instance;
@@ -56,6 +55,19 @@ const BASES: [Detail; 6] = [
 const AT_ONCE: usize = 256;
 /// Share of the room that is planned for: the rest lies in pieces.
 const PLANNED: f64 = 0.95;
+
+/// What is on the device of templates that do not fit it as a whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StreamedTemplates {
+    /// Templates that are streamed.
+    pub templates: usize,
+    /// Those that are there more finely than at first.
+    pub finer: usize,
+    /// Those that are there with all their points.
+    pub whole: usize,
+    /// Bytes of finer points that were uploaded since the start.
+    pub uploaded: u64,
+}
 
 /// Templates of which the device has as much as fits.
 #[derive(Debug)]
