@@ -190,6 +190,12 @@ impl Explorer {
         self.builds
     }
 
+    /// Bytes on the device.
+    pub(crate) fn bytes(&self) -> u64 {
+        let bytes = self.built.iter().flat_map(|built| built.exploration.bytes());
+        bytes.map(|(_, bytes)| bytes).sum()
+    }
+
     /// Most triangles of a frame.
     pub(crate) fn budget(&self) -> u32 {
         self.budget.unwrap_or(DEFAULT_BUDGET)

@@ -13,7 +13,7 @@ use neurotess_viewer::state::{CellPart, Lowered};
 use neurotess_viewer::view::View;
 
 use crate::common::{
-    SIZE, Window, click, gpu, hit_at, picture, rest, run, settle, state, viewer, with_samples,
+    SIZE, Window, click, differing, drawn, gpu, hit_at, picture, rest, run, settle, state, viewer, with_samples,
 };
 
 /// After some frames it asks for no more.
@@ -272,6 +272,48 @@ fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
             .iter()
             .all(|(neuron, _)| *neuron == 1)
     );
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn tracings_that_do_not_fit_the_memory_are_there_where_they_show() {
+    let kinds = [Kind::Motor, Kind::Star, Kind::Pyramidal];
+    let opened = |memory: Option<u64>| {
+        let mut window = with_samples(&[]);
+        viewer(&mut window).stage.limit_memory(memory);
+        for kind in kinds {
+            run(&mut window, Command::OpenSample(kind));
+        }
+        // The last of them alone, then all of them in a row, then the first.
+        run(&mut window, Edit::Select(vec![2], false));
+        run(&mut window, Edit::Isolate);
+        rest(&mut window);
+        let alone = (drawn(&mut window), state(&mut window).counters.lowered);
+        run(&mut window, Edit::ShowAll);
+        state(&mut window).document.grid = true;
+        run(&mut window, Command::Home);
+        rest(&mut window);
+        let row = (drawn(&mut window), state(&mut window).counters.lowered);
+        run(&mut window, Edit::Select(vec![0], false));
+        run(&mut window, Edit::Isolate);
+        rest(&mut window);
+        let first = (drawn(&mut window), state(&mut window).counters.lowered);
+        let points = state(&mut window).sources.iter();
+        let points = points.map(|(_, source)| source.generated.mesh.tracing.len() as u64);
+        let points = points.max().expect("opened");
+        let bytes = state(&mut window).counters.bytes[0];
+        ([alone, row, first], bytes, points)
+    };
+    let (whole, bytes, points) = opened(None);
+    assert!(whole.iter().all(|(_, lowered)| lowered.is_none()));
+    // Of refined tracings, half of the memory has the largest.
+    let (limited, fewer, _) = opened(Some(2 * 33 * points));
+    assert!(fewer < bytes, "{fewer} of {bytes}");
+    for (place, ((expected, _), (pixels, _))) in whole.iter().zip(&limited).enumerate() {
+        let differing = differing(expected, pixels);
+        assert!(differing < pixels.len() / 4 / 50, "{differing} pixels, {place}");
+    }
+    let lowered = limited.map(|(_, lowered)| lowered.is_some());
+    assert_eq!(lowered, [false, true, false], "together they are explored");
 }
 
 /// What is seen at pixels all over the picture.

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role};
-use neurotess_refine::{MeshPart, PartLayout, pack, sphere_around};
+use neurotess_refine::{PartLayout, pack, sphere_around};
 use wgpu::util::DeviceExt;
 
 use crate::gpu::buffers::{group_layout, storage};
@@ -109,6 +109,8 @@ pub(crate) struct StoredTemplate {
     pub(crate) origin: DVec3,
     pub(crate) parts: Vec<TemplatePart>,
     points: usize,
+    /// On the device, by the name of the array.
+    bytes: Vec<(&'static str, u64)>,
 }
 
 /// Templates on a device.
@@ -116,7 +118,8 @@ pub(crate) struct StoredTemplate {
 pub struct Templates {
     pub(crate) pages: Vec<Page>,
     templates: Vec<StoredTemplate>,
-    bytes: Vec<(&'static str, u64)>,
+    /// Pages that no template uses any more; they hold nothing.
+    free: Vec<usize>,
 }
 
 impl Templates {
@@ -144,13 +147,14 @@ impl Templates {
                 origin: template.mesh.origin,
                 parts: Vec::new(),
                 points: points(template.mesh),
+                bytes: Vec::new(),
             };
             for part in pack(template.mesh, template.color_keys, template.values, most) {
                 if packed.len() + part.packed.len() > most_u32s {
                     self.finish(gpu, &layout, &packed);
                     packed.clear();
                 }
-                self.count(&part);
+                add_bytes(&mut stored.bytes, part.bytes());
                 stored.parts.push(TemplatePart {
                     page: self.pages.len(),
                     base: Base::new(packed.len() as u32, &part.layout),
@@ -172,7 +176,7 @@ impl Templates {
     }
 
     /// Replaces a template's mesh. The new mesh gets pages of its own, in place of those that no
-    /// other template uses.
+    /// other template uses; what these held is given up. An empty mesh takes no memory.
     ///
     /// # Errors
     /// The device has no memory left, or reports another error; the old mesh stays.
@@ -195,6 +199,7 @@ impl Templates {
             .flat_map(|(_, t)| pages(t))
             .collect();
         let mut free: Vec<usize> = own.into_iter().filter(|p| !others.contains(p)).collect();
+        free.append(&mut self.free);
         free.sort_unstable();
         free.dedup();
         let mut moved = Vec::new();
@@ -210,6 +215,10 @@ impl Templates {
                 }
             }
         }
+        for &page in &free {
+            self.pages[page] = new_page(gpu, &layout(&gpu.device), &[0]);
+        }
+        self.free = free;
         if let Some(mut stored) = fresh.templates.pop() {
             for part in &mut stored.parts {
                 part.page = moved[part.page];
@@ -219,35 +228,10 @@ impl Templates {
         Ok(())
     }
 
-    fn count(&mut self, part: &MeshPart) {
-        for (name, bytes) in part.bytes() {
-            match self.bytes.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, sum)) => *sum += bytes,
-                None => self.bytes.push((name, bytes)),
-            }
-        }
-    }
-
     fn finish(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, packed: &[u32]) {
-        if packed.is_empty() {
-            return;
+        if !packed.is_empty() {
+            self.pages.push(new_page(gpu, layout, packed));
         }
-        let packed = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("packed of templates"),
-                contents: bytemuck::cast_slice(packed),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("page of templates"),
-            layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: packed.as_entire_binding(),
-            }],
-        });
-        self.pages.push(Page { packed, group });
     }
 
     pub(crate) fn template(&self, id: TemplateId) -> Option<&StoredTemplate> {
@@ -272,8 +256,43 @@ impl Templates {
 
     /// Bytes on the device by the name of the buffer.
     pub fn bytes(&self) -> Vec<(&'static str, u64)> {
-        self.bytes.clone()
+        let mut bytes = Vec::new();
+        for template in &self.templates {
+            add_bytes(&mut bytes, template.bytes.iter().copied());
+        }
+        bytes
     }
+}
+
+fn add_bytes(
+    to: &mut Vec<(&'static str, u64)>,
+    more: impl IntoIterator<Item = (&'static str, u64)>,
+) {
+    for (name, bytes) in more {
+        match to.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, sum)) => *sum += bytes,
+            None => to.push((name, bytes)),
+        }
+    }
+}
+
+fn new_page(gpu: &Gpu, layout: &wgpu::BindGroupLayout, packed: &[u32]) -> Page {
+    let packed = gpu
+        .device
+        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("packed of templates"),
+            contents: bytemuck::cast_slice(packed),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("page of templates"),
+        layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: packed.as_entire_binding(),
+        }],
+    });
+    Page { packed, group }
 }
 
 fn points(mesh: &CoarseMesh) -> usize {

@@ -404,7 +404,7 @@ impl Stage {
     /// Bytes on the device: of cells, and of pictures.
     fn bytes(&self) -> [u64; 2] {
         let cells: u64 = self.adaptive.bytes().iter().map(|(_, bytes)| bytes).sum();
-        let beside = self.markers.bytes() + self.meshes.bytes();
+        let beside = self.explorer.bytes() + self.markers.bytes() + self.meshes.bytes();
         [cells + beside, self.progressive.bytes()]
     }
 
