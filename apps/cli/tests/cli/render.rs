@@ -332,6 +332,8 @@ fn wrong_usage_of_render_exits_with_2() {
         "render cell.swc -o cell.png --lod exploration --level 3",
         "render cell.swc -o cell.png --lod exploration --pixels 1",
         "render cell.swc -o cell.png --lod exploration --budget 9000000000",
+        "render cell.swc -o cell.png --lod exploration --gpu-memory 0",
+        "render cell.swc -o cell.png --lod exploration --gpu-memory much",
         "render cell.swc -o cell.png --lod static --pixels 1",
         "render cell.swc -o cell.png --background reddish",
         "render cell.swc -o cell.png --transparent --background white",
@@ -410,4 +412,42 @@ fn circuits_are_drawn_cell_by_cell_at_their_positions() {
         .run("render circuit -o c.png --force --lod prerefined --level 1")
         .exits(2);
     assert!(run.stderr().contains("--lod"), "{}", run.stderr());
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn tracings_that_do_not_fit_the_adapter_are_drawn_as_those_that_do() {
+    let work = Work::new();
+    work.run("synth circuit -o circuit --neurons 120 --morphologies 80 --points 400 --reported 1")
+        .exits(0);
+    // From afar: most cells show no more than their coarse forms have.
+    let draw = "render circuit -o c.png --force --lod exploration --budget 4000000 --size 160x120 --samples 1 \
+                --eye 0,0,9000 --target 0,0,0 --stats s.json";
+    let streamed = |memory: &str| {
+        work.run(&format!("{draw} {memory}")).exits(0);
+        let stats = work.text("s.json");
+        let stats: Value = serde_json::from_str(&stats).expect("JSON");
+        let bytes =
+            ["chunks", "points", "color_keys"].map(|name| stats["gpu_bytes"][name].as_u64());
+        let bytes: u64 = bytes.iter().map(|bytes| bytes.expect("bytes")).sum();
+        let streamed = stats["exploration"]["streamed"].clone();
+        (Picture::read(&work, "c.png").pixels, bytes, streamed)
+    };
+    let (whole, all, none) = streamed("");
+    assert!(none.is_null());
+    let (picture, bytes, some) = streamed(&format!("--gpu-memory {}", all * 4 / 5));
+    assert!(bytes <= all * 4 / 5, "{bytes} of {all}");
+    let count = |what: &str| some[what].as_u64().expect("a number");
+    assert!(
+        count("tracings") > 40 && count("whole") < count("tracings"),
+        "{some}"
+    );
+    assert!(picture == whole, "another picture");
+    let mut command = work.command(draw);
+    command.env("NEUROTESS_GPU_MEMORY", "1KiB");
+    let run = Run(command.output().expect("it runs")).exits(1);
+    assert!(
+        run.stderr().contains("bytes at least, but there are"),
+        "{}",
+        run.stderr()
+    );
 }

@@ -192,7 +192,10 @@ impl Explorer {
 
     /// Bytes on the device.
     pub(crate) fn bytes(&self) -> u64 {
-        let bytes = self.built.iter().flat_map(|built| built.exploration.bytes());
+        let bytes = self
+            .built
+            .iter()
+            .flat_map(|built| built.exploration.bytes());
         bytes.map(|(_, bytes)| bytes).sum()
     }
 

@@ -13,7 +13,8 @@ use neurotess_viewer::state::{CellPart, Lowered};
 use neurotess_viewer::view::View;
 
 use crate::common::{
-    SIZE, Window, click, differing, drawn, gpu, hit_at, picture, rest, run, settle, state, viewer, with_samples,
+    SIZE, Window, click, differing, drawn, gpu, hit_at, picture, rest, run, settle, state, viewer,
+    with_samples,
 };
 
 /// After some frames it asks for no more.
@@ -310,7 +311,10 @@ fn tracings_that_do_not_fit_the_memory_are_there_where_they_show() {
     assert!(fewer < bytes, "{fewer} of {bytes}");
     for (place, ((expected, _), (pixels, _))) in whole.iter().zip(&limited).enumerate() {
         let differing = differing(expected, pixels);
-        assert!(differing < pixels.len() / 4 / 50, "{differing} pixels, {place}");
+        assert!(
+            differing < pixels.len() / 4 / 50,
+            "{differing} pixels, {place}"
+        );
     }
     let lowered = limited.map(|(_, lowered)| lowered.is_some());
     assert_eq!(lowered, [false, true, false], "together they are explored");

@@ -10,8 +10,10 @@ use super::cells::{MANY, MeshedCell};
 /// Most spheres of a scene, which take milliseconds to fit a camera to and to test tiles with.
 const MOST_SPHERES: usize = 400_000;
 
-/// Fewest of a cell.
+/// Fewest of a cell; among so many cells that the shape of a single one hardly matters, fewer.
 const FEWEST: usize = 16;
+const FEWEST_OF_MANY: usize = 4;
+const MANY_CELLS: usize = 1 << 17;
 
 /// Bounding spheres of the scene, to fit a camera to.
 pub(crate) fn spheres(
@@ -30,7 +32,11 @@ pub(crate) fn covering(
     cells: &[&MeshedCell],
     placements: &[(usize, Placement)],
 ) -> Vec<BoundingSphere> {
-    let most = (MOST_SPHERES / placements.len().max(1)).max(FEWEST);
+    let fewest = match placements.len() < MANY_CELLS {
+        true => FEWEST,
+        false => FEWEST_OF_MANY,
+    };
+    let most = (MOST_SPHERES / placements.len().max(1)).max(fewest);
     let own: Vec<Vec<BoundingSphere>> = cells
         .par_iter()
         .map(|cell| match &cell.bounds {
@@ -49,7 +55,7 @@ fn placed(own: &[Vec<BoundingSphere>], placements: &[(usize, Placement)]) -> Vec
             (placement.world_from_cell(center), radius * placement.scale)
         })
     };
-    // A million cells have 16 million spheres: half a gigabyte, which must not be moved as it grows.
+    // A million cells have 4 million spheres: 128 MB, which must not be moved as they grow.
     let count = placements.iter().map(|&(cell, _)| own[cell].len()).sum();
     let mut spheres = Vec::with_capacity(count);
     placements

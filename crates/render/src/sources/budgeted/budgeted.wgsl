@@ -274,7 +274,7 @@ struct Offers {
     bins: vec4<u32>,
     quads: vec4<u32>,
     lods: vec4<u32>,
-    // Share of the width that is drawn, before the budget's.
+    // Share of the width that is drawn, before the budget's; of a soma, the root of its area (pixels).
     width: f32,
 }
 
@@ -351,7 +351,7 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
     if ((chunk.flags & CHUNK_SOMA) != 0u) {
         let near = max(depth - reach, eye.near);
         let radius = chunk.radius * place.scale / pixel_at(max(depth, near));
-        return soma_offers(chunk, radius, chance_factor(instance));
+        return soma_offers(chunk, radius, instance);
     }
     var seen = Seen(depth - reach, depth, 1.0);
     let distant = eye.flat > 0.0 || depth > 4.0 * reach;
@@ -422,14 +422,37 @@ fn offers(instance: u32, place: GpuInstance, chunk_index: u32) -> Offers {
 // Worth of a soma of a pixel.
 const SOMA_WORTH: f32 = 256.0;
 
+// How strongly the worth of a soma depends on chance: of one of five pixels not at all, of one below a pixel most. `side`:
+// root of its area (pixels).
+fn thinning(side: f32) -> f32 {
+    return 6.0 * clamp(0.25 * (5.0 - side), 0.0, 1.0);
+}
+
+// Worth of a soma. That of a small one depends on chance: where there are too many, a share of them is drawn, of far ones
+// a smaller one, so that a dense crowd still looks like one (Cook et al., Stochastic simplification of aggregate detail,
+// 2007).
+fn soma_worth(side: f32, instance: u32) -> f32 {
+    let size = select(side, side * side, side > 1.0);
+    let luck = log2(max(chance(instance), 1e-6));
+    return SOMA_WORTH * size * chance_factor(instance) * exp2(thinning(side) * luck);
+}
+
+// How much larger a soma's dot is drawn, since it stands for those of its size that are left out: at most with a radius of
+// a pixel. `least`: the least worth that is drawn.
+fn dot_width(side: f32, least: f32) -> f32 {
+    let size = select(side, side * side, side > 1.0);
+    let rest = pow(min(least / (SOMA_WORTH * size), 1.0), 1.0 / max(thinning(side), 1e-3));
+    return clamp(inverseSqrt(max(1.0 - rest, 1e-6)), 1.0, max(1.7725 / max(side, 1e-6), 1.0));
+}
+
 // Somata are worth more than neurites of their size: they show where the neurons of a circuit are.
-// One below a pixel is worth its radius: where there are too many, the nearest are drawn.
-fn soma_offers(chunk: Chunk, radius: f32, factor: f32) -> Offers {
+fn soma_offers(chunk: Chunk, radius: f32, instance: u32) -> Offers {
     let area = 3.1416 * radius * radius;
     var all = no_offers();
-    all.bins.x = max(bin_of(SOMA_WORTH * factor * select(sqrt(area), area, area > 1.0)), 1u);
+    all.width = sqrt(area);
+    all.bins.x = max(bin_of(soma_worth(all.width, instance)), 1u);
     all.quads.x = 1u;
-    all.lods.x = packed_lod(WHAT_DOT, 0u, 0u, 1u, FULL_WIDTH);
+    all.lods.x = packed_lod(WHAT_DOT, 0u, 0u, 1u, 0u);
     if (radius <= 1.0) {
         return all;
     }

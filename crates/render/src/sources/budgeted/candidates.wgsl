@@ -2,16 +2,9 @@
 
 #import selection.wgsl
 
-// The least radius (pixels) of a soma whose worth is in this bin or above.
-fn soma_radius_at(bin: u32) -> f32 {
-    let worth = worth_of(bin) / (SOMA_WORTH * MOST_CHANCE);
-    let area = select(worth * worth, worth, worth > 1.0);
-    return sqrt(area / 3.1416);
-}
-
 // How many of an instance's chunks may be worth the floor: the first ones, since chunks are sorted
 // by what they carry. `nearest`: size (µm) of a pixel at the instance's nearest point.
-fn chunks_above_floor(shape: Shape, nearest: f32) -> u32 {
+fn chunks_above_floor(shape: Shape, nearest: f32, instance: u32) -> u32 {
     // Twigs that are left out at the instance's nearest point are left out everywhere.
     let tiny = shape.twig_length < 0.99 * TWIG_FADES_FROM * nearest;
     let most = select(shape.chunks, shape.before_twigs, tiny);
@@ -31,7 +24,8 @@ fn chunks_above_floor(shape: Shape, nearest: f32) -> u32 {
             high = middle;
         }
     }
-    if (low == shape.somata && shape.soma_radius < 0.99 * soma_radius_at(floor) * nearest) {
+    let side = 1.7725 * shape.soma_radius / nearest;
+    if (low == shape.somata && 1.01 * soma_worth(1.01 * side, instance) < worth_of(floor)) {
         return 0u;
     }
     return low;
@@ -54,7 +48,7 @@ fn cull_instances(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
         let reach = shape.reach * place.scale;
         if (in_sight(center, reach)) {
             let depth = max(dot(eye.forward, center) - reach, eye.near);
-            count = chunks_above_floor(shape, pixel_at(depth) / place.scale);
+            count = chunks_above_floor(shape, pixel_at(depth) / place.scale, instance);
         }
     }
     book.extents[instance].chunks = count;

@@ -143,8 +143,13 @@ impl View {
         if chunk.flags & CHUNK_SOMA != 0 {
             let radius = f64::from(chunk.radius) * scale / pixel;
             let area = std::f64::consts::PI * radius * radius;
-            let worth = if area > 1.0 { area } else { area.sqrt() };
-            steps.add(256.0 * worth * (0.5 * chance - 0.25).exp2(), 1);
+            let side = area.sqrt();
+            let size = if side > 1.0 { area } else { side };
+            let luck = chance
+                .max(1e-6)
+                .powf(6.0 * (0.25 * (5.0 - side)).clamp(0.0, 1.0));
+            let factor = (0.5 * chance - 0.25).exp2();
+            steps.add(256.0 * size * factor * luck, 1);
             let own = chunk.counts[0];
             let sphere = if radius > 3.0 { DOME_QUADS } else { DISC_QUADS };
             if radius > 1.0 {

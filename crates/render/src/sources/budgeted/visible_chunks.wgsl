@@ -38,7 +38,10 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
     }
     let chunk = chunks[visible_chunk.chunk];
     let instance_pose = gpu_instances[visible_chunk.instance];
-    var v = sphere_vertex(relative(instance_pose, chunk.center), chunk.radius * instance_pose.scale, what, index, corner);
+    // A dot may stand for others, too.
+    let width = select(1.0, lod_width(visible_chunk.lod), what == WHAT_DOT);
+    let radius = chunk.radius * instance_pose.scale * width;
+    var v = sphere_vertex(relative(instance_pose, chunk.center), radius, what, index, corner);
     // Radius 0: the shading does not widen somata, and a dot is a pixel wide already.
     v.radius = 0.0;
     v.color_key = color_key_at(chunk, 0u);
