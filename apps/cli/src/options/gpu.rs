@@ -11,7 +11,8 @@ pub(crate) struct GpuArgs {
     pub(crate) adapter: Option<String>,
     /// Most memory of the adapter that the tracings of large scenes may take, as in 512MiB or 2GB: what is near is
     /// then finer than what is not [default: as much as the adapter can bind]
-    #[arg(long, value_name = "SIZE", env = "NEUROTESS_GPU_MEMORY", value_parser = memory)]
+    #[arg(long, value_name = "SIZE", env = "NEUROTESS_GPU_MEMORY", hide_env_values = true,
+          value_parser = memory)]
     pub(crate) gpu_memory: Option<u64>,
 }
 
