@@ -6,9 +6,10 @@
 //! uploaded first: by the error of its base in pixels.
 //!
 //! The shaders know nothing of it: a shape says where a template's chunks are, chunks say where their points are, and both
-//! are rewritten when these come and go. Where
-//! all that a picture wants is there, it is the picture of a scene that fits, to the bit.
+//! are rewritten when these come and go. Where all that a picture wants is there, it is the picture of a scene that fits,
+//! to the bit.
 
+mod memory;
 mod needs;
 mod reduced;
 mod rooms;
@@ -17,13 +18,14 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::buffers::{Buffers, Counts, Room, shape_of};
-use super::layout::{Chunk, MOST_SEGMENTS, Shape};
+use super::layout::{MOST_SEGMENTS, Shape};
 use super::proxy::Proxy;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::scene::Instance;
 use crate::view::frame::Frame;
 use crate::view::lens::PixelSize;
+use memory::{base_of, room_for, total};
 use needs::View;
 use reduced::{Detail, reduced};
 use rooms::Rooms;
@@ -33,24 +35,6 @@ const ERROR: f32 = super::ERROR;
 
 /// Details that templates have besides their base, coarse ones first.
 const DETAILS: [Detail; 3] = [Detail::of_all(8), Detail::of_all(20), Detail::FULL];
-/// Bases, fine ones first: the first that takes at most half of the memory.
-const BASES: [Detail; 6] = [
-    DETAILS[0],
-    Detail::of_all(4),
-    Detail::of_all(1),
-    Detail {
-        chunks: 64,
-        segments: 1,
-    },
-    Detail {
-        chunks: 16,
-        segments: 1,
-    },
-    Detail {
-        chunks: 4,
-        segments: 1,
-    },
-];
 /// Templates whose bases are uploaded at once.
 const AT_ONCE: usize = 256;
 /// Share of the room that is planned for: the rest lies in pieces.
@@ -100,6 +84,13 @@ struct Streamed {
     finer: Option<(usize, Room)>,
     /// The last picture that wanted it.
     wanted: u64,
+}
+
+impl Streamed {
+    /// The detail that is there besides the base.
+    fn there(&self) -> Option<usize> {
+        self.finer.as_ref().map(|(detail, _)| *detail)
+    }
 }
 
 /// Where the arrays of a template were, and how finely it is there, for what reads pictures back.
@@ -197,12 +188,7 @@ impl Streaming {
         let mut uploaded = 0;
         self.is_pending = false;
         for (template, detail) in plan {
-            if self.templates[template]
-                .finer
-                .as_ref()
-                .map(|(there, _)| *there)
-                == Some(detail)
-            {
+            if self.templates[template].there() == Some(detail) {
                 continue;
             }
             if uploaded >= self.most_upload {
@@ -273,8 +259,7 @@ impl Streaming {
             let enough = |&detail: &usize| template.details[detail].0 <= ERROR * pixels[index];
             let enough = (0..DETAILS.len()).find(enough).unwrap_or(DETAILS.len() - 1);
             // What is there and finer than needed need not be uploaded anew.
-            let there = template.finer.as_ref().map(|(there, _)| *there);
-            let there = there.filter(|&there| there >= enough);
+            let there = template.there().filter(|&there| there >= enough);
             let first = there.into_iter().chain((0..=enough).rev());
             let mut fitting = first.filter(|&detail| {
                 let (error, counts) = &template.details[detail];
@@ -371,51 +356,6 @@ impl Residence {
         let known = index.and_then(|at| Some((self.proxies.get(at)?, self.details.get(at)?)));
         known.map_or(point, |(proxy, detail)| detail.point(proxy, chunk, point))
     }
-}
-
-/// The finest base that leaves half of the memory for details, and its elements.
-fn base_of(
-    gpu: &Gpu,
-    buffers: &Buffers,
-    proxies: &[Arc<Proxy>],
-    memory: u64,
-) -> Result<(Detail, Counts), DeviceError> {
-    let most = gpu.largest_binding();
-    let mut bytes = 0;
-    for (number, base) in BASES.into_iter().enumerate() {
-        let counts = total(proxies, base);
-        let share = if number + 1 < BASES.len() { 2 } else { 1 };
-        let bindings = buffers.used().plus(&counts).by_buffer();
-        if counts.bytes() <= memory / share && bindings.iter().all(|&bytes| bytes <= most / share) {
-            return Ok((base, counts));
-        }
-        bytes = counts.bytes();
-    }
-    Err(DeviceError::TooManyTracings {
-        bytes,
-        most: memory.min(most),
-    })
-}
-
-/// Elements of the details that `memory` (bytes) has room for behind the bases, in the proportions of all details.
-fn room_for(gpu: &Gpu, buffers: &Buffers, full: &Counts, bases: &Counts, memory: u64) -> Counts {
-    let share = (memory as f64 / full.bytes().max(1) as f64).min(1.0);
-    let most = gpu.largest_binding();
-    let [chunks, packed, color_keys] = buffers.used().plus(bases).by_buffer();
-    let room = |count: u64, used: u64, size: usize| {
-        let left = most.saturating_sub(used) / size as u64;
-        ((count as f64 * share) as u64).min(left)
-    };
-    Counts {
-        chunks: room(full.chunks, chunks, size_of::<Chunk>()),
-        packed: room(full.packed, packed, size_of::<u32>()),
-        color_keys: room(full.color_keys, color_keys, size_of::<u32>()),
-    }
-}
-
-fn total(proxies: &[Arc<Proxy>], detail: Detail) -> Counts {
-    let counts = proxies.iter().map(|proxy| detail.counts(proxy));
-    counts.fold(Counts::default(), |sum, counts| sum.plus(&counts))
 }
 
 const _: () = assert!(DETAILS[DETAILS.len() - 1].segments == MOST_SEGMENTS);
