@@ -12,6 +12,9 @@ use crate::gpu::error::DeviceError;
 /// Environment variable that names the adapter if nothing else does.
 pub const ADAPTER_VARIABLE: &str = "NEUROTESS_ADAPTER";
 
+/// Names of backends.
+const BACKENDS: [&str; 4] = ["vulkan", "metal", "dx12", "gl"];
+
 /// An open device with its queue.
 #[derive(Debug)]
 pub struct Gpu {
@@ -66,7 +69,7 @@ pub fn adapters() -> Vec<AdapterName> {
 }
 
 impl Gpu {
-    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (in
+    /// Opens the best adapter, or the best of those whose backend is `wanted` or whose name contains it (in
     /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
     ///
     /// The device has the adapter's own limits, and those of [`optional_features`] that it
@@ -172,8 +175,8 @@ pub fn device_descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
     }
 }
 
-/// The best of these adapters that can do what we need, or the best whose name or backend contains
-/// `wanted`; without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+/// The best of these adapters that can do what we need, or the best whose backend is `wanted` or whose
+/// name contains it; without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
 ///
 /// # Errors
 /// No such adapter.
@@ -246,10 +249,14 @@ fn name(adapter: &Adapter) -> AdapterName {
 }
 
 impl AdapterName {
+    /// Whether it is what a backend or a part of a name means. A backend means no names: "gl" is in those of
+    /// Google's Vulkan drivers.
     fn answers_to(&self, wanted: &str) -> bool {
-        self.to_string()
-            .to_lowercase()
-            .contains(&wanted.to_lowercase())
+        let wanted = wanted.to_lowercase();
+        match BACKENDS.contains(&wanted.as_str()) {
+            true => self.backend == wanted,
+            false => self.to_string().to_lowercase().contains(&wanted),
+        }
     }
 }
 
@@ -287,6 +294,12 @@ mod tests {
             assert!(lavapipe.answers_to(yes), "{yes}");
         }
         assert!(!lavapipe.answers_to("metal"));
+        let google = AdapterName {
+            name: "SwiftShader Device (Subzero), Google".into(),
+            ..lavapipe.clone()
+        };
+        assert!(google.answers_to("google") && google.answers_to("Vulkan"));
+        assert!(!google.answers_to("gl"), "it is no OpenGL");
     }
 
     #[test]
