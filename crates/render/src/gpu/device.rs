@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{Adapter, Backends, DeviceType, Features, Limits};
 
 use crate::gpu::error::DeviceError;
+use crate::gpu::heap;
 
 /// Environment variable that names the adapter if nothing else does.
 pub const ADAPTER_VARIABLE: &str = "NEUROTESS_ADAPTER";
@@ -108,10 +109,14 @@ impl Gpu {
         device.set_device_lost_callback(move |_, message| {
             of_device.keep(DeviceError::Lost(one_line(&message)));
         });
+        let adapter = name(adapter);
+        if adapter.software {
+            heap::keep_freed_memory();
+        }
         Self {
             device,
             queue,
-            adapter: name(adapter),
+            adapter,
             fault,
         }
     }

@@ -4,5 +4,6 @@ pub(crate) mod buffers;
 pub(crate) mod device;
 pub(crate) mod error;
 pub(crate) mod growable;
+mod heap;
 pub(crate) mod shader;
 pub(crate) mod timing;
