@@ -1,20 +1,15 @@
-//! The GPU without a window: its adapter, its limits and its errors.
+//! The GPU without a window: its limits and its errors.
 //!
 //! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until they are
 //! taken: by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use wgpu::{Adapter, Backends, DeviceType, Features, Limits};
+use wgpu::{Adapter, Features, Limits};
 
+use crate::gpu::adapter::{AdapterName, find_adapter, name};
 use crate::gpu::error::DeviceError;
 use crate::gpu::heap;
-
-/// Environment variable that names the adapter if nothing else does.
-pub const ADAPTER_VARIABLE: &str = "NEUROTESS_ADAPTER";
-
-/// Names of backends.
-const BACKENDS: [&str; 4] = ["vulkan", "metal", "dx12", "gl"];
 
 /// An open device with its queue.
 #[derive(Debug)]
@@ -26,17 +21,6 @@ pub struct Gpu {
     /// The adapter's name.
     pub adapter: AdapterName,
     fault: Fault,
-}
-
-/// Name of an adapter.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterName {
-    /// Name and driver, as in `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6`.
-    pub name: String,
-    /// `vulkan`, `metal`, `dx12` or `gl`.
-    pub backend: String,
-    /// Whether it draws on the CPU.
-    pub software: bool,
 }
 
 /// The first error since the last check.
@@ -62,16 +46,9 @@ impl Fault {
     }
 }
 
-/// Names of all adapters, the best first.
-pub fn adapters() -> Vec<AdapterName> {
-    let mut adapters = found(Backends::PRIMARY);
-    adapters.extend(found(Backends::SECONDARY));
-    adapters.iter().map(name).collect()
-}
-
 impl Gpu {
     /// Opens the best adapter, or the best of those whose backend is `wanted` or whose name contains it (in
-    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`](crate::adapter::ADAPTER_VARIABLE) decides, if it is set.
     ///
     /// The device has the adapter's own limits, and those of [`optional_features`] that it
     /// supports.
@@ -79,15 +56,7 @@ impl Gpu {
     /// # Errors
     /// There is no such adapter, or its driver reports an error.
     pub fn open(wanted: Option<&str>) -> Result<Self, DeviceError> {
-        let variable = std::env::var(ADAPTER_VARIABLE).ok();
-        let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
-        // OpenGL last and only if needed, since without a display it prints messages when it
-        // starts.
-        let mut adapters = found(Backends::PRIMARY);
-        if choose(&adapters, wanted).is_err() {
-            adapters.extend(found(Backends::SECONDARY));
-        }
-        let adapter = choose(&adapters, wanted)?;
+        let adapter = &find_adapter(wanted)?;
         let named = name(adapter);
         let refused = |reason: String| DeviceError::Refused {
             adapter: named.name.clone(),
@@ -180,97 +149,6 @@ pub fn device_descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
     }
 }
 
-/// The best of these adapters that can do what we need, or the best whose backend is `wanted` or whose
-/// name contains it; without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
-///
-/// # Errors
-/// No such adapter.
-pub fn select_adapter(adapters: &[Adapter], wanted: Option<&str>) -> Result<Adapter, DeviceError> {
-    let variable = std::env::var(ADAPTER_VARIABLE).ok();
-    let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
-    let mut able: Vec<Adapter> = adapters.iter().filter(|a| is_able(a)).cloned().collect();
-    able.sort_by_key(rank);
-    choose(&able, wanted).cloned()
-}
-
-fn is_able(adapter: &Adapter) -> bool {
-    let able = wgpu::DownlevelFlags::COMPUTE_SHADERS
-        | wgpu::DownlevelFlags::VERTEX_STORAGE
-        | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
-    adapter.get_downlevel_capabilities().flags.contains(able)
-}
-
-/// Adapters that can do what we need, the best first.
-fn found(backends: Backends) -> Vec<Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        flags: wgpu::InstanceFlags::empty(),
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    adapters.retain(is_able);
-    adapters.sort_by_key(rank);
-    adapters
-}
-
-/// Real GPUs first.
-fn rank(adapter: &Adapter) -> u8 {
-    match adapter.get_info().device_type {
-        DeviceType::DiscreteGpu => 0,
-        DeviceType::IntegratedGpu => 1,
-        DeviceType::VirtualGpu => 2,
-        DeviceType::Other => 3,
-        DeviceType::Cpu => 4,
-    }
-}
-
-fn choose<'a>(adapters: &'a [Adapter], wanted: Option<&str>) -> Result<&'a Adapter, DeviceError> {
-    let best = adapters.first().ok_or(DeviceError::NoAdapter)?;
-    let Some(wanted) = wanted else {
-        return Ok(best);
-    };
-    let names: Vec<AdapterName> = adapters.iter().map(name).collect();
-    match names.iter().position(|name| name.answers_to(wanted)) {
-        Some(place) => Ok(&adapters[place]),
-        None => Err(DeviceError::UnknownAdapter {
-            wanted: wanted.to_owned(),
-            there: names.iter().map(ToString::to_string).collect(),
-        }),
-    }
-}
-
-fn name(adapter: &Adapter) -> AdapterName {
-    let info = adapter.get_info();
-    let driver = [info.driver, info.driver_info].join(" ");
-    let name = match driver.trim() {
-        "" => info.name,
-        driver => format!("{}, {driver}", info.name),
-    };
-    AdapterName {
-        name,
-        backend: info.backend.to_str().to_owned(),
-        software: info.device_type == DeviceType::Cpu,
-    }
-}
-
-impl AdapterName {
-    /// Whether it is what a backend or a part of a name means. A backend means no names: "gl" is in those of
-    /// Google's Vulkan drivers.
-    fn answers_to(&self, wanted: &str) -> bool {
-        let wanted = wanted.to_lowercase();
-        match BACKENDS.contains(&wanted.as_str()) {
-            true => self.backend == wanted,
-            false => self.to_string().to_lowercase().contains(&wanted),
-        }
-    }
-}
-
-impl std::fmt::Display for AdapterName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} [{}]", self.name, self.backend)
-    }
-}
-
 fn complaint(error: wgpu::Error) -> DeviceError {
     match error {
         wgpu::Error::OutOfMemory { .. } => DeviceError::OutOfMemory,
@@ -287,25 +165,6 @@ fn one_line(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn adapters_answer_to_parts_of_their_name_and_backend() {
-        let lavapipe = AdapterName {
-            name: "llvmpipe (LLVM 15), Mesa".into(),
-            backend: "vulkan".into(),
-            software: true,
-        };
-        for yes in ["LLVMpipe", "vulkan", "mesa"] {
-            assert!(lavapipe.answers_to(yes), "{yes}");
-        }
-        assert!(!lavapipe.answers_to("metal"));
-        let google = AdapterName {
-            name: "SwiftShader Device (Subzero), Google".into(),
-            ..lavapipe.clone()
-        };
-        assert!(google.answers_to("google") && google.answers_to("Vulkan"));
-        assert!(!google.answers_to("gl"), "it is no OpenGL");
-    }
 
     #[test]
     fn an_unknown_adapter_is_an_error_that_lists_those_there() {

@@ -1,5 +1,6 @@
 //! The device: opening it, its errors, buffers and times.
 
+pub(crate) mod adapter;
 pub(crate) mod buffers;
 pub(crate) mod device;
 pub(crate) mod error;
