@@ -5,8 +5,8 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::{gpu, mesa_opengl};
 use crate::work::{BROKEN, Run, SMALL, Work};
+use crate::{gpu, mesa_opengl};
 
 /// A picture: width, height, samples of a pixel, bytes.
 pub(crate) struct Picture {

@@ -23,14 +23,21 @@ pub struct Gpu {
     fault: Fault,
 }
 
-/// The first error since the last check.
+/// The first error since the last check. Once the device is lost, nothing else, however often it is taken:
+/// all other errors follow from it, and of several threads that check each must hear of it.
 #[derive(Clone, Debug, Default)]
 struct Fault(Arc<Mutex<Option<DeviceError>>>);
 
 impl Fault {
     fn keep(&self, error: DeviceError) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get_or_insert(error);
+        let is_lost = |error: &DeviceError| matches!(error, DeviceError::Lost(_));
+        if kept
+            .as_ref()
+            .is_none_or(|kept| is_lost(&error) && !is_lost(kept))
+        {
+            *kept = Some(error);
+        }
     }
 
     /// Rewrites the driver's message by `explain`.
@@ -42,7 +49,11 @@ impl Fault {
     }
 
     fn take(&self) -> Option<DeviceError> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some(DeviceError::Lost(why)) => Some(DeviceError::Lost(why.clone())),
+            _ => kept.take(),
+        }
     }
 }
 
@@ -90,10 +101,10 @@ impl Gpu {
         }
     }
 
-    /// Whether the device has reported an error since the last call.
+    /// Whether the device has reported an error since the last call, or is lost.
     ///
     /// # Errors
-    /// The first error.
+    /// The first error, or that the device is lost.
     pub fn check(&self) -> Result<(), DeviceError> {
         self.fault.take().map_or(Ok(()), Err)
     }
@@ -165,6 +176,22 @@ fn one_line(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_lost_device_explains_all_its_errors() {
+        let fault = Fault::default();
+        let [first, second] = ["first", "second"].map(|text| DeviceError::Driver(text.into()));
+        fault.keep(first.clone());
+        fault.keep(second.clone());
+        assert_eq!(fault.take(), Some(first.clone()));
+        assert_eq!(fault.take(), None);
+        fault.keep(first);
+        fault.keep(DeviceError::Lost("gone".into()));
+        fault.keep(second);
+        for _ in 0..2 {
+            assert_eq!(fault.take(), Some(DeviceError::Lost("gone".into())));
+        }
+    }
 
     #[test]
     fn an_unknown_adapter_is_an_error_that_lists_those_there() {
