@@ -1,6 +1,6 @@
 //! `cargo xtask setup`: what tests need beside Rust. A software Vulkan driver where no other is, for
-//! pictures and their tests; a virtual display and what types on it, for the window's test; and the
-//! Python environment.
+//! pictures and their tests; OpenGL, whose pictures are compared with those; a virtual display and what
+//! types on it, for the window's test; and the Python environment.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -8,107 +8,117 @@ use std::process::{Command, Stdio};
 use crate::{python, steps};
 
 /// Folders in which the Vulkan loader looks for drivers on Linux.
-const DRIVERS: &[&str] = &[
+const VULKAN_DRIVERS: &[&str] = &[
     "/usr/share/vulkan/icd.d",
     "/usr/local/share/vulkan/icd.d",
     "/etc/vulkan/icd.d",
 ];
 
-/// Debian's packages: Mesa's drivers, lavapipe among them, and the loader.
-const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
+/// Folders in which libEGL looks for drivers on Linux.
+const OPENGL_DRIVERS: &[&str] = &["/usr/share/glvnd/egl_vendor.d", "/etc/glvnd/egl_vendor.d"];
+
+/// Programs that the window's test runs.
+const PROGRAMS: [&str; 4] = ["Xvfb", "xdotool", "openbox", "import"];
+
+/// What Debian's packages install.
+struct Installed {
+    what: &'static str,
+    /// What cannot be done without it.
+    needed_to: &'static str,
+    packages: &'static [&'static str],
+    is_there: fn() -> bool,
+}
+
+/// Mesa's Vulkan drivers, lavapipe among them, and the loader.
+const VULKAN: Installed = Installed {
+    what: "a Vulkan driver",
+    needed_to: "draw; tests of pictures are skipped",
+    packages: &["mesa-vulkan-drivers", "libvulkan1"],
+    is_there: has_vulkan,
+};
+
+/// OpenGL without a display: the loader, and Mesa's drivers, llvmpipe among them.
+const OPENGL: Installed = Installed {
+    what: "OpenGL",
+    needed_to: "draw with it; its tests are skipped",
+    packages: &["libegl1", "libegl-mesa0", "libgl1-mesa-dri"],
+    is_there: has_opengl,
+};
 
 /// A virtual display, what moves the mouse on it, who gives a window the keyboard, what takes pictures of
 /// it, and the libraries that a window loads on X11.
-const DISPLAY_PACKAGES: [&str; 8] = [
-    "xvfb",
-    "xdotool",
-    "openbox",
-    "imagemagick",
-    "libxkbcommon-x11-0",
-    "libxcursor1",
-    "libxi6",
-    "libxrandr2",
-];
+const DISPLAY: Installed = Installed {
+    what: "a virtual display",
+    needed_to: "test the window; its test is skipped",
+    packages: &[
+        "xvfb",
+        "xdotool",
+        "openbox",
+        "imagemagick",
+        "libxkbcommon-x11-0",
+        "libxcursor1",
+        "libxi6",
+        "libxrandr2",
+    ],
+    is_there: has_display,
+};
 
 /// Sets up all that tests need. Returns a line about each.
 pub(crate) fn run() -> anyhow::Result<String> {
-    let (adapter, display) = (adapter(), display());
+    let graphics = match cfg!(target_os = "linux") {
+        true => [VULKAN, OPENGL, DISPLAY]
+            .map(|part| part.set_up())
+            .join("; "),
+        false => "this system has graphics of its own; the window's test runs on Linux only".into(),
+    };
     let python = python::set_up(&python::TESTS)?;
-    Ok(format!("{python}; {adapter}; {display}"))
+    Ok(format!("{python}; {graphics}"))
 }
 
-/// Installs a virtual display where there is none, on Debian and its kin; says how it is. Never fails.
-fn display() -> String {
-    if !cfg!(target_os = "linux") {
-        return "the window's test runs on Linux only".into();
-    }
-    let programs = ["Xvfb", "xdotool", "openbox", "import"];
-    let is_there = || programs.into_iter().all(is_installed);
-    if is_there() {
-        return "a virtual display is there".into();
-    }
-    let by_hand = format!(
-        "install {} to test the window; its test is skipped",
-        DISPLAY_PACKAGES.join(" ")
-    );
-    if !starts("apt-get", "--version") {
-        return format!("no virtual display: {by_hand}");
-    }
-    let mut install = vec!["install", "-y", "-qq", "--no-install-recommends"];
-    install.extend(DISPLAY_PACKAGES);
-    match apt(&["update", "-qq"]).and_then(|()| apt(&install)) {
-        Ok(()) if is_there() => "installed a virtual display".into(),
-        Ok(()) => format!("no virtual display even so: {by_hand}"),
-        Err(e) => {
-            println!("   {e:#}");
-            format!("no virtual display: {by_hand}")
+impl Installed {
+    /// Installs it where it is not, on Debian and its kin; says how it is. Never fails: without it all
+    /// else works, and the tests that need it are skipped.
+    fn set_up(&self) -> String {
+        let what = self.what;
+        if (self.is_there)() {
+            return format!("{what} is there");
+        }
+        let by_hand = format!("install {} to {}", self.packages.join(" "), self.needed_to);
+        if !starts("apt-get", "--version") {
+            return format!("{what} is missing: {by_hand}");
+        }
+        let mut install = vec!["install", "-y", "-qq", "--no-install-recommends"];
+        install.extend(self.packages);
+        match apt(&["update", "-qq"]).and_then(|()| apt(&install)) {
+            Ok(()) if (self.is_there)() => format!("installed {what}"),
+            Ok(()) => format!("{what} is missing even so: {by_hand}"),
+            Err(e) => {
+                println!("   {e:#}");
+                format!("{what} is missing: {by_hand}")
+            }
         }
     }
 }
 
-/// Installs lavapipe where no Vulkan driver is, on Debian and its kin; says how it is. Never fails:
-/// without a driver all but pictures works, and their tests are skipped.
-fn adapter() -> String {
-    if !cfg!(target_os = "linux") {
-        return "this system has graphics of its own".into();
-    }
-    if has_driver() {
-        return "a Vulkan driver is there".into();
-    }
-    let by_hand = format!(
-        "install {} to draw; tests of pictures are skipped",
-        PACKAGES.join(" ")
-    );
-    if !starts("apt-get", "--version") {
-        return format!("no Vulkan driver: {by_hand}");
-    }
-    let installed = apt(&["update", "-qq"]).and_then(|()| {
-        apt(&[
-            "install",
-            "-y",
-            "-qq",
-            "--no-install-recommends",
-            PACKAGES[0],
-            PACKAGES[1],
-        ])
-    });
-    match installed {
-        Ok(()) if has_driver() => "installed lavapipe, a Vulkan driver in software".into(),
-        Ok(()) => format!("no Vulkan driver even so: {by_hand}"),
-        Err(e) => {
-            println!("   {e:#}");
-            format!("no Vulkan driver: {by_hand}")
-        }
-    }
-}
-
-fn has_driver() -> bool {
+fn has_vulkan() -> bool {
     let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+    named.iter().any(|name| std::env::var_os(name).is_some()) || any_has_files(VULKAN_DRIVERS)
+}
+
+fn has_opengl() -> bool {
+    any_has_files(OPENGL_DRIVERS)
+}
+
+fn has_display() -> bool {
+    PROGRAMS.into_iter().all(is_installed)
+}
+
+fn any_has_files(folders: &[&str]) -> bool {
     let has_files = |folder: &&str| {
         let entries = std::fs::read_dir(Path::new(folder));
         entries.is_ok_and(|mut entries| entries.next().is_some())
     };
-    named.iter().any(|name| std::env::var_os(name).is_some()) || DRIVERS.iter().any(has_files)
+    folders.iter().any(has_files)
 }
 
 /// `apt-get` as the administrator, who is not asked for a password.

@@ -26,10 +26,8 @@ mod shader_tests;
 
 /// Adapters: their names, how one is selected, and what a device needs.
 pub mod adapter {
-    pub use crate::gpu::device::{
-        ADAPTER_VARIABLE, AdapterName, adapters, device_descriptor, optional_features,
-        select_adapter,
-    };
+    pub use crate::gpu::adapter::{ADAPTER_VARIABLE, AdapterName, adapters, select_adapter};
+    pub use crate::gpu::device::{device_descriptor, optional_features};
 }
 
 /// Bounding spheres of meshes, and whether they are in view.

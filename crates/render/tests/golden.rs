@@ -3,31 +3,22 @@
 //! `NEUROTESS_GOLDEN=renew cargo test -p neurotess-render --test golden` (or `cargo xtask pictures
 //! --golden`) writes them anew. Where one fails, `before`, `after` and `difference` are written to
 //! the folder that the failure names.
-//!
-//! **Tolerance.** Drivers place samples and round differently, so pictures are compared as an eye
-//! does: blurred over 3 × 3 pixels, at most 1 of 255 apart in the mean and at most one pixel in 200
-//! more than 16 apart.
 
 mod adapter;
+mod compared;
 mod pictured;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use adapter::{device, gpu};
+use compared::{Difference, MEAN};
 use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::color::{ColorMap, fraction};
 use neurotess_render::overlay::{Legend, Overlay, OverlayOptions};
 use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, PngWriter, Side};
 use pictured::{explored, mesh, picture, picture_of, spheres};
-
-/// Greatest mean difference of blurred channels, of 255.
-const MEAN: f64 = 1.0;
-/// Difference of a blurred channel that counts, of 255.
-const MUCH: f64 = 16.0;
-/// Greatest share of pixels that differ by so much.
-const SHARE: f64 = 0.005;
 
 fn sample(name: &str) -> CoarseMesh {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -152,20 +143,12 @@ fn compare(name: &str, image: &Image) {
         return;
     }
     let before = read(&kept);
-    assert_eq!(
-        (before.width, before.height),
-        (image.width, image.height),
-        "{name}"
-    );
-    let [a, b] = [&before, image].map(blurred);
-    let steps: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).collect();
-    let mean = steps.iter().sum::<f64>() / steps.len() as f64;
-    let far = |pixel: &&[f64]| pixel.iter().any(|&step| step > MUCH);
-    let share = 4.0 * steps.chunks(4).filter(far).count() as f64 / steps.len() as f64;
-    if mean > MEAN || share > SHARE {
+    let difference = Difference::between(&before, image);
+    if difference.is_seen() {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
-        let difference = Image {
-            pixels: steps
+        let shown = Image {
+            pixels: difference
+                .steps
                 .chunks(4)
                 .flat_map(|p| {
                     [0, 1, 2, 3].map(|k| {
@@ -182,37 +165,15 @@ fn compare(name: &str, image: &Image) {
         for (what, image) in [
             ("before", &before),
             ("after", image),
-            ("difference", &difference),
+            ("difference", &shown),
         ] {
             write(&folder.join(format!("{name}-{what}.png")), image);
         }
         panic!(
-            "{name}: {mean:.2} apart in the mean, {:.2} % of pixels far apart: look at {}/{name}-*.png; \
-             if it is right, cargo xtask pictures --golden",
-            100.0 * share,
+            "{name}: {difference}: look at {}/{name}-*.png; if it is right, cargo xtask pictures --golden",
             folder.display()
         );
     }
-}
-
-/// Means over 3 × 3 pixels, colors premultiplied.
-fn blurred(image: &Image) -> Vec<f64> {
-    let (width, height) = (i64::from(image.width), i64::from(image.height));
-    let mut out = Vec::with_capacity(image.pixels.len());
-    for y in 0..height {
-        for x in 0..width {
-            let mut sum = [0.0; 4];
-            for (dx, dy) in (0..9).map(|i| (i % 3 - 1, i / 3 - 1)) {
-                let (x, y) = ((x + dx).clamp(0, width - 1), (y + dy).clamp(0, height - 1));
-                let p = image.at(x as u32, y as u32).map(f64::from);
-                for k in 0..4 {
-                    sum[k] += if k < 3 { p[k] * p[3] / 255.0 } else { p[k] } / 9.0;
-                }
-            }
-            out.extend(sum);
-        }
-    }
-    out
 }
 
 fn write(path: &Path, image: &Image) {
@@ -246,15 +207,10 @@ fn a_changed_picture_is_noticed() {
         }
         image
     };
-    let apart = |a: &Image, b: &Image| {
-        let steps = blurred(a)
-            .into_iter()
-            .zip(blurred(b))
-            .map(|(a, b)| (a - b).abs());
-        steps.fold(0.0, |sum, step| sum + step) / a.pixels.len() as f64
-    };
-    assert_eq!(apart(&image(0), &image(0)), 0.0);
-    assert!(apart(&image(0), &image(2)) > MEAN);
+    let apart = |a: usize, b: usize| Difference::between(&image(a), &image(b));
+    assert_eq!(apart(0, 0).mean, 0.0);
+    assert!(!apart(0, 0).is_seen());
+    assert!(apart(0, 2).mean > MEAN && apart(0, 2).is_seen());
 }
 
 neurotess_testing::main!();

@@ -5,8 +5,8 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::gpu;
 use crate::work::{BROKEN, Run, SMALL, Work};
+use crate::{gpu, mesa_opengl};
 
 /// A picture: width, height, samples of a pixel, bytes.
 pub(crate) struct Picture {
@@ -314,6 +314,27 @@ fn without_an_adapter_it_says_what_to_install() {
     assert_eq!(work.names("."), ["cell.swc"]);
     let version = run("--version -v").exits(0).stdout();
     assert!(version.contains("adapter: none"), "{version}");
+}
+
+#[neurotess_testing::test(needs(mesa_opengl))]
+fn an_adapter_that_cannot_draw_says_what_it_lacks() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let mut command = work.command("render cell.swc -o cell.png --adapter gl");
+    command
+        .env("MESA_GL_VERSION_OVERRIDE", "4.2")
+        .env("MESA_EXTENSION_OVERRIDE", "-GL_ARB_compute_shader");
+    let run = Run(command.output().expect("it runs")).exits(1);
+    let errors = run.errors();
+    assert_eq!(errors.len(), 1, "{}", run.stderr());
+    assert!(
+        errors[0].contains("[gl]")
+            && errors[0].contains("no compute shaders")
+            && errors[0].contains("another adapter"),
+        "{}",
+        run.stderr()
+    );
+    assert_eq!(work.names("."), ["cell.swc"]);
 }
 
 #[neurotess_testing::test]

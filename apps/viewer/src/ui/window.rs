@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use eframe::egui::{self, ViewportBuilder};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use neurotess::render::DeviceError;
 use neurotess::render::adapter::{device_descriptor, select_adapter};
+use neurotess::render::{DeviceError, Gpu};
 use thiserror::Error;
 
 use crate::io::background::wait_for_background;
@@ -150,8 +150,8 @@ pub fn wgpu_setup(wanted: Option<String>, refused: Arc<Mutex<Option<String>>>) -
 /// Environment variable for tests: once the file that it names exists, the device is lost.
 const LOSE: &str = "NEUROTESS_TEST_LOSE_DEVICE";
 
-/// How many times a device is checked for being lost, every 10 ms.
-const LOST_POLLS: usize = 100;
+/// How many times a device that is at work is checked for being lost, every 10 ms.
+const LOST_POLLS: usize = 1000;
 
 /// How long threads are waited for at the end; they were asked to stop.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -232,20 +232,25 @@ impl Drop for Window {
         if !std::thread::panicking() || fatal.is_some() {
             return;
         }
-        let gpu = self.viewer.stage.gpu();
-        // Errors of the device, once its running work has ended.
-        let mut faults = (0..LOST_POLLS).filter_map(|_| {
-            std::thread::sleep(Duration::from_millis(10));
-            let _ = gpu.device.poll(wgpu::PollType::Poll);
-            gpu.check().err()
-        });
-        // Other errors of a lost device do not explain anything.
-        let why = faults.find_map(|fault| match fault {
-            DeviceError::Lost(why) => Some(lost(&why)),
-            _ => None,
-        });
+        let why = why_lost(self.viewer.stage.gpu());
         let bug = || "a bug in neurotess ended it, please report what stands above".into();
         let why = why.unwrap_or_else(bug);
         *fatal = Some(self.viewer.rescue(&why));
     }
+}
+
+/// Why a device is lost; none if it is not. It says so once its running work has ended.
+fn why_lost(gpu: &Gpu) -> Option<String> {
+    for _ in 0..LOST_POLLS {
+        let polled = gpu.device.poll(wgpu::PollType::Poll);
+        // Other errors of a lost device do not explain anything.
+        if let Err(DeviceError::Lost(why)) = gpu.check() {
+            return Some(lost(&why));
+        }
+        if polled.is_ok_and(|status| status.is_queue_empty()) {
+            return None;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    None
 }

@@ -1,16 +1,15 @@
-//! The GPU without a window: its adapter, its limits and its errors.
+//! The GPU without a window: its limits and its errors.
 //!
 //! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until they are
 //! taken: by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use wgpu::{Adapter, Backends, DeviceType, Features, Limits};
+use wgpu::{Adapter, Features, Limits};
 
+use crate::gpu::adapter::{AdapterName, find_adapter, name};
 use crate::gpu::error::DeviceError;
-
-/// Environment variable that names the adapter if nothing else does.
-pub const ADAPTER_VARIABLE: &str = "NEUROTESS_ADAPTER";
+use crate::gpu::heap;
 
 /// An open device with its queue.
 #[derive(Debug)]
@@ -24,25 +23,21 @@ pub struct Gpu {
     fault: Fault,
 }
 
-/// Name of an adapter.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterName {
-    /// Name and driver, as in `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6`.
-    pub name: String,
-    /// `vulkan`, `metal`, `dx12` or `gl`.
-    pub backend: String,
-    /// Whether it draws on the CPU.
-    pub software: bool,
-}
-
-/// The first error since the last check.
+/// The first error since the last check. Once the device is lost, nothing else, however often it is taken:
+/// all other errors follow from it, and of several threads that check each must hear of it.
 #[derive(Clone, Debug, Default)]
 struct Fault(Arc<Mutex<Option<DeviceError>>>);
 
 impl Fault {
     fn keep(&self, error: DeviceError) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get_or_insert(error);
+        let is_lost = |error: &DeviceError| matches!(error, DeviceError::Lost(_));
+        if kept
+            .as_ref()
+            .is_none_or(|kept| is_lost(&error) && !is_lost(kept))
+        {
+            *kept = Some(error);
+        }
     }
 
     /// Rewrites the driver's message by `explain`.
@@ -54,20 +49,17 @@ impl Fault {
     }
 
     fn take(&self) -> Option<DeviceError> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some(DeviceError::Lost(why)) => Some(DeviceError::Lost(why.clone())),
+            _ => kept.take(),
+        }
     }
 }
 
-/// Names of all adapters, the best first.
-pub fn adapters() -> Vec<AdapterName> {
-    let mut adapters = found(Backends::PRIMARY);
-    adapters.extend(found(Backends::SECONDARY));
-    adapters.iter().map(name).collect()
-}
-
 impl Gpu {
-    /// Opens the best adapter, or the best of those whose name or backend contains `wanted` (in
-    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
+    /// Opens the best adapter, or the best of those whose backend is `wanted` or whose name contains it (in
+    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`](crate::adapter::ADAPTER_VARIABLE) decides, if it is set.
     ///
     /// The device has the adapter's own limits, and those of [`optional_features`] that it
     /// supports.
@@ -75,15 +67,7 @@ impl Gpu {
     /// # Errors
     /// There is no such adapter, or its driver reports an error.
     pub fn open(wanted: Option<&str>) -> Result<Self, DeviceError> {
-        let variable = std::env::var(ADAPTER_VARIABLE).ok();
-        let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
-        // OpenGL last and only if needed, since without a display it prints messages when it
-        // starts.
-        let mut adapters = found(Backends::PRIMARY);
-        if choose(&adapters, wanted).is_err() {
-            adapters.extend(found(Backends::SECONDARY));
-        }
-        let adapter = choose(&adapters, wanted)?;
+        let adapter = &find_adapter(wanted)?;
         let named = name(adapter);
         let refused = |reason: String| DeviceError::Refused {
             adapter: named.name.clone(),
@@ -105,18 +89,22 @@ impl Gpu {
         device.set_device_lost_callback(move |_, message| {
             of_device.keep(DeviceError::Lost(one_line(&message)));
         });
+        let adapter = name(adapter);
+        if adapter.software {
+            heap::keep_freed_memory();
+        }
         Self {
             device,
             queue,
-            adapter: name(adapter),
+            adapter,
             fault,
         }
     }
 
-    /// Whether the device has reported an error since the last call.
+    /// Whether the device has reported an error since the last call, or is lost.
     ///
     /// # Errors
-    /// The first error.
+    /// The first error, or that the device is lost.
     pub fn check(&self) -> Result<(), DeviceError> {
         self.fault.take().map_or(Ok(()), Err)
     }
@@ -172,93 +160,6 @@ pub fn device_descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
     }
 }
 
-/// The best of these adapters that can do what we need, or the best whose name or backend contains
-/// `wanted`; without `wanted`, [`ADAPTER_VARIABLE`] decides, if it is set.
-///
-/// # Errors
-/// No such adapter.
-pub fn select_adapter(adapters: &[Adapter], wanted: Option<&str>) -> Result<Adapter, DeviceError> {
-    let variable = std::env::var(ADAPTER_VARIABLE).ok();
-    let wanted = wanted.or(variable.as_deref()).filter(|w| !w.is_empty());
-    let mut able: Vec<Adapter> = adapters.iter().filter(|a| is_able(a)).cloned().collect();
-    able.sort_by_key(rank);
-    choose(&able, wanted).cloned()
-}
-
-fn is_able(adapter: &Adapter) -> bool {
-    let able = wgpu::DownlevelFlags::COMPUTE_SHADERS
-        | wgpu::DownlevelFlags::VERTEX_STORAGE
-        | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
-    adapter.get_downlevel_capabilities().flags.contains(able)
-}
-
-/// Adapters that can do what we need, the best first.
-fn found(backends: Backends) -> Vec<Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        flags: wgpu::InstanceFlags::empty(),
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    adapters.retain(is_able);
-    adapters.sort_by_key(rank);
-    adapters
-}
-
-/// Real GPUs first.
-fn rank(adapter: &Adapter) -> u8 {
-    match adapter.get_info().device_type {
-        DeviceType::DiscreteGpu => 0,
-        DeviceType::IntegratedGpu => 1,
-        DeviceType::VirtualGpu => 2,
-        DeviceType::Other => 3,
-        DeviceType::Cpu => 4,
-    }
-}
-
-fn choose<'a>(adapters: &'a [Adapter], wanted: Option<&str>) -> Result<&'a Adapter, DeviceError> {
-    let best = adapters.first().ok_or(DeviceError::NoAdapter)?;
-    let Some(wanted) = wanted else {
-        return Ok(best);
-    };
-    let names: Vec<AdapterName> = adapters.iter().map(name).collect();
-    match names.iter().position(|name| name.answers_to(wanted)) {
-        Some(place) => Ok(&adapters[place]),
-        None => Err(DeviceError::UnknownAdapter {
-            wanted: wanted.to_owned(),
-            there: names.iter().map(ToString::to_string).collect(),
-        }),
-    }
-}
-
-fn name(adapter: &Adapter) -> AdapterName {
-    let info = adapter.get_info();
-    let driver = [info.driver, info.driver_info].join(" ");
-    let name = match driver.trim() {
-        "" => info.name,
-        driver => format!("{}, {driver}", info.name),
-    };
-    AdapterName {
-        name,
-        backend: info.backend.to_str().to_owned(),
-        software: info.device_type == DeviceType::Cpu,
-    }
-}
-
-impl AdapterName {
-    fn answers_to(&self, wanted: &str) -> bool {
-        self.to_string()
-            .to_lowercase()
-            .contains(&wanted.to_lowercase())
-    }
-}
-
-impl std::fmt::Display for AdapterName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} [{}]", self.name, self.backend)
-    }
-}
-
 fn complaint(error: wgpu::Error) -> DeviceError {
     match error {
         wgpu::Error::OutOfMemory { .. } => DeviceError::OutOfMemory,
@@ -277,16 +178,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn adapters_answer_to_parts_of_their_name_and_backend() {
-        let lavapipe = AdapterName {
-            name: "llvmpipe (LLVM 15), Mesa".into(),
-            backend: "vulkan".into(),
-            software: true,
-        };
-        for yes in ["LLVMpipe", "vulkan", "mesa"] {
-            assert!(lavapipe.answers_to(yes), "{yes}");
+    fn a_lost_device_explains_all_its_errors() {
+        let fault = Fault::default();
+        let [first, second] = ["first", "second"].map(|text| DeviceError::Driver(text.into()));
+        fault.keep(first.clone());
+        fault.keep(second.clone());
+        assert_eq!(fault.take(), Some(first.clone()));
+        assert_eq!(fault.take(), None);
+        fault.keep(first);
+        fault.keep(DeviceError::Lost("gone".into()));
+        fault.keep(second);
+        for _ in 0..2 {
+            assert_eq!(fault.take(), Some(DeviceError::Lost("gone".into())));
         }
-        assert!(!lavapipe.answers_to("metal"));
     }
 
     #[test]

@@ -19,6 +19,18 @@ pub enum DeviceError {
         /// Names of the adapters that exist.
         there: Vec<String>,
     },
+    /// The adapter cannot do what is needed to draw.
+    #[error(
+        "{adapter} cannot draw neurons, since it has no {}: update its driver, choose another adapter, or \
+         install Mesa's software Vulkan (Debian: apt-get install mesa-vulkan-drivers libvulkan1)",
+        .lacks.join(", no ")
+    )]
+    Unable {
+        /// Name of the adapter.
+        adapter: String,
+        /// What it would have to have.
+        lacks: Vec<&'static str>,
+    },
     /// The driver did not open the adapter.
     #[error("{adapter} cannot be opened ({reason}): choose another adapter")]
     Refused {

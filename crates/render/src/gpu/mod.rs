@@ -1,8 +1,10 @@
 //! The device: opening it, its errors, buffers and times.
 
+pub(crate) mod adapter;
 pub(crate) mod buffers;
 pub(crate) mod device;
 pub(crate) mod error;
 pub(crate) mod growable;
+mod heap;
 pub(crate) mod shader;
 pub(crate) mod timing;

@@ -1,5 +1,5 @@
 // The last pass of a progressive picture: adds this step's samples to those of the steps before,
-// and computes the bytes of their mean. Called by progressive/mod.rs.
+// and computes the bytes of their mean. Called by progressive/draw.rs.
 
 #import finish.wgsl
 #import occlusion.wgsl

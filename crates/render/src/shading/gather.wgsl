@@ -1,4 +1,4 @@
-// The last pass of a tile: from samples to the bytes of a picture. Called by tiles.rs, for blocks of pixels
+// The last pass of a tile: from samples to the bytes of a picture. Called by tiles/mod.rs, for blocks of pixels
 // in which anything shows; the others are 0.
 
 #import finish.wgsl

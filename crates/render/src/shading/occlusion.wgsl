@@ -1,4 +1,4 @@
-// Ambient occlusion from depth and normals. Called by tiles.rs. Rust twin of the uniform:
+// Ambient occlusion from depth and normals. Called by tiles/mod.rs. Rust twin of the uniform:
 // finish.rs.
 //
 // Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012: samples on a spiral, each

@@ -1,5 +1,5 @@
 // From a source's vertices to lit samples: projection, widening of thin tubes, color, light,
-// wireframe. Called by tiles.rs, with a vertex source. Rust twin of the uniform: shade.rs. SAMPLES
+// wireframe. Called by tiles/pass.rs, with a vertex source. Rust twin of the uniform: shade.rs. SAMPLES
 // is the number of samples of a sub-pixel.
 
 #import surface_vertex.wgsl

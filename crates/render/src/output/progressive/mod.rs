@@ -15,8 +15,11 @@
 
 mod canvas;
 mod clock;
+mod draw;
+mod picking;
 mod recoloring;
 mod step;
+mod under_way;
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -25,21 +28,19 @@ use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::output::ids::Identifier;
-use crate::output::options::{Occlusion, samples_in_sub_pixel};
-use crate::output::static_picture::StaticPicture;
-use crate::output::tiles::{TilePass, TileRenderer};
+use crate::output::options::samples_in_sub_pixel;
+use crate::output::tiles::TileRenderer;
 use crate::scene::color::{ColorTable, InstanceValues};
 use crate::shading::finish::{Finish, Finisher, Last};
 use crate::shading::present::{Outlines, Presenter};
 use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
-use crate::sources::pick::PickIds;
-use crate::view::frame::Frame;
 
 use canvas::Canvas;
 use clock::Clock;
 use recoloring::Recoloring;
-use step::{finish_uniform, offset, selected, shade};
+use step::selected;
+use under_way::UnderWay;
 
 pub use step::{Steps, ViewParams};
 
@@ -63,37 +64,6 @@ pub struct ProgressiveRenderer {
     occluded: Option<ViewParams>,
     recoloring: Recoloring,
     clock: Arc<Clock>,
-}
-
-/// How far a picture has come.
-#[derive(Clone, Copy, Debug)]
-struct UnderWay {
-    params: ViewParams,
-    steps: Steps,
-    draft: bool,
-    step: u32,
-    slice: u32,
-    /// Whether slices are bands of rows, each with a selection of its own.
-    banded: bool,
-    /// Whether it is drawn for its depths and occlusion alone, and only in its first step.
-    hidden: bool,
-}
-
-impl UnderWay {
-    fn new(params: ViewParams, steps: Steps) -> Self {
-        Self {
-            params,
-            steps: Steps {
-                slices: steps.slices.clamp(1, params.size[1].max(1)),
-                steps: steps.steps.max(1),
-            },
-            draft: false,
-            step: 0,
-            slice: 0,
-            banded: false,
-            hidden: false,
-        }
-    }
 }
 
 impl ProgressiveRenderer {
@@ -168,21 +138,7 @@ impl ProgressiveRenderer {
         let samples = samples_in_sub_pixel(gpu, 4);
         let renderer = self.renderer(gpu, source, samples, params)?;
         self.make_canvas(gpu, true, params.size, samples)?;
-        let way = UnderWay {
-            params: ViewParams {
-                occlusion: Occlusion::Off,
-                ..*params
-            },
-            steps: Steps {
-                steps: 1,
-                slices: 1,
-            },
-            draft: true,
-            step: 0,
-            slice: 0,
-            banded: false,
-            hidden: false,
-        };
+        let way = UnderWay::draft(params);
         self.shows_draft = true;
         self.draw(gpu, source, renderer, &way)
     }
@@ -218,7 +174,7 @@ impl ProgressiveRenderer {
         };
         if (way.step, way.slice) == (0, 0) {
             let rounds = source.prepare(gpu, &selected(&way.params, None))?;
-            lay_out(&mut way, rounds, source);
+            way.lay_out(rounds, source);
         }
         let samples = samples_in_sub_pixel(gpu, 4);
         let renderer = self.renderer(gpu, source, samples, &way.params)?;
@@ -268,47 +224,6 @@ impl ProgressiveRenderer {
     /// Whether it is a draft that shows.
     pub fn shows_draft(&self) -> bool {
         self.shows_draft
-    }
-
-    /// Draws the ids of a picture for picking; [`ProgressiveRenderer::ids`] has them a little
-    /// later.
-    ///
-    /// # Errors
-    /// What the device cannot do.
-    pub fn identify(
-        &mut self,
-        gpu: &Gpu,
-        source: &mut dyn VertexSource,
-        params: &ViewParams,
-    ) -> Result<(), DeviceError> {
-        let renderer = self.renderer(gpu, source, 1, params)?;
-        let renderer = &self.renderers[renderer];
-        if self.identifier.as_ref().is_none_or(|i| !i.fits(renderer)) {
-            self.identifier = Identifier::new(gpu, renderer, source);
-        }
-        let Some(identifier) = &mut self.identifier else {
-            return Ok(());
-        };
-        let shade = shade(renderer, params);
-        identifier.draw(
-            gpu,
-            renderer,
-            source,
-            &selected(params, None),
-            shade,
-            params.size,
-        )?;
-        self.clock.start(gpu);
-        Ok(())
-    }
-
-    /// The size of the picture that was identified last and its ids by row: given out once, and
-    /// none before they have arrived.
-    ///
-    /// # Errors
-    /// The device is lost.
-    pub fn ids(&mut self) -> Result<Option<PickIds>, DeviceError> {
-        self.identifier.as_mut().map_or(Ok(None), Identifier::take)
     }
 
     /// Bytes of textures and buffers.
@@ -376,130 +291,5 @@ impl ProgressiveRenderer {
             gpu.check()?;
         }
         Ok(())
-    }
-
-    /// Draws one slice of one step. The last slice also finishes the step.
-    fn draw(
-        &self,
-        gpu: &Gpu,
-        source: &mut dyn VertexSource,
-        renderer: usize,
-        way: &UnderWay,
-    ) -> Result<(), DeviceError> {
-        let UnderWay { params, steps, .. } = way;
-        let renderer = &self.renderers[renderer];
-        let canvas = match way.draft {
-            true => self.draft.as_ref(),
-            false => self.fine.as_ref(),
-        };
-        let Some(canvas) = canvas else {
-            return Ok(());
-        };
-        let [width, height] = params.size;
-        let edge = |slice: u32, all: u32| {
-            (u64::from(slice) * u64::from(all) / u64::from(steps.slices)) as u32
-        };
-        let slice = |all: u32| edge(way.slice, all)..edge(way.slice + 1, all);
-        let (rows, shaders) = match way.banded {
-            true => (slice(height), 0..usize::MAX),
-            false => {
-                let shaders = slice(source.shaders() as u32);
-                (0..height, shaders.start as usize..shaders.end as usize)
-            }
-        };
-        let place = offset(way.step, steps.steps);
-        let shade = shade(renderer, params).moved(steps.steps, place);
-        gpu.queue
-            .write_buffer(&renderer.shade, 0, bytemuck::bytes_of(&shade));
-        let group = renderer.shade_group(gpu);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let band = way.banded.then_some((rows.start, rows.end));
-        let rounds = source.prepare(gpu, &selected(params, band))?.max(1);
-        for round in 0..rounds {
-            source.select(round, &mut encoder, None);
-            let part = TilePass {
-                round,
-                shaders: shaders.clone(),
-                first: way.slice == 0 && round == 0,
-                last: way.slice + 1 == steps.slices && round + 1 == rounds,
-                within: Some([0, rows.start, width, rows.end - rows.start]),
-            };
-            renderer.draw(source, &part, &canvas.targets, &group, &mut encoder);
-        }
-        if way.slice + 1 == steps.slices {
-            self.finish(gpu, canvas, way, &mut encoder);
-        }
-        gpu.queue.submit([encoder.finish()]);
-        self.clock.start(gpu);
-        gpu.check()
-    }
-
-    fn finish(
-        &self,
-        gpu: &Gpu,
-        canvas: &Canvas,
-        way: &UnderWay,
-        encoder: &mut wgpu::CommandEncoder,
-    ) {
-        let UnderWay {
-            params,
-            steps,
-            step,
-            ..
-        } = way;
-        let Some((_, finisher)) = self.finishers.iter().find(|(n, _)| *n == canvas.samples) else {
-            return;
-        };
-        let frame = Frame::whole(params.camera, params.near, params.size);
-        let uniform = finish_uniform(params, &frame, *step, steps.steps);
-        gpu.queue
-            .write_buffer(&self.finish, 0, bytemuck::bytes_of(&uniform));
-        let group = canvas.group(gpu, finisher, &self.finish);
-        // Steps lie within the same pixel, so occlusion is computed once for all of them.
-        let occluded = uniform.radius > 0.0 && *step == 0;
-        if occluded {
-            finisher.begin(&canvas.targets, encoder);
-        }
-        let over = params.size.map(|n| n.div_ceil(8));
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("finish"),
-            timestamp_writes: None,
-        });
-        pass.set_bind_group(0, &group, &[]);
-        if occluded {
-            let targets = &canvas.targets;
-            finisher.find_blocks(gpu, targets, &mut pass);
-            finisher.occlude(targets, &mut pass);
-            finisher.blur(targets, &mut pass);
-        }
-        pass.set_pipeline(&finisher.last);
-        pass.dispatch_workgroups(over[0], over[1], 1);
-        drop(pass);
-        if !way.hidden {
-            self.present(gpu, canvas, encoder);
-        }
-    }
-
-    /// Encodes writing the picture of a canvas into its texture.
-    fn present(&self, gpu: &Gpu, canvas: &Canvas, encoder: &mut wgpu::CommandEncoder) {
-        let fine = !self.shows_draft;
-        let recolored = self.recoloring.colored().filter(|_| fine);
-        let pixels = recolored.map_or(&canvas.targets.pixels, StaticPicture::pixels);
-        let from = (pixels, &canvas.targets.normal);
-        self.presenter
-            .present(gpu, from, &canvas.screen, &self.outlines, encoder);
-    }
-}
-
-/// Decides what the slices of a picture are. What is selected in one round is drawn shader by
-/// shader, and is not selected again for every slice; with several `rounds` the picture is drawn in
-/// bands of rows.
-fn lay_out(way: &mut UnderWay, rounds: usize, source: &dyn VertexSource) {
-    way.banded = rounds > 1 && way.steps.slices > 1;
-    if !way.banded {
-        way.steps.slices = way.steps.slices.min(source.shaders() as u32);
-    } else if way.params.frozen.is_some() {
-        // What a band of rows shows is not known to a selection for another camera.
-        (way.banded, way.steps.slices) = (false, 1);
     }
 }

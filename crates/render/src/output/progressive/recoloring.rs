@@ -17,7 +17,8 @@ use crate::sources::VertexSource;
 use crate::view::frame::{Frame, Tile};
 
 use super::step::{finish_uniform, offset, selected, shade};
-use super::{ProgressiveRenderer, Steps, UnderWay, ViewParams};
+use super::under_way::UnderWay;
+use super::{ProgressiveRenderer, Steps, ViewParams};
 
 /// Most pixels of a band.
 const BAND_PIXELS: u32 = 1 << 18;

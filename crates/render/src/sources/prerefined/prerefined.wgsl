@@ -1,5 +1,5 @@
 // Vertices of a surface that was refined beforehand and is stored in buffers. Called by shade.wgsl.
-// Rust twin: mod.rs beside it. BARYCENTRIC says whether no two triangles share corners.
+// Rust twin: stored.rs. BARYCENTRIC says whether no two triangles share corners.
 
 #import surface_vertex.wgsl
 #import octahedral.wgsl

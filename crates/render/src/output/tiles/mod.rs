@@ -5,10 +5,9 @@
 //!                  (samples per sub-pixel)          (sub-pixels)       (pixels)
 //! ```
 
-use std::ops::Range;
-
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+mod pass;
+mod read;
+mod tile;
 
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
@@ -16,79 +15,17 @@ use crate::gpu::error::DeviceError;
 use crate::gpu::timing::{Pass, Timer};
 use crate::output::static_picture::collect::{Collected, Collector, Wanted};
 use crate::output::watch::Watch;
-use crate::scene::color::{ColorTable, Rgb, linear};
+use crate::scene::color::{ColorTable, linear};
 use crate::shading::finish::{Finish, Finisher, Last};
-use crate::shading::shade::{GUARD, Look, PipelineKey, Shade, Shader, TableSizes};
+use crate::shading::shade::{Look, PipelineKey, Shade, Shader, TableSizes};
 use crate::shading::targets::Targets;
 use crate::sources::VertexSource;
 use crate::view::frame::Frame;
 
-/// How a tile is finished.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Finishing {
-    /// Sub-pixels per pixel along a side.
-    pub(crate) scale: u32,
-    /// Radius (µm) of ambient occlusion, and the most sub-pixels that it may reach.
-    pub(crate) occlusion: Option<(f32, f32)>,
-    /// Color behind everything; none: transparent.
-    pub(crate) background: Option<Rgb>,
-}
+use read::{filled, read_watched};
 
-impl Finishing {
-    /// Bytes of a pixel where nothing is.
-    pub(crate) fn empty_pixel(&self) -> [u8; 4] {
-        self.background.map_or([0; 4], |[r, g, b]| [r, g, b, 255])
-    }
-}
-
-/// A render pass over the targets.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct TilePass {
-    pub(crate) round: usize,
-    /// Those of the source's shaders that draw.
-    pub(crate) shaders: Range<usize>,
-    /// Whether the targets are cleared before.
-    pub(crate) first: bool,
-    /// Whether it is the last pass of the tile, which resolves samples to sub-pixels.
-    pub(crate) last: bool,
-    /// Left, top, width and height of the rectangle that is drawn to; none: the whole target.
-    pub(crate) within: Option<[u32; 4]>,
-}
-
-impl TilePass {
-    fn round(round: usize, rounds: usize) -> Self {
-        Self {
-            round,
-            shaders: 0..usize::MAX,
-            first: round == 0,
-            last: round + 1 == rounds,
-            within: None,
-        }
-    }
-}
-
-/// What is drawn at once, and what is kept of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KeptTile {
-    /// What is drawn.
-    pub(crate) frame: Frame,
-    /// The upper left sub-pixel of what is kept.
-    pub(crate) inset: [u32; 2],
-    /// Width and height (pixels) of what is kept.
-    pub(crate) kept: [u32; 2],
-}
-
-impl KeptTile {
-    /// The frame of what is kept. `scale`: sub-pixels per pixel along a side.
-    fn without_margin(&self, scale: u32) -> Frame {
-        let mut kept = self.frame;
-        kept.tile.x += self.inset[0] as i32;
-        kept.tile.y += self.inset[1] as i32;
-        kept.tile.width = self.kept[0] * scale;
-        kept.tile.height = self.kept[1] * scale;
-        kept
-    }
-}
+pub(crate) use pass::TilePass;
+pub(crate) use tile::{Finishing, KeptTile};
 
 /// Draws tiles, with pipelines for one kind of source.
 pub(crate) struct TileRenderer {
@@ -395,72 +332,6 @@ impl TileRenderer {
         Ok(())
     }
 
-    /// Draws what the source selected last.
-    pub(crate) fn draw(
-        &self,
-        source: &dyn VertexSource,
-        part: &TilePass,
-        targets: &Targets,
-        group: &wgpu::BindGroup,
-        encoder: &mut wgpu::CommandEncoder,
-    ) {
-        let empty = match part.first {
-            true => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-            false => wgpu::LoadOp::Load,
-        };
-        let attachment = |view, resolve_target, store| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target,
-                ops: wgpu::Operations { load: empty, store },
-            })
-        };
-        let kept = match part.last {
-            true => wgpu::StoreOp::Discard,
-            false => wgpu::StoreOp::Store,
-        };
-        let resolved = targets.resolved.as_ref().filter(|_| part.last);
-        let color_store = match targets.resolved {
-            Some(_) => kept,
-            None => wgpu::StoreOp::Store,
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("draw"),
-            color_attachments: &[
-                attachment(&targets.color, resolved, color_store),
-                attachment(&targets.normal, None, wgpu::StoreOp::Store),
-                attachment(&targets.distance, None, wgpu::StoreOp::Store),
-            ],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &targets.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: match part.first {
-                        true => wgpu::LoadOp::Clear(0.0),
-                        false => wgpu::LoadOp::Load,
-                    },
-                    // The next round needs the depths of this one.
-                    store: kept,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: self.timer.render(Pass::Draw),
-            ..Default::default()
-        });
-        pass.set_bind_group(1, group, &[]);
-        let [width, height] = targets.size.map(|n| n as f32 + 2.0 * GUARD);
-        pass.set_viewport(-GUARD, -GUARD, width, height, 0.0, 1.0);
-        if let Some([x, y, width, height]) = part.within {
-            pass.set_scissor_rect(x, y, width, height);
-        }
-        for (shader, pipeline) in self.shader.pipelines.iter().enumerate() {
-            if part.shaders.contains(&shader) {
-                pass.set_pipeline(pipeline);
-                source.draw(part.round, shader, &mut pass);
-            }
-        }
-    }
-
     /// A compute pass whose times are noted.
     fn compute_pass<'a>(
         &self,
@@ -474,17 +345,6 @@ impl TileRenderer {
     }
 }
 
-/// Pixels with those that were not written, which are 0, as an empty picture has them. With a background none
-/// that was written is 0; without one, so is the empty pixel.
-fn filled(mut pixels: Vec<u8>, empty: [u8; 4]) -> Vec<u8> {
-    for pixel in pixels.chunks_exact_mut(4) {
-        if pixel == [0; 4] {
-            pixel.copy_from_slice(&empty);
-        }
-    }
-    pixels
-}
-
 /// Writes to a buffer, which is replaced if it has another size.
 fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
     let size = (bytes.len() as u64).max(16);
@@ -493,31 +353,4 @@ fn upload(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
         *buffer = make(gpu, "table", size, usage);
     }
     gpu.queue.write_buffer(buffer, 0, bytes);
-}
-
-/// Waits for the device and copies the first bytes of a buffer; nothing if the watch has stopped
-/// the picture.
-fn read_watched(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    bytes: u64,
-    watch: Option<&Watch>,
-) -> Result<Option<Vec<u8>>, DeviceError> {
-    let slice = buffer.slice(..bytes);
-    let mapped = Arc::new(AtomicBool::new(false));
-    let done = Arc::clone(&mapped);
-    slice.map_async(wgpu::MapMode::Read, move |_| {
-        done.store(true, Ordering::Release);
-    });
-    match watch {
-        Some(watch) if !watch.wait(gpu, &mapped)? => return Ok(None),
-        Some(_) => {}
-        None => gpu.wait()?,
-    }
-    let copied = slice
-        .get_mapped_range()
-        .map(|range| range.to_vec())
-        .map_err(|e| DeviceError::Lost(e.to_string()))?;
-    buffer.unmap();
-    Ok(Some(copied))
 }
