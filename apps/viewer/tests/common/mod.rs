@@ -171,7 +171,7 @@ pub(crate) fn snapshot(window: &mut Window, name: &str) {
 }
 
 /// Where the window shows what depends on the machine's pace: the soma's time, below their heading the times of
-/// drawing, and the memory of images, among which is a draft only if there was time to draw one.
+/// drawing, and the memory of neurons and images, among which are drafts only if there was time to draw them.
 fn changing(window: &Window) -> Vec<Rect> {
     let mut masks = Vec::new();
     let heading = window.query_all_by_label("Drawing times").next();
@@ -183,7 +183,7 @@ fn changing(window: &Window) -> Vec<Rect> {
             Pos2::new(SIZE.x, SIZE.y - 36.0),
         ));
     }
-    for name in ["computed in", "GPU memory, images"] {
+    for name in ["computed in", "GPU memory, neurons", "GPU memory, images"] {
         let rows = window.query_all_by_label(name).map(|label| label.rect());
         masks.extend(rows.map(|row| {
             let end = Pos2::new(SIZE.x, row.bottom());
