@@ -28,8 +28,10 @@
 mod branch;
 #[cfg(feature = "circuit")]
 pub mod circuit;
+mod grown;
 mod kind;
 mod kinds;
+mod room;
 mod soma;
 mod spec;
 mod stems;
@@ -39,7 +41,9 @@ use std::ops::RangeInclusive;
 use neurotess_morphology::Morphology;
 use neurotess_morphology::random::Random;
 
+use grown::Grown;
 pub use kind::{Kind, UnknownKind};
+use room::Room;
 
 /// How many points a cell may have outside its soma.
 pub const POINTS: RangeInclusive<usize> = 50..=500_000;
@@ -54,6 +58,8 @@ pub struct Options {
     /// Points outside the soma, within [`POINTS`] (taken as the nearest end otherwise); `None` for
     /// what is usual for the kind.
     pub points: Option<usize>,
+    /// Branches take no notice of one another and cross, as in tracings.
+    pub may_cross: bool,
 }
 
 impl Options {
@@ -63,6 +69,7 @@ impl Options {
             kind,
             seed,
             points: None,
+            may_cross: false,
         }
     }
 
@@ -76,9 +83,8 @@ impl Options {
             Kind::Basket | Kind::Star => 1500,
         };
         Self {
-            kind,
-            seed: 1,
             points: Some(points),
+            ..Self::new(kind, 1)
         }
     }
 }
@@ -92,8 +98,11 @@ pub fn grow(options: &Options) -> Morphology {
     let points = options.points.unwrap_or(spec.points);
     let points = points.clamp(*POINTS.start(), *POINTS.end());
     let mut random = Random::new(options.seed, options.kind as u64);
-    let mut nodes = soma::samples(&spec, &mut random);
-    branch::grow_all(&spec, points, &mut random, &mut nodes);
+    let soma = soma::samples(&spec, &mut random);
+    let spacing = branch::spacing(&spec, points);
+    let room = (!options.may_cross).then(|| Room::new(soma[0].radius, points, spacing));
+    let mut grown = Grown::new(soma, room);
+    branch::grow_all(&spec, points, &mut random, &mut grown);
 
     let name = format!("{}_{}", options.kind, options.seed);
     let seed = options.seed;
@@ -101,7 +110,7 @@ pub fn grow(options: &Options) -> Morphology {
         "synthetic {} neuron, seed {seed}, {points} points",
         options.kind
     )];
-    let built = Morphology::from_nodes(name, header, &nodes);
+    let built = Morphology::from_nodes(name, header, &grown.nodes);
     built
         .expect("grown nodes have parents before them and finite coordinates")
         .morphology

@@ -5,21 +5,30 @@
 //!                               └── 50 ──section of 18──┬── 14: terminal
 //!                                                       └── 18: terminal
 //! ```
+//!
+//! A branch that finds no way ends early. Its points go to the next branches of the neurite, then to the ends of
+//! its terminals, so that none is lost.
+
+mod walk;
 
 use glam::DVec3;
-use neurotess_morphology::Node;
-
-use crate::spec::{Spec, Tree, Tropism, Trunk};
-use crate::stems;
 use neurotess_morphology::random::Random;
+
+use crate::grown::Grown;
+use crate::room::{Capsule, Way};
+use crate::spec::{Spec, Tree, Trunk};
+use crate::stems;
+use walk::State;
 
 /// Fewest points of a section: two so that it has a direction of its own.
 const SHORTEST: usize = 3;
-/// Length (µm) over which the wobble forgets itself: between the 2 µm of jitter in tracings and
-/// the 50 µm of bends. By eye.
-const MEMORY: f64 = 9.0;
 /// Rall's exponent.
 const RALL: f64 = 1.5;
+
+/// Directions for a stem that are looked at for room.
+const STEM_TRIES: u32 = 8;
+/// How many of the points that are left one terminal gets at most: about as many as it has.
+const LENGTHENED: usize = 20;
 
 /// A branch to come.
 #[derive(Clone, Copy)]
@@ -34,6 +43,8 @@ struct Branch {
     points: usize,
     /// Side branches that the trunk still gives off; `None` off the trunk.
     sides: Option<Sides>,
+    /// It goes on from the end of a terminal.
+    goes_on: bool,
 }
 
 /// What is left of a trunk.
@@ -44,7 +55,7 @@ struct Sides {
     points: usize,
 }
 
-/// How a tree of the cell differs from its spec by the cell's size.
+/// Grows the trees of a cell, one after the other.
 struct Grower<'a> {
     tree: &'a Tree,
     soma_radius: f64,
@@ -52,45 +63,90 @@ struct Grower<'a> {
     /// Factor of lengths.
     stretch: f64,
     random: &'a mut Random,
-    nodes: &'a mut Vec<Node>,
+    grown: &'a mut Grown,
+    /// Points that had no room where they were meant to be.
+    unspent: usize,
+    /// Branches that would go on from the ends of a neurite's terminals.
+    ends: Vec<Branch>,
+    /// Numbers of the capsules near a step.
+    near: Vec<u32>,
 }
 
-/// Appends the neurites of a cell to its soma's samples: `points` in all.
-pub(crate) fn grow_all(spec: &Spec, points: usize, random: &mut Random, nodes: &mut Vec<Node>) {
-    let size = points as f64 / spec.points as f64;
-    // Ten times the points: 4.6 times the branches, 1.7 times as long, samples 1.3 times denser.
-    let spacing = (spec.spacing * libm::pow(size, -0.12)).clamp(1.0, 5.0);
-    let stretch = libm::pow(size, 0.22);
-    let soma_radius = nodes[0].radius;
-    nodes.reserve_exact(points);
+/// Mean distance of points (µm). Ten times the points: 4.6 times the branches, 1.7 times as long, samples 1.3
+/// times denser.
+pub(crate) fn spacing(spec: &Spec, points: usize) -> f64 {
+    (spec.spacing * libm::pow(size(spec, points), -0.12)).clamp(1.0, 5.0)
+}
+
+/// 1 for a cell of the usual size.
+fn size(spec: &Spec, points: usize) -> f64 {
+    points as f64 / spec.points as f64
+}
+
+/// Appends the neurites of a cell to its soma: `points` in all.
+pub(crate) fn grow_all(spec: &Spec, points: usize, random: &mut Random, grown: &mut Grown) {
+    let Some(first) = spec.trees.first() else {
+        return;
+    };
+    let size = size(spec, points);
+    grown.nodes.reserve_exact(points);
+    let mut grower = Grower {
+        tree: first,
+        soma_radius: grown.nodes[0].radius,
+        spacing: spacing(spec, points),
+        stretch: libm::pow(size, 0.22),
+        random,
+        grown,
+        unspent: 0,
+        ends: Vec::new(),
+        near: Vec::new(),
+    };
     let shares: Vec<f64> = spec.trees.iter().map(|tree| tree.share).collect();
     let mut taken = Vec::new();
     for (tree, points) in spec.trees.iter().zip(stems::shared(points, &shares)) {
-        let count = stems::count(tree, points, size, random);
-        let weights: Vec<f64> = (0..count).map(|_| random.between((0.7, 1.3))).collect();
+        grower.tree = tree;
+        let count = stems::count(tree, points, size, grower.random);
+        let weights: Vec<f64> = (0..count)
+            .map(|_| grower.random.between((0.7, 1.3)))
+            .collect();
         for points in stems::shared(points, &weights) {
-            let heading = stems::direction(tree, &taken, random);
+            let heading = grower.stem_heading(&taken);
             taken.push(heading);
-            Grower {
-                tree,
-                soma_radius,
-                spacing,
-                stretch,
-                random,
-                nodes,
-            }
-            .stem(heading, points, size);
+            grower.stem(heading, points, size);
         }
     }
+    grower.outwards();
 }
 
 impl Grower<'_> {
+    /// Where the next stem starts, clear of the others.
+    fn stem_heading(&mut self, taken: &[DVec3]) -> DVec3 {
+        let radius = 1.25 * self.tree.radius;
+        let mut heading = stems::direction(self.tree, taken, self.random);
+        for _ in 1..STEM_TRIES {
+            let from = heading * (self.soma_radius + radius);
+            let stem = Capsule {
+                from,
+                to: from + heading * self.spacing,
+                radius,
+                parent: None,
+            };
+            let room = self.grown.room.as_ref();
+            if room.is_none_or(|room| room.way(&stem, 0.0) == Way::Free) {
+                break;
+            }
+            heading = stems::direction(self.tree, taken, self.random);
+        }
+        heading
+    }
+
     /// One neurite, depth first.
     fn stem(&mut self, heading: DVec3, points: usize, size: f64) {
         let radius = self.tree.radius * self.random.between((0.85, 1.15));
         let sides = self.tree.trunk.map(|trunk| self.sides(trunk, points, size));
         // The first step leads `spacing` further: out of the soma.
         let from = heading * (self.soma_radius + radius - self.spacing).max(0.5 * self.soma_radius);
+        self.ends.clear();
         let mut stack = vec![Branch {
             parent: 0,
             from,
@@ -99,9 +155,58 @@ impl Grower<'_> {
             radius,
             points,
             sides,
+            goes_on: false,
         }];
+        while let Some(mut branch) = stack.pop() {
+            branch.points += std::mem::take(&mut self.unspent);
+            self.branch(branch, &mut stack);
+        }
+        while let Some(end) = self.drawn_end() {
+            self.all_of(end);
+        }
+    }
+
+    /// A branch and what comes of it.
+    fn all_of(&mut self, branch: Branch) {
+        let mut stack = vec![branch];
         while let Some(branch) = stack.pop() {
             self.branch(branch, &mut stack);
+        }
+    }
+
+    /// One of the ends of terminals, with some of the points that are left.
+    fn drawn_end(&mut self) -> Option<Branch> {
+        if self.unspent == 0 || self.ends.is_empty() {
+            return None;
+        }
+        let drawn = (self.random.unit() * self.ends.len() as f64) as usize;
+        let mut end = self.ends.swap_remove(drawn);
+        end.points = self.unspent.min(LENGTHENED);
+        self.unspent -= end.points;
+        Some(end)
+    }
+
+    /// Spends the points that are left where nothing is in the way: from the farthest point outwards.
+    fn outwards(&mut self) {
+        while self.unspent > 0 {
+            let before = self.grown.nodes.len();
+            let parent = self.grown.farthest(self.tree.kind);
+            let node = &self.grown.nodes[parent as usize];
+            let from = node.position;
+            let branch = Branch {
+                parent,
+                from,
+                heading: from.normalize_or(DVec3::Y),
+                inside: node.radius,
+                radius: node.radius.min(self.tree.thinnest),
+                points: std::mem::take(&mut self.unspent),
+                sides: None,
+                goes_on: true,
+            };
+            self.all_of(branch);
+            if self.grown.nodes.len() == before {
+                self.grown.room = None; // rather a crossing than points that are missing
+            }
         }
     }
 
@@ -120,17 +225,36 @@ impl Grower<'_> {
     /// Walks one section and pushes its daughters, the greater one on top.
     fn branch(&mut self, branch: Branch, stack: &mut Vec<Branch>) {
         let spent = self.section_points(&branch);
-        let left = branch.points - spent;
         let first_step = if branch.parent == 0 {
             self.soma_radius
         } else {
             0.0
         };
-        let (from, heading, inside) = self.walk(&branch, spent, first_step);
-        if left == 0 {
+        let before = self.grown.nodes.len();
+        let end = self.walk(&branch, spent, first_step);
+        let placed = self.grown.nodes.len() - before;
+        if placed < SHORTEST.min(spent) && !branch.goes_on {
+            self.grown.keep(before);
+            self.unspent += branch.points;
             return;
         }
-        let parent = (self.nodes.len() - 1) as u32;
+        let left = branch.points - placed;
+        if placed == spent && left == 0 {
+            self.ends.push(self.going_on(&end));
+            return;
+        }
+        // Where there is no way, daughters may find one; not out of a hole at the section's start.
+        if placed < spent && (left < 2 * SHORTEST || placed < SHORTEST.max(spent / 2)) {
+            self.unspent += left;
+            return;
+        }
+        let State {
+            at: from,
+            heading,
+            radius: inside,
+            ..
+        } = end;
+        let parent = self.grown.last();
         let lesser = self.lesser(&branch, left);
         let part = lesser as f64 / left as f64;
         let (thin, thick) = self.daughter_radii(inside, part);
@@ -149,9 +273,24 @@ impl Grower<'_> {
             radius,
             points,
             sides,
+            goes_on: false,
         };
         stack.push(daughter(aside, thin, lesser, None));
         stack.push(daughter(ahead, thick, left - lesser, sides));
+    }
+
+    /// What would go on from the last point.
+    fn going_on(&self, end: &State) -> Branch {
+        Branch {
+            parent: self.grown.last(),
+            from: end.at,
+            heading: end.heading,
+            inside: end.radius,
+            radius: end.radius,
+            points: 0,
+            sides: None,
+            goes_on: true,
+        }
     }
 
     /// How many of the branch's points make its first section; all of a terminal's.
@@ -226,83 +365,5 @@ impl Grower<'_> {
         }
         let turned = |angle: f64| heading * libm::cos(angle) + across * libm::sin(angle);
         (turned(angle * (1.0 - part)), turned(-angle * part))
-    }
-
-    /// Appends the points of one section; gives its last position, heading and radius.
-    fn walk(&mut self, branch: &Branch, points: usize, clear_of: f64) -> (DVec3, DVec3, f64) {
-        let thinnest = self.tree.thinnest.min(branch.radius);
-        let mut at = branch.from;
-        let mut heading = branch.heading;
-        let mut wobble = DVec3::ZERO;
-        let (mut parent, mut taper) = (branch.parent, 1.0);
-        let mut radius = branch.radius;
-        for i in 0..points {
-            let widest = if i == 0 {
-                radius.max(branch.inside)
-            } else {
-                radius
-            };
-            let step = (self.spacing * self.random.between((0.8, 1.2))).max(1.1 * widest);
-            heading = self.bent(heading, at, step);
-            wobble = self.wobbled(wobble, step);
-            let mut sideways = wobble - heading * wobble.dot(heading);
-            if self.tree.flat {
-                sideways.z *= 0.2;
-            }
-            at += (heading + sideways).normalize_or(heading) * step;
-            if i == 0 && at.length() < clear_of + radius {
-                at = at.normalize_or(heading) * (clear_of + radius);
-            }
-            if i > 0 {
-                taper *= libm::exp(-step / (self.tree.taper * self.stretch));
-            }
-            radius = thinnest + (branch.radius - thinnest) * taper;
-            let inner = i > 0 && i + 1 < points;
-            let swell = if inner {
-                self.random.between((0.92, 1.08))
-            } else {
-                1.0
-            };
-            parent = self.push(parent, at, radius * swell);
-        }
-        (at, heading, radius)
-    }
-
-    /// The heading after tropism, what keeps a flat tree flat, and what keeps it out of the soma.
-    fn bent(&self, heading: DVec3, at: DVec3, step: f64) -> DVec3 {
-        let away = at.normalize_or(heading);
-        let (to, strength) = match self.tree.tropism {
-            Tropism::Away(strength) => (away, strength),
-            Tropism::To(to, strength) => (to, strength),
-        };
-        let mut bent = heading + to * (strength / self.stretch * step);
-        if at.length() < 1.5 * self.soma_radius {
-            bent += away * 0.3;
-        }
-        if self.tree.flat {
-            bent.z = 0.5 * bent.z - 0.01 * at.z;
-        }
-        bent.normalize_or(heading)
-    }
-
-    /// One step of an Ornstein-Uhlenbeck process in space.
-    fn wobbled(&mut self, wobble: DVec3, step: f64) -> DVec3 {
-        let keep = libm::exp(-step / MEMORY);
-        let ((x, y), (z, _)) = (self.random.normal_pair(), self.random.normal_pair());
-        let kick = self.tree.wobble * (1.0 - keep * keep).sqrt();
-        wobble * keep + DVec3::new(x, y, z) * kick
-    }
-
-    /// Appends a point, rounded as files have it: thousandths, radii to a tenth of that.
-    fn push(&mut self, parent: u32, at: DVec3, radius: f64) -> u32 {
-        let index = self.nodes.len() as u32;
-        self.nodes.push(Node {
-            id: i64::from(index) + 1,
-            kind: self.tree.kind,
-            position: (at * 1e3).round() / 1e3,
-            radius: (radius * 1e4).round() / 1e4,
-            parent: Some(parent),
-        });
-        index
     }
 }
