@@ -1,5 +1,6 @@
 //! The nodes of a cell in the making, and the room that they leave.
 
+use glam::DVec3;
 use neurotess_morphology::{NeuriteKind, Node};
 
 use crate::room::{Capsule, Room};
@@ -64,6 +65,21 @@ impl Grown {
         if let Some(node) = self.nodes.last_mut() {
             node.radius = rounded(radius);
         }
+    }
+
+    /// Direction of the step to a node of a neurite that is not its first.
+    pub(crate) fn step_to(&self, node: u32) -> Option<DVec3> {
+        let node = &self.nodes[node as usize];
+        let before = node.parent.filter(|&before| before != 0)?;
+        let step = node.position - self.nodes[before as usize].position;
+        Some(step.normalize_or_zero())
+    }
+
+    /// Direction of the first branch that was grown from a node, if one was.
+    pub(crate) fn first_step_from(&self, node: u32) -> Option<DVec3> {
+        let next = self.nodes.get(node as usize + 1)?;
+        let step = next.position - self.nodes[node as usize].position;
+        (next.parent == Some(node)).then(|| step.normalize_or_zero())
     }
 
     /// Of the nodes of a kind, or of all if there is none, the one farthest from the soma's center.

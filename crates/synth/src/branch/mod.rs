@@ -28,7 +28,10 @@ const RALL: f64 = 1.5;
 /// Directions for a stem that are looked at for room.
 const STEM_TRIES: u32 = 8;
 /// How many of the points that are left one terminal gets at most: about as many as it has.
-const LENGTHENED: usize = 20;
+const LENGTHENED: usize = 60;
+
+/// How many ends of terminals are drawn for it.
+const ENDS_DRAWN: usize = 4;
 
 /// A branch to come.
 #[derive(Clone, Copy)]
@@ -43,8 +46,18 @@ struct Branch {
     points: usize,
     /// Side branches that the trunk still gives off; `None` off the trunk.
     sides: Option<Sides>,
+    of_fork: OfFork,
     /// It goes on from the end of a terminal.
     goes_on: bool,
+}
+
+/// Which daughter of a fork a branch is; the greater one is grown first.
+#[derive(Clone, Copy)]
+enum OfFork {
+    /// None, or of a fork like a T.
+    Not,
+    Greater,
+    Lesser,
 }
 
 /// What is left of a trunk.
@@ -110,19 +123,35 @@ pub(crate) fn grow_all(spec: &Spec, points: usize, random: &mut Random, grown: &
             .map(|_| grower.random.between((0.7, 1.3)))
             .collect();
         for points in stems::shared(points, &weights) {
-            let heading = grower.stem_heading(&taken);
+            let heading = grower.stem(&taken, points, size);
             taken.push(heading);
-            grower.stem(heading, points, size);
         }
     }
     grower.outwards();
 }
 
 impl Grower<'_> {
-    /// Where the next stem starts, clear of the others.
-    fn stem_heading(&mut self, taken: &[DVec3]) -> DVec3 {
+    /// One neurite, in a direction far from those taken; gives its own.
+    fn stem(&mut self, taken: &[DVec3], points: usize, size: f64) -> DVec3 {
+        let before = self.grown.nodes.len();
+        self.unspent += points;
+        let mut heading = DVec3::Y;
+        for attempt in 0..STEM_TRIES {
+            heading = self.stem_heading(taken, attempt);
+            self.grow_stem(heading, size);
+            if self.grown.nodes.len() > before {
+                break;
+            }
+        }
+        heading
+    }
+
+    /// Where a stem may start, clear of the others: within its aim, or ever farther from it.
+    fn stem_heading(&mut self, taken: &[DVec3], attempt: u32) -> DVec3 {
         let radius = 1.25 * self.tree.radius;
-        let mut heading = stems::direction(self.tree, taken, self.random);
+        let mut tree = self.tree.clone();
+        tree.aim.1 -= 0.1 * f64::from(attempt);
+        let mut heading = stems::direction(&tree, taken, self.random);
         for _ in 1..STEM_TRIES {
             let from = heading * (self.soma_radius + radius);
             let stem = Capsule {
@@ -135,13 +164,15 @@ impl Grower<'_> {
             if room.is_none_or(|room| room.way(&stem, 0.0) == Way::Free) {
                 break;
             }
-            heading = stems::direction(self.tree, taken, self.random);
+            tree.aim.1 = (tree.aim.1 - 0.1).max(-1.0);
+            heading = stems::direction(&tree, taken, self.random);
         }
         heading
     }
 
-    /// One neurite, depth first.
-    fn stem(&mut self, heading: DVec3, points: usize, size: f64) {
+    /// A neurite that starts in a direction, with all points that are unspent, depth first.
+    fn grow_stem(&mut self, heading: DVec3, size: f64) {
+        let points = std::mem::take(&mut self.unspent);
         let radius = self.tree.radius * self.random.between((0.85, 1.15));
         let sides = self.tree.trunk.map(|trunk| self.sides(trunk, points, size));
         // The first step leads `spacing` further: out of the soma.
@@ -155,13 +186,15 @@ impl Grower<'_> {
             radius,
             points,
             sides,
+            of_fork: OfFork::Not,
             goes_on: false,
         }];
         while let Some(mut branch) = stack.pop() {
             branch.points += std::mem::take(&mut self.unspent);
             self.branch(branch, &mut stack);
         }
-        while let Some(end) = self.drawn_end() {
+        let middle = self.ends.iter().map(|end| end.from).sum::<DVec3>() / self.ends.len() as f64;
+        while let Some(end) = self.drawn_end(middle) {
             self.all_of(end);
         }
     }
@@ -174,13 +207,19 @@ impl Grower<'_> {
         }
     }
 
-    /// One of the ends of terminals, with some of the points that are left.
-    fn drawn_end(&mut self) -> Option<Branch> {
+    /// One of the ends of terminals, with some of the points that are left: of a few, the nearest to the middle of
+    /// the neurite, so that it does not grow out of its usual reach.
+    fn drawn_end(&mut self, middle: DVec3) -> Option<Branch> {
         if self.unspent == 0 || self.ends.is_empty() {
             return None;
         }
-        let drawn = (self.random.unit() * self.ends.len() as f64) as usize;
-        let mut end = self.ends.swap_remove(drawn);
+        let count = self.ends.len() as f64;
+        let drawn = [(); ENDS_DRAWN].map(|()| (self.random.unit() * count) as usize);
+        let reach = |end: usize| self.ends[end].from.distance_squared(middle);
+        let nearest = drawn
+            .into_iter()
+            .min_by(|&a, &b| reach(a).total_cmp(&reach(b)))?;
+        let mut end = self.ends.swap_remove(nearest);
         end.points = self.unspent.min(LENGTHENED);
         self.unspent -= end.points;
         Some(end)
@@ -201,6 +240,7 @@ impl Grower<'_> {
                 radius: node.radius.min(self.tree.thinnest),
                 points: std::mem::take(&mut self.unspent),
                 sides: None,
+                of_fork: OfFork::Not,
                 goes_on: true,
             };
             self.all_of(branch);
@@ -273,10 +313,17 @@ impl Grower<'_> {
             radius,
             points,
             sides,
+            of_fork: OfFork::Not,
             goes_on: false,
         };
-        stack.push(daughter(aside, thin, lesser, None));
-        stack.push(daughter(ahead, thick, left - lesser, sides));
+        let [mut aside, mut ahead] = [
+            daughter(aside, thin, lesser, None),
+            daughter(ahead, thick, left - lesser, sides),
+        ];
+        if !(self.is_tee() && branch.sides.is_some()) {
+            (aside.of_fork, ahead.of_fork) = (OfFork::Lesser, OfFork::Greater);
+        }
+        stack.extend([aside, ahead]);
     }
 
     /// What would go on from the last point.
@@ -289,6 +336,7 @@ impl Grower<'_> {
             radius: end.radius,
             points: 0,
             sides: None,
+            of_fork: OfFork::Not,
             goes_on: true,
         }
     }

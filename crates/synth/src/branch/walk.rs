@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Branch, Grower};
+use super::{Branch, Grower, OfFork};
 use crate::room::{Capsule, Way, reach};
 use crate::spec::Tropism;
 
@@ -12,13 +12,18 @@ const MEMORY: f64 = 9.0;
 /// Inner points are thicker and thinner than their section by up to this factor.
 const SWELL: (f64, f64) = (0.92, 1.08);
 /// Steps that a branch looks ahead.
-const AHEAD: f64 = 2.0;
+const AHEAD: f64 = 1.0;
 /// Angles (radians) that a branch turns away by, the least first.
 const TURNS: [f64; 4] = [0.3, 0.6, 0.9, 1.2];
 /// Directions tried for each angle.
 const SIDES: u32 = 6;
+/// Widest angle (radians) between the first steps behind a fork, and between them and the last step before it; but
+/// for forks that are a T. Most forks whose meshes crossed themselves at level 4 were wider; few others are.
+const WIDEST: f64 = 1.2;
+const GREATER_TURN: f64 = 0.8;
+const LESSER_TURN: f64 = 1.5;
 /// How often a section that cannot go on backs off and tries again.
-const BACK_OFFS: u32 = 6;
+const BACK_OFFS: u32 = 8;
 
 /// Where a walk is.
 #[derive(Clone, Copy)]
@@ -41,6 +46,32 @@ struct Step {
     behind: Option<u32>,
     /// Distance from the origin that it leads to at least.
     clear_of: f64,
+}
+
+/// Directions near to one.
+struct Cone {
+    axis: DVec3,
+    angle: f64,
+}
+
+impl Cone {
+    fn new(axis: DVec3, angle: f64) -> Self {
+        Self { axis, angle }
+    }
+
+    fn has(&self, direction: DVec3) -> bool {
+        direction.dot(self.axis) >= libm::cos(self.angle)
+    }
+
+    /// The direction in it that is nearest to one.
+    fn nearest(&self, direction: DVec3) -> DVec3 {
+        if self.has(direction) {
+            return direction;
+        }
+        let across = direction - self.axis * direction.dot(self.axis);
+        let across = across.normalize_or(self.axis.any_orthonormal_vector());
+        self.axis * libm::cos(self.angle) + across * libm::sin(self.angle)
+    }
 }
 
 impl Step {
@@ -81,7 +112,7 @@ impl Grower<'_> {
                 states.push(next);
             } else if back_offs < BACK_OFFS {
                 back_offs += 1;
-                let keep = placed.saturating_sub(1 << back_offs);
+                let keep = placed.saturating_sub(1 << back_offs.min(5));
                 states.truncate(keep + 1);
                 self.grown.keep(before + keep);
             } else {
@@ -134,7 +165,12 @@ impl Grower<'_> {
             sideways.z *= 0.2;
         }
         let wanted = (heading + sideways).normalize_or(heading);
-        let direction = self.free_direction(&step, wanted)?;
+        let cones = if is_first && self.grown.room.is_some() {
+            self.cones(branch)
+        } else {
+            Vec::new()
+        };
+        let direction = self.free_direction(&step, wanted, &cones)?;
         if direction != wanted {
             (heading, wobble) = (direction, DVec3::ZERO);
         }
@@ -163,9 +199,29 @@ impl Grower<'_> {
         })
     }
 
+    /// What the first step behind a fork keeps to.
+    fn cones(&self, branch: &Branch) -> Vec<Cone> {
+        let trunk = |angle| Some(Cone::new(self.grown.step_to(branch.parent)?, angle));
+        let sibling = || {
+            Some(Cone::new(
+                self.grown.first_step_from(branch.parent)?,
+                WIDEST,
+            ))
+        };
+        let cones = match branch.of_fork {
+            OfFork::Not => [None, None],
+            OfFork::Greater => [trunk(GREATER_TURN), None],
+            OfFork::Lesser => [trunk(LESSER_TURN), sibling()],
+        };
+        cones.into_iter().flatten().collect()
+    }
+
     /// The wanted direction, or the one nearest to it that leads past everything; if none does, one that leads
     /// past it for this step.
-    fn free_direction(&mut self, step: &Step, wanted: DVec3) -> Option<DVec3> {
+    fn free_direction(&mut self, step: &Step, wanted: DVec3, cones: &[Cone]) -> Option<DVec3> {
+        let wanted = cones
+            .iter()
+            .fold(wanted, |wanted, cone| cone.nearest(wanted));
         let ahead = AHEAD * step.length;
         let Some(room) = &self.grown.room else {
             return Some(wanted);
@@ -184,6 +240,9 @@ impl Grower<'_> {
                 let angle = phase + std::f64::consts::TAU * f64::from(side) / f64::from(SIDES);
                 let across = u * libm::cos(angle) + v * libm::sin(angle);
                 let direction = wanted * libm::cos(turn) + across * libm::sin(turn);
+                if !cones.iter().all(|cone| cone.has(direction)) {
+                    continue;
+                }
                 match room.way_among(&step.toward(direction), ahead, &self.near) {
                     Way::Free => return Some(direction),
                     Way::Ends => best = best.or(Some(direction)),
@@ -206,7 +265,12 @@ impl Grower<'_> {
             bent += away * 0.3;
         }
         if self.tree.flat {
-            bent.z = 0.5 * bent.z - 0.01 * at.z;
+            // Branches that keep clear of one another need some depth to pass.
+            let (keep, back) = match self.grown.room {
+                None => (0.5, 0.01),
+                Some(_) => (0.8, 0.004),
+            };
+            bent.z = keep * bent.z - back * at.z;
         }
         bent.normalize_or(heading)
     }
