@@ -174,8 +174,11 @@ fn cells_without_crossings_are_like_those_with() {
         }
         let ratio = |[a, b]: [f64; 2]| a / b;
         let of = |[a, b]: [usize; 2]| a as f64 / b as f64;
-        let ratios = [ratio(lengths), of(forks), of(tips), ratio(reaches)];
-        let are_alike = ratios.iter().all(|ratio| (0.85..1.15).contains(ratio));
-        assert!(are_alike, "{kind}: length, forks, tips, reach {ratios:?}");
+        let ratios = [ratio(lengths), of(forks), of(tips)];
+        let are_alike = ratios.iter().all(|ratio| (0.9..1.1).contains(ratio));
+        assert!(are_alike, "{kind}: length, forks, tips {ratios:?}");
+        // The fan of a Purkinje cell needs more room where it is not grown into itself.
+        let reach = ratio(reaches);
+        assert!((0.8..1.35).contains(&reach), "{kind}: reach {reach}");
     }
 }
