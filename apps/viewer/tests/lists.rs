@@ -69,12 +69,13 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     let source = state(&mut window).source_of(0).expect("there").clone();
     let last = source.sections.len() - 1;
     let label = {
-        let digits = if source.sections[last].length >= 10.0 {
-            1
-        } else {
-            2
+        let length = source.sections[last].length;
+        let digits = match length {
+            100.0.. => 0,
+            10.0.. => 1,
+            _ => 2,
         };
-        format!("{last}  {:.digits$} µm", source.sections[last].length)
+        format!("{last}  {length:.digits$} µm")
     };
     assert!(!inside(&window, &label));
     let picked = Picked {
