@@ -18,7 +18,11 @@
 //! and motoneuron membrane resistivity, 1959. The numbers for each kind are in `kinds.rs`, and
 //! `benchmarks/synthetic.md` compares the results with real cells.
 //!
-//! **Practice.** A millisecond for 5,000 points. Only additions, multiplications, divisions and square
+//! No branch grows through another or through the soma: see `room.rs`. Each step looks at what is near, and
+//! turns away from it by as little as it must; what finds no way ends, and its points are spent elsewhere in the
+//! neurite. With [`Options::may_cross`] branches take no notice of one another.
+//!
+//! **Practice.** Some milliseconds for 5,000 points. Only additions, multiplications, divisions and square
 //! roots are the processor's; all else is `libm`'s, so that results do not depend on the platform.
 //!
 //! Why not a published growth model (TMD, TREES' minimum spanning trees, NETMORPH)? They need

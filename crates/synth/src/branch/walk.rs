@@ -11,15 +11,17 @@ use crate::spec::Tropism;
 const MEMORY: f64 = 9.0;
 /// Inner points are thicker and thinner than their section by up to this factor.
 const SWELL: (f64, f64) = (0.92, 1.08);
-/// Steps that a branch looks ahead.
+/// Steps that a branch looks ahead. Of 2, forks in Purkinje cells are as many and growth takes longer.
 const AHEAD: f64 = 1.0;
 /// Angles (radians) that a branch turns away by, the least first.
 const TURNS: [f64; 4] = [0.3, 0.6, 0.9, 1.2];
 /// Directions tried for each angle.
 const SIDES: u32 = 6;
-/// Widest angle (radians) between the first steps behind a fork, and between them and the last step before it; but
-/// for forks that are a T. Most forks whose meshes crossed themselves at level 4 were wider; few others are.
+/// Widest angle (radians) between the first steps behind a fork, unless it is a T. Of the forks whose meshes crossed
+/// themselves at level 4, in 240 cells, 45 of 46 were wider.
 const WIDEST: f64 = 1.2;
+/// Greatest angles (radians) between the last step before a fork and the first ones behind it, of the daughter with
+/// more points and of the other. Of the 18 that still crossed themselves, 10 turned more.
 const GREATER_TURN: f64 = 0.8;
 const LESSER_TURN: f64 = 1.5;
 /// How often a section that cannot go on backs off and tries again.
