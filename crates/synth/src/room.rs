@@ -299,3 +299,74 @@ fn distance_squared([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
     let s = part(uv * t - uw, uu);
     (w + u * s - v * t).length_squared()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn capsule(from: [f64; 2], to: [f64; 2], parent: Option<u32>) -> Capsule {
+        let place = |[x, y]: [f64; 2]| DVec3::new(x, y, 0.0);
+        Capsule {
+            from: place(from),
+            to: place(to),
+            radius: 0.5,
+            parent,
+        }
+    }
+
+    /// Around a soma of radius 5, with these capsules, each grown from the one before.
+    fn room(places: &[[f64; 2]]) -> Room {
+        let mut room = Room::new(5.0, 100, 2.0);
+        for (i, step) in places.windows(2).enumerate() {
+            let parent = i.checked_sub(1).map(|before| before as u32);
+            room.add(&capsule(step[0], step[1], parent));
+        }
+        room
+    }
+
+    #[test]
+    fn what_is_in_the_way_is_not_when_it_is_taken_back() {
+        let mut room = room(&[[6.0, 0.0], [8.0, 0.0], [10.0, 0.0], [12.0, 0.0]]);
+        let through = capsule([11.0, 3.0], [11.0, 1.0], None);
+        assert_eq!(room.way(&through, 0.0), Way::Blocked);
+        let before = capsule([11.0, 6.0], [11.0, 4.0], None);
+        assert_eq!(room.way(&before, 0.0), Way::Free);
+        assert_eq!(room.way(&before, 3.0), Way::Ends);
+        room.keep(2);
+        assert_eq!(room.way(&through, 0.0), Way::Free);
+        room.add(&capsule([10.0, 0.0], [12.0, 0.0], Some(1)));
+        assert_eq!(room.way(&through, 0.0), Way::Blocked);
+    }
+
+    #[test]
+    fn siblings_diverge() {
+        let room = room(&[[6.0, 0.0], [8.0, 0.0], [10.0, 0.0]]);
+        let sibling = |to| room.way(&capsule([8.0, 0.0], to, Some(0)), 0.0);
+        assert_eq!(sibling([9.0, 1.7]), Way::Free);
+        assert_eq!(sibling([9.9, 0.5]), Way::Blocked);
+    }
+
+    #[test]
+    fn only_stems_touch_the_soma() {
+        let room = room(&[[6.0, 0.0], [8.0, 0.0]]);
+        let stem = capsule([0.0, 5.0], [0.0, 6.0], None);
+        assert_eq!(room.way(&stem, 0.0), Way::Free);
+        let back = capsule([8.0, 0.0], [5.5, 3.0], Some(0));
+        assert_eq!(room.way(&back, 0.0), Way::Blocked);
+    }
+
+    #[test]
+    fn distances_of_segments_are_those_of_their_nearest_places() {
+        let at = |x, y, z| DVec3::new(x, y, z);
+        let along = [at(0.0, 0.0, 0.0), at(4.0, 0.0, 0.0)];
+        for (other, expected) in [
+            ([at(2.0, -1.0, 3.0), at(2.0, 1.0, 3.0)], 3.0),
+            ([at(7.0, 4.0, 0.0), at(9.0, 8.0, 0.0)], 5.0),
+            ([at(1.0, 2.0, 0.0), at(3.0, 2.0, 0.0)], 2.0),
+            ([at(2.0, 0.0, 1.0); 2], 1.0),
+        ] {
+            assert_eq!(distance_squared(along, other), expected * expected);
+            assert_eq!(distance_squared(other, along), expected * expected);
+        }
+    }
+}
