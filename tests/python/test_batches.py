@@ -121,7 +121,7 @@ def test_interrupts_stop_the_work(work: str, request: pytest.FixtureRequest) -> 
         import os, signal, time, neurotess as nt
         # Where the tests run in the background, it is ignored.
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        cell = nt.synth("purkinje", points={POINTS.get(work, 100_000)})
+        cell = nt.synth("purkinje", points={POINTS.get(work, 100_000)}, may_cross=True)
         def used():
             # Of all threads.
             return time.process_time()

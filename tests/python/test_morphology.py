@@ -203,6 +203,13 @@ def test_measures_are_those_of_the_command(samples: Path) -> None:
 def test_synthetic_cells_are_the_same_for_a_seed() -> None:
     assert nt.synth("granule", seed=7, points=80) == nt.synth("granule", seed=7, points=80)
     assert nt.synth("granule", seed=8, points=80) != nt.synth("granule", seed=7, points=80)
+
+
+def test_grown_branches_cross_only_if_they_may() -> None:
+    kept_clear, crossing = (nt.synth("purkinje", points=1000, may_cross=may) for may in [False, True])
+    assert kept_clear != crossing and len(kept_clear.points) == len(crossing.points)
+    pairs = [nt.mesh(cell, level=2).check()["self_intersections"] for cell in [kept_clear, crossing]]
+    assert pairs[0] < 10 and pairs[1] > 100, pairs
     with pytest.raises(ValueError, match="glia"):
         nt.synth("glia")
 

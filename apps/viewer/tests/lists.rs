@@ -7,7 +7,8 @@ use std::fs;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
-use neurotess::synth::Kind;
+use neurotess::formats::swc;
+use neurotess::synth::{Kind, Options, grow};
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Edit, FilePurpose, Tab};
 use neurotess_viewer::document::{ColorBy, Look};
@@ -68,12 +69,13 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     let source = state(&mut window).source_of(0).expect("there").clone();
     let last = source.sections.len() - 1;
     let label = {
-        let digits = if source.sections[last].length >= 10.0 {
-            1
-        } else {
-            2
+        let length = source.sections[last].length;
+        let digits = match length {
+            100.0.. => 0,
+            10.0.. => 1,
+            _ => 2,
         };
-        format!("{last}  {:.digits$} µm", source.sections[last].length)
+        format!("{last}  {length:.digits$} µm")
     };
     assert!(!inside(&window, &label));
     let picked = Picked {
@@ -293,7 +295,16 @@ fn crossings_are_listed_and_flown_to() {
 
 #[neurotess_testing::test(needs(gpu))]
 fn crossings_are_marked_in_the_picture() {
-    let mut window = with_samples(&[Kind::Purkinje]);
+    let mut window = window();
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("purkinje.swc");
+    let crossing = grow(&Options {
+        may_cross: true,
+        ..Options::sample(Kind::Purkinje)
+    });
+    swc::write(&crossing, fs::File::create(&file).expect("a file")).expect("written");
+    run(&mut window, Command::Open(vec![file]));
     run(&mut window, Command::ListCrossings(true));
     snapshot(&mut window, "crossings");
 }

@@ -7,7 +7,11 @@ use std::path::PathBuf;
 
 use neurotess::formats::{Format, ReadOptions, read, read_bytes};
 use neurotess::generate::{Crossings, GenerateOptions, Generated, generate};
+#[cfg(feature = "synth")]
+use neurotess::mesh::{SurfaceMesh, search_self_intersections};
 use neurotess::morphology::Morphology;
+#[cfg(feature = "synth")]
+use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_testing::{note, shared, shared_data};
 
 use judge::judge;
@@ -73,6 +77,33 @@ fn the_same_cell_gets_the_same_surface_again() {
     let second = with(&morphology, Crossings::Separate);
     assert_eq!(first.mesh, second.mesh);
     assert_eq!(first.separation, second.separation);
+}
+
+#[cfg(feature = "synth")]
+#[neurotess_testing::test]
+fn grown_cells_have_surfaces_without_crossings() {
+    use neurotess::synth::{Kind, Options, grow};
+    let pairs = |options: &Options, level| {
+        let mesh = with(&grow(options), Crossings::Keep).mesh;
+        let lod = LodCriterion::Homogeneous(level);
+        let refinement = Refinement::new(&mesh, lod, &RefineOptions::default());
+        let surface = SurfaceMesh::collect(&refinement);
+        search_self_intersections(&surface.positions(), &surface.faces)
+            .pairs
+            .len()
+    };
+    for kind in Kind::ALL {
+        let sample = Options::sample(kind);
+        assert_eq!([2, 4].map(|level| pairs(&sample, level)), [0, 0], "{kind}");
+        for seed in 2..5 {
+            assert_eq!(pairs(&Options::new(kind, seed), 2), 0, "{kind} {seed}");
+        }
+    }
+    let crossing = Options {
+        may_cross: true,
+        ..Options::sample(Kind::Purkinje)
+    };
+    assert!(pairs(&crossing, 2) > 1000);
 }
 
 /// Real cells of 149 to 19,016 points, without copies of one another.

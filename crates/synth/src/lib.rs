@@ -18,7 +18,11 @@
 //! and motoneuron membrane resistivity, 1959. The numbers for each kind are in `kinds.rs`, and
 //! `benchmarks/synthetic.md` compares the results with real cells.
 //!
-//! **Practice.** A millisecond for 5,000 points. Only additions, multiplications, divisions and square
+//! No branch grows through another or through the soma: see `room.rs`. Each step looks at what is near, and
+//! turns away from it by as little as it must; what finds no way ends, and its points are spent elsewhere in the
+//! neurite. With [`Options::may_cross`] branches take no notice of one another.
+//!
+//! **Practice.** Some milliseconds for 5,000 points. Only additions, multiplications, divisions and square
 //! roots are the processor's; all else is `libm`'s, so that results do not depend on the platform.
 //!
 //! Why not a published growth model (TMD, TREES' minimum spanning trees, NETMORPH)? They need
@@ -28,8 +32,10 @@
 mod branch;
 #[cfg(feature = "circuit")]
 pub mod circuit;
+mod grown;
 mod kind;
 mod kinds;
+mod room;
 mod soma;
 mod spec;
 mod stems;
@@ -39,7 +45,9 @@ use std::ops::RangeInclusive;
 use neurotess_morphology::Morphology;
 use neurotess_morphology::random::Random;
 
+use grown::Grown;
 pub use kind::{Kind, UnknownKind};
+use room::Room;
 
 /// How many points a cell may have outside its soma.
 pub const POINTS: RangeInclusive<usize> = 50..=500_000;
@@ -54,6 +62,8 @@ pub struct Options {
     /// Points outside the soma, within [`POINTS`] (taken as the nearest end otherwise); `None` for
     /// what is usual for the kind.
     pub points: Option<usize>,
+    /// Branches take no notice of one another and cross, as in tracings.
+    pub may_cross: bool,
 }
 
 impl Options {
@@ -63,6 +73,7 @@ impl Options {
             kind,
             seed,
             points: None,
+            may_cross: false,
         }
     }
 
@@ -76,9 +87,8 @@ impl Options {
             Kind::Basket | Kind::Star => 1500,
         };
         Self {
-            kind,
-            seed: 1,
             points: Some(points),
+            ..Self::new(kind, 1)
         }
     }
 }
@@ -92,8 +102,11 @@ pub fn grow(options: &Options) -> Morphology {
     let points = options.points.unwrap_or(spec.points);
     let points = points.clamp(*POINTS.start(), *POINTS.end());
     let mut random = Random::new(options.seed, options.kind as u64);
-    let mut nodes = soma::samples(&spec, &mut random);
-    branch::grow_all(&spec, points, &mut random, &mut nodes);
+    let soma = soma::samples(&spec, &mut random);
+    let spacing = branch::spacing(&spec, points);
+    let room = (!options.may_cross).then(|| Room::new(soma[0].radius, points, spacing));
+    let mut grown = Grown::new(soma, room);
+    branch::grow_all(&spec, points, &mut random, &mut grown);
 
     let name = format!("{}_{}", options.kind, options.seed);
     let seed = options.seed;
@@ -101,7 +114,7 @@ pub fn grow(options: &Options) -> Morphology {
         "synthetic {} neuron, seed {seed}, {points} points",
         options.kind
     )];
-    let built = Morphology::from_nodes(name, header, &nodes);
+    let built = Morphology::from_nodes(name, header, &grown.nodes);
     built
         .expect("grown nodes have parents before them and finite coordinates")
         .morphology

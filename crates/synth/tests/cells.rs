@@ -42,21 +42,23 @@ fn hash(bytes: &[u8]) -> u64 {
 
 #[test]
 fn kind_and_seed_decide_every_byte_of_the_file() {
-    let found: Vec<(&str, u64, u64)> = Kind::ALL
-        .into_iter()
-        .flat_map(|kind| [1, 2].map(|seed| (kind, seed)))
-        .map(|(kind, seed)| {
-            (
-                kind.name(),
-                seed,
-                hash(&written(&grow(&Options::new(kind, seed)))),
-            )
-        })
-        .collect();
-    assert_eq!(
-        found, GOLDEN,
-        "if that is meant, write these here and renew the samples"
-    );
+    for (golden, may_cross) in [(GOLDEN, false), (GOLDEN_CROSSING, true)] {
+        let found: Vec<(&str, u64, u64)> = Kind::ALL
+            .into_iter()
+            .flat_map(|kind| [1, 2].map(|seed| Options::new(kind, seed)))
+            .map(|options| {
+                let cell = grow(&Options {
+                    may_cross,
+                    ..options
+                });
+                (options.kind.name(), options.seed, hash(&written(&cell)))
+            })
+            .collect();
+        assert_eq!(
+            found, golden,
+            "may_cross {may_cross}: if that is meant, write these here and renew the samples"
+        );
+    }
 }
 
 #[test]
@@ -263,8 +265,8 @@ fn kinds_are_parsed_by_their_names() {
     assert!(e.contains("pyramidal, purkinje"), "{e}");
 }
 
-/// Kind, seed, hash of the SWC file at the usual size.
-const GOLDEN: [(&str, u64, u64); 12] = [
+/// Kind, seed, hash of the SWC file at the usual size, of cells that may cross themselves.
+const GOLDEN_CROSSING: [(&str, u64, u64); 12] = [
     ("pyramidal", 1, 3_404_723_738_286_854_517),
     ("pyramidal", 2, 6_161_919_719_877_750_040),
     ("purkinje", 1, 9_692_813_581_083_885_980),
@@ -277,4 +279,20 @@ const GOLDEN: [(&str, u64, u64); 12] = [
     ("motor", 2, 16_739_063_700_720_842_464),
     ("star", 1, 6_767_737_289_165_049_164),
     ("star", 2, 1_565_589_172_851_256_163),
+];
+
+/// The same of cells that keep clear of themselves.
+const GOLDEN: [(&str, u64, u64); 12] = [
+    ("pyramidal", 1, 7_541_148_502_588_144_356),
+    ("pyramidal", 2, 9_291_984_363_005_563_818),
+    ("purkinje", 1, 18_440_870_739_282_620_386),
+    ("purkinje", 2, 2_939_172_123_793_670_900),
+    ("granule", 1, 10_024_616_438_738_374_696),
+    ("granule", 2, 2_642_073_958_036_474_178),
+    ("basket", 1, 13_438_046_400_541_607_636),
+    ("basket", 2, 2_612_930_697_610_275_111),
+    ("motor", 1, 12_375_516_955_780_381_341),
+    ("motor", 2, 3_977_480_284_558_576_671),
+    ("star", 1, 3_818_989_364_909_102_493),
+    ("star", 2, 11_027_502_472_665_331_781),
 ];

@@ -21,6 +21,21 @@ fn the_seed_decides() {
 }
 
 #[neurotess_testing::test]
+fn branches_cross_only_if_they_may() {
+    let work = Work::new();
+    let pairs = |options: &str, name: &str| {
+        let grow = format!("synth purkinje -o {name}.swc --points 1000 {options}");
+        work.run(&grow).exits(0);
+        work.run(&format!("mesh {name}.swc -o {name}.ply --level 2"))
+            .exits(0);
+        let json = work.run(&format!("check {name}.ply --json")).json();
+        json[0]["self_intersections"].as_u64().expect("a number")
+    };
+    let (clear, crossing) = (pairs("", "clear"), pairs("--may-cross", "crossing"));
+    assert!(clear < 10 && crossing > 100, "{clear}, {crossing}");
+}
+
+#[neurotess_testing::test]
 fn many_cells_are_distinct_and_mesh() {
     let work = Work::new();
     work.run("synth pyramidal -o cells --count 4 --points 200")

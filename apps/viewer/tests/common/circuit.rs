@@ -22,6 +22,7 @@ pub(crate) fn write_circuit(folder: &Path, neurons: usize, morphologies: usize, 
         morphologies,
         seed: 3,
         points: Some(120),
+        may_cross: false,
         reported,
     });
     fs::create_dir_all(folder.join("morphologies")).expect("a folder");
@@ -75,6 +76,7 @@ pub(crate) fn write_firing(folder: &Path) -> usize {
         morphologies: 3,
         seed: 3,
         points: Some(120),
+        may_cross: false,
         reported: 7,
     });
     let node = made.spikes.nodes[0];
@@ -144,6 +146,7 @@ pub(crate) fn write_with_synapses(
         morphologies,
         seed: 3,
         points: Some(120),
+        may_cross: false,
         reported: neurons,
     });
     let grown: Vec<_> = made.morphologies.iter().map(|m| grow(&m.options)).collect();

@@ -546,10 +546,13 @@ def _warn(cell: _neurotess.Cell, stacklevel: int = 3) -> None:
         warnings.warn(ReadWarning(f"{place}: {message} ({code})"), stacklevel=stacklevel)
 
 
-def synth(kind: str, *, seed: int = 1, points: int | None = None) -> Morphology:
+def synth(
+    kind: str, *, seed: int = 1, points: int | None = None, may_cross: bool = False
+) -> Morphology:
     """Grows a synthetic cell, the same for the same seed on every machine.
 
     `kind` is ``"pyramidal"``, ``"purkinje"``, ``"granule"``, ``"basket"``, ``"motor"`` or ``"star"``.
-    `points` outside the soma, 50 to 500,000, are usual for the kind if they are left out.
+    `points` outside the soma, 50 to 500,000, are usual for the kind if they are left out. Branches keep clear of
+    one another unless they `may_cross`.
     """
-    return Morphology(_neurotess.Cell.grow(kind, seed, points))
+    return Morphology(_neurotess.Cell.grow(kind, seed, points, may_cross))

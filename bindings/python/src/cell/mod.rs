@@ -144,11 +144,22 @@ impl Cell {
     }
 
     #[staticmethod]
-    fn grow(py: Python<'_>, kind: &str, seed: u64, points: Option<usize>) -> PyResult<Self> {
+    fn grow(
+        py: Python<'_>,
+        kind: &str,
+        seed: u64,
+        points: Option<usize>,
+        may_cross: bool,
+    ) -> PyResult<Self> {
         let kind = kind
             .parse()
             .map_err(|e: synth::UnknownKind| PyValueError::new_err(e.to_string()))?;
-        let options = synth::Options { kind, seed, points };
+        let options = synth::Options {
+            kind,
+            seed,
+            points,
+            may_cross,
+        };
         let grown = released(py, None, move || synth::grow(&options))?;
         Ok(Self::new(Arc::new(grown), "synth", Vec::new()))
     }

@@ -37,6 +37,8 @@ pub struct CircuitOptions {
     pub seed: u64,
     /// Points of a morphology; `None` for what is usual for its kind.
     pub points: Option<usize>,
+    /// Branches of a cell may grow through one another: see [`Options::may_cross`].
+    pub may_cross: bool,
     /// How many cells the report is about; they are spread evenly.
     pub reported: usize,
 }
@@ -113,6 +115,7 @@ fn morphologies(options: &CircuitOptions) -> Vec<CircuitMorphology> {
                     .wrapping_mul(1_000_003)
                     .wrapping_add(index as u64),
                 points: options.points,
+                may_cross: options.may_cross,
             },
         }
     };
@@ -269,6 +272,7 @@ mod tests {
             morphologies,
             seed: 3,
             points: Some(200),
+            may_cross: false,
             reported: 10,
         }
     }

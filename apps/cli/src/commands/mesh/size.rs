@@ -89,9 +89,8 @@ mod tests {
     #[test]
     fn estimates_are_near_what_is_written() {
         let cell = grow(&Options {
-            kind: Kind::Star,
-            seed: 1,
             points: Some(100),
+            ..Options::new(Kind::Star, 1)
         });
         let mesh = generate(&cell, &GenerateOptions::default())
             .expect("meshed")

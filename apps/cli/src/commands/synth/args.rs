@@ -41,6 +41,9 @@ pub(crate) struct SynthArgs {
     /// Number of cells; more than one makes OUT a folder
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub(crate) count: usize,
+    /// Let branches grow through one another, as careless tracings have them
+    #[arg(long)]
+    pub(crate) may_cross: bool,
     /// Cells of the circuit, up to 10 million
     #[arg(long, default_value_t = 1000, value_name = "N", help_heading = "Circuit",
           value_parser = clap::value_parser!(u32).range(1..=10_000_000))]

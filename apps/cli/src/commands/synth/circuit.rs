@@ -60,6 +60,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
         morphologies: args.morphologies as usize,
         seed: args.seed,
         points: args.points.map(|points| points as usize),
+        may_cross: args.may_cross,
         reported: args.reported as usize,
     });
     if !grow_all(&made, folder, force, reporter)? {

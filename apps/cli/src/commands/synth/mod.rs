@@ -87,6 +87,7 @@ fn plan(args: &SynthArgs, kind: Kind) -> anyhow::Result<Vec<(Options, PathBuf)>>
             kind,
             seed,
             points: args.points.map(|points| points as usize),
+            may_cross: args.may_cross,
         };
         let path = if folder {
             out.join(format!("{}_{seed}.swc", options.kind))

@@ -5,19 +5,23 @@
 //!                               └── 50 ──section of 18──┬── 14: terminal
 //!                                                       └── 18: terminal
 //! ```
+//!
+//! A branch that finds no way ends early. Its points go to the next branches of the neurite, then to the ends of
+//! its terminals, so that none is lost.
+
+mod neurite;
+mod walk;
 
 use glam::DVec3;
-use neurotess_morphology::Node;
-
-use crate::spec::{Spec, Tree, Tropism, Trunk};
-use crate::stems;
 use neurotess_morphology::random::Random;
+
+use crate::grown::Grown;
+use crate::spec::{Spec, Tree, Trunk};
+use crate::stems;
+use walk::State;
 
 /// Fewest points of a section: two so that it has a direction of its own.
 const SHORTEST: usize = 3;
-/// Length (µm) over which the wobble forgets itself: between the 2 µm of jitter in tracings and
-/// the 50 µm of bends. By eye.
-const MEMORY: f64 = 9.0;
 /// Rall's exponent.
 const RALL: f64 = 1.5;
 
@@ -34,6 +38,18 @@ struct Branch {
     points: usize,
     /// Side branches that the trunk still gives off; `None` off the trunk.
     sides: Option<Sides>,
+    of_fork: OfFork,
+    /// It goes on from the end of a terminal.
+    goes_on: bool,
+}
+
+/// Which daughter of a fork a branch is; the greater one is grown first.
+#[derive(Clone, Copy)]
+enum OfFork {
+    /// None, or of a fork like a T.
+    Not,
+    Greater,
+    Lesser,
 }
 
 /// What is left of a trunk.
@@ -44,7 +60,7 @@ struct Sides {
     points: usize,
 }
 
-/// How a tree of the cell differs from its spec by the cell's size.
+/// Grows the trees of a cell, one after the other.
 struct Grower<'a> {
     tree: &'a Tree,
     soma_radius: f64,
@@ -52,59 +68,61 @@ struct Grower<'a> {
     /// Factor of lengths.
     stretch: f64,
     random: &'a mut Random,
-    nodes: &'a mut Vec<Node>,
+    grown: &'a mut Grown,
+    /// Points that had no room where they were meant to be.
+    unspent: usize,
+    /// Branches that would go on from the ends of a neurite's terminals.
+    ends: Vec<Branch>,
+    /// Numbers of the capsules near a step.
+    near: Vec<u32>,
 }
 
-/// Appends the neurites of a cell to its soma's samples: `points` in all.
-pub(crate) fn grow_all(spec: &Spec, points: usize, random: &mut Random, nodes: &mut Vec<Node>) {
-    let size = points as f64 / spec.points as f64;
-    // Ten times the points: 4.6 times the branches, 1.7 times as long, samples 1.3 times denser.
-    let spacing = (spec.spacing * libm::pow(size, -0.12)).clamp(1.0, 5.0);
-    let stretch = libm::pow(size, 0.22);
-    let soma_radius = nodes[0].radius;
-    nodes.reserve_exact(points);
+/// Mean distance of points (µm). Ten times the points: 4.6 times the branches, 1.7 times as long, samples 1.3
+/// times denser.
+pub(crate) fn spacing(spec: &Spec, points: usize) -> f64 {
+    (spec.spacing * libm::pow(size(spec, points), -0.12)).clamp(1.0, 5.0)
+}
+
+/// 1 for a cell of the usual size.
+fn size(spec: &Spec, points: usize) -> f64 {
+    points as f64 / spec.points as f64
+}
+
+/// Appends the neurites of a cell to its soma: `points` in all.
+pub(crate) fn grow_all(spec: &Spec, points: usize, random: &mut Random, grown: &mut Grown) {
+    let Some(first) = spec.trees.first() else {
+        return;
+    };
+    let size = size(spec, points);
+    grown.nodes.reserve_exact(points);
+    let mut grower = Grower {
+        tree: first,
+        soma_radius: grown.nodes[0].radius,
+        spacing: spacing(spec, points),
+        stretch: libm::pow(size, 0.22),
+        random,
+        grown,
+        unspent: 0,
+        ends: Vec::new(),
+        near: Vec::new(),
+    };
     let shares: Vec<f64> = spec.trees.iter().map(|tree| tree.share).collect();
     let mut taken = Vec::new();
     for (tree, points) in spec.trees.iter().zip(stems::shared(points, &shares)) {
-        let count = stems::count(tree, points, size, random);
-        let weights: Vec<f64> = (0..count).map(|_| random.between((0.7, 1.3))).collect();
+        grower.tree = tree;
+        let count = stems::count(tree, points, size, grower.random);
+        let weights: Vec<f64> = (0..count)
+            .map(|_| grower.random.between((0.7, 1.3)))
+            .collect();
         for points in stems::shared(points, &weights) {
-            let heading = stems::direction(tree, &taken, random);
+            let heading = grower.stem(&taken, points, size);
             taken.push(heading);
-            Grower {
-                tree,
-                soma_radius,
-                spacing,
-                stretch,
-                random,
-                nodes,
-            }
-            .stem(heading, points, size);
         }
     }
+    grower.outwards();
 }
 
 impl Grower<'_> {
-    /// One neurite, depth first.
-    fn stem(&mut self, heading: DVec3, points: usize, size: f64) {
-        let radius = self.tree.radius * self.random.between((0.85, 1.15));
-        let sides = self.tree.trunk.map(|trunk| self.sides(trunk, points, size));
-        // The first step leads `spacing` further: out of the soma.
-        let from = heading * (self.soma_radius + radius - self.spacing).max(0.5 * self.soma_radius);
-        let mut stack = vec![Branch {
-            parent: 0,
-            from,
-            heading,
-            inside: 0.0,
-            radius,
-            points,
-            sides,
-        }];
-        while let Some(branch) = stack.pop() {
-            self.branch(branch, &mut stack);
-        }
-    }
-
     fn sides(&self, trunk: Trunk, points: usize, size: f64) -> Sides {
         let left = (trunk.sides * libm::pow(size, 0.3)).round();
         let each = trunk.share * points as f64 / left.max(1.0);
@@ -120,17 +138,36 @@ impl Grower<'_> {
     /// Walks one section and pushes its daughters, the greater one on top.
     fn branch(&mut self, branch: Branch, stack: &mut Vec<Branch>) {
         let spent = self.section_points(&branch);
-        let left = branch.points - spent;
         let first_step = if branch.parent == 0 {
             self.soma_radius
         } else {
             0.0
         };
-        let (from, heading, inside) = self.walk(&branch, spent, first_step);
-        if left == 0 {
+        let before = self.grown.nodes.len();
+        let end = self.walk(&branch, spent, first_step);
+        let placed = self.grown.nodes.len() - before;
+        if placed < SHORTEST.min(spent) && !branch.goes_on {
+            self.grown.keep(before);
+            self.unspent += branch.points;
             return;
         }
-        let parent = (self.nodes.len() - 1) as u32;
+        let left = branch.points - placed;
+        if placed == spent && left == 0 {
+            self.ends.push(self.going_on(&end));
+            return;
+        }
+        // Where there is no way, daughters may find one; not out of a hole at the section's start.
+        if placed < spent && (left < 2 * SHORTEST || placed < SHORTEST.max(spent / 2)) {
+            self.unspent += left;
+            return;
+        }
+        let State {
+            at: from,
+            heading,
+            radius: inside,
+            ..
+        } = end;
+        let parent = self.grown.last();
         let lesser = self.lesser(&branch, left);
         let part = lesser as f64 / left as f64;
         let (thin, thick) = self.daughter_radii(inside, part);
@@ -149,9 +186,32 @@ impl Grower<'_> {
             radius,
             points,
             sides,
+            of_fork: OfFork::Not,
+            goes_on: false,
         };
-        stack.push(daughter(aside, thin, lesser, None));
-        stack.push(daughter(ahead, thick, left - lesser, sides));
+        let [mut aside, mut ahead] = [
+            daughter(aside, thin, lesser, None),
+            daughter(ahead, thick, left - lesser, sides),
+        ];
+        if !(self.is_tee() && branch.sides.is_some()) {
+            (aside.of_fork, ahead.of_fork) = (OfFork::Lesser, OfFork::Greater);
+        }
+        stack.extend([aside, ahead]);
+    }
+
+    /// What would go on from the last point.
+    fn going_on(&self, end: &State) -> Branch {
+        Branch {
+            parent: self.grown.last(),
+            from: end.at,
+            heading: end.heading,
+            inside: end.radius,
+            radius: end.radius,
+            points: 0,
+            sides: None,
+            of_fork: OfFork::Not,
+            goes_on: true,
+        }
     }
 
     /// How many of the branch's points make its first section; all of a terminal's.
@@ -226,83 +286,5 @@ impl Grower<'_> {
         }
         let turned = |angle: f64| heading * libm::cos(angle) + across * libm::sin(angle);
         (turned(angle * (1.0 - part)), turned(-angle * part))
-    }
-
-    /// Appends the points of one section; gives its last position, heading and radius.
-    fn walk(&mut self, branch: &Branch, points: usize, clear_of: f64) -> (DVec3, DVec3, f64) {
-        let thinnest = self.tree.thinnest.min(branch.radius);
-        let mut at = branch.from;
-        let mut heading = branch.heading;
-        let mut wobble = DVec3::ZERO;
-        let (mut parent, mut taper) = (branch.parent, 1.0);
-        let mut radius = branch.radius;
-        for i in 0..points {
-            let widest = if i == 0 {
-                radius.max(branch.inside)
-            } else {
-                radius
-            };
-            let step = (self.spacing * self.random.between((0.8, 1.2))).max(1.1 * widest);
-            heading = self.bent(heading, at, step);
-            wobble = self.wobbled(wobble, step);
-            let mut sideways = wobble - heading * wobble.dot(heading);
-            if self.tree.flat {
-                sideways.z *= 0.2;
-            }
-            at += (heading + sideways).normalize_or(heading) * step;
-            if i == 0 && at.length() < clear_of + radius {
-                at = at.normalize_or(heading) * (clear_of + radius);
-            }
-            if i > 0 {
-                taper *= libm::exp(-step / (self.tree.taper * self.stretch));
-            }
-            radius = thinnest + (branch.radius - thinnest) * taper;
-            let inner = i > 0 && i + 1 < points;
-            let swell = if inner {
-                self.random.between((0.92, 1.08))
-            } else {
-                1.0
-            };
-            parent = self.push(parent, at, radius * swell);
-        }
-        (at, heading, radius)
-    }
-
-    /// The heading after tropism, what keeps a flat tree flat, and what keeps it out of the soma.
-    fn bent(&self, heading: DVec3, at: DVec3, step: f64) -> DVec3 {
-        let away = at.normalize_or(heading);
-        let (to, strength) = match self.tree.tropism {
-            Tropism::Away(strength) => (away, strength),
-            Tropism::To(to, strength) => (to, strength),
-        };
-        let mut bent = heading + to * (strength / self.stretch * step);
-        if at.length() < 1.5 * self.soma_radius {
-            bent += away * 0.3;
-        }
-        if self.tree.flat {
-            bent.z = 0.5 * bent.z - 0.01 * at.z;
-        }
-        bent.normalize_or(heading)
-    }
-
-    /// One step of an Ornstein-Uhlenbeck process in space.
-    fn wobbled(&mut self, wobble: DVec3, step: f64) -> DVec3 {
-        let keep = libm::exp(-step / MEMORY);
-        let ((x, y), (z, _)) = (self.random.normal_pair(), self.random.normal_pair());
-        let kick = self.tree.wobble * (1.0 - keep * keep).sqrt();
-        wobble * keep + DVec3::new(x, y, z) * kick
-    }
-
-    /// Appends a point, rounded as files have it: thousandths, radii to a tenth of that.
-    fn push(&mut self, parent: u32, at: DVec3, radius: f64) -> u32 {
-        let index = self.nodes.len() as u32;
-        self.nodes.push(Node {
-            id: i64::from(index) + 1,
-            kind: self.tree.kind,
-            position: (at * 1e3).round() / 1e3,
-            radius: (radius * 1e4).round() / 1e4,
-            parent: Some(parent),
-        });
-        index
     }
 }
