@@ -64,7 +64,7 @@ impl Cells {
     /// With this memory (bytes) for templates.
     fn within(&self, gpu: &Gpu, memory: Option<u64>) -> Result<Exploration, DeviceError> {
         let mut source = Exploration::new(gpu, 1)?;
-        source.add_streamed(gpu, self.proxies.clone(), memory)?;
+        source.add_streamed(gpu, &self.proxies, memory)?;
         let placed = source.set_instances(gpu, self.instances.clone());
         placed.expect("instances of what was added");
         Ok(source)

@@ -118,7 +118,7 @@ impl Explorer {
             let targets = proxies.iter().map(|proxy| ProxyPickTargets::new(proxy));
             let targets = targets.collect();
             Ok(Exploration::new(&gpu, 1).and_then(|mut exploration| {
-                exploration.add_streamed(&gpu, proxies, memory)?;
+                exploration.add_streamed(&gpu, &proxies, memory)?;
                 Ok((exploration, targets))
             }))
         };

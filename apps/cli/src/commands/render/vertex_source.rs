@@ -253,7 +253,7 @@ fn budgeted(
         .collect();
     let mut source = Exploration::new(gpu, options.sub_pixels(gpu))?;
     source.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
-    let ids = source.add_streamed(gpu, proxies, args.gpu.gpu_memory)?;
+    let ids = source.add_streamed(gpu, &proxies, args.gpu.gpu_memory)?;
     let instances = placements.iter().map(|&(cell, placement)| Instance {
         placement,
         ..Instance::new(ids[cell])

@@ -72,7 +72,7 @@ impl Exploration {
     pub fn add_streamed(
         &mut self,
         gpu: &Gpu,
-        proxies: Vec<Arc<Proxy>>,
+        proxies: &[Arc<Proxy>],
         memory: Option<u64>,
     ) -> Result<Vec<TemplateId>, DeviceError> {
         let used = self.buffers.used();
@@ -94,7 +94,7 @@ impl Exploration {
             return Err(DeviceError::TooManyTracings { bytes, most });
         }
         let first = self.known.len();
-        let streaming = Streaming::new(gpu, &mut self.buffers, first, proxies.clone(), left)?;
+        let streaming = Streaming::new(gpu, &mut self.buffers, first, proxies, left)?;
         let shapes: Vec<Shape> = (0..proxies.len())
             .map(|index| streaming.base_shape(index))
             .collect();

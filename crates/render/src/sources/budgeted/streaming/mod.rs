@@ -110,13 +110,13 @@ impl Streaming {
         gpu: &Gpu,
         buffers: &mut Buffers,
         first: usize,
-        proxies: Vec<Arc<Proxy>>,
+        proxies: &[Arc<Proxy>],
         memory: u64,
     ) -> Result<Self, DeviceError> {
-        let (base, taken) = base_of(gpu, buffers, &proxies, memory)?;
+        let (base, taken) = base_of(gpu, buffers, proxies, memory)?;
         let left = memory.saturating_sub(taken.bytes());
         let shares_chunks = base.chunks == usize::MAX;
-        let mut full = total(&proxies, Detail::FULL);
+        let mut full = total(proxies, Detail::FULL);
         if shares_chunks {
             full.chunks = 0;
         }
@@ -148,7 +148,7 @@ impl Streaming {
             base,
             rooms: Rooms::new(all),
             room,
-            proxies: Arc::new(proxies),
+            proxies: Arc::new(proxies.to_vec()),
             picture: 0,
             most_upload: u64::MAX,
             is_pending: false,

@@ -157,10 +157,8 @@ pub(super) fn reduced(proxy: &Proxy, detail: Detail) -> Proxy {
 fn without(chunk: &Chunk, level: usize) -> ([u32; 2], [u32; 2]) {
     let (counts, errors) = (bytes_of(chunk.counts), bytes_of(chunk.errors));
     let mut fewer = ([0; 8], [NO_LOD; 8]);
-    for k in level..LEVELS {
-        fewer.0[k - level] = counts[k];
-        fewer.1[k - level] = errors[k];
-    }
+    fewer.0[..LEVELS - level].copy_from_slice(&counts[level..LEVELS]);
+    fewer.1[..LEVELS - level].copy_from_slice(&errors[level..LEVELS]);
     fewer.1[LEVELS] = 0;
     (u32s_of(fewer.0), u32s_of(fewer.1))
 }
