@@ -133,7 +133,7 @@ fn cells_behind_glass_are_picked() {
     run(&mut window, Command::OpenMeshes(vec![file]));
     rest(&mut window);
     let hidden = hits(&mut window);
-    let [mesh, nothing] = [[600.0, 120.0], [600.0, 700.0]];
+    let [mesh, nothing] = [[760.0, 120.0], [600.0, 700.0]];
     let name = |window: &mut Window, [x, y]: [f32; 2]| {
         let rect = picture(window);
         let (x, y) = (x - rect.left(), y - rect.top());

@@ -310,11 +310,10 @@ fn tracings_that_do_not_fit_the_memory_are_there_where_they_show() {
     let (limited, fewer, _) = opened(Some(2 * 33 * points));
     assert!(fewer < bytes, "{fewer} of {bytes}");
     for (place, ((expected, _), (pixels, _))) in whole.iter().zip(&limited).enumerate() {
-        let differing = differing(expected, pixels);
-        assert!(
-            differing < pixels.len() / 4 / 50,
-            "{differing} pixels, {place}"
-        );
+        let share = differing(expected, pixels) as f64 / (pixels.len() / 4) as f64;
+        // Refined ones are the same; what is explored is off by up to half a pixel, which all outlines show.
+        let most = if place == 1 { 0.05 } else { 0.001 };
+        assert!(share < most, "{share} of the pixels, {place}");
     }
     let lowered = limited.map(|(_, lowered)| lowered.is_some());
     assert_eq!(lowered, [false, true, false], "together they are explored");
