@@ -147,7 +147,7 @@ fn what_shows_most_is_there_first_where_memory_is_short() {
     let cells = Cells::row(24);
     let all = cells.bytes();
     let mut whole = cells.within(&gpu, None).expect("fits");
-    let mut before = f64::MAX;
+    let (mut before, mut most) = (f64::MAX, cells.proxies.len());
     for memory in [all / 40, all / 8, all / 2] {
         let mut streamed = cells.within(&gpu, Some(memory)).expect("fits in part");
         let camera = in_front_of(6.0);
@@ -162,6 +162,9 @@ fn what_shows_most_is_there_first_where_memory_is_short() {
         let off: f64 = off.map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
         let off = off / image.pixels.len() as f64;
         let there = streamed.stats(&gpu).expect("counted").streamed;
+        let coarser = there.expect("not all fits").coarser;
+        assert!(coarser > 0 && coarser < most, "fewer and fewer: {coarser}");
+        most = coarser;
         note!("{memory} of {all} bytes: {off:.3} of 255 off in the mean, {there:?}");
         assert!(off < before, "the more memory, the finer: {off} {before}");
         before = off;

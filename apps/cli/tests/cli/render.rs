@@ -463,6 +463,16 @@ fn tracings_that_do_not_fit_the_adapter_are_drawn_as_those_that_do() {
         "{some}"
     );
     assert!(picture == whole, "another picture");
+    let near = "render circuit -o c.png --force --lod exploration --size 160x120 --samples 1";
+    let said = |run: &Run| run.stderr().contains("more coarsely than they show");
+    let run = work
+        .run(&format!("{near} --gpu-memory {}", all / 8))
+        .exits(0);
+    assert!(
+        said(&run) && !said(&work.run(near).exits(0)),
+        "{}",
+        run.stderr()
+    );
     let mut command = work.command(draw);
     command.env("NEUROTESS_GPU_MEMORY", "1KiB");
     let run = Run(command.output().expect("it runs")).exits(1);

@@ -59,7 +59,8 @@ impl Fault {
 
 impl Gpu {
     /// Opens the best adapter, or the best of those whose backend is `wanted` or whose name contains it (in
-    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`](crate::adapter::ADAPTER_VARIABLE) decides, if it is set.
+    /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`](crate::adapter::ADAPTER_VARIABLE)
+    /// decides, if it is set.
     ///
     /// The device has the adapter's own limits, and those of [`optional_features`] that it
     /// supports.

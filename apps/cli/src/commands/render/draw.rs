@@ -124,8 +124,9 @@ pub(super) fn draw(
         }
         stats.add(&cost, counted.clone());
         stats.film = film.as_ref().map(FixedFilm::stats);
-        for left_out in stats.lowered().into_iter().chain(stats.thinned()) {
-            reporter.warning(&left_out);
+        let left_out = [stats.lowered(), stats.coarsened(), stats.thinned()];
+        for left_out in left_out.iter().flatten() {
+            reporter.warning(left_out);
         }
         progress.done();
     }

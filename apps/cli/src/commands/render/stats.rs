@@ -127,6 +127,8 @@ struct StreamStats {
     finer: usize,
     /// Those that are there with all their points.
     whole: usize,
+    /// Those that might show more finely than there is room for.
+    coarser: usize,
     uploaded_bytes: u64,
 }
 
@@ -209,6 +211,7 @@ impl Stats {
                 tracings: there.templates,
                 finer: there.finer,
                 whole: there.whole,
+                coarser: there.coarser,
                 uploaded_bytes: there.uploaded,
             }),
         });
@@ -240,6 +243,18 @@ impl Stats {
         Some(format!(
             "the budget of {budget} triangles: {least}{left_out} of {wanted} are left out, those that \
              show least; --budget allows more"
+        ))
+    }
+
+    /// A message about tracings that would show more finely with more memory.
+    pub(crate) fn coarsened(&self) -> Option<String> {
+        let streamed = self.exploration?.streamed?;
+        let StreamStats {
+            tracings, coarser, ..
+        } = (streamed.coarser > 0).then_some(streamed)?;
+        Some(format!(
+            "{coarser} of {tracings} tracings may be drawn more coarsely than they show: there is no more room for them \
+             in the adapter's memory; a larger --gpu-memory allows more, as far as the adapter does"
         ))
     }
 

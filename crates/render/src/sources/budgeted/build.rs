@@ -12,7 +12,9 @@ use super::layout::{
 use super::nested::simplify;
 use super::paths::{PathPoint, TubePath, tube_paths};
 use super::proxy::Proxy;
-use super::quantized::{STEPS, error_byte, grid, packed, packed_direction, sphere, u32s_of};
+use super::quantized::{
+    STEPS, error_byte, grid, packed, packed_bytes, packed_direction, sphere, u32s_of,
+};
 use super::somata;
 
 impl Proxy {
@@ -74,7 +76,6 @@ impl Proxy {
             errors[k] = error_byte(lod.error + sway);
             lists.extend(lod.kept);
         }
-        lists.resize(lists.len().next_multiple_of(4), 0);
         let (low, step) = grid(tube.iter().map(|p| p.0));
         let first = self.packed.len() as u32;
         for &(center, r) in &tube {
@@ -82,11 +83,7 @@ impl Proxy {
             self.packed
                 .extend(packed(center, low, step, (share * STEPS).round() as u32));
         }
-        self.packed.extend(
-            lists
-                .chunks_exact(4)
-                .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
-        );
+        self.packed.extend(packed_bytes(lists));
         let spheres = tube.iter().map(|&(center, r)| (center, r + sway));
         let (center, reach) = sphere(spheres);
         self.push(

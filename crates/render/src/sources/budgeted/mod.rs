@@ -17,8 +17,8 @@
 //! **Practice.** [`Proxy::new`] on any thread, [`Exploration::add`] once for each template,
 //! [`Exploration::set_instances`] when they change, [`Exploration::set_hidden`],
 //! [`Exploration::set_state`] and [`Exploration::set_budget`] at any time: pipelines are made once.
-//! Templates that may not fit the device: [`Exploration::add_streamed`] instead. A frame uploads 144 bytes and what changed; if camera, size and
-//! scene are those of the frame before, it keeps that frame's selection.
+//! Templates that may not fit the device: [`Exploration::add_streamed`] instead. A frame uploads 144 bytes and what
+//! changed; if camera, size and scene are those of the frame before, it keeps that frame's selection.
 //!
 //! Why not the patches of [`Adaptive`](crate::Adaptive)? They form a closed surface at any levels,
 //! for which they need eight triangles a segment. When a whole neuron fits the screen, the

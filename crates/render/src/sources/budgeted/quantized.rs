@@ -16,9 +16,31 @@ pub(super) fn error_byte(error: f32) -> u8 {
     step.clamp(1.0, f32::from(NO_LOD - 1)) as u8
 }
 
+/// The error (µm) of a byte.
+pub(super) fn error_of(byte: u8) -> f32 {
+    match byte {
+        0 => 0.0,
+        byte => (f32::from(byte) / ERROR_STEPS - ERROR_OFFSET).exp2(),
+    }
+}
+
 pub(super) fn u32s_of(bytes: [u8; 8]) -> [u32; 2] {
     let [a, b, c, d, e, f, g, h] = bytes;
     [[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes)
+}
+
+pub(super) fn bytes_of(u32s: [u32; 2]) -> [u8; 8] {
+    let [[a, b, c, d], [e, f, g, h]] = u32s.map(u32::to_le_bytes);
+    [a, b, c, d, e, f, g, h]
+}
+
+/// Bytes as u32s, the last filled up with zeros.
+pub(super) fn packed_bytes(mut bytes: Vec<u8>) -> Vec<u32> {
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let fours = bytes.chunks_exact(4);
+    fours
+        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        .collect()
 }
 
 /// The grid that positions are stored in: its lowest corner, and the length (µm) of a step.

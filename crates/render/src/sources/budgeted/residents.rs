@@ -88,11 +88,12 @@ impl Exploration {
         if bound && all.bytes() + shapes <= memory && self.streaming.is_none() {
             return self.add_whole(gpu, proxies.iter().map(Arc::as_ref));
         }
-        let left = memory.saturating_sub(used.bytes() + shapes);
         if self.streaming.is_some() {
+            // Those that are streamed have taken all room.
             let (bytes, most) = (counts.bytes(), 0);
             return Err(DeviceError::TooManyTracings { bytes, most });
         }
+        let left = memory.saturating_sub(used.bytes() + shapes);
         let first = self.known.len();
         let streaming = Streaming::new(gpu, &mut self.buffers, first, proxies, left)?;
         let shapes: Vec<Shape> = (0..proxies.len())

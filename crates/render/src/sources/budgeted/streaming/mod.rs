@@ -49,6 +49,9 @@ pub struct StreamedTemplates {
     pub finer: usize,
     /// Those that are there with all their points.
     pub whole: usize,
+    /// Those that the last picture might have shown more finely, had there been room: by the greatest errors of their
+    /// polylines, which need not be in view.
+    pub coarser: usize,
     /// Bytes of finer points that were uploaded since the start.
     pub uploaded: u64,
 }
@@ -71,6 +74,8 @@ pub(super) struct Streaming {
     pub(super) is_pending: bool,
     /// Bytes uploaded since the start.
     pub(super) uploaded: u64,
+    /// Templates that the last picture might have shown more finely, had there been room.
+    coarser: usize,
 }
 
 /// A template.
@@ -153,6 +158,7 @@ impl Streaming {
             most_upload: u64::MAX,
             is_pending: false,
             uploaded: 0,
+            coarser: 0,
         })
     }
 
@@ -179,7 +185,8 @@ impl Streaming {
     ) -> Vec<(usize, Shape)> {
         self.picture += 1;
         let pixels = self.nearest_pixels(instances, frame, pixel);
-        let plan = self.plan(&pixels);
+        let (plan, coarser) = self.plan(&pixels);
+        self.coarser = coarser;
         for &(template, _) in &plan {
             self.templates[template].wanted = self.picture;
         }
@@ -238,8 +245,9 @@ impl Streaming {
         pixels
     }
 
-    /// The details to be there for a picture, those first that show most.
-    fn plan(&self, pixels: &[f32]) -> Vec<(usize, usize)> {
+    /// The details to be there for a picture, those first that show most; and how many templates have no room for the
+    /// detail that shows.
+    fn plan(&self, pixels: &[f32]) -> (Vec<(usize, usize)>, usize) {
         let mut wanted: Vec<(f32, usize)> = (0..)
             .zip(&self.templates)
             .map(|(index, template)| (template.base_error / pixels[index], index))
@@ -253,7 +261,7 @@ impl Streaming {
             color_keys: planned(self.room.color_keys),
         };
         let mut taken = Counts::default();
-        let mut plan = Vec::new();
+        let (mut plan, mut coarser) = (Vec::new(), 0);
         for (_, index) in wanted {
             let template = &self.templates[index];
             let enough = |&detail: &usize| template.details[detail].0 <= ERROR * pixels[index];
@@ -265,12 +273,14 @@ impl Streaming {
                 let (error, counts) = &template.details[detail];
                 *error < template.base_error && taken.plus(counts).fit(&room)
             });
-            if let Some(detail) = fitting.next() {
+            let fitting = fitting.next();
+            coarser += usize::from(fitting.is_none_or(|detail| detail < enough));
+            if let Some(detail) = fitting {
                 taken = taken.plus(&template.details[detail].1);
                 plan.push((index, detail));
             }
         }
-        plan
+        (plan, coarser)
     }
 
     /// Templates whose details this picture does not want, the longest unwanted first.
@@ -344,6 +354,7 @@ impl Streaming {
             templates: self.templates.len(),
             finer: finer.clone().count(),
             whole: finer.filter(|(detail, _)| *detail == full).count(),
+            coarser: self.coarser,
             uploaded: self.uploaded,
         }
     }

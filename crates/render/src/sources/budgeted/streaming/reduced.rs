@@ -7,11 +7,10 @@
 
 use crate::sources::budgeted::buffers::Counts;
 use crate::sources::budgeted::layout::{
-    CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk, ERROR_OFFSET, ERROR_STEPS, LEVELS, MOST_SEGMENTS,
-    NO_LOD,
+    CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk, LEVELS, MOST_SEGMENTS, NO_LOD,
 };
 use crate::sources::budgeted::proxy::Proxy;
-use crate::sources::budgeted::quantized::u32s_of;
+use crate::sources::budgeted::quantized::{bytes_of, error_of, packed_bytes, u32s_of};
 
 /// How much of a proxy is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +65,7 @@ impl Detail {
         let of_kept = kept.iter().map(|chunk| match self.finest(chunk) {
             None => chunk.radius / SOMA_MESH_PIXELS * HALF_PIXEL,
             Some(0) => 0.0,
-            Some(level) => error(bytes_of(chunk.errors)[level]),
+            Some(level) => error_of(bytes_of(chunk.errors)[level]),
         });
         let of_others = left_out.map(|chunk| 2.0 * chunk.reach);
         of_kept.chain(of_others).fold(0.0, f32::max)
@@ -168,12 +167,7 @@ fn lists(proxy: &Proxy, chunk: &Chunk, level: usize, points: &[u8]) -> Vec<u32> 
     let coarser = (level + 1..LEVELS).flat_map(|k| list(proxy, chunk, k));
     // Polylines are nested, and their points ascend.
     let index = |point: u8| points.partition_point(|&kept| kept < point) as u8;
-    let mut bytes: Vec<u8> = coarser.map(index).collect();
-    bytes.resize(bytes.len().next_multiple_of(4), 0);
-    let fours = bytes.chunks_exact(4);
-    fours
-        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect()
+    packed_bytes(coarser.map(index).collect())
 }
 
 /// The points of a polyline after the first one: none if the chunk does not have it.
@@ -212,16 +206,4 @@ fn points(chunk: &Chunk, level: usize) -> usize {
         0 => usize::from(bytes_of(chunk.counts)[level]) + 1,
         _ => 1,
     }
-}
-
-fn error(byte: u8) -> f32 {
-    match byte {
-        0 => 0.0,
-        byte => (f32::from(byte) / ERROR_STEPS - ERROR_OFFSET).exp2(),
-    }
-}
-
-fn bytes_of(u32s: [u32; 2]) -> [u8; 8] {
-    let [[a, b, c, d], [e, f, g, h]] = u32s.map(u32::to_le_bytes);
-    [a, b, c, d, e, f, g, h]
 }

@@ -1,8 +1,13 @@
 //! Exploration keeps its budget, spends it where it shows most, and loses nothing on the way.
 
+#[path = "../adapter/mod.rs"]
 mod adapter;
+#[path = "../common/mod.rs"]
 mod common;
+#[path = "../pictured/mod.rs"]
 mod pictured;
+mod somata;
+mod spines;
 
 use std::convert::Infallible;
 
@@ -182,73 +187,6 @@ fn the_frame_before_changes_nothing_but_the_cost() {
     assert!(measured / 10 < all as u64 / 4, "{}", measured / 10);
 }
 
-#[neurotess_testing::test(needs(gpu))]
-fn somata_below_a_pixel_spend_the_budget() {
-    let gpu = device();
-    let mut random = Random(23);
-    let proxies = [Proxy::new(&cell(3, 20), &[])];
-    let instances = scattered(&mut random, 30_000, 1, 40_000.0);
-    let mut source = explored(&gpu, &proxies, instances);
-    for budget in [1000, 10_000] {
-        source.set_budget(budget);
-        let camera = Camera::new(DVec3::Z * 60_000.0, DVec3::ZERO, DVec3::Y, 1.0);
-        let frame = frame(camera.expect("a camera"), 200, 200);
-        source.prepare(&gpu, &frame).expect("prepared");
-        let stats = source.stats(&gpu).expect("counted");
-        assert!(stats.requested > 2 * u64::from(budget), "{stats:?}");
-        assert!(100 * stats.triangles > 95 * u64::from(budget), "{stats:?}");
-    }
-}
-
-#[neurotess_testing::test(needs(gpu))]
-fn a_crowd_of_somata_looks_like_one_also_within_a_budget() {
-    let gpu = device();
-    let mut random = Random(29);
-    let soma = mesh("1 1 0 0 0 6 -1\n");
-    let (color_keys, table) = by_type(&soma);
-    let proxies = [Proxy::new(&soma, &color_keys)];
-    let camera = Camera::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0).expect("a camera");
-    let halves = |image: &Image| {
-        let ink = ink(image);
-        let of = |left: bool| -> f64 {
-            let here = (0..).zip(&ink).filter(|(tile, _)| (tile % 20 < 10) == left);
-            here.map(|(_, ink)| ink).sum()
-        };
-        [of(true), of(false)]
-    };
-    // Two crowds side by side in the picture, one three times as far away as the other: somata of a radius of 0.04 and
-    // 0.015 sub-pixels, then of 0.4 and 0.13. Dots are at least a pixel, so that those left out are
-    // made up for where they are about as large.
-    for (scale, least) in [(0.25, [0.4, 0.4]), (2.2, [1.1, 0.4])] {
-        let mut instances = Vec::new();
-        for (count, at, edge) in [(1500, -9000.0, 12_000.0), (3000, 27_000.0, 36_000.0)] {
-            let far = if at < 0.0 { 30_000.0 } else { 90_000.0 };
-            for mut instance in scattered(&mut random, count, 1, edge) {
-                instance.placement.translation += DVec3::new(at, 0.0, -far);
-                instance.placement.scale = scale;
-                instances.push(instance);
-            }
-        }
-        let mut source = explored(&gpu, &proxies, instances);
-        source.set_budget(MOST_BUDGET);
-        let all = halves(&picture(&gpu, &mut source, &camera, &table));
-        for share in [2, 4, 8] {
-            source.set_budget(2 * 4500 / share);
-            let some = halves(&picture(&gpu, &mut source, &camera, &table));
-            let kept = [some[0] / all[0], some[1] / all[1]];
-            let fair = 1.0 / f64::from(share);
-            note!(
-                "1 of {share} somata, scale {scale}: {:.2} and {:.2} of the ink",
-                kept[0],
-                kept[1]
-            );
-            for (kept, least) in kept.iter().zip(least) {
-                assert!((least * fair..1.3).contains(kept), "{kept} of {fair}");
-            }
-        }
-    }
-}
-
 /// How many steps make these quads.
 fn drawn_steps(steps: &[LodRequest], quads: u32) -> Option<usize> {
     let mut sum = 0;
@@ -346,22 +284,6 @@ fn nothing_vanishes_near_or_far() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn somata_are_seen_from_any_distance() {
-    let gpu = device();
-    let mesh = mesh("1 1 0 0 0 6 -1\n");
-    let (_, table) = by_type(&mesh);
-    let (_, mut source) = both(&gpu, &mesh, &[Instance::new(TemplateId(0))]);
-    for distance in [30.0, 300.0, 3e3, 3e4, 3e5, 3e6] {
-        let camera = Camera::new(DVec3::Z * distance, DVec3::ZERO, DVec3::Y, 0.7).expect("one");
-        let found: f64 = ink(&picture(&gpu, &mut source, &camera, &table))
-            .iter()
-            .sum();
-        // Black on white: a pixel's worth of light, were it spread over four.
-        assert!(found > 110.0, "{distance}: {found}");
-    }
-}
-
-#[neurotess_testing::test(needs(gpu))]
 fn the_position_in_the_world_does_not_matter() {
     let gpu = device();
     let mesh = mesh(CELL);
@@ -420,99 +342,6 @@ fn a_slow_camera_sees_nothing_pop() {
     // Measured on lavapipe: 0.970 and 0.983.
     assert!(all < 1.02, "{all}");
     assert!(few < 1.05, "{few}");
-}
-
-/// A soma with six dendrites that wind, without and with spines, and how many spines there are.
-fn with_spines() -> ([CoarseMesh; 2], usize) {
-    let mut text = String::from("1 1 0 0 0 6 -1\n");
-    let mut id = 2;
-    for dendrite in 0..6 {
-        let (sin, cos) = (f64::from(dendrite) * 1.05).sin_cos();
-        let mut parent = 1;
-        for step in (0..46).map(f64::from) {
-            let (far, aside) = (8.0 + 2.0 * step, 3.0 * (0.3 * step).sin());
-            let (x, y) = (far * cos - aside * sin, far * sin + aside * cos);
-            let z = 2.0 * (0.41 * step).cos() - 2.0;
-            text.push_str(&format!("{id} 3 {x} {y} {z} 0.6 {parent}\n"));
-            (parent, id) = (id, id + 1);
-        }
-    }
-    let read = swc::read_bytes(text.as_bytes(), "cell.swc", &ReadOptions::default());
-    let plain = read.expect("a cell").morphology;
-    let places = SpinePlaces::Density(1.0);
-    let spiny = edit::apply(&plain, &[Edit::Spines { places, seed: 1 }]).expect("grown");
-    let spines = (spiny.morphology.sections.len() - plain.sections.len()) / 2;
-    let mesh = |morphology| {
-        let generated = generate(morphology, &GenerateOptions::default());
-        generated.expect("meshed").mesh
-    };
-    ([mesh(&plain), mesh(&spiny.morphology)], spines)
-}
-
-/// The longest spines begin to fade at some 500 µm, and all are left out from 2,000 µm on.
-#[neurotess_testing::test(needs(gpu))]
-fn far_spines_cost_nothing_and_leave_their_ink() {
-    let gpu = device();
-    let ([plain, spiny], spines) = with_spines();
-    assert!(spines > 400, "{spines}");
-    let (_, table) = by_type(&spiny);
-    let one = [Instance::new(TemplateId(0))];
-    let (_, mut without) = both(&gpu, &plain, &one);
-    let (mut adaptive, mut with) = both(&gpu, &spiny, &one);
-    for source in [&mut without, &mut with] {
-        source.set_budget(2_000_000);
-    }
-    for distance in [150.0, 300.0, 400.0, 500.0, 700.0, 1000.0, 2000.0, 4000.0] {
-        let eye = DVec3::new(0.1, 0.2, 1.0).normalize_or(DVec3::Z) * distance;
-        let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-        let expected = ink(&picture(&gpu, &mut adaptive, &camera, &table));
-        let found = ink(&picture(&gpu, &mut with, &camera, &table));
-        let all: f64 = expected.iter().sum();
-        let change = found.iter().sum::<f64>() / all - 1.0;
-        picture(&gpu, &mut without, &camera, &table);
-        let [few, many] = [&without, &with].map(|source| {
-            let stats = source.stats(&gpu).expect("counted");
-            assert_eq!(stats.triangles, stats.requested);
-            stats.triangles
-        });
-        note!("{distance}: {change:+.4} ink, {many} triangles, {few} without spines");
-        // Measured on lavapipe: 0.081, where all of them are drawn.
-        assert!(change.abs() < 0.1, "{distance}: {change}");
-        if distance >= 2000.0 {
-            assert!(many <= few + spines as u64 / 4, "{distance}: {many}, {few}");
-        }
-        if distance <= 150.0 {
-            assert!(many > few + spines as u64, "{many} {few}");
-        }
-    }
-    // While they fade, a slow camera sees no more change than of the refined surface.
-    let mut worst = |from: f64| {
-        let mut changes = [&mut adaptive as &mut dyn VertexSource, &mut with].map(|source| {
-            let frame = |i: i32| {
-                let distance = from * 0.999_f64.powi(i);
-                let eye = DVec3::new(0.1, 0.2, 1.0).normalize_or(DVec3::Z) * distance;
-                let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, 0.7).expect("a camera");
-                picture(&gpu, source, &camera, &table)
-            };
-            let frames: Vec<Image> = (0..7).map(frame).collect();
-            let change = |pair: &[Image]| {
-                let pairs = pair[0].pixels.iter().zip(&pair[1].pixels);
-                pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>()
-            };
-            frames.windows(2).map(change).fold(0.0, f64::max)
-        });
-        changes[1] /= changes[0];
-        note!(
-            "from {from}: {:.3} of the refined surface's change",
-            changes[1]
-        );
-        changes[1]
-    };
-    for from in [200.0, 300.0, 450.0, 800.0] {
-        let change = worst(from);
-        // Measured on lavapipe: 1.053, 1.030, 0.924 and 0.750; the first two also if none are left out.
-        assert!(change < 1.08, "{from}: {change}");
-    }
 }
 
 #[neurotess_testing::test(needs(gpu))]
