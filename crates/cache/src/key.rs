@@ -108,7 +108,7 @@ fn write_section(section: &Section, to: &mut ByteWriter) {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec3};
-    use neurotess_generate::{Crossings, Smooth, SomaMethod, SphereKind};
+    use neurotess_generate::{Crossings, Sides, Smooth, SomaMethod, SphereKind};
     use neurotess_morphology::NeuriteKind;
 
     use super::*;
@@ -157,12 +157,13 @@ mod tests {
 
     #[test]
     fn any_other_option_is_another_key() {
-        let changes: [fn(&mut GenerateOptions); 13] = [
+        let changes: [fn(&mut GenerateOptions); 14] = [
             |_| {},
             |o| o.soma = SomaMethod::Sphere,
             |o| o.poisson = 0.31,
             |o| o.soma_scale = 1.1,
             |o| o.radius_factor = 2.0,
+            |o| o.equal_area = Some(Sides::Count(8)),
             |o| o.sphere = SphereKind::Octahedron,
             |o| o.sphere_level = Some(4),
             |o| {

@@ -22,6 +22,7 @@ mod prepare;
 mod refined_patches;
 mod rings;
 mod separate;
+mod sides;
 mod skeleton;
 mod smooth;
 mod soma;
@@ -36,13 +37,14 @@ mod warning;
 pub use error::GenerateError;
 pub use options::{Crossings, GenerateOptions, Smooth, SomaMethod, SphereKind};
 pub use separate::{SeparatedPlace, Separation};
+pub use sides::Sides;
 pub use smooth::Smoothing;
 pub use warning::Warning;
 
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
-use neurotess_mesh::{CoarseMesh, Vertex};
+use neurotess_mesh::{CoarseMesh, Role, Vertex};
 use neurotess_morphology::{Morphology, Soma};
 
 use assemble::Somata;
@@ -144,9 +146,9 @@ pub fn generate_stoppable(
     let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);
     prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
-    if options.radius_factor != 1.0 {
+    if options.radius_factor != 1.0 || options.equal_area.is_some() {
         // After smoothing, which is to take away the noise of the radii that were traced.
-        prepare::scale_radii(&mut skeleton, options.radius_factor);
+        prepare::change_radii(&mut skeleton, |traced| options.radius(traced));
         error::check_coordinates(morphology, &skeleton, &mut Warnings::default())?;
     }
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
@@ -192,6 +194,9 @@ pub fn generate_stoppable(
     let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut warnings, stop);
     stop.check()?;
     mesh.origin = morphology.origin;
+    if let Some(sides) = options.equal_area {
+        tell_traced_radii(&mut mesh, sides);
+    }
     let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
     if let Some(vertex) = mesh.vertices.iter().find(lost) {
         let sample = i64::from(mesh.tracing[vertex.tracing as usize].sample.0);
@@ -207,6 +212,14 @@ pub fn generate_stoppable(
         separation: separated.map(|s| s.report),
         soma_seconds,
     })
+}
+
+/// Tells the radii of neurites as they were traced; their rings are larger.
+fn tell_traced_radii(mesh: &mut CoarseMesh, sides: Sides) {
+    let tracing = mesh.tracing.iter_mut();
+    for point in tracing.filter(|point| point.role != Role::Soma) {
+        point.radius = sides.traced(f64::from(point.radius)) as f32;
+    }
 }
 
 /// The file's own number of each soma's first sample; −1 without one.

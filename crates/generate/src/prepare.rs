@@ -12,13 +12,13 @@ const FALLBACK_RADIUS: f64 = 0.5;
 /// Points nearer to their parent than this share of the larger radius are one point.
 const COINCIDENT: f64 = 1e-3;
 
-/// Multiplies all radii.
-pub(crate) fn scale_radii(skeleton: &mut Skeleton, factor: f64) {
+/// Changes all radii (µm).
+pub(crate) fn change_radii(skeleton: &mut Skeleton, change: impl Fn(f64) -> f64) {
     let count = skeleton.nodes().len() as u32;
     let (mut shapes, _) = skeleton.shapes();
     for index in 0..count {
         let radius = shapes.node(index).radius;
-        shapes.set_radius(index, factor * radius);
+        shapes.set_radius(index, change(radius));
     }
 }
 

@@ -79,11 +79,15 @@ fn by_rule(rule: EdgeRule, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
             least,
             most,
         } => {
-            let piece = radii * a.radius.min(b.radius);
-            let piece = if lengthwise { piece * aspect } else { piece };
             // The greatest length counts even where it is below the least.
-            let piece = piece.max(least).min(most);
-            let level = (edge_length(kind, a, b) / piece).round();
+            let pieces = |wanted: f32| edge_length(kind, a, b) / wanted.max(least).min(most);
+            let piece = radii * a.radius.min(b.radius);
+            let level = pieces(piece).round();
+            let level = match lengthwise {
+                // No piece longer than it may be, and no more of them than without that.
+                true => level.min(pieces(piece * aspect).ceil()),
+                false => level,
+            };
             // Also where it is not a number.
             if level < HIGHEST_LEVEL as f32 {
                 level.max(1.0) as u32

@@ -6,13 +6,12 @@
 //! Improvement Using Swapping and Smoothing, 1997, for volumes). No face turns by more than a bound, and no
 //! vertex goes far from where it was, so that the surface stays what it is. What would cross is left as it was.
 
-use std::collections::HashMap;
-
-use glam::DVec3;
-use neurotess_mesh::{SurfaceVertex, self_intersections_of};
+use glam::Vec3;
+use neurotess_mesh::self_intersections_of;
 use rayon::prelude::*;
 
-use crate::stars::{Stars, normal};
+use crate::edits::{Edit, Edits, sharpness};
+use crate::stars::Stars;
 use crate::work::Work;
 
 /// What was done.
@@ -39,18 +38,9 @@ const RINGS: usize = 3;
 /// How often all is done again, without what crossed.
 const TRIES: usize = 6;
 
-/// Cosine of how far a face may turn at once: 26°. A tube of six sides has 60° between them.
-const TURN: f64 = 0.9;
-
-/// How far a vertex may go from where it was, in radii.
-const REACH: f64 = 0.5;
-
-/// An edit must make the smallest angle larger by this much to be worth it.
-const GAIN: f64 = 1.02;
-
-/// What a collapse may cost the faces that stay, since two narrow ones vanish: a strip of narrow faces, as between
-/// two rings that are near each other, goes one by one, and the next one wins back what the first has cost.
-const LOSS: f64 = 0.8;
+/// Faces for which edits are looked for side by side. With more of them, more find that one before them has
+/// changed their neighborhood, and are looked at again.
+const BATCH: usize = 2048;
 
 /// Makes angles below `least` (degrees) larger where that can be done; leaves no new crossing.
 pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
@@ -86,64 +76,65 @@ fn crossing_corners(work: &Work) -> Vec<u32> {
 }
 
 fn passes(work: &mut Work, goal: f64, fixed: &[bool]) -> Improved {
-    let mut done = Improved::default();
-    let mut region = Region::new(work, goal, fixed);
+    let first = work.positions();
+    let mut region = Region::new(work, goal, fixed, &first);
     for _ in 0..PASSES {
-        let before = done;
-        for face in region.narrow() {
-            region.widen(face, &mut done);
+        let narrow = region.narrow();
+        region.changed.clear();
+        for batch in narrow.chunks(BATCH) {
+            region.widen(batch);
         }
-        if done == before {
+        if region.changed.is_empty() {
             break;
         }
+        region.faces = region.near_changes();
     }
     region.stars.finish();
-    done
+    region.done
 }
 
 /// Narrow faces and what is around them.
 struct Region<'a> {
     stars: Stars<'a>,
-    /// Faces around, in order.
+    /// Faces that may be narrow, in order.
     faces: Vec<u32>,
     goal: f64,
     fixed: &'a [bool],
-    /// Where vertices were before they first moved.
-    start: HashMap<u32, DVec3>,
-}
-
-/// What may be done for a face.
-enum Edit {
-    /// A side of the face.
-    Flip(usize),
-    /// From, to, and what it becomes.
-    Collapse(u32, u32, SurfaceVertex),
-    Move(u32, DVec3),
+    /// Where vertices were before anything was moved.
+    first: &'a [Vec3],
+    /// For each vertex the number of the batch that last moved it or changed its faces; none: 0.
+    batches: Vec<u32>,
+    batch: u32,
+    /// Vertices that were changed in this pass.
+    changed: Vec<u32>,
+    done: Improved,
 }
 
 impl<'a> Region<'a> {
-    fn new(work: &'a mut Work, goal: f64, fixed: &'a [bool]) -> Self {
-        let mut near = vec![false; work.vertices.len()];
+    fn new(work: &'a mut Work, goal: f64, fixed: &'a [bool], first: &'a [Vec3]) -> Self {
+        let count = work.vertices.len();
+        let mut near = vec![false; count];
         let all = 0..work.triangles.len() as u32;
         let narrow: Vec<u32> = all
             .into_par_iter()
             .filter(|&face| sharpness(&work.corners(face)) < goal)
             .collect();
-        for face in narrow {
+        for &face in &narrow {
             for corner in work.triangles[face as usize] {
                 near[corner as usize] = true;
             }
         }
         let known = work.widened(near, RINGS);
-        let is_near = |face: &[u32; 3]| face.iter().any(|&corner| known[corner as usize]);
-        let faces = (0..).zip(&work.triangles);
-        let faces = faces.filter(|(_, face)| is_near(face)).map(|(n, _)| n);
         Self {
-            faces: faces.collect(),
+            faces: narrow,
             stars: Stars::new(work, |vertex| known[vertex as usize]),
             goal,
             fixed,
-            start: HashMap::new(),
+            first,
+            batches: vec![0; count],
+            batch: 0,
+            changed: Vec::new(),
+            done: Improved::default(),
         }
     }
 
@@ -155,204 +146,116 @@ impl<'a> Region<'a> {
             .map(|&face| (sharpness(&self.stars.work.corners(face)), face))
             .filter(|&(sharpness, _)| sharpness < self.goal)
             .collect();
-        narrow.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        narrow.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         narrow.into_iter().map(|(_, face)| face).collect()
     }
 
-    /// Does the best edit for a narrow face, if there is one.
-    fn widen(&mut self, face: u32, done: &mut Improved) {
-        if self.stars.is_dead(face) || sharpness(&self.stars.work.corners(face)) >= self.goal {
-            return;
-        }
-        let mut edits: Vec<(f64, Edit)> = Vec::new();
-        edits.extend(self.flip(face));
-        edits.extend(self.moves(face));
-        edits.extend(self.collapse(face));
-        edits.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (_, edit) in edits {
-            let count = match edit {
-                Edit::Flip(side) => {
-                    let flipped = self.stars.flip(face, side, |_, _, _| true);
-                    flipped.then_some(&mut done.flipped)
-                }
-                Edit::Collapse(from, to, vertex) => {
-                    let start = self.start(to);
-                    let collapsed = self.stars.collapse(from, to, |_, _| Some(vertex));
-                    if collapsed {
-                        self.moved(to, start);
-                    }
-                    collapsed.then_some(&mut done.collapsed)
-                }
-                Edit::Move(vertex, to) => {
-                    let start = self.start(vertex);
-                    self.stars.work.vertices[vertex as usize].position = to.as_vec3();
-                    self.moved(vertex, start);
-                    Some(&mut done.moved)
-                }
+    /// Does the best edit for each of some narrow faces, one after the other. All are looked for at once; what an
+    /// edit changes is looked at again.
+    fn widen(&mut self, faces: &[u32]) {
+        self.batch += 1;
+        let edits: Vec<Option<Edit>> = faces.par_iter().map(|&face| self.best(face)).collect();
+        for (&face, edit) in faces.iter().zip(edits) {
+            let edit = match self.is_changed(face) {
+                true => self.best(face),
+                false => edit,
             };
-            if let Some(count) = count {
-                *count += 1;
-                return;
+            if let Some(edit) = edit {
+                self.apply(face, edit);
             }
         }
     }
 
-    /// Where a vertex was before it first moved.
-    fn start(&self, vertex: u32) -> DVec3 {
-        let now = || self.stars.work.position(vertex).as_dvec3();
-        self.start.get(&vertex).copied().unwrap_or_else(now)
-    }
-
-    fn moved(&mut self, vertex: u32, start: DVec3) {
-        self.start.insert(vertex, start);
-        self.stars.work.fresh[vertex as usize] = true;
-    }
-
-    /// The longest side, given to the corners across it.
-    fn flip(&self, face: u32) -> Option<(f64, Edit)> {
-        let lengths = self.stars.lengths(face);
-        let side = (0..3).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))?;
-        let corners = self.stars.work.triangles[face as usize];
-        let [from, to, apex] = [0, 1, 2].map(|n| corners[(side + n) % 3]);
-        let (other, far) = self.stars.across(face, from, to)?;
-        if [from, to, apex, far]
-            .iter()
-            .any(|&corner| self.is_fixed(corner))
-        {
+    /// The best edit for a face, if it is narrow.
+    fn best(&self, face: u32) -> Option<Edit> {
+        if self.stars.is_dead(face) || sharpness(&self.stars.work.corners(face)) >= self.goal {
             return None;
         }
-        let at = |corner: u32| self.stars.work.position(corner).as_dvec3();
-        let old = [face, other].map(|face| self.stars.work.corners(face));
-        let new = [[apex, from, far], [apex, far, to]].map(|face| face.map(at));
-        let whole = normal(&old[0]) + normal(&old[1]);
-        let flat = old.iter().chain(&new).all(|face| agrees(face, whole));
-        let (before, after) = (least(&old), least(&new));
-        (flat && after > GAIN * before).then_some((after, Edit::Flip(side)))
-    }
-
-    /// Corners of a face, moved along the surface.
-    fn moves(&self, face: u32) -> Vec<(f64, Edit)> {
-        let corners = self.stars.work.triangles[face as usize];
-        let best = |vertex: u32| {
-            let targets = self.targets(vertex)?;
-            let rated = targets.into_iter().filter_map(|to| {
-                let after = self.after_move(vertex, to)?;
-                Some((after, Edit::Move(vertex, to)))
-            });
-            rated.max_by(|a, b| a.0.total_cmp(&b.0))
+        let edits = Edits {
+            stars: &self.stars,
+            fixed: self.fixed,
+            first: self.first,
         };
-        corners.into_iter().filter_map(best).collect()
+        edits.best(face)
     }
 
-    /// Places on the way of a vertex to the middle of its neighbors, in the plane that touches the surface.
-    fn targets(&self, vertex: u32) -> Option<[DVec3; 3]> {
-        let star = self.stars.of(vertex).filter(|_| !self.is_fixed(vertex))?;
-        let at = self.stars.work.position(vertex).as_dvec3();
-        let (mut middle, mut upwards) = (DVec3::ZERO, DVec3::ZERO);
-        for &face in star {
-            let corners = self.stars.work.corners(face);
-            // Each neighbor comes twice.
-            middle += corners.iter().sum::<DVec3>() - at;
-            upwards += normal(&corners);
-        }
-        let way = middle / (2 * star.len()) as f64 - at;
-        let along = way - way.project_onto_normalized(upwards.try_normalize()?);
-        Some([1.0, 0.5, 0.25].map(|share| (at + share * along).as_vec3().as_dvec3()))
-    }
-
-    /// The sharpness around a vertex after it has moved, if that is better and allowed.
-    fn after_move(&self, vertex: u32, to: DVec3) -> Option<f64> {
-        let star = self.stars.of(vertex)?;
-        let old: Vec<_> = star
-            .iter()
-            .map(|&face| self.stars.work.corners(face))
-            .collect();
-        let moved = |&face: &u32| self.stars.corners_with(face, vertex, to);
-        let new: Vec<_> = star.iter().map(moved).collect();
-        let (before, after) = (least(&old), least(&new));
-        let keeps =
-            self.is_near(vertex, to) && old.iter().zip(&new).all(|(a, b)| agrees(a, normal(b)));
-        (keeps && after > GAIN * before).then_some(after)
-    }
-
-    /// The shortest side, collapsed into one of its ends or between them.
-    fn collapse(&self, face: u32) -> Option<(f64, Edit)> {
-        let lengths = self.stars.lengths(face);
-        let side = (0..3).min_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))?;
+    /// Whether this batch has changed anything that the best edit for a face depends on.
+    fn is_changed(&self, face: u32) -> bool {
+        let of_batch = |corner: &u32| self.batches[*corner as usize] == self.batch;
         let corners = self.stars.work.triangles[face as usize];
-        let [from, to] = [corners[side], corners[(side + 1) % 3]];
-        if self.is_fixed(from) || self.is_fixed(to) {
-            return None;
-        }
-        let [a, b] = [from, to].map(|vertex| self.stars.work.vertices[vertex as usize]);
-        let between = SurfaceVertex {
-            position: (a.position + b.position) / 2.0,
-            radius: f32::midpoint(a.radius, b.radius),
-            ..b
-        };
-        let rated = [between, b, a].into_iter().filter_map(|vertex| {
-            let after = self.after_collapse([from, to], vertex.position.as_dvec3())?;
-            Some((after, Edit::Collapse(from, to, vertex)))
-        });
-        rated.max_by(|a, b| a.0.total_cmp(&b.0))
+        self.stars.is_dead(face)
+            || corners.iter().any(|&corner| {
+                let star = self.stars.of(corner).unwrap_or_default();
+                let around = star
+                    .iter()
+                    .map(|&face| self.stars.work.triangles[face as usize]);
+                of_batch(&corner) || around.flatten().any(|corner| of_batch(&corner))
+            })
     }
 
-    /// The sharpness around two vertices after they have become one, if that is better and allowed.
-    fn after_collapse(&self, ends: [u32; 2], place: DVec3) -> Option<f64> {
-        let (mut before, mut after) = (f64::INFINITY, f64::INFINITY);
-        for (vertex, other) in [(ends[0], ends[1]), (ends[1], ends[0])] {
-            if !self.is_near(vertex, place) {
-                return None;
+    fn apply(&mut self, face: u32, edit: Edit) {
+        match edit {
+            Edit::Flip(side) => {
+                let corners = self.stars.work.triangles[face as usize];
+                let across = self
+                    .stars
+                    .across(face, corners[side], corners[(side + 1) % 3]);
+                if self.stars.flip(face, side, |_, _, _| true) {
+                    self.note(&corners);
+                    self.note(&[across.map_or(corners[0], |(_, far)| far)]);
+                    self.done.flipped += 1;
+                }
             }
-            for &face in self.stars.of(vertex)? {
-                let old = self.stars.work.corners(face);
-                before = before.min(sharpness(&old));
-                if self.stars.work.triangles[face as usize].contains(&other) {
-                    continue;
+            Edit::Collapse(from, to, vertex) => {
+                let star = self.stars.of(from).unwrap_or_default();
+                let around = star
+                    .iter()
+                    .map(|&face| self.stars.work.triangles[face as usize]);
+                let around: Vec<u32> = around.flatten().collect();
+                if self.stars.collapse(from, to, |_, _| Some(vertex)) {
+                    self.note(&around);
+                    self.stars.work.fresh[to as usize] = true;
+                    self.done.collapsed += 1;
                 }
-                let new = self.stars.corners_with(face, vertex, place);
-                if !agrees(&old, normal(&new)) {
-                    return None;
-                }
-                after = after.min(sharpness(&new));
+            }
+            Edit::Move(vertex, to) => {
+                self.stars.work.vertices[vertex as usize].position = to.as_vec3();
+                self.stars.work.fresh[vertex as usize] = true;
+                self.note(&[vertex]);
+                self.done.moved += 1;
             }
         }
-        (after > LOSS * before).then_some(after)
     }
 
-    fn is_fixed(&self, vertex: u32) -> bool {
-        self.fixed[vertex as usize]
+    /// Notes vertices whose place or faces have changed.
+    fn note(&mut self, vertices: &[u32]) {
+        for &vertex in vertices {
+            self.batches[vertex as usize] = self.batch;
+            self.changed.push(vertex);
+        }
     }
 
-    /// Whether a place is within the reach of a vertex.
-    fn is_near(&self, vertex: u32, place: DVec3) -> bool {
-        let radius = f64::from(self.stars.work.vertices[vertex as usize].radius);
-        radius <= 0.0 || self.start(vertex).distance(place) <= REACH * radius
+    /// Faces for which there may be another best edit after those of this pass, in order.
+    fn near_changes(&self) -> Vec<u32> {
+        let corners_of = |vertices: &[u32]| -> Vec<u32> {
+            let faces = self.faces_of(vertices).into_iter();
+            let corners = faces.flat_map(|face| self.stars.work.triangles[face as usize]);
+            ascending(corners.collect())
+        };
+        let changed = ascending(self.changed.clone());
+        self.faces_of(&corners_of(&changed))
+    }
+
+    /// Faces around some vertices, in order.
+    fn faces_of(&self, vertices: &[u32]) -> Vec<u32> {
+        let faces = vertices.iter().filter_map(|&vertex| self.stars.of(vertex));
+        ascending(faces.flatten().copied().collect())
     }
 }
 
-/// Whether a face looks about the way of a normal; one without a shape looks any way.
-fn agrees(face: &[DVec3; 3], way: DVec3) -> bool {
-    let normal = normal(face);
-    sharpness(face) < SHAPELESS || normal.dot(way) >= TURN * normal.length() * way.length()
-}
-
-/// Below this sine the normal of a face says little.
-const SHAPELESS: f64 = 0.02;
-
-/// The least [`sharpness`] of some faces.
-fn least(faces: &[[DVec3; 3]]) -> f64 {
-    faces.iter().map(sharpness).fold(f64::INFINITY, f64::min)
-}
-
-/// Sine of the smallest angle of a triangle, which is between its longer sides.
-fn sharpness(triangle: &[DVec3; 3]) -> f64 {
-    let [a, b, c] = *triangle;
-    let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| from.distance_squared(to));
-    let product = (ab * bc).max(bc * ca).max(ca * ab);
-    if product > 0.0 {
-        normal(triangle).length() / product.sqrt()
-    } else {
-        0.0
-    }
+/// In order, each once.
+fn ascending(mut numbers: Vec<u32>) -> Vec<u32> {
+    numbers.par_sort_unstable();
+    numbers.dedup();
+    numbers
 }

@@ -40,6 +40,7 @@
 #![forbid(unsafe_code)]
 
 mod cells;
+mod edits;
 mod engine;
 mod improve;
 mod merge;

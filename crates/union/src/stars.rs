@@ -3,14 +3,18 @@
 
 use glam::DVec3;
 use neurotess_mesh::SurfaceVertex;
+use smallvec::SmallVec;
 
 use crate::work::Work;
+
+/// Faces around a vertex; few have more than eight.
+type Star = SmallVec<[u32; 8]>;
 
 /// A surface with the faces around some of its vertices.
 pub(crate) struct Stars<'a> {
     pub(crate) work: &'a mut Work,
     /// Faces of each vertex in the order of their numbers; none where they are not known.
-    faces: Vec<Vec<u32>>,
+    faces: Vec<Star>,
     /// Faces that were collapsed.
     dead: Vec<bool>,
 }
@@ -18,7 +22,7 @@ pub(crate) struct Stars<'a> {
 impl<'a> Stars<'a> {
     /// With the faces of those vertices for which `known` holds; edits reach as far as these.
     pub(crate) fn new(work: &'a mut Work, known: impl Fn(u32) -> bool) -> Self {
-        let mut faces = vec![Vec::new(); work.vertices.len()];
+        let mut faces = vec![Star::new(); work.vertices.len()];
         for (face, corners) in (0..).zip(&work.triangles) {
             for &corner in corners.iter().filter(|&&corner| known(corner)) {
                 faces[corner as usize].push(face);
@@ -90,6 +94,24 @@ impl<'a> Stars<'a> {
         true
     }
 
+    /// Whether two neighbors may become one vertex without pinching the surface.
+    pub(crate) fn may_collapse(&self, from: u32, to: u32) -> bool {
+        match (self.of(from), self.of(to)) {
+            (Some(star), Some(other)) => {
+                self.may_join(star, other, &common(star, other), [from, to])
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether two vertices whose faces are known may get an edge: they are two, and have none.
+    pub(crate) fn may_connect(&self, one: u32, other: u32) -> bool {
+        match (self.of(one), self.of(other)) {
+            (Some(star), Some(faces)) => one != other && common(star, faces).is_empty(),
+            _ => false,
+        }
+    }
+
     /// Whether the only common neighbors of two vertices are those across their edge.
     fn may_join(&self, star: &[u32], other: &[u32], shared: &[u32], ends: [u32; 2]) -> bool {
         let around = |faces: &[u32]| -> Vec<u32> {
@@ -123,10 +145,7 @@ impl<'a> Stars<'a> {
             return false;
         };
         // An edge that is there already would be there twice.
-        let (Some(at_apex), Some(at_far)) = (self.of(apex), self.of(far)) else {
-            return false;
-        };
-        if far == apex || !common(at_apex, at_far).is_empty() {
+        if !self.may_connect(apex, far) {
             return false;
         }
         let new = [[apex, from, far], [apex, far, to]];
@@ -159,7 +178,7 @@ impl<'a> Stars<'a> {
     }
 
     fn forget(&mut self, vertex: u32, face: u32) {
-        self.faces[vertex as usize].retain(|&other| other != face);
+        self.faces[vertex as usize].retain(|&mut other| other != face);
     }
 
     /// Adds a face to those of a vertex, if these are known.

@@ -70,8 +70,8 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true,
           help_heading = "Refinement")]
     pub(crate) min_edge: Option<f64>,
-    /// With --isotropic: how many times as long edges along neurites may be as those around them
-    /// [default: 1]
+    /// With --isotropic: how many times F radii long edges along neurites may be [default: 1; with
+    /// --simulation 2.5]
     #[arg(long, value_name = "A", value_parser = positive, allow_negative_numbers = true,
           help_heading = "Refinement")]
     pub(crate) max_aspect: Option<f64>,
@@ -79,13 +79,16 @@ pub(crate) struct MeshArgs {
     /// separate]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Crossings")]
     pub(crate) crossings: Option<CrossingsArg>,
+    /// Which radius rings of neurites have [default: traced; with --simulation equal-area]
+    #[arg(long, value_enum, value_name = "WHICH", help_heading = "Surface")]
+    pub(crate) radii: Option<RadiiArg>,
     /// Factor on the radii of neurites, as for printing in three dimensions
     #[arg(long, default_value_t = 1.0, value_name = "FACTOR",
           value_parser = crate::options::numbers::radius_factor, allow_negative_numbers = true,
           help_heading = "Surface")]
     pub(crate) radius_factor: f64,
-    /// A mesh that solvers take: --crossings separate --isotropic, or an error that says where it
-    /// fails
+    /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 2.5 --radii equal-area,
+    /// or an error that says where it fails
     #[arg(long, conflicts_with_all = ["level", "level_along", "max_error", "quads"],
           help_heading = "Crossings")]
     pub(crate) simulation: bool,
@@ -174,6 +177,15 @@ pub(crate) enum CrossingsArg {
     Merge,
     /// Branches traced through one another are moved apart; what crosses at forks and bends is merged
     Separate,
+}
+
+/// `--radii`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RadiiArg {
+    /// The traced one: vertices lie on the circle, and the polygon within it
+    Traced,
+    /// As much larger as gives the polygon the area of the circle, so that neurites keep their volume
+    EqualArea,
 }
 
 /// `--caps`

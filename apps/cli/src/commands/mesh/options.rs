@@ -2,15 +2,19 @@
 
 use std::path::PathBuf;
 
-use neurotess::generate::{Crossings, GenerateOptions, SphereKind};
+use neurotess::generate::{Crossings, GenerateOptions, Sides, SphereKind};
 use neurotess::mesh::{Format, Unit};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
-use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, SphereArg};
+use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets;
 use crate::report::usage;
+
+/// How many times the local radius edges along neurites of a mesh for simulators may be long: half as many
+/// triangles as with 1, and still none narrower than 15° but for a few.
+const SIMULATION_ASPECT: f64 = 2.5;
 
 /// Levels of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +76,7 @@ impl MeshOptions {
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}");
         let generate = generate
+            .replace(", equal_area: None", "")
             .replace(", crossings: Keep", "")
             .replace(", smooth: None", "");
         let unit = match unit {
@@ -106,16 +111,18 @@ impl MeshOptions {
                 "--table counts triangles, and level 0 of {format} is quads: use --level 1, or msh"
             ));
         }
+        let levels = levels(args)?;
         Ok(Self {
             strict: args.strict,
             generate: GenerateOptions {
+                equal_area: equal_area(args, levels)?,
                 crossings: match crossings {
                     CrossingsArg::Separate => Crossings::Separate,
                     CrossingsArg::Keep | CrossingsArg::Merge => Crossings::Keep,
                 },
                 ..generate(args)?
             },
-            levels: levels(args)?,
+            levels,
             merge: crossings != CrossingsArg::Keep,
             simulation: args.simulation,
             refine: RefineOptions {
@@ -147,6 +154,36 @@ fn crossings(args: &MeshArgs) -> CrossingsArg {
     })
 }
 
+/// Sides of the polygons around neurites, whose area is to be that of the traced circles.
+fn equal_area(args: &MeshArgs, levels: MeshLevels) -> anyhow::Result<Option<Sides>> {
+    let usual = if args.simulation {
+        RadiiArg::EqualArea
+    } else {
+        RadiiArg::Traced
+    };
+    if args.radii.unwrap_or(usual) == RadiiArg::Traced {
+        return Ok(None);
+    }
+    Ok(Some(match levels {
+        MeshLevels::Coarse => Sides::Count(4),
+        MeshLevels::Criterion(LodCriterion::Homogeneous(level)) => Sides::Count(4 * level),
+        MeshLevels::Criterion(_) => {
+            return usage(
+                "--radii equal-area must know how many sides neurites get: use --level or --isotropic instead of \
+                 --max-error",
+            );
+        }
+        MeshLevels::Edges(EdgeRule::Levels { around, .. }) => Sides::Count(4 * around),
+        MeshLevels::Edges(EdgeRule::Lengths {
+            radii, least, most, ..
+        }) => Sides::ByLength {
+            radii: f64::from(radii),
+            least: f64::from(least),
+            most: f64::from(most),
+        },
+    }))
+}
+
 fn levels(args: &MeshArgs) -> anyhow::Result<MeshLevels> {
     let isotropic = args.isotropic.or(args.simulation.then_some(1.0));
     let Some(radii) = isotropic else {
@@ -175,7 +212,11 @@ fn levels(args: &MeshArgs) -> anyhow::Result<MeshLevels> {
     }
     Ok(MeshLevels::Edges(EdgeRule::Lengths {
         radii: radii as f32,
-        aspect: args.max_aspect.unwrap_or(1.0) as f32,
+        aspect: args.max_aspect.unwrap_or(if args.simulation {
+            SIMULATION_ASPECT
+        } else {
+            1.0
+        }) as f32,
         least: least as f32,
         most: most as f32,
     }))

@@ -8,7 +8,7 @@ use neurotess::generate::Separation;
 use neurotess::mesh::{
     CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
 };
-use neurotess::refine::{CoarseSurface, Lod, Refinement};
+use neurotess::refine::{CoarseSurface, EdgeRule, Lod, Refinement};
 use neurotess::union::{Kin, Place, UnionError, UnionOptions, UnionReport, union_stoppable};
 use serde::Serialize;
 
@@ -22,6 +22,10 @@ const PRESS: f64 = 0.6;
 /// Angles (degrees) of a mesh for simulators that are made larger where the surface allows it. Tetrahedra on
 /// narrower triangles are poor ones.
 const LEAST_ANGLE: f64 = 20.0;
+
+/// The same as a share of the angle of half a rectangle whose sides have the ratio that was asked for: where that
+/// is narrow, wider triangles would only be had by giving up sides of the tubes.
+const LEAST_SHARE: f64 = 0.7;
 
 /// A surface to be written, and what is known of it.
 pub(super) struct CellSurface<'m> {
@@ -61,7 +65,7 @@ impl<'m> CellSurface<'m> {
         let union_options = match options.simulation {
             true => UnionOptions {
                 press: PRESS,
-                least_angle: LEAST_ANGLE,
+                least_angle: least_angle(options.levels),
                 ..UnionOptions::default()
             },
             false => UnionOptions::default(),
@@ -92,6 +96,17 @@ impl<'m> CellSurface<'m> {
     pub(super) fn volume_and_area(&self) -> (f64, f64) {
         let measure = measure_surface(&*self.surface);
         (measure.volume, measure.area)
+    }
+}
+
+/// Which angles (degrees) of a mesh for simulators are made larger.
+fn least_angle(levels: MeshLevels) -> f64 {
+    match levels {
+        MeshLevels::Edges(EdgeRule::Lengths { aspect, .. }) => {
+            let half_rectangle = (1.0 / f64::from(aspect)).atan().to_degrees();
+            LEAST_ANGLE.min(LEAST_SHARE * half_rectangle)
+        }
+        _ => LEAST_ANGLE,
     }
 }
 
