@@ -298,10 +298,10 @@ impl Mesher {
             let read = circuit.templates[template.index()].read();
             let read = read.map_err(ToString::to_string)?;
             let mesh = kept(&meshes, template.0, || {
-                recipe.generate(&read.morphology, stopped)
+                recipe.mesh(&read.morphology, stopped)
             })?;
             let at = instance.world_from_cell(soma_center(&read.morphology));
-            recipe.surface(&mesh, stopped, |surface| placed(surface, at, stopped))
+            Ok(recipe.surface(&mesh, |surface| placed(surface, at, stopped)))
         })?;
         of_made(py, made)
     }

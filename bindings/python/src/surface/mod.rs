@@ -41,8 +41,8 @@ impl Recipe {
     ) -> PyResult<(Surface, Bound<'py, PyAny>)> {
         let (recipe, morphology) = (self.0.clone(), cell.morphology.clone());
         let made = stoppable(py, threads, &Stop::of(stop), move |stopped| {
-            let cell = recipe.generate(&morphology, stopped)?;
-            recipe.surface(&cell, stopped, |surface| Columns::of(surface, stopped))
+            let cell = recipe.mesh(&morphology, stopped)?;
+            Ok(recipe.surface(&cell, |surface| Columns::of(surface, stopped)))
         })?;
         of_made(py, made)
     }

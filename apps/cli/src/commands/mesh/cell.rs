@@ -1,18 +1,18 @@
 //! One cell: read, generate, refine and write.
 
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
-use neurotess::generate::{self, Generated};
-use neurotess::mesh::{
-    self as surfaces, CoarseMesh, InUnit, Placed, Surface, SurfaceMesh, Unit, WriteError,
-};
+use neurotess::generate::Generated;
+use neurotess::mesh::{self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, WriteError};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
+use super::meshed::Meshed;
 use super::observed::Observed;
 use super::options::MeshOptions;
 use super::smoothing::SmoothingReport;
@@ -83,7 +83,7 @@ pub(crate) struct Seconds {
 /// A cell read and generated, to be written once or several times.
 pub(crate) struct Prepared {
     file: String,
-    generated: Generated,
+    meshed: Meshed,
     read: Vec<formats::Warning>,
     seconds: Seconds,
     /// The tracing, if a table is to tell where on it triangles are.
@@ -93,19 +93,9 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
-    /// The coarse mesh.
-    pub(super) fn mesh(&self) -> &CoarseMesh {
-        &self.generated.mesh
-    }
-
     /// The surface that is written.
-    pub(super) fn surface(&self, options: &MeshOptions) -> Result<CellSurface<'_>, Failure> {
-        let failed = |Failure(what)| Failure(format!("{}: {what}", self.file));
-        let surface = CellSurface::new(&self.generated.mesh, options).map_err(failed)?;
-        if options.simulation {
-            verdict::check(&surface, &self.generated).map_err(failed)?;
-        }
-        Ok(surface)
+    pub(super) fn surface(&self, options: &MeshOptions) -> CellSurface<'_> {
+        self.meshed.surface(options)
     }
 }
 
@@ -131,13 +121,13 @@ pub(super) fn mesh(
     let table = path.map(|path| begin(path, options.force)).transpose();
     let mut table = table.map_err(failed)?;
     let prepared = prepare(&job.input, options)?;
-    let surface = prepared.surface(options)?;
+    let surface = prepared.surface(options);
     let to = (&*job.out, output);
     let (report, mesh) = finish(&prepared, &surface, options, to, None, watchers)?;
     if let (Some(path), Some(table)) = (path, &mut table)
         && let Some(morphology) = &prepared.morphology
     {
-        table::write(&*surface.surface, morphology, table.file())
+        table::write(surface.surface(), morphology, table.file())
             .map_err(|e| failed(broken(path, e)))?;
     }
     Ok(Made {
@@ -168,31 +158,20 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     seconds.read = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let generated = generate::generate_timed(&read.morphology, &options.generate, || {
-        clock.elapsed().as_secs_f64()
-    })
-    .map_err(|e| Failure(format!("{file}: {e}")))?;
-    seconds.soma = generated.soma_seconds;
-    seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma).max(0.0);
-    something_left(&generated).map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
+    let tick = || clock.elapsed().as_secs_f64();
+    let meshed = Meshed::new(&read.morphology, options, tick, &AtomicBool::new(false))
+        .map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
+    seconds.soma = meshed.generated.soma_seconds;
+    seconds.refine = meshed.surface(options).seconds;
+    seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma - seconds.refine).max(0.0);
     Ok(Prepared {
         file,
-        generated,
+        meshed,
         soma_center: soma_center(&read.morphology),
         morphology: options.table.is_some().then_some(read.morphology),
         read: read.warnings,
         seconds,
     })
-}
-
-/// An error if no surface is left of a cell.
-pub(super) fn something_left(generated: &Generated) -> Result<(), Failure> {
-    match generated.mesh.patches.is_empty() {
-        true => Err(Failure(
-            "nothing is left to mesh: check --types and --soma".into(),
-        )),
-        false => Ok(()),
-    }
 }
 
 /// Writes a cell's surface, perhaps at a placement.
@@ -204,20 +183,18 @@ pub(super) fn finish(
     world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
 ) -> Result<(CellReport, Output), Failure> {
-    let Prepared {
-        file, generated, ..
-    } = prepared;
+    let Prepared { file, meshed, .. } = prepared;
+    let generated = &meshed.generated;
     let mut seconds = prepared.seconds;
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
-    seconds.refine = cell_surface.seconds;
     let to = (out, &mut output);
     let walled = options.walls.then(|| {
-        let whole = SurfaceMesh::collect(&*cell_surface.surface);
+        let whole = SurfaceMesh::collect(cell_surface.surface());
         surfaces::with_walls(whole)
     });
     let surface: &dyn Surface = match &walled {
         Some(walled) => walled,
-        None => &*cell_surface.surface,
+        None => cell_surface.surface(),
     };
     let written = write(
         surface,
@@ -248,11 +225,11 @@ pub(super) fn finish(
         area: measured.map(|(_, area)| area),
         soma_volume: growth * soma_volume(generated),
         smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
-        crossings: cell_surface.merging.as_ref().map(CrossingsReport::new),
+        crossings: cell_surface.merged().map(CrossingsReport::new),
         separation: generated.separation.as_ref().map(SeparationReport::from),
-        quality: cell_surface.quality,
+        quality: cell_surface.merged().and_then(|merged| merged.quality),
         seconds,
-        warnings: warnings(&prepared.read, generated, cell_surface)
+        warnings: warnings(&prepared.read, meshed, cell_surface)
             .into_iter()
             .chain(walled.iter().filter_map(verdict::of_walls))
             .collect(),
@@ -315,7 +292,7 @@ fn broken(out: &Path, error: WriteError) -> OutputError {
 /// All warnings of a cell: of its file, of its mesh and of its surface.
 pub(super) fn warnings(
     read: &[formats::Warning],
-    generated: &Generated,
+    meshed: &Meshed,
     surface: &CellSurface<'_>,
 ) -> Vec<CellWarning> {
     let of_file = read.iter().map(|w| CellWarning {
@@ -325,15 +302,14 @@ pub(super) fn warnings(
         message: w.message.clone(),
         count: w.count,
     });
-    let of_mesh = generated.warnings.iter().map(|w| CellWarning {
+    let of_mesh = meshed.generated.warnings.iter().map(|w| CellWarning {
         line: None,
         sample: w.sample,
         code: w.code,
         message: w.to_string(),
         count: w.count as u64,
     });
-    let of_surface = surface.merging.iter().flat_map(verdict::warnings);
-    let of_triangles = verdict::of_triangles(surface);
-    let of_surface = of_surface.chain(of_triangles);
+    let of_surface = surface.merged().into_iter().flat_map(verdict::warnings);
+    let of_surface = of_surface.chain(verdict::of_thinning(&meshed.thinned));
     of_file.chain(of_mesh).chain(of_surface).collect()
 }

@@ -150,10 +150,9 @@ fn mesh_all(
                 Ok(prepared) => {
                     let placed = instance_job.instance.world_from_cell(prepared.soma_center);
                     let out = &instance_job.job.out;
-                    let written = prepared.surface(options).and_then(|surface| {
-                        let to = (&**out, output);
-                        cell::finish(prepared, &surface, options, to, Some(placed), watchers)
-                    });
+                    let (surface, to) = (prepared.surface(options), (&**out, output));
+                    let written =
+                        cell::finish(prepared, &surface, options, to, Some(placed), watchers);
                     written.map(|(mut report, mesh)| {
                         report.node = Some(instance_job.node.clone());
                         Made {

@@ -15,7 +15,7 @@ use super::surface::CellSurface;
 use crate::io::inputs::Inputs;
 use crate::io::output::{Output, OutputError, existing};
 use crate::io::workers;
-use crate::report::{Failure, Progress, Reporter, bug, count, usage};
+use crate::report::{Progress, Reporter, bug, count, usage};
 
 /// The object of the JSON list.
 #[derive(Serialize)]
@@ -69,10 +69,9 @@ pub(super) fn run(
     }
     let surfaces: Vec<CellSurface<'_>> = prepared
         .values()
-        .map(|prepared| CellSurface::new(prepared.mesh(), &options))
-        .collect::<Result<_, _>>()
-        .map_err(|Failure(what)| anyhow::anyhow!(what))?;
-    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(|cell| &*cell.surface).collect();
+        .map(|prepared| prepared.surface(&options))
+        .collect();
+    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(CellSurface::surface).collect();
     let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
     let nodes: Vec<GlbNode> = shown
         .iter()

@@ -3,17 +3,16 @@
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use neurotess::generate::{Generated, generate_stoppable};
 use neurotess::mesh::{Quality, Surface};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
 use super::args::MeshArgs;
-use super::cell::{soma_volume, something_left, warnings};
+use super::cell::{soma_volume, warnings};
+use super::meshed::Meshed;
 use super::options::MeshOptions;
 use super::smoothing::SmoothingReport;
-use super::surface::{CellSurface, CrossingsReport, SeparationReport};
-use super::verdict;
+use super::surface::{CrossingsReport, SeparationReport};
 use super::warning::CellWarning;
 use crate::io::inputs::Inputs;
 use crate::report::Failure;
@@ -31,10 +30,9 @@ pub struct MeshRecipe {
     options: MeshOptions,
 }
 
-/// A cell's coarse mesh, of which a surface can be made.
-#[derive(Debug)]
+/// A meshed cell, of which a surface can be had.
 pub struct CellMesh {
-    generated: Generated,
+    meshed: Meshed,
 }
 
 /// What is known of a surface, under the names that `neurotess mesh --json` has.
@@ -68,52 +66,37 @@ impl MeshRecipe {
         Ok(Self { options })
     }
 
-    /// Generates the coarse mesh of a cell. Ends soon after another thread sets `stopped`.
+    /// Meshes a cell. Ends soon after another thread sets `stopped`.
     ///
     /// # Errors
-    /// If it cannot be meshed, the options leave nothing of it, or it was stopped.
-    pub fn generate(
-        &self,
-        morphology: &Morphology,
-        stopped: &AtomicBool,
-    ) -> Result<CellMesh, String> {
-        let options = &self.options.generate;
-        let generated = generate_stoppable(morphology, options, || 0.0, stopped);
-        let generated = generated.map_err(|e| e.to_string())?;
-        something_left(&generated).map_err(|Failure(what)| what)?;
-        Ok(CellMesh { generated })
+    /// If it cannot be meshed, the options leave nothing of it, what crosses cannot be merged, solvers could not
+    /// take what was asked for as a simulation mesh, or it was stopped.
+    pub fn mesh(&self, morphology: &Morphology, stopped: &AtomicBool) -> Result<CellMesh, String> {
+        let meshed = Meshed::new(morphology, &self.options, || 0.0, stopped);
+        let meshed = meshed.map_err(|Failure(what)| what)?;
+        Ok(CellMesh { meshed })
     }
 
-    /// Makes a cell's surface and hands it to `take`; tells what is known of it. Merging ends soon after another
-    /// thread sets `stopped`.
-    ///
-    /// # Errors
-    /// If it was stopped, what crosses cannot be merged, or solvers could not take what was asked for as a simulation mesh.
+    /// The surface of a cell that was meshed by this recipe, and what is known of it.
     pub fn surface<T>(
         &self,
-        cell: &CellMesh,
-        stopped: &AtomicBool,
+        CellMesh { meshed }: &CellMesh,
         take: impl FnOnce(&dyn Surface) -> T,
-    ) -> Result<(T, MeshReport), String> {
-        let CellMesh { generated } = cell;
-        let told = |Failure(what)| what;
-        let surface =
-            CellSurface::stoppable(&generated.mesh, &self.options, stopped).map_err(told)?;
-        if self.options.simulation {
-            verdict::check(&surface, generated).map_err(told)?;
-        }
+    ) -> (T, MeshReport) {
+        let surface = meshed.surface(&self.options);
+        let (generated, merged) = (&meshed.generated, surface.merged());
         let report = MeshReport {
             closed: surface.topology.closed,
             euler: surface.topology.euler,
             components: surface.topology.components,
             soma_volume: soma_volume(generated),
             smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
-            crossings: surface.merging.as_ref().map(CrossingsReport::new),
+            crossings: merged.map(CrossingsReport::new),
             separation: generated.separation.as_ref().map(SeparationReport::from),
-            quality: surface.quality,
-            warnings: warnings(&[], generated, &surface),
+            quality: merged.and_then(|merged| merged.quality),
+            warnings: warnings(&[], meshed, &surface),
         };
-        Ok((take(&*surface.surface), report))
+        (take(surface.surface()), report)
     }
 }
 
@@ -135,9 +118,8 @@ mod tests {
         let triangles = |options: &[&str]| {
             let recipe = recipe(options).expect("options");
             let running = AtomicBool::new(false);
-            let cell = recipe.generate(&read.morphology, &running).expect("a mesh");
-            let made = recipe.surface(&cell, &running, |surface| SurfaceMesh::collect(surface));
-            let (mesh, report) = made.expect("a surface");
+            let cell = recipe.mesh(&read.morphology, &running).expect("a mesh");
+            let (mesh, report) = recipe.surface(&cell, |surface| SurfaceMesh::collect(surface));
             assert!(report.closed && report.components == 1);
             mesh.faces.triangles.len()
         };

@@ -11,6 +11,7 @@ mod circuit;
 mod circuit_glb;
 mod entry;
 mod in_memory;
+mod meshed;
 mod messages;
 mod observed;
 mod options;
@@ -19,6 +20,7 @@ mod size;
 mod smoothing;
 mod surface;
 mod table;
+mod thinning;
 mod verdict;
 mod warning;
 

@@ -29,39 +29,84 @@ const LEAST_SHARE: f64 = 0.7;
 
 /// A surface to be written, and what is known of it.
 pub(super) struct CellSurface<'m> {
-    pub(super) surface: Box<dyn Surface + 'm>,
+    made: MadeSurface<'m>,
     pub(super) topology: Topology,
-    pub(super) merging: Option<UnionReport>,
+    /// Seconds that it took.
+    pub(super) seconds: f64,
+}
+
+enum MadeSurface<'m> {
+    /// Block by block.
+    Refined(Box<dyn Surface + 'm>),
+    /// Whole in memory.
+    Merged(&'m Merged),
+}
+
+impl<'m> CellSurface<'m> {
+    /// The surface of a coarse mesh as it is refined, or merged with itself.
+    pub(super) fn new(
+        mesh: &'m CoarseMesh,
+        merged: Option<&'m Merged>,
+        options: &MeshOptions,
+    ) -> Self {
+        if let Some(merged) = merged {
+            return Self {
+                made: MadeSurface::Merged(merged),
+                topology: merged.topology,
+                seconds: merged.seconds,
+            };
+        }
+        let clock = Instant::now();
+        Self {
+            made: MadeSurface::Refined(refined(mesh, options)),
+            // Refinement does not change the topology.
+            topology: mesh.topology(),
+            seconds: clock.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// What is written.
+    pub(super) fn surface(&self) -> &(dyn Surface + 'm) {
+        match &self.made {
+            MadeSurface::Refined(refined) => &**refined,
+            MadeSurface::Merged(merged) => &merged.mesh,
+        }
+    }
+
+    /// How it was merged, if it was.
+    pub(super) fn merged(&self) -> Option<&'m Merged> {
+        match self.made {
+            MadeSurface::Refined(_) => None,
+            MadeSurface::Merged(merged) => Some(merged),
+        }
+    }
+
+    /// Volume (µm³) and area (µm²).
+    pub(super) fn volume_and_area(&self) -> (f64, f64) {
+        let measure = measure_surface(self.surface());
+        (measure.volume, measure.area)
+    }
+}
+
+/// A refined surface merged with itself where it crossed.
+pub(super) struct Merged {
+    pub(super) mesh: SurfaceMesh,
+    pub(super) report: UnionReport,
+    pub(super) topology: Topology,
     /// Shapes of the triangles, of a mesh for simulators.
     pub(super) quality: Option<Quality>,
     /// Seconds that it took.
     pub(super) seconds: f64,
 }
 
-impl<'m> CellSurface<'m> {
-    /// Refines a coarse mesh, and merges what crosses if that is asked for.
-    pub(super) fn new(mesh: &'m CoarseMesh, options: &MeshOptions) -> Result<Self, Failure> {
-        Self::stoppable(mesh, options, &AtomicBool::new(false))
-    }
-
-    /// The same; merging ends soon after another thread sets `stopped`.
-    pub(super) fn stoppable(
-        mesh: &'m CoarseMesh,
+impl Merged {
+    /// Refines a coarse mesh and merges what crosses. Ends soon after another thread sets `stopped`.
+    pub(super) fn new(
+        mesh: &CoarseMesh,
         options: &MeshOptions,
         stopped: &AtomicBool,
     ) -> Result<Self, Failure> {
         let clock = Instant::now();
-        let surface = refined(mesh, options);
-        if !options.merge {
-            return Ok(Self {
-                surface,
-                // Refinement does not change the topology.
-                topology: mesh.topology(),
-                merging: None,
-                quality: None,
-                seconds: clock.elapsed().as_secs_f64(),
-            });
-        }
         let union_options = match options.simulation {
             true => UnionOptions {
                 press: PRESS,
@@ -70,7 +115,7 @@ impl<'m> CellSurface<'m> {
             },
             false => UnionOptions::default(),
         };
-        let merged = SurfaceMesh::collect_stoppable(&*surface, stopped)
+        let merged = SurfaceMesh::collect_stoppable(&*refined(mesh, options), stopped)
             .ok_or(UnionError::Stopped)
             .and_then(|whole| union_stoppable(&whole, &union_options, stopped));
         let merged = merged.map_err(|e| Failure(format!("what crosses cannot be merged: {e}")))?;
@@ -86,16 +131,10 @@ impl<'m> CellSurface<'m> {
         Ok(Self {
             topology: merged.mesh.topology(),
             quality: options.simulation.then(|| quality(&merged.mesh)),
-            surface: Box::new(merged.mesh),
-            merging: Some(merged.report),
+            mesh: merged.mesh,
+            report: merged.report,
             seconds: clock.elapsed().as_secs_f64(),
         })
-    }
-
-    /// Volume (µm³) and area (µm²).
-    pub(super) fn volume_and_area(&self) -> (f64, f64) {
-        let measure = measure_surface(&*self.surface);
-        (measure.volume, measure.area)
     }
 }
 
@@ -154,7 +193,7 @@ struct PlaceReport {
 }
 
 impl CrossingsReport {
-    pub(super) fn new(report: &UnionReport) -> Self {
+    pub(super) fn new(Merged { report, .. }: &Merged) -> Self {
         let place = |place: &Place| PlaceReport {
             position: place.position.to_array(),
             pairs: place.pairs,

@@ -1,10 +1,10 @@
 //! What is said of a merged surface, and what a mesh for simulators must be.
 
 use neurotess::generate::Generated;
-use neurotess::mesh::Walled;
+use neurotess::mesh::{Quality, Walled};
 use neurotess::union::{Kin, Part, UnionReport};
 
-use super::surface::CellSurface;
+use super::surface::{CellSurface, Merged};
 use super::warning::CellWarning;
 use crate::report::Failure;
 
@@ -12,7 +12,7 @@ use crate::report::Failure;
 /// (degrees).
 const THIN_TRIANGLES: f64 = 10.0;
 
-/// Fails unless solvers can take the mesh. `CellSurface::new` has seen to crossings.
+/// Fails unless solvers can take the mesh. `Merged::new` has seen to crossings.
 pub(super) fn check(surface: &CellSurface<'_>, generated: &Generated) -> Result<(), Failure> {
     let topology = &surface.topology;
     if !topology.closed || !topology.oriented || !topology.vertex_manifold {
@@ -22,7 +22,10 @@ pub(super) fn check(surface: &CellSurface<'_>, generated: &Generated) -> Result<
                 .to_owned(),
         ));
     }
-    if let Some(part) = surface.merging.iter().flat_map(|m| &m.cut_off).next() {
+    if let Some(part) = surface
+        .merged()
+        .and_then(|merged| merged.report.cut_off.first())
+    {
         return Err(Failure(format!(
             "a piece of the tracing near sample {} was cut off: mend the tracing there, or use \
              --crossings merge",
@@ -40,8 +43,14 @@ pub(super) fn check(surface: &CellSurface<'_>, generated: &Generated) -> Result<
     Ok(())
 }
 
-/// What merging changed.
-pub(super) fn warnings(report: &UnionReport) -> Vec<CellWarning> {
+/// What merging changed, and what is said of the triangles of a mesh for simulators.
+pub(super) fn warnings(merged: &Merged) -> Vec<CellWarning> {
+    let mut warnings = of_crossings(&merged.report);
+    warnings.extend(merged.quality.as_ref().and_then(of_triangles));
+    warnings
+}
+
+fn of_crossings(report: &UnionReport) -> Vec<CellWarning> {
     let warning = |code, sample: i32, count: usize, message: String| CellWarning {
         line: None,
         sample: Some(i64::from(sample)),
@@ -105,9 +114,7 @@ pub(super) fn warnings(report: &UnionReport) -> Vec<CellWarning> {
     warnings
 }
 
-/// What is said of the triangles of a mesh for simulators.
-pub(super) fn of_triangles(surface: &CellSurface<'_>) -> Option<CellWarning> {
-    let quality = surface.quality?;
+fn of_triangles(quality: &Quality) -> Option<CellWarning> {
     (quality.min_angle_p1 < THIN_TRIANGLES).then(|| CellWarning {
         line: None,
         sample: None,
@@ -118,6 +125,22 @@ pub(super) fn of_triangles(surface: &CellSurface<'_>) -> Option<CellWarning> {
             quality.min_angle_p1
         ),
         count: 1,
+    })
+}
+
+/// What is said of tubes that became thinner, told by their samples.
+pub(super) fn of_thinning(samples: &[i64]) -> Option<CellWarning> {
+    let &sample = samples.first()?;
+    Some(CellWarning {
+        line: None,
+        sample: Some(sample),
+        code: "thinned",
+        message: format!(
+            "neurites would have grown together into loops: thinner there than traced, at \
+             {} samples, first at sample {sample}",
+            samples.len()
+        ),
+        count: samples.len() as u64,
     })
 }
 
