@@ -53,6 +53,8 @@ def test_a_mesh_is_closed_and_has_attributes(cell: nt.Morphology, mesh: nt.Mesh)
         {"ring": {1: 0.5, 2: 1.5}},
         {"smooth": "auto"},
         {"radius_factor": 2.5},
+        {"radii": "equal-area", "level": 2},
+        {"simulation": True, "radii": "traced", "max_aspect": 1},
         {"smooth": 2},
         {"types": "dendrite,2"},
         {"level": np.int64(2), "poisson": np.float32(0.25)},

@@ -163,7 +163,7 @@ mod tests {
             |o| o.poisson = 0.31,
             |o| o.soma_scale = 1.1,
             |o| o.radius_factor = 2.0,
-            |o| o.equal_area = Some(Sides::Count(8)),
+            |o| o.equal_area = Some(Sides::Level(2)),
             |o| o.sphere = SphereKind::Octahedron,
             |o| o.sphere_level = Some(4),
             |o| {

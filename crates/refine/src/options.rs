@@ -110,7 +110,8 @@ pub enum EdgeRule {
     Lengths {
         /// Length of a piece, in radii of the thinner end.
         radii: f32,
-        /// How many times as long pieces along a neurite may be as those around.
+        /// How many times as long as that pieces along a neurite may be. With 1 or less they are about as long;
+        /// with more none is longer.
         aspect: f32,
         /// Least length of a piece (µm).
         least: f32,

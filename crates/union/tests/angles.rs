@@ -31,7 +31,8 @@ fn narrow_triangles_become_wide() {
     let (wider, after) = merged(&mesh, &WIDE);
     assert!(wider.report.improved > 0);
     assert!(after.quality.min_angle > 19.0, "{:?}", after.quality);
-    assert_near(after.volume, before.volume, 0.01);
+    // Only edges that are given to other corners change it.
+    assert_near(after.volume, before.volume, 0.001);
     assert_near(after.area, before.area, 0.01);
     // Every vertex lies on the tube as before, within the reach of its sample.
     for vertex in &wider.mesh.vertices {

@@ -1,6 +1,7 @@
 //! Files for simulators: what `docs/simulation.md` shows, and what `--unit`, `--table` and `--walls` write.
 
 mod page;
+mod radii;
 mod table;
 mod unit;
 mod walls;

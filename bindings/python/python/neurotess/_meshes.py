@@ -244,6 +244,7 @@ def mesh(
     soma: Literal["fem", "sphere", "profile", "none"] | None = None,
     poisson: float | None = None,
     soma_scale: float | None = None,
+    radii: Literal["traced", "equal-area"] | None = None,
     radius_factor: float | None = None,
     soma_sphere: Literal["cube", "octahedron"] | None = None,
     soma_level: int | None = None,
@@ -278,6 +279,8 @@ def mesh(
     - `soma`: ``"fem"``, ``"sphere"``, ``"profile"`` or ``"none"``; `poisson` (0.3), `soma_scale` (1),
       `soma_sphere`, `soma_level`
     - `ring`: where neurites leave the soma, as in ``{1: 0.5}``: neurites count from 1, positions are 0 to 2
+    - `radii`: ``"traced"``: rings of neurites lie on the traced radius, and hold less the fewer sides they have;
+      ``"equal-area"`` (with `simulation` if nothing is said): as much larger as keeps the traced volume
     - `radius_factor`: a factor on the radii of neurites, as for printing in three dimensions
     - `smooth`: smooths the noise of the tracing away by this length (µm), or ``"auto"``
     - `types`: keeps only these, as in ``["axon", 3, "custom_9"]``
@@ -306,6 +309,7 @@ def mesh(
         "soma": soma,
         "poisson": poisson,
         "soma_scale": soma_scale,
+        "radii": radii,
         "radius_factor": radius_factor,
         "soma_sphere": soma_sphere,
         "soma_level": soma_level,

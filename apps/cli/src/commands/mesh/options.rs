@@ -165,15 +165,15 @@ fn equal_area(args: &MeshArgs, levels: MeshLevels) -> anyhow::Result<Option<Side
         return Ok(None);
     }
     Ok(Some(match levels {
-        MeshLevels::Coarse => Sides::Count(4),
-        MeshLevels::Criterion(LodCriterion::Homogeneous(level)) => Sides::Count(4 * level),
+        MeshLevels::Coarse => Sides::Level(1),
+        MeshLevels::Criterion(LodCriterion::Homogeneous(level)) => Sides::Level(level),
         MeshLevels::Criterion(_) => {
             return usage(
                 "--radii equal-area must know how many sides neurites get: use --level or --isotropic instead of \
                  --max-error",
             );
         }
-        MeshLevels::Edges(EdgeRule::Levels { around, .. }) => Sides::Count(4 * around),
+        MeshLevels::Edges(EdgeRule::Levels { around, .. }) => Sides::Level(around),
         MeshLevels::Edges(EdgeRule::Lengths {
             radii, least, most, ..
         }) => Sides::ByLength {
@@ -331,6 +331,9 @@ mod tests {
         let text = options.fingerprint();
         assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
+        options.generate.equal_area = Some(Sides::Level(2));
+        let text = options.fingerprint();
+        assert!(text.contains(", equal_area: Some(Level(2)), "), "{text}");
         options.generate.smooth = Smooth::Length(2.0);
         let text = options.fingerprint();
         assert!(text.contains(", smooth: Length(2.0) } "), "{text}");
