@@ -49,15 +49,17 @@ mod places;
 mod press;
 mod region;
 mod report;
+mod rounds;
 mod sheets;
 mod smooth;
 mod splice;
 mod stars;
 mod tidy;
 mod touch;
+mod tunnels;
 mod winding;
 mod work;
 
 pub use merge::{Union, crossing_places, union, union_stoppable};
 pub use options::{UnionError, UnionOptions};
-pub use report::{Kin, Part, Place, UnionReport, Why};
+pub use report::{Filled, Kin, Part, Place, UnionReport, Why};

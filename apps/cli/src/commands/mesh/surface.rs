@@ -19,6 +19,9 @@ use crate::report::Failure;
 /// branches were moved apart is less deep.
 const PRESS: f64 = 0.6;
 
+/// Circumferences of a branch up to which holes that merging made are filled.
+const FILL: f64 = 2.0;
+
 /// Angles (degrees) of a mesh for simulators that are made larger where the surface allows it. Tetrahedra on
 /// narrower triangles are poor ones.
 const LEAST_ANGLE: f64 = 20.0;
@@ -61,6 +64,7 @@ impl<'m> CellSurface<'m> {
         let union_options = match options.simulation {
             true => UnionOptions {
                 press: PRESS,
+                fill: FILL,
                 least_angle: LEAST_ANGLE,
                 ..UnionOptions::default()
             },
