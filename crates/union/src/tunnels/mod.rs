@@ -13,6 +13,7 @@
 //! **Practice.** Only surfaces with more handles than before are looked at. Each body is tried on a copy. It is kept
 //! if there are fewer handles, as many components as before, and nothing crosses.
 
+mod blend;
 mod loops;
 mod patch;
 mod plug;
@@ -22,9 +23,9 @@ use neurotess_mesh::{Topology, measure, self_intersections_of, topology};
 
 use crate::options::{UnionError, UnionOptions};
 use crate::report::{Filled, UnionReport};
-use crate::rounds::{crossings_of_changed, merge};
-use crate::tidy::tidy;
+use crate::rounds::merge;
 use crate::work::Work;
+use blend::blend;
 use loops::{least_radius, middle, seams, tunnels};
 use patch::Loop;
 use plug::Ellipsoid;
@@ -73,8 +74,9 @@ fn fill_one(
             };
             let after = shape(&tried);
             if is_better(before, &after) {
+                let tried = blend(tried, work.vertices.len() as u32, options.needles);
                 let filled = told(work, &tried, around);
-                *work = tidied(tried, options.needles);
+                *work = tried;
                 return Ok(Some((after, filled)));
             }
         }
@@ -116,18 +118,6 @@ fn plugged(
 fn is_better(before: &Topology, after: &Topology) -> bool {
     let sound = after.closed && after.oriented && after.vertex_manifold;
     sound && after.components == before.components && handles(after) < handles(before)
-}
-
-/// A surface without needles at its seams, if nothing crosses then.
-fn tidied(work: Work, needles: f64) -> Work {
-    let mut tidied = work.clone();
-    if needles > 0.0 {
-        tidy(&mut tidied, needles);
-    }
-    match crossings_of_changed(&tidied).is_empty() {
-        true => tidied,
-        false => work,
-    }
 }
 
 fn told(before: &Work, after: &Work, around: &Loop) -> Filled {
