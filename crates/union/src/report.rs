@@ -106,7 +106,7 @@ pub struct Filled {
     pub section: i32,
     /// Length (µm) of the loop.
     pub girth: f64,
-    /// Volume (µm³) that came to the cell.
+    /// Volume (µm³) that filling added; negative if the surface around was flattened by more.
     pub volume: f64,
 }
 

@@ -40,10 +40,10 @@ pub(super) fn seams(work: &Work) -> Vec<Vec<u32>> {
 /// Loops through a seam that bound a disk outside the solid, the shortest first. None is longer than `girth`
 /// circumferences of the branch where that is thinnest on the loop.
 pub(super) fn tunnels(work: &Work, seam: &[u32], girth: f64) -> Vec<Loop> {
-    let radii = seam.iter().map(|&v| radius(work, v));
     // A loop is as thin as the vertex of the seam that it passes, or thinner.
-    let longest = girth * TAU * radii.fold(0.0, f64::max);
-    let patch = Patch::new(work, &faces_near(work, seam, longest / 2.0));
+    let reach = |vertex: u32| girth * TAU * radius(work, vertex) / 2.0;
+    let farthest = seam.iter().map(|&v| reach(v)).fold(0.0, f64::max);
+    let patch = Patch::new(work, &faces_near(work, seam, farthest));
     if patch.handles() == 0 {
         return Vec::new();
     }
@@ -56,7 +56,7 @@ pub(super) fn tunnels(work: &Work, seam: &[u32], girth: f64) -> Vec<Loop> {
         |around: &Loop| around.length <= girth * TAU * least_radius(work, &around.vertices);
     let mut loops: Vec<Loop> = starts
         .par_iter()
-        .flat_map_iter(|&start| patch.loops(start))
+        .flat_map_iter(|&start| patch.loops(start, reach(start)))
         .filter(is_short)
         .collect();
     loops.sort_by(|a, b| {

@@ -88,32 +88,35 @@ impl Patch {
         (2 * pieces as i64 - euler) / 2
     }
 
-    /// Two loops for each handle of the piece that a vertex of the surface is in: the shortest ones through it, or
-    /// shorter ones that hang on a common path to it.
-    pub(super) fn loops(&self, name: u32) -> Vec<Loop> {
+    /// Two loops for each handle of the piece that a vertex of the surface is in, of those within `reach` of it along
+    /// edges: the shortest ones through it, or shorter ones that hang on a common path to it.
+    pub(super) fn loops(&self, name: u32, reach: f64) -> Vec<Loop> {
         let Some(from) = self.names.iter().position(|&other| other == name) else {
             return Vec::new();
         };
-        let paths = self.shortest_paths(from as u32);
-        let in_tree = |n: u32, edge: &Edge| edge.ends.iter().any(|&end| paths.is_last(n, end));
-        let others = (0..).zip(&self.edges);
-        let mut others: Vec<(f64, u32)> = others
-            .filter(|(n, edge)| !in_tree(*n, edge))
-            .map(|(n, edge)| (paths.around(edge), n))
-            .filter(|(length, _)| length.is_finite())
-            .collect();
-        others.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut forest = Forest::new(self.sides);
+        let paths = self.shortest_paths(from as u32, reach);
+        // The tree over faces takes the edges in the order of the loops that they would make, the longest first.
+        let mut faces = Forest::new(self.sides);
+        let mut near: Vec<(f64, u32)> = Vec::new();
+        for (n, edge) in (0..).zip(&self.edges) {
+            let length = paths.around(edge);
+            if !length.is_finite() {
+                faces.unite(edge.sides[0], edge.sides[1]);
+            } else if !edge.ends.iter().any(|&end| paths.is_last(n, end)) {
+                near.push((length, n));
+            }
+        }
+        near.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut crosses = |n: u32| {
             let [a, b] = self.edges[n as usize].sides;
-            forest.unite(a, b)
+            faces.unite(a, b)
         };
-        let left = others.into_iter().filter(|&(_, n)| !crosses(n));
+        let left = near.into_iter().filter(|&(_, n)| !crosses(n));
         left.map(|(_, n)| self.closed(&paths, n)).collect()
     }
 
-    /// The shortest paths over edges from a vertex (E. Dijkstra, 1959).
-    fn shortest_paths(&self, from: u32) -> Paths {
+    /// The shortest paths over edges from a vertex, no longer than `reach` (E. Dijkstra, 1959).
+    fn shortest_paths(&self, from: u32, reach: f64) -> Paths {
         let mut paths = Paths {
             lengths: vec![f64::INFINITY; self.names.len()],
             last: vec![None; self.names.len()],
@@ -128,7 +131,7 @@ impl Patch {
                 let edge = &self.edges[n as usize];
                 let other = edge.other(vertex);
                 let there = length + edge.length;
-                if there < paths.lengths[other as usize] {
+                if there <= reach && there < paths.lengths[other as usize] {
                     paths.lengths[other as usize] = there;
                     paths.last[other as usize] = Some(n);
                     open.push(Reached(there, other));
@@ -170,7 +173,7 @@ impl Edge {
     }
 }
 
-/// Shortest paths from one vertex: for each other their length, and their last edge.
+/// Shortest paths from one vertex: for each other their length, infinite if there is none, and their last edge.
 struct Paths {
     lengths: Vec<f64>,
     last: Vec<Option<u32>>,
@@ -304,7 +307,7 @@ mod tests {
         let patch = Patch::new(&work, &faces);
         assert_eq!(patch.handles(), 1);
         // From a vertex at the hole: once around the hole, and once around the tube.
-        let loops = patch.loops(4);
+        let loops = patch.loops(4, f64::INFINITY);
         let mut lengths: Vec<f64> = loops.iter().map(|l| l.length).collect();
         lengths.sort_by(f64::total_cmp);
         assert_eq!(lengths.len(), 2);
@@ -324,7 +327,7 @@ mod tests {
         let faces: Vec<u32> = (16..work.triangles.len() as u32).collect();
         let patch = Patch::new(&work, &faces);
         assert_eq!(patch.handles(), 0);
-        assert!(patch.loops(4).is_empty());
+        assert!(patch.loops(4, f64::INFINITY).is_empty());
         // Without a face the handle is there.
         let faces: Vec<u32> = (1..work.triangles.len() as u32).collect();
         assert_eq!(Patch::new(&work, &faces).handles(), 1);

@@ -8,7 +8,7 @@ use crate::work::Work;
 /// The least extent of a plug across, of its largest: flat ones would leave narrow faces.
 const FLATTEST: f64 = 0.4;
 
-/// An ellipsoid that has a loop just on it or within.
+/// An ellipsoid that holds a loop.
 pub(super) struct Ellipsoid {
     center: DVec3,
     /// Half axes, at right angles to one another and in the order of a right hand.
@@ -16,7 +16,8 @@ pub(super) struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// None if the loop has no extent.
+    /// `scale` times as large as it must be to hold the points, with half axes of `least` and more. None if the
+    /// points are on a line.
     pub(super) fn around(points: &[DVec3], scale: f64, least: f64) -> Option<Self> {
         let center = points.iter().sum::<DVec3>() / points.len() as f64;
         let ways: Vec<DVec3> = points.iter().map(|point| point - center).collect();
@@ -59,8 +60,8 @@ impl Ellipsoid {
         DVec3::from(shares).length()
     }
 
-    /// Adds the body to the surface, `scale` times as large; its labels and radii are those of the nearest of
-    /// `names`, which are vertices of the surface. Returns its faces.
+    /// Adds the body to the surface; its labels and radii are those of the nearest of `names`, which are vertices of
+    /// the surface. Returns its faces.
     pub(super) fn add(&self, work: &mut Work, names: &[u32]) -> Vec<u32> {
         let (directions, faces) = sphere();
         let numbers: Vec<u32> = directions
@@ -131,4 +132,60 @@ fn sphere() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         finer.extend([[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
     }
     (points, finer)
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess_mesh::{SurfaceMesh, measure, topology};
+
+    use super::*;
+
+    #[test]
+    fn a_body_holds_its_loop_and_looks_outwards() {
+        // A crooked loop that is flat in no plane.
+        let points: Vec<DVec3> = (0..9)
+            .map(|n| {
+                let angle = std::f64::consts::TAU * f64::from(n) / 9.0;
+                DVec3::new(3.0 * angle.cos(), angle.sin(), 0.3 * (2.0 * angle).cos())
+            })
+            .collect();
+        let tight = Ellipsoid::around(&points, 1.0, 0.0).expect("an extent");
+        let levels = points
+            .iter()
+            .map(|&point| tight.level(point - tight.center));
+        let farthest = levels.fold(0.0, f64::max);
+        assert!((farthest - 1.0).abs() < 1e-9, "{farthest}");
+
+        let mut mesh = SurfaceMesh::default();
+        mesh.vertices
+            .extend(points.iter().map(|point| SurfaceVertex {
+                position: point.as_vec3(),
+                section: 4,
+                ..SurfaceVertex::default()
+            }));
+        let mut work = Work::new(&mesh).expect("a surface");
+        let wide = Ellipsoid::around(&points, 1.3, 0.0).expect("an extent");
+        let faces = wide.add(&mut work, &[0, 1, 2]);
+        assert_eq!(faces.len(), 32);
+        let shape = topology(&work.positions(), &work.faces());
+        assert!(shape.closed && shape.oriented && shape.genus == Some(0));
+        assert!(measure(&work.positions(), &work.faces()).volume > 0.0);
+        assert!(work.vertices.iter().all(|vertex| vertex.section == 4));
+        // All points are behind all of its flat faces.
+        for face in faces {
+            let [a, b, c] = work.corners(face);
+            let outwards = (b - a).cross(c - a);
+            assert!(points.iter().all(|point| outwards.dot(*point - a) < 0.0));
+        }
+    }
+
+    #[test]
+    fn a_body_around_a_point_is_as_large_as_the_least() {
+        let points = [DVec3::ZERO, 1e-3 * DVec3::X, 1e-3 * DVec3::Y];
+        let body = Ellipsoid::around(&points, 1.3, 0.2).expect("an extent");
+        for axis in body.axes {
+            assert!((axis.length() - 0.2).abs() < 1e-12);
+        }
+        assert!(Ellipsoid::around(&[DVec3::ONE; 3], 1.3, 0.2).is_none());
+    }
 }

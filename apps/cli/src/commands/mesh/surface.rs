@@ -140,7 +140,7 @@ struct FilledReport {
     section: i32,
     /// Length (µm) of the shortest loop around the hole.
     girth: f64,
-    /// Volume (µm³) that came to the cell.
+    /// Volume (µm³) that filling added; negative if the surface around was flattened by more.
     volume: f64,
 }
 
