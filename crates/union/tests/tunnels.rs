@@ -219,6 +219,6 @@ proptest! {
         prop_assert_eq!(filled.report.components, plain.report.components);
         let less = plain.report.handles.unwrap_or(0) - filled.report.handles.unwrap_or(0);
         prop_assert!(less >= filled.report.filled.len() as i64);
-        prop_assert!(filled.report.filled.len() > 0 || filled == plain);
+        prop_assert!(!filled.report.filled.is_empty() || filled == plain);
     }
 }
