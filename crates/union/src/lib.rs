@@ -7,9 +7,11 @@
 //! the bit. Then splinters are left out, sheets that touch are parted, needles and caps at the **seams** are
 //! tidied, seams are smoothed a little, and the result is checked; what still crosses after rounding to 32
 //! bits is cut once more. On request surfaces that cross a little are pressed in instead
-//! ([`UnionOptions::press`]), and narrow triangles are made wider, wherever they are ([`UnionOptions::least_angle`]).
+//! ([`UnionOptions::press`]), small holes that merging leaves are filled ([`UnionOptions::fill`]), and narrow triangles
+//! are made wider, wherever they are ([`UnionOptions::least_angle`]).
 //!
-//! Merging makes **handles**: two branches that cross grow together. [`UnionReport::places`] names each place.
+//! Merging makes **handles**: two branches that cross grow together. [`UnionReport::places`] names each place. A
+//! **tunnel** is a loop that bounds a disk outside the solid: around the hole of a handle.
 //!
 //! **Theory.** Q. Zhou, E. Grinspun, D. Zorin, A. Jacobson, Mesh Arrangements for Solid Geometry, 2016, with
 //! the arrangement of the faces near crossings only: the winding numbers of its cells follow from one ray
@@ -50,15 +52,17 @@ mod places;
 mod press;
 mod region;
 mod report;
+mod rounds;
 mod sheets;
 mod smooth;
 mod splice;
 mod stars;
 mod tidy;
 mod touch;
+mod tunnels;
 mod winding;
 mod work;
 
 pub use merge::{Union, crossing_places, union, union_stoppable};
 pub use options::{UnionError, UnionOptions};
-pub use report::{Kin, Part, Place, UnionReport, Why};
+pub use report::{Filled, Kin, Part, Place, UnionReport, Why};

@@ -4,21 +4,18 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess_mesh::{
-    SurfaceMesh, Topology, measure, search_self_intersections_stoppable, self_intersections_of,
-    topology,
+    SurfaceMesh, Topology, measure, search_self_intersections_stoppable, topology,
 };
 
 use crate::improve::improve;
 use crate::options::{UnionError, UnionOptions};
-use crate::parts::{drop_hidden, drop_splinters, least_volume};
+use crate::parts::drop_hidden;
 use crate::places::places;
 use crate::press::press_in;
-use crate::region::around;
 use crate::report::{Place, UnionReport};
+use crate::rounds::{crossings_of_changed, merge};
 use crate::smooth::{renew_normals, smooth};
-use crate::splice::{Fault, splice};
-use crate::tidy::tidy;
-use crate::touch;
+use crate::tunnels::fill;
 use crate::work::Work;
 
 /// A surface without crossings.
@@ -79,31 +76,9 @@ pub fn union_stoppable(
         report.pressed_places = pressed.collect();
     }
 
-    let mut needles = options.needles;
-    while !pairs.is_empty() && report.rounds < options.rounds {
-        report.rounds += 1;
-        check()?;
-        if report.rounds > EXACT_ROUNDS {
-            let times = f64::from(report.rounds - EXACT_ROUNDS);
-            report.parted += touch::press_all(&mut work, &pairs, times);
-            pairs = crossings_of_changed(&work);
-            if pairs.is_empty() {
-                break;
-            }
-        }
-        let faces = touch::faces(&work, &pairs);
-        cut(&mut work, &pairs)?;
-        check()?;
-        let last = report.rounds == options.rounds;
-        mend(&mut work, if last { 0.0 } else { needles }, &mut report);
-        // What is finer stays: collapsing may be what made the new crossings.
-        needles *= 0.6;
-        pairs = crossings_of_changed(&work);
-        let pressed = touch::press(&mut work, &pairs, &faces);
-        if pressed > 0 {
-            report.parted += pressed;
-            pairs = crossings_of_changed(&work);
-        }
+    pairs = merge(&mut work, pairs, options, &mut report, &check)?;
+    if options.fill > 0.0 && pairs.is_empty() {
+        report.filled = fill(&mut work, options, report.handles_before, &check)?;
     }
     if report.rounds > 0 && pairs.is_empty() {
         report.smoothed = smooth(&mut work, options.smoothing);
@@ -143,14 +118,6 @@ fn crossings(work: &Work, stopped: &AtomicBool) -> Result<Vec<[u32; 2]>, UnionEr
     }
 }
 
-/// Crossings of faces that are not of the input: the others' were all cut.
-fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
-    match work.changed_faces() {
-        none if none.is_empty() => Vec::new(),
-        changed => self_intersections_of(&work.positions(), &work.faces(), &changed),
-    }
-}
-
 /// Corners of the faces of pairs. Faces of the input keep them, whatever becomes of their numbers.
 fn corners_of(work: &Work, pairs: &[[u32; 2]]) -> Vec<[[u32; 3]; 2]> {
     let corners = |face: u32| work.triangles[face as usize];
@@ -175,42 +142,6 @@ fn crossings_that_stayed(work: &Work, crossed: &[[[u32; 3]; 2]]) -> usize {
     }
     let both = |pair: &&[[u32; 3]; 2]| pair.iter().all(|face| stays[face]);
     crossed.iter().filter(both).count()
-}
-
-/// Rounds after which crossings are no longer cut only, but pressed apart too. Real cells need two at most.
-const EXACT_ROUNDS: u32 = 2;
-
-/// Most rings of neighbors that an arrangement is tried with.
-const MOST_RINGS: u32 = 4;
-
-/// Replaces the faces around crossings by their union.
-fn cut(work: &mut Work, pairs: &[[u32; 2]]) -> Result<(), UnionError> {
-    let mut fault = None;
-    for rings in 1..=MOST_RINGS {
-        match splice(work, &around(work, pairs, rings)) {
-            Ok(()) => return Ok(()),
-            Err(new) => fault = Some(new),
-        }
-    }
-    Err(UnionError::Failed(match fault {
-        Some(Fault::Engine(text)) => text,
-        Some(Fault::Open) => "what is kept does not close".into(),
-        Some(Fault::Inconsistent) | None => "winding numbers contradict one another".into(),
-    }))
-}
-
-/// Makes a fair surface of what the cut has left.
-fn mend(work: &mut Work, needles: f64, report: &mut UnionReport) {
-    let volume = measure(&work.positions(), &work.faces()).volume;
-    let splinters = drop_splinters(work, least_volume(work, volume));
-    report.dropped.extend(splinters.dropped);
-    report.cut_off = splinters.cut_off;
-    report.parted += touch::part(work);
-    if needles > 0.0 {
-        let tidied = tidy(work, needles);
-        report.collapsed += tidied.collapsed;
-        report.flipped += tidied.flipped;
-    }
 }
 
 fn shape(work: &Work) -> Topology {

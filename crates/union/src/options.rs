@@ -16,6 +16,9 @@ pub struct UnionOptions {
     pub smoothing: f64,
     /// Surfaces that cross are pressed in by up to this share of their radius before they are merged; 0: not.
     pub press: f64,
+    /// Holes that merging has made and that a loop of up to this many circumferences of the branches goes around are
+    /// filled; 0: none.
+    pub fill: f64,
     /// Angles (degrees) below this are made larger where the surface allows it, wherever they are; 0 leaves all
     /// as they are.
     pub least_angle: f64,
@@ -29,6 +32,7 @@ impl Default for UnionOptions {
             needles: 0.05,
             smoothing: 0.4,
             press: 0.0,
+            fill: 0.0,
             least_angle: 0.0,
         }
     }

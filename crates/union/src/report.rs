@@ -25,6 +25,8 @@ pub struct UnionReport {
     pub places: Vec<Place>,
     /// Where surfaces crossed and were pressed in instead.
     pub pressed_places: Vec<Place>,
+    /// Small holes that merging had made and that were filled, in the order in which they were.
+    pub filled: Vec<Filled>,
     /// Components that were left out.
     pub dropped: Vec<Part>,
     /// Components that hung together with others before and are too large to be left out.
@@ -91,6 +93,21 @@ pub enum Kin {
     Near,
     /// Sections that do not meet: branches traced through one another.
     Apart,
+}
+
+/// A hole that was filled: one handle less, or more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filled {
+    /// The middle of the loop around the hole (µm, in the tracing's own coordinates).
+    pub position: DVec3,
+    /// The file's own number of a tracing point beside it.
+    pub point: i32,
+    /// That point's section.
+    pub section: i32,
+    /// Length (µm) of the loop.
+    pub girth: f64,
+    /// Volume (µm³) that filling added; negative if the surface around was flattened by more.
+    pub volume: f64,
 }
 
 /// A component of the surface.

@@ -37,7 +37,7 @@ pub(crate) fn smooth(work: &mut Work, share: f64) -> usize {
         })
         .collect();
     let normals: Vec<DVec3> = faces.iter().map(|&face| normal(work, face)).collect();
-    for (vertex, position) in relaxed(work, &before, &faces, share) {
+    for (vertex, position) in relaxed(work, &before, &faces, share, STEPS) {
         work.vertices[vertex as usize].position = position;
     }
     for try_ in 0..=TRIES {
@@ -51,14 +51,20 @@ pub(crate) fn smooth(work: &mut Work, share: f64) -> usize {
     before.iter().filter(moved).count()
 }
 
-/// Where vertices go.
-fn relaxed(work: &Work, ours: &[(u32, Vec3)], faces: &[u32], share: f64) -> Vec<(u32, Vec3)> {
+/// Where vertices go in some steps to the middle of their neighbors. `faces` are all that have one of them.
+pub(crate) fn relaxed(
+    work: &Work,
+    ours: &[(u32, Vec3)],
+    faces: &[u32],
+    share: f64,
+    steps: usize,
+) -> Vec<(u32, Vec3)> {
     let row: HashMap<u32, usize> = ours.iter().map(|&(vertex, _)| vertex).zip(0..).collect();
     let mut at: Vec<DVec3> = ours
         .iter()
         .map(|(_, position)| position.as_dvec3())
         .collect();
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         let mut sums = vec![(DVec3::ZERO, 0.0); at.len()];
         for &face in faces {
             let corners = work.triangles[face as usize];

@@ -1,5 +1,7 @@
-//! Files for simulators: what `docs/simulation.md` shows, and what `--unit`, `--table` and `--walls` write.
+//! Files for simulators: what `docs/simulation.md` shows, and what `--unit`, `--table` and `--walls` write, and
+//! that real cells have no handles.
 
+mod handles;
 mod page;
 mod radii;
 mod table;

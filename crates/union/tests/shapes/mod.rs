@@ -126,6 +126,7 @@ pub(crate) const BARE: UnionOptions = UnionOptions {
     needles: 0.0,
     smoothing: 0.0,
     press: 0.0,
+    fill: 0.0,
     least_angle: 0.0,
 };
 

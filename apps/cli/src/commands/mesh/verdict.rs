@@ -87,6 +87,19 @@ fn of_crossings(report: &UnionReport) -> Vec<CellWarning> {
             ),
         ));
     }
+    if let Some(first) = report.filled.first() {
+        let volume: f64 = report.filled.iter().map(|hole| hole.volume).sum();
+        let (places, at) = (report.filled.len(), first.point);
+        warnings.push(warning(
+            "holes_filled",
+            at,
+            places,
+            format!(
+                "holes that merging left, smaller than a branch, were filled in {places} places, first at \
+                 sample {at} ({volume:+.2e} µm³ in all)"
+            ),
+        ));
+    }
     let handles = report.handles_made().unwrap_or(0);
     if handles > 0 {
         let first = report.places.first().map_or(-1, |place| place.points[0]);
