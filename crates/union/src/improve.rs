@@ -11,6 +11,7 @@ use neurotess_mesh::self_intersections_of;
 use rayon::prelude::*;
 
 use crate::edits::{Edit, Edits, sharpness};
+use crate::press::press_in;
 use crate::stars::Stars;
 use crate::work::Work;
 
@@ -38,6 +39,9 @@ const RINGS: usize = 3;
 /// How often all is done again, without what crossed.
 const TRIES: usize = 6;
 
+/// What crosses afterwards is pressed in by up to this share of its radius, before all is done again.
+const PRESS: f64 = 0.2;
+
 /// Faces for which edits are looked for side by side. With more of them, more find that one before them has
 /// changed their neighborhood, and are looked at again.
 const BATCH: usize = 2048;
@@ -49,14 +53,20 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
     for rings in 0..TRIES {
         let mut tried = work.clone();
         let done = passes(&mut tried, goal, &fixed);
-        let crossing = crossing_corners(&tried);
+        let mut crossing = crossings(&tried);
+        let mut near = vec![false; work.vertices.len()];
+        for &face in crossing.iter().flatten() {
+            for corner in tried.triangles[face as usize] {
+                near[corner as usize] = true;
+            }
+        }
+        if !crossing.is_empty() {
+            press_in(&mut tried, &crossing, PRESS);
+            crossing = crossings(&tried);
+        }
         if crossing.is_empty() {
             *work = tried;
             return done;
-        }
-        let mut near = vec![false; work.vertices.len()];
-        for corner in crossing {
-            near[corner as usize] = true;
         }
         let near = work.widened(near, 1 + rings);
         for (fixed, near) in fixed.iter_mut().zip(near) {
@@ -66,13 +76,9 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
     Improved::default()
 }
 
-/// Corners of faces that are not of the input and cross others.
-fn crossing_corners(work: &Work) -> Vec<u32> {
-    let pairs = self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces());
-    let faces = pairs.into_iter().flatten();
-    faces
-        .flat_map(|face| work.triangles[face as usize])
-        .collect()
+/// Pairs of faces that cross, one of them not of the input.
+fn crossings(work: &Work) -> Vec<[u32; 2]> {
+    self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces())
 }
 
 fn passes(work: &mut Work, goal: f64, fixed: &[bool]) -> Improved {

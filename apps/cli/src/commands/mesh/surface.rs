@@ -31,7 +31,7 @@ const LEAST_ANGLE: f64 = 20.0;
 
 /// The same as a share of the angle of half a rectangle whose sides have the ratio that was asked for: where that
 /// is narrow, wider triangles would only be had by giving up sides of the tubes.
-const LEAST_SHARE: f64 = 0.7;
+const LEAST_SHARE: f64 = 0.8;
 
 /// A surface to be written, and what is known of it.
 pub(super) struct CellSurface<'m> {
