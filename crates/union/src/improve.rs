@@ -4,14 +4,15 @@
 //! largest is done: an edge is given to the two corners across it, the shortest edge is collapsed, or a corner
 //! moves along the surface towards the middle of its neighbors (L. Freitag, C. Ollivier-Gooch, Tetrahedral Mesh
 //! Improvement Using Swapping and Smoothing, 1997, for volumes). No face turns by more than a bound, and no
-//! vertex goes far from where it was, so that the surface stays what it is. What would cross is left as it was.
+//! vertex goes far from where it was, so that the surface stays what it is. What then crosses is pressed in, or left as it
+//! was.
 
 use glam::Vec3;
-use neurotess_mesh::self_intersections_of;
 use rayon::prelude::*;
 
 use crate::edits::{Edit, Edits, sharpness};
 use crate::press::press_in;
+use crate::rounds::crossings_of_changed;
 use crate::stars::Stars;
 use crate::work::Work;
 
@@ -53,7 +54,7 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
     for rings in 0..TRIES {
         let mut tried = work.clone();
         let done = passes(&mut tried, goal, &fixed);
-        let mut crossing = crossings(&tried);
+        let mut crossing = crossings_of_changed(&tried);
         let mut near = vec![false; work.vertices.len()];
         for &face in crossing.iter().flatten() {
             for corner in tried.triangles[face as usize] {
@@ -62,7 +63,7 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
         }
         if !crossing.is_empty() {
             press_in(&mut tried, &crossing, PRESS);
-            crossing = crossings(&tried);
+            crossing = crossings_of_changed(&tried);
         }
         if crossing.is_empty() {
             *work = tried;
@@ -74,11 +75,6 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
         }
     }
     Improved::default()
-}
-
-/// Pairs of faces that cross, one of them not of the input.
-fn crossings(work: &Work) -> Vec<[u32; 2]> {
-    self_intersections_of(&work.positions(), &work.faces(), &work.changed_faces())
 }
 
 fn passes(work: &mut Work, goal: f64, fixed: &[bool]) -> Improved {

@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use neurotess_mesh::{
-    SurfaceMesh, Topology, measure, search_self_intersections_stoppable, topology,
-};
+use neurotess_mesh::{SurfaceMesh, measure, search_self_intersections_stoppable};
 
 use crate::improve::improve;
 use crate::options::{UnionError, UnionOptions};
@@ -144,12 +142,8 @@ fn crossings_that_stayed(work: &Work, crossed: &[[[u32; 3]; 2]]) -> usize {
     crossed.iter().filter(both).count()
 }
 
-fn shape(work: &Work) -> Topology {
-    topology(&work.positions(), &work.faces())
-}
-
 fn before(work: &Work) -> Result<UnionReport, UnionError> {
-    let shape = shape(work);
+    let shape = work.shape();
     if !shape.closed || !shape.oriented {
         return Err(UnionError::NotClosed);
     }
@@ -162,7 +156,7 @@ fn before(work: &Work) -> Result<UnionReport, UnionError> {
 }
 
 fn after(work: &Work, report: &mut UnionReport) {
-    let shape = shape(work);
+    let shape = work.shape();
     report.volume = measure(&work.positions(), &work.faces()).volume;
     report.components = shape.components;
     report.handles = shape.genus;

@@ -1,7 +1,7 @@
 //! The surface as it is worked on.
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{Faces, Forest, SurfaceMesh, SurfaceVertex};
+use neurotess_mesh::{Faces, Forest, SurfaceMesh, SurfaceVertex, Topology, topology};
 
 use crate::UnionError;
 
@@ -96,6 +96,11 @@ impl Work {
             triangles: self.triangles.clone(),
             quads: Vec::new(),
         }
+    }
+
+    /// What is closed, and how many components and handles there are.
+    pub(crate) fn shape(&self) -> Topology {
+        topology(&self.positions(), &self.faces())
     }
 
     /// Corners of a triangle.

@@ -5,7 +5,7 @@ mod shapes;
 use std::f32::consts::TAU;
 
 use glam::Vec3;
-use neurotess_mesh::{SurfaceMesh, SurfaceVertex};
+use neurotess_mesh::{Report, SurfaceMesh, SurfaceVertex};
 use neurotess_union::{Union, UnionOptions};
 use proptest::prelude::*;
 use shapes::{BARE, assert_near, merged, straight, together, tube};
@@ -66,18 +66,22 @@ fn assert_fair(mesh: &SurfaceMesh, filled: &Union, plain: &Union) {
     }
 }
 
+/// A surface merged without filling holes, and with it.
+fn plain_and_filled(mesh: &SurfaceMesh, options: UnionOptions) -> (Union, Union, Report) {
+    let not = UnionOptions {
+        fill: 0.0,
+        ..options
+    };
+    let (plain, _) = merged(mesh, &not);
+    let (filled, report) = merged(mesh, &options);
+    (plain, filled, report)
+}
+
 #[test]
 fn a_tube_that_bends_back_into_itself_has_no_hole() {
     let mesh = ring(0.8, Vec3::ZERO, 1);
     for options in [FILL, whole()] {
-        let (plain, _) = merged(
-            &mesh,
-            &UnionOptions {
-                fill: 0.0,
-                ..options
-            },
-        );
-        let (filled, report) = merged(&mesh, &options);
+        let (plain, filled, report) = plain_and_filled(&mesh, options);
         assert_eq!(plain.report.handles, Some(1));
         assert!(plain.report.filled.is_empty());
         assert_eq!((report.genus, report.components), (Some(0), 1));
@@ -114,14 +118,7 @@ fn the_limit_is_in_circumferences() {
 fn holes_beside_one_another_are_filled() {
     let mesh = wave(1.0);
     for options in [FILL, whole()] {
-        let (plain, _) = merged(
-            &mesh,
-            &UnionOptions {
-                fill: 0.0,
-                ..options
-            },
-        );
-        let (filled, report) = merged(&mesh, &options);
+        let (plain, filled, report) = plain_and_filled(&mesh, options);
         assert_eq!(plain.report.handles, Some(3));
         assert_eq!(report.genus, Some(0));
         assert_eq!(filled.report.filled.len(), 3);

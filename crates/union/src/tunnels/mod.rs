@@ -19,7 +19,7 @@ mod patch;
 mod plug;
 
 use glam::DVec3;
-use neurotess_mesh::{Topology, genus_by_component, measure, self_intersections_of, topology};
+use neurotess_mesh::{Topology, genus_by_component, measure, self_intersections_of};
 
 use crate::options::{UnionError, UnionOptions};
 use crate::report::{Filled, UnionReport};
@@ -47,7 +47,7 @@ pub(crate) fn fill(
     if handles_now.iter().sum::<i64>() <= handles_before {
         return Ok(filled);
     }
-    let mut now = shape(work);
+    let mut now = work.shape();
     for seam in seams(work) {
         while handles(&now) > handles_before
             && let Some((shape, one)) = fill_one(work, &now, &seam, options, check)?
@@ -74,7 +74,7 @@ fn fill_one(
             let Some(tried) = plugged(work, around, size, options, check)? else {
                 continue;
             };
-            let after = shape(&tried);
+            let after = tried.shape();
             if is_better(before, &after) {
                 let tried = blend(tried, work.vertices.len() as u32, options.needles);
                 let filled = told(work, &tried, around);
@@ -139,10 +139,6 @@ fn told(before: &Work, after: &Work, around: &Loop) -> Filled {
         girth: around.length,
         volume: more - volume,
     }
-}
-
-fn shape(work: &Work) -> Topology {
-    topology(&work.positions(), &work.faces())
 }
 
 /// Handles of all components; none are counted where the surface is no manifold.

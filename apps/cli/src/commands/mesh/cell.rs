@@ -162,8 +162,8 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     let meshed = Meshed::new(&read.morphology, options, tick, &AtomicBool::new(false))
         .map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
     seconds.soma = meshed.generated.soma_seconds;
-    seconds.refine = meshed.surface(options).seconds;
-    seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma - seconds.refine).max(0.0);
+    let merging = meshed.merging_seconds;
+    seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma - merging).max(0.0);
     Ok(Prepared {
         file,
         meshed,
@@ -186,6 +186,7 @@ pub(super) fn finish(
     let Prepared { file, meshed, .. } = prepared;
     let generated = &meshed.generated;
     let mut seconds = prepared.seconds;
+    seconds.refine = meshed.merging_seconds + cell_surface.seconds;
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
     let to = (out, &mut output);
     let walled = options.walls.then(|| {

@@ -1,6 +1,6 @@
 //! A cell meshed: its coarse mesh, and the surface where what crosses was merged.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess::generate::{GenerateError, Generated, generate_stoppable};
 use neurotess::morphology::Morphology;
@@ -20,6 +20,8 @@ pub(crate) struct Meshed {
     merged: Option<Merged>,
     /// Samples where tubes were made thinner than traced, since they would have grown together.
     pub(super) thinned: Vec<i64>,
+    /// Seconds that refining and merging took, in all rounds; 0 where nothing is merged.
+    pub(super) merging_seconds: f64,
 }
 
 impl Meshed {
@@ -37,20 +39,28 @@ impl Meshed {
         }
         let mut thinning = Thinning::new(morphology);
         let mut places = best.places();
+        let (mut soma_seconds, mut merging_seconds) =
+            (best.generated.soma_seconds, best.merging_seconds);
         for _ in 0..ROUNDS {
             if best.faults() == Faults::default() || !thinning.thin(&places) {
                 break;
             }
-            let Ok(mut next) = Self::once(&thinning.morphology(), options, &clock, stopped) else {
-                break;
+            let mut next = match Self::once(&thinning.morphology(), options, &clock, stopped) {
+                Ok(next) => next,
+                Err(failure) if stopped.load(Ordering::Relaxed) => return Err(failure),
+                // What there is already may do.
+                Err(_) => break,
             };
             next.thinned = thinning.samples();
-            next.generated.soma_seconds += best.generated.soma_seconds;
+            soma_seconds += next.generated.soma_seconds;
+            merging_seconds += next.merging_seconds;
             places = next.places();
             if next.faults() < best.faults() {
                 best = next;
             }
         }
+        best.generated.soma_seconds = soma_seconds;
+        best.merging_seconds = merging_seconds;
         verdict::check(&best.surface(options), &best.generated)?;
         Ok(best)
     }
@@ -71,8 +81,10 @@ impl Meshed {
         let merged = options
             .merge
             .then(|| Merged::new(&generated.mesh, options, stopped));
+        let merged = merged.transpose()?;
         Ok(Self {
-            merged: merged.transpose()?,
+            merging_seconds: merged.as_ref().map_or(0.0, |merged| merged.seconds),
+            merged,
             generated,
             thinned: Vec::new(),
         })

@@ -37,7 +37,7 @@ const LEAST_SHARE: f64 = 0.8;
 pub(super) struct CellSurface<'m> {
     made: MadeSurface<'m>,
     pub(super) topology: Topology,
-    /// Seconds that it took.
+    /// Seconds that it took to plan; none where it was merged before.
     pub(super) seconds: f64,
 }
 
@@ -59,7 +59,7 @@ impl<'m> CellSurface<'m> {
             return Self {
                 made: MadeSurface::Merged(merged),
                 topology: merged.topology,
-                seconds: merged.seconds,
+                seconds: 0.0,
             };
         }
         let clock = Instant::now();
