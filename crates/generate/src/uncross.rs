@@ -18,6 +18,9 @@ use crate::warning::Warnings;
 const MOST_TURNS: u8 = 3;
 /// A point is left out only if the path moves by less than this share of its radius.
 const MOST_MOVED: f64 = 2.0;
+/// Points are left out only where they are nearer to the rings that crossed, along the path, than this many radii: half
+/// way around the tightest bend and a bit. What lies farther off does not untangle a path that turns back.
+const FARTHEST: f64 = 4.0;
 
 /// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
 /// of every node that is left, along the path. A point is left out only if the path `may_join` its two
@@ -56,13 +59,13 @@ pub(crate) fn uncross_rings(
             continue;
         }
         let (cost, node) = [i, j]
-            .map(|n| (work.cost(n), n))
+            .map(|n| (work.cost(n, j), n))
             .into_iter()
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .unwrap_or((f64::INFINITY, i));
         if cost < MOST_MOVED * work.skeleton.node(node).radius {
             left_out += 1;
-            pending.extend(work.leave_out(node).into_iter().filter(|&n| n != NONE));
+            pending.extend(work.leave_out(node, j).into_iter().filter(|&n| n != NONE));
         } else {
             accepted += 1;
         }
@@ -101,6 +104,10 @@ struct Work<'a> {
     child: Vec<u32>,
     orientations: Vec<DVec3>,
     turns: Vec<u8>,
+    /// How far (µm) each node is along the path from its root.
+    along: Vec<f64>,
+    /// Where the rings stood, along the path, that a node's pair with its parent stands for.
+    crossed: Vec<[f64; 2]>,
 }
 
 impl<'a> Work<'a> {
@@ -127,7 +134,16 @@ impl<'a> Work<'a> {
             child: (0..count as u32).map(only).collect(),
             orientations: Vec::new(),
             turns: vec![0; count],
+            along: vec![0.0; count],
+            crossed: vec![[0.0; 2]; count],
         };
+        for (i, node) in skeleton.nodes().iter().enumerate() {
+            if let Some(parent) = skeleton.nodes().get(node.parent as usize) {
+                let before = work.along[node.parent as usize];
+                work.along[i] = before + node.center.distance(parent.center);
+                work.crossed[i] = [before, work.along[i]];
+            }
+        }
         work.orientations = (0..count as u32).map(|i| work.orientation(i)).collect();
         work
     }
@@ -215,21 +231,27 @@ impl<'a> Work<'a> {
         turned
     }
 
-    /// How far the path moves if a node is left out (µm); infinite for those that may not be.
-    fn cost(&self, n: u32) -> f64 {
+    /// How far the path moves if a node is left out (µm), since the rings of `pair` and its parent cross; infinite for
+    /// those that may not be.
+    fn cost(&self, n: u32, pair: u32) -> f64 {
         let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
         let fixed = parent == NONE || child == NONE || self.skeleton.node(n).marks.of_zone();
-        if fixed || !(self.may_join)(parent, child) {
+        let [first, last] = self.crossed[pair as usize];
+        let along = self.along[n as usize];
+        let farthest = FARTHEST * self.skeleton.node(n).radius;
+        let far = along < first - farthest || along > last + farthest;
+        if fixed || far || !(self.may_join)(parent, child) {
             return f64::INFINITY;
         }
         let center = |n: u32| self.skeleton.node(n).center;
         crate::skeleton::off_segment(center(n), center(parent), center(child))
     }
 
-    /// Leaves an ordinary node out; returns the nodes whose pair with their parent has changed.
-    fn leave_out(&mut self, n: u32) -> [u32; 4] {
+    /// Leaves an ordinary node of a pair out; returns the nodes whose pair with their parent has changed.
+    fn leave_out(&mut self, n: u32, pair: u32) -> [u32; 4] {
         let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
         self.keep[n as usize] = false;
+        self.crossed[child as usize] = self.crossed[pair as usize];
         self.parent[child as usize] = parent;
         if self.child[parent as usize] == n {
             self.child[parent as usize] = child;

@@ -131,7 +131,33 @@ fn zigzags_tighter_than_the_radius_are_sound() {
 fn hairpins_are_sound() {
     let shapes = grid(&[0.2, 0.35, 0.6, 1.0], &[1.5, 3.0]);
     let faults = sum(shapes.map(|(apart, length)| hairpin(apart, length)));
-    assert!(faults <= 2, "{faults}"); // with rings as traced: 243
+    // With rings as traced: 243. Two, if all points of both legs may be left out up to where they are two radii apart:
+    // then the branch is 4 to 12 µm shorter than traced.
+    assert!(faults <= 13, "{faults}");
+}
+
+#[test]
+fn points_far_from_a_bend_stay() {
+    // A way that wriggles a little up to a point that lies behind the next ones.
+    let way = (0..12).map(|i| vec3(2.0 * i as f32, 0.9 * (2.1 * i as f32).sin(), 0.0));
+    let back = [
+        vec3(21.0, 0.2, -2.3),
+        vec3(20.6, 0.1, -2.6),
+        vec3(21.4, 0.8, -1.0),
+        vec3(22.8, 0.7, 0.9),
+    ];
+    let onwards = (1..8).map(|i| vec3(22.8 + 2.0 * i as f32, 0.5 * (1.7 * i as f32).cos(), 1.0));
+    let points: Vec<(Vec3, f32)> = way.chain(back).chain(onwards).map(|p| (p, 1.0)).collect();
+    let generated = made(&path(&points));
+    let left_out = generated.warnings.iter().any(|w| w.code == "sharp_bend");
+    assert!(left_out, "{:?}", generated.warnings);
+    let is_there = |sample: usize| {
+        let mut labels = generated.mesh.tracing.iter();
+        labels.any(|t| t.sample.0 == sample as i32)
+    };
+    let far = (0..8).chain(17..23).map(|point| point + 1);
+    let lacking: Vec<usize> = far.filter(|&sample| !is_there(sample)).collect();
+    assert!(lacking.is_empty(), "{lacking:?}");
 }
 
 #[test]

@@ -41,6 +41,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod body;
 mod cells;
 mod edits;
 mod engine;
@@ -51,6 +52,7 @@ mod parts;
 mod places;
 mod press;
 mod region;
+mod rejoin;
 mod report;
 mod rounds;
 mod sheets;
@@ -65,4 +67,4 @@ mod work;
 
 pub use merge::{Union, crossing_places, union, union_stoppable};
 pub use options::{UnionError, UnionOptions};
-pub use report::{Filled, Kin, Part, Place, UnionReport, Why};
+pub use report::{Filled, Joined, Kin, Part, Place, UnionReport, Why};

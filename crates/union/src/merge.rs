@@ -7,9 +7,10 @@ use neurotess_mesh::{SurfaceMesh, measure, search_self_intersections_stoppable};
 
 use crate::improve::improve;
 use crate::options::{UnionError, UnionOptions};
-use crate::parts::drop_hidden;
+use crate::parts::{drop_hidden, still_cut_off};
 use crate::places::places;
 use crate::press::press_in;
+use crate::rejoin::rejoin;
 use crate::report::{Place, UnionReport};
 use crate::rounds::{crossings_of_changed, merge};
 use crate::smooth::{renew_normals, smooth};
@@ -75,6 +76,10 @@ pub fn union_stoppable(
     }
 
     pairs = merge(&mut work, pairs, options, &mut report, &check)?;
+    if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
+        report.joined = rejoin(&mut work, mesh, options, &check)?;
+        report.cut_off = still_cut_off(&work);
+    }
     if options.fill > 0.0 && pairs.is_empty() {
         report.filled = fill(&mut work, options, report.handles_before, &check)?;
     }

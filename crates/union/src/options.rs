@@ -19,6 +19,8 @@ pub struct UnionOptions {
     /// Holes that merging has made and that a loop of up to this many circumferences of the branches goes around are
     /// filled; 0: none.
     pub fill: f64,
+    /// Pieces that merging cut off, where a tube is inside out, are joined again by the hull of the surface between.
+    pub rejoin: bool,
     /// Angles (degrees) below this are made larger where the surface allows it, wherever they are; 0 leaves all
     /// as they are.
     pub least_angle: f64,
@@ -33,6 +35,7 @@ impl Default for UnionOptions {
             smoothing: 0.4,
             press: 0.0,
             fill: 0.0,
+            rejoin: true,
             least_angle: 0.0,
         }
     }

@@ -95,16 +95,7 @@ pub(crate) struct Splinters {
 /// stays whatever its size; further ones with a volume stay too, and are told as cut off.
 pub(crate) fn drop_splinters(work: &mut Work, least: f64) -> Splinters {
     let (numbers, found) = survey(work);
-    let mut heirs: BTreeMap<u32, u32> = BTreeMap::new();
-    for (n, component) in (0..).zip(&found) {
-        for &part in &component.parts {
-            let heir = heirs.entry(part).or_insert(n);
-            if component.volume > found[*heir as usize].volume {
-                *heir = n;
-            }
-        }
-    }
-    let heirs: BTreeSet<u32> = heirs.into_values().collect();
+    let heirs = heirs(&found);
     let mut why: BTreeMap<u32, Why> = BTreeMap::new();
     let mut cut_off = Vec::new();
     for (n, component) in (0..).zip(&found).filter(|(n, _)| !heirs.contains(n)) {
@@ -120,6 +111,39 @@ pub(crate) fn drop_splinters(work: &mut Work, least: f64) -> Splinters {
         dropped: leave_out(work, &numbers, &found, &why),
         cut_off,
     }
+}
+
+/// The largest component of each component of the input.
+fn heirs(found: &[Component]) -> BTreeSet<u32> {
+    let mut heirs: BTreeMap<u32, u32> = BTreeMap::new();
+    for (n, component) in (0..).zip(found) {
+        for &part in &component.parts {
+            let heir = heirs.entry(part).or_insert(n);
+            if component.volume > found[*heir as usize].volume {
+                *heir = n;
+            }
+        }
+    }
+    heirs.into_values().collect()
+}
+
+/// For each face the number of its component, and the numbers of those that were cut off, with a component of the
+/// input that each is of.
+pub(crate) fn cut_off(work: &Work) -> (Vec<u32>, Vec<(u32, u32)>) {
+    let (numbers, found) = survey(work);
+    let heirs = heirs(&found);
+    let others = (0..).zip(&found).filter(|(n, _)| !heirs.contains(n));
+    let others = others.filter_map(|(n, component)| Some((n, *component.parts.first()?)));
+    (numbers, others.collect())
+}
+
+/// Components that are cut off, as they are told.
+pub(crate) fn still_cut_off(work: &Work) -> Vec<Part> {
+    let (_, found) = survey(work);
+    let heirs = heirs(&found);
+    let others = (0..).zip(&found).filter(|(n, _)| !heirs.contains(n));
+    let parts = others.map(|(_, component)| part(work, component, Why::CutOff));
+    parts.collect()
 }
 
 fn leave_out(

@@ -29,7 +29,9 @@ pub struct UnionReport {
     pub filled: Vec<Filled>,
     /// Components that were left out.
     pub dropped: Vec<Part>,
-    /// Components that hung together with others before and are too large to be left out.
+    /// Pieces that merging cut off and that were joined again, in the order in which they were.
+    pub joined: Vec<Joined>,
+    /// Components that hung together with others before, are too large to be left out, and could not be joined again.
     pub cut_off: Vec<Part>,
     /// How often the surface was cut and checked.
     pub rounds: u32,
@@ -107,6 +109,21 @@ pub struct Filled {
     /// Length (µm) of the loop.
     pub girth: f64,
     /// Volume (µm³) that filling added; negative if the surface around was flattened by more.
+    pub volume: f64,
+}
+
+/// Where a piece that was cut off was joined again: the surface was inside out there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joined {
+    /// Between the piece and the rest (µm, in the tracing's own coordinates).
+    pub position: DVec3,
+    /// The file's own number of a tracing point of the piece.
+    pub point: i32,
+    /// That point's section.
+    pub section: i32,
+    /// The way (µm) over the surface that had been left out between the piece and the rest.
+    pub gap: f64,
+    /// Volume (µm³) that joining added.
     pub volume: f64,
 }
 

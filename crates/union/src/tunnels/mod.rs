@@ -19,11 +19,11 @@ mod patch;
 mod plug;
 
 use glam::DVec3;
-use neurotess_mesh::{Topology, genus_by_component, measure, self_intersections_of};
+use neurotess_mesh::{SurfaceVertex, Topology, genus_by_component, measure};
 
+use crate::body::{handles, is_sound};
 use crate::options::{UnionError, UnionOptions};
-use crate::report::{Filled, UnionReport};
-use crate::rounds::merge;
+use crate::report::Filled;
 use crate::work::Work;
 use blend::blend;
 use loops::{least_radius, middle, seams, tunnels};
@@ -98,28 +98,19 @@ fn plugged(
     let Some(body) = Ellipsoid::around(&around.points(work), scale, least) else {
         return Ok(None);
     };
-    let mut tried = work.clone();
-    let faces = body.add(&mut tried, &around.vertices);
-    let pairs = self_intersections_of(&tried.positions(), &tried.faces(), &faces);
-    if pairs.is_empty() {
-        return Ok(None);
-    }
-    // Tidied in a crack, faces cross, and the next cut opens the hole again.
-    let options = UnionOptions {
-        needles: 0.0,
-        ..*options
-    };
-    let mut report = UnionReport::default();
-    match merge(&mut tried, pairs, &options, &mut report, check) {
-        Ok(left) => Ok(left.is_empty().then_some(tried)),
-        Err(UnionError::Failed(_)) => Ok(None),
-        Err(other) => Err(other),
-    }
+    let names: Vec<SurfaceVertex> = around
+        .vertices
+        .iter()
+        .map(|&v| work.vertices[v as usize])
+        .collect();
+    let of = around.vertices.first();
+    let of = of.and_then(|v| work.triangles.iter().position(|face| face.contains(v)));
+    let part = of.map_or(0, |face| work.parts[face]);
+    body.body().merged(work, &names, part, options, check)
 }
 
 fn is_better(before: &Topology, after: &Topology) -> bool {
-    let sound = after.closed && after.oriented && after.vertex_manifold;
-    sound && after.components == before.components && handles(after) < handles(before)
+    is_sound(after) && after.components == before.components && handles(after) < handles(before)
 }
 
 fn told(before: &Work, after: &Work, around: &Loop) -> Filled {
@@ -139,11 +130,6 @@ fn told(before: &Work, after: &Work, around: &Loop) -> Filled {
         girth: around.length,
         volume: more - volume,
     }
-}
-
-/// Handles of all components; none are counted where the surface is no manifold.
-fn handles(shape: &Topology) -> i64 {
-    shape.genus.unwrap_or_default()
 }
 
 impl Loop {

@@ -1,9 +1,8 @@
 //! A closed body that stops a hole: an ellipsoid around a loop.
 
 use glam::DVec3;
-use neurotess_mesh::SurfaceVertex;
 
-use crate::work::Work;
+use crate::body::Body;
 
 /// The least extent of a plug across, of its largest: flat ones would leave narrow faces.
 const FLATTEST: f64 = 0.4;
@@ -60,39 +59,17 @@ impl Ellipsoid {
         DVec3::from(shares).length()
     }
 
-    /// Adds the body to the surface; its labels and radii are those of the nearest of `names`, which are vertices of
-    /// the surface. Returns its faces.
-    pub(super) fn add(&self, work: &mut Work, names: &[u32]) -> Vec<u32> {
+    /// The ellipsoid with 32 flat faces.
+    pub(super) fn body(&self) -> Body {
         let (directions, faces) = sphere();
-        let numbers: Vec<u32> = directions
-            .iter()
-            .map(|direction| {
-                let ways = [0, 1, 2].map(|n| direction[n] * self.axes[n]);
-                let position = self.center + ways.iter().sum::<DVec3>();
-                let distance = |&&name: &&u32| work.position(name).as_dvec3().distance(position);
-                let nearest = names
-                    .iter()
-                    .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-                let like = nearest.map(|&name| work.vertices[name as usize]);
-                let vertex = SurfaceVertex {
-                    position: position.as_vec3(),
-                    ..like.unwrap_or_default()
-                };
-                work.push(vertex, true)
-            })
-            .collect();
-        let part = names
-            .first()
-            .and_then(|name| work.triangles.iter().position(|face| face.contains(name)))
-            .map_or(0, |face| work.parts[face]);
-        let first = work.triangles.len() as u32;
-        for face in faces {
-            work.triangles
-                .push(face.map(|corner| numbers[corner as usize]));
-            work.parts.push(part);
-            work.changed.push(true);
+        let point = |direction: DVec3| {
+            let ways = [0, 1, 2].map(|n| direction[n] * self.axes[n]);
+            self.center + ways.iter().sum::<DVec3>()
+        };
+        Body {
+            points: directions.into_iter().map(point).collect(),
+            faces,
         }
-        (first..work.triangles.len() as u32).collect()
     }
 }
 
@@ -136,9 +113,10 @@ fn sphere() -> (Vec<DVec3>, Vec<[u32; 3]>) {
 
 #[cfg(test)]
 mod tests {
-    use neurotess_mesh::{SurfaceMesh, measure, topology};
+    use neurotess_mesh::{SurfaceMesh, SurfaceVertex, measure, topology};
 
     use super::*;
+    use crate::work::Work;
 
     #[test]
     fn a_body_holds_its_loop_and_looks_outwards() {
@@ -165,7 +143,8 @@ mod tests {
             }));
         let mut work = Work::new(&mesh).expect("a surface");
         let wide = Ellipsoid::around(&points, 1.3, 0.0).expect("an extent");
-        let faces = wide.add(&mut work, &[0, 1, 2]);
+        let names = [0, 1, 2].map(|n| work.vertices[n]);
+        let faces = wide.body().add(&mut work, &names, 0);
         assert_eq!(faces.len(), 32);
         let shape = topology(&work.positions(), &work.faces());
         assert!(shape.closed && shape.oriented && shape.genus == Some(0));

@@ -127,6 +127,7 @@ pub(crate) const BARE: UnionOptions = UnionOptions {
     smoothing: 0.0,
     press: 0.0,
     fill: 0.0,
+    rejoin: false,
     least_angle: 0.0,
 };
 

@@ -10,7 +10,7 @@ use neurotess::mesh::{
 };
 use neurotess::refine::{CoarseSurface, EdgeRule, Lod, Refinement};
 use neurotess::union::{
-    Filled, Kin, Place, UnionError, UnionOptions, UnionReport, union_stoppable,
+    Filled, Joined, Kin, Place, UnionError, UnionOptions, UnionReport, union_stoppable,
 };
 use serde::Serialize;
 
@@ -184,6 +184,20 @@ pub(crate) struct CrossingsReport {
     pressed: Vec<PlaceReport>,
     /// Small holes that merging made and that were filled.
     filled: Vec<FilledReport>,
+    /// Pieces that merging cut off, where the surface was inside out, and that were joined again.
+    joined: Vec<JoinedReport>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct JoinedReport {
+    /// µm, in the tracing's coordinates.
+    position: [f64; 3],
+    sample: i32,
+    section: i32,
+    /// The way (µm) over the surface that was left out.
+    gap: f64,
+    /// Volume (µm³) that joining added.
+    volume: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -236,6 +250,7 @@ impl CrossingsReport {
             places: report.places.iter().map(place).collect(),
             pressed: report.pressed_places.iter().map(place).collect(),
             filled: report.filled.iter().map(FilledReport::from).collect(),
+            joined: report.joined.iter().map(JoinedReport::from).collect(),
         }
     }
 }
@@ -248,6 +263,18 @@ impl From<&Filled> for FilledReport {
             section: hole.section,
             girth: hole.girth,
             volume: hole.volume,
+        }
+    }
+}
+
+impl From<&Joined> for JoinedReport {
+    fn from(piece: &Joined) -> Self {
+        Self {
+            position: piece.position.to_array(),
+            sample: piece.point,
+            section: piece.section,
+            gap: piece.gap,
+            volume: piece.volume,
         }
     }
 }

@@ -100,6 +100,19 @@ fn of_crossings(report: &UnionReport) -> Vec<CellWarning> {
             ),
         ));
     }
+    if let Some(first) = report.joined.first() {
+        let volume: f64 = report.joined.iter().map(|piece| piece.volume).sum();
+        let (places, at) = (report.joined.len(), first.point);
+        warnings.push(warning(
+            "joined",
+            at,
+            places,
+            format!(
+                "the tube is inside out in {places} places, first at sample {at}, where a neurite turns back within \
+                 its own radius: filled there, so that nothing is cut off ({volume:+.2e} µm³ in all)"
+            ),
+        ));
+    }
     let handles = report.handles_made().unwrap_or(0);
     if handles > 0 {
         let first = report.places.first().map_or(-1, |place| place.points[0]);
