@@ -74,10 +74,11 @@ pub fn self_intersections_of(positions: &[Vec3], faces: &Faces, chosen: &[u32]) 
             .map(move |half| (face, half))
     };
     let few: Vec<(u32, [Vec3; 3])> = (0..is_chosen.len() as u32)
+        .into_par_iter()
         .filter(|&face| is_chosen[face as usize])
-        .flat_map(sound)
+        .flat_map_iter(sound)
         .collect();
-    let boxes: Vec<Bounds> = few.iter().map(|&(_, half)| Bounds::of(half)).collect();
+    let boxes: Vec<Bounds> = few.par_iter().map(|&(_, half)| Bounds::of(half)).collect();
     let tree = Bvh::new(&boxes);
     let of_face = |face: u32| {
         let mut found = Vec::new();

@@ -48,8 +48,7 @@ pub fn quality(mesh: &SurfaceMesh) -> Quality {
         .flat_map_iter(|&face| edges_over_radius(mesh, face))
         .collect();
     let positions = mesh.positions();
-    let Gaps { share, least } = gaps(&positions, &triangles);
-    Quality {
+    let of_shapes = || Quality {
         min_angle: quantile(&mut angles, 0.0).unwrap_or_default(),
         min_angle_p1: quantile(&mut angles, 0.01).unwrap_or_default(),
         min_angle_median: quantile(&mut angles, 0.5).unwrap_or_default(),
@@ -58,8 +57,13 @@ pub fn quality(mesh: &SurfaceMesh) -> Quality {
         aspect_max: quantile(&mut aspects, 1.0).unwrap_or_default(),
         edge_over_radius_median: quantile(&mut edges, 0.5),
         edge_over_radius_max: quantile(&mut edges, 1.0),
+        ..Quality::default()
+    };
+    let (shapes, Gaps { share, least }) = rayon::join(of_shapes, || gaps(&positions, &triangles));
+    Quality {
         thin_gaps: share,
         least_gap: least,
+        ..shapes
     }
 }
 

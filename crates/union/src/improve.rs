@@ -22,6 +22,8 @@ pub(crate) struct Improved {
     pub(crate) flipped: usize,
     pub(crate) collapsed: usize,
     pub(crate) moved: usize,
+    /// Whether it was searched, and found, that no changed face crosses another.
+    pub(crate) crosses_nothing: bool,
 }
 
 impl Improved {
@@ -53,7 +55,7 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
     let mut fixed = vec![false; work.vertices.len()];
     for rings in 0..TRIES {
         let mut tried = work.clone();
-        let done = passes(&mut tried, goal, &fixed);
+        let mut done = passes(&mut tried, goal, &fixed);
         let mut crossing = crossings_of_changed(&tried);
         let mut near = vec![false; work.vertices.len()];
         for &face in crossing.iter().flatten() {
@@ -62,11 +64,11 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
             }
         }
         if !crossing.is_empty() {
-            press_in(&mut tried, &crossing, PRESS);
-            crossing = crossings_of_changed(&tried);
+            crossing = press_in(&mut tried, &crossing, PRESS).left;
         }
         if crossing.is_empty() {
             *work = tried;
+            done.crosses_nothing = true;
             return done;
         }
         let near = work.widened(near, 1 + rings);
@@ -237,27 +239,30 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// Faces for which there may be another best edit after those of this pass, in order.
+    /// Faces for which there may be another best edit after those of this pass, in order: those that are at most one
+    /// edge away from a change.
     fn near_changes(&self) -> Vec<u32> {
-        let corners_of = |vertices: &[u32]| -> Vec<u32> {
-            let faces = self.faces_of(vertices).into_iter();
-            let corners = faces.flat_map(|face| self.stars.work.triangles[face as usize]);
-            ascending(corners.collect())
-        };
-        let changed = ascending(self.changed.clone());
-        self.faces_of(&corners_of(&changed))
+        let triangles = &self.stars.work.triangles;
+        let mut near = vec![false; self.batches.len()];
+        for &vertex in &self.changed {
+            near[vertex as usize] = true;
+        }
+        let around = self.faces_of(&near);
+        for &corner in around.iter().flat_map(|&face| &triangles[face as usize]) {
+            near[corner as usize] = true;
+        }
+        self.faces_of(&near)
     }
 
-    /// Faces around some vertices, in order.
-    fn faces_of(&self, vertices: &[u32]) -> Vec<u32> {
-        let faces = vertices.iter().filter_map(|&vertex| self.stars.of(vertex));
-        ascending(faces.flatten().copied().collect())
+    /// Faces around those of some vertices whose faces are known, in order.
+    fn faces_of(&self, vertices: &[bool]) -> Vec<u32> {
+        let triangles = &self.stars.work.triangles;
+        let is_one = |&corner: &u32| vertices[corner as usize] && self.stars.of(corner).is_some();
+        let faces = 0..triangles.len() as u32;
+        faces
+            .into_par_iter()
+            .filter(|&face| !self.stars.is_dead(face))
+            .filter(|&face| triangles[face as usize].iter().any(is_one))
+            .collect()
     }
-}
-
-/// In order, each once.
-fn ascending(mut numbers: Vec<u32>) -> Vec<u32> {
-    numbers.par_sort_unstable();
-    numbers.dedup();
-    numbers
 }

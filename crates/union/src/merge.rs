@@ -66,9 +66,9 @@ pub fn union_stoppable(
     if options.press > 0.0 && !pairs.is_empty() {
         check()?;
         let crossed = places(&work, &pairs);
-        report.pressed = press_in(&mut work, &pairs, options.press);
-        pairs.retain(|pair| !pair.iter().any(|&face| work.is_changed(face)));
-        pairs.extend(crossings_of_changed(&work));
+        let pressed = press_in(&mut work, &pairs, options.press);
+        report.pressed = pressed.moved;
+        pairs = pressed.left;
         report.places = places(&work, &pairs);
         let is_left = |place: &Place| report.places.iter().any(|left| left.points == place.points);
         let pressed = crossed.into_iter().filter(|place| !is_left(place));
@@ -87,12 +87,18 @@ pub fn union_stoppable(
         report.smoothed = smooth(&mut work, options.smoothing);
     }
     check()?;
+    let mut searched = false;
     if options.least_angle > 0.0 && pairs.is_empty() {
-        report.improved = improve(&mut work, options.least_angle).total();
+        let improved = improve(&mut work, options.least_angle);
+        (report.improved, searched) = (improved.total(), improved.crosses_nothing);
     }
     renew_normals(&mut work);
     check()?;
-    report.pairs = crossings_of_changed(&work).len() + crossings_that_stayed(&work, &crossed);
+    let of_changed = match searched {
+        true => 0,
+        false => crossings_of_changed(&work).len(),
+    };
+    report.pairs = of_changed + crossings_that_stayed(&work, &crossed);
     after(&work, &mut report);
     report.faces_changed = changed(mesh, &work);
     Ok(Union {

@@ -18,9 +18,17 @@ const STEPS: usize = 10;
 /// Edges around faces that cross within which the surface follows.
 const RINGS: usize = 2;
 
-/// Presses the faces of `pairs` in, each vertex by `most` of its radius or of the distance to its neighbors, what
-/// is less. Returns how many vertices were moved.
-pub(crate) fn press_in(work: &mut Work, pairs: &[[u32; 2]], most: f64) -> usize {
+/// What [`press_in`] did.
+pub(crate) struct Pressed {
+    /// How many vertices were moved.
+    pub(crate) moved: usize,
+    /// Which of the pairs still cross; no others do.
+    pub(crate) left: Vec<[u32; 2]>,
+}
+
+/// Presses the faces of `pairs`, which are all that cross, in: each vertex by `most` of its radius or of the distance
+/// to its neighbors, what is less.
+pub(crate) fn press_in(work: &mut Work, pairs: &[[u32; 2]], most: f64) -> Pressed {
     let mut start: BTreeMap<u32, Vec3> = BTreeMap::new();
     let mut left = pairs.to_vec();
     for _ in 0..STEPS {
@@ -38,7 +46,16 @@ pub(crate) fn press_in(work: &mut Work, pairs: &[[u32; 2]], most: f64) -> usize 
     for &vertex in start.keys() {
         work.fresh[vertex as usize] = true;
     }
-    start.len()
+    // Faces of vertices that have moved cross nothing any more.
+    let stays = |face: u32| {
+        let mut corners = work.triangles[face as usize].iter();
+        corners.all(|corner| !start.contains_key(corner))
+    };
+    let left = pairs.iter().filter(|pair| pair.iter().all(|&f| stays(f)));
+    Pressed {
+        moved: start.len(),
+        left: left.copied().collect(),
+    }
 }
 
 /// Moves the corners of faces that cross, and what is around them, one step.
