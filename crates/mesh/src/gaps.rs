@@ -64,6 +64,25 @@ impl Face {
         })
     }
 
+    /// Bounds of the half ball in front of the middle, as wide as the sides are long.
+    fn front(&self) -> Bounds {
+        let normal = self.normal.normalize_or_zero();
+        // Along an axis that the normal leans away from, the ball is cut off at its rim.
+        let reach = |lean: f64| match lean < 0.0 {
+            true => self.side * (1.0 - lean * lean).max(0.0).sqrt(),
+            false => self.side,
+        };
+        // A little more, for what is lost by rounding.
+        let margin = 1e-6 * self.side + f64::from(f32::EPSILON) * self.middle.abs().max_element();
+        let reach = |lean: f64| (reach(lean) + margin) as f32;
+        let [low, high] = [-normal, normal].map(|lean| lean.to_array().map(reach));
+        let middle = self.middle.as_vec3();
+        Bounds {
+            low: middle - Vec3::from_array(low),
+            high: middle + Vec3::from_array(high),
+        }
+    }
+
     /// The distance from the middle to another face if each is in front of the other, and they are no
     /// neighbors.
     fn gap(&self, other: &Self) -> Option<f64> {
@@ -86,14 +105,7 @@ impl Face {
 
 /// For the faces of a group the gaps in front of them over the mean lengths of their sides, those below 1.
 fn nearest(group: usize, faces: &[Face], tree: &Bvh) -> Vec<f64> {
-    let query = |n: u32| {
-        let face = &faces[n as usize];
-        let (middle, reach) = (face.middle.as_vec3(), Vec3::splat(face.side as f32));
-        Bounds {
-            low: middle - reach,
-            high: middle + reach,
-        }
-    };
+    let query = |n: u32| faces[n as usize].front();
     let mut found = Vec::new();
     let mut now = (u32::MAX, 0, f64::INFINITY);
     tree.overlaps_of_group(group, query, |n, other| {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use neurotess_mesh::{SurfaceMesh, measure, search_self_intersections_stoppable};
+use neurotess_mesh::{SurfaceMesh, Topology, measure, search_self_intersections_stoppable};
 
 use crate::improve::improve;
 use crate::options::{UnionError, UnionOptions};
@@ -22,6 +22,8 @@ use crate::work::Work;
 pub struct Union {
     /// Triangles only. Vertices that no crossing touched are those of the input, in their order.
     pub mesh: SurfaceMesh,
+    /// What is closed, and how many components and handles there are.
+    pub topology: Topology,
     /// What was done.
     pub report: UnionReport,
 }
@@ -99,10 +101,13 @@ pub fn union_stoppable(
         false => crossings_of_changed(&work).len(),
     };
     report.pairs = of_changed + crossings_that_stayed(&work, &crossed);
-    after(&work, &mut report);
     report.faces_changed = changed(mesh, &work);
+    let mesh = work.finish();
+    let topology = mesh.topology();
+    after(&mesh, &topology, &mut report);
     Ok(Union {
-        mesh: work.finish(),
+        mesh,
+        topology,
         report,
     })
 }
@@ -166,11 +171,10 @@ fn before(work: &Work) -> Result<UnionReport, UnionError> {
     })
 }
 
-fn after(work: &Work, report: &mut UnionReport) {
-    let shape = work.shape();
-    report.volume = measure(&work.positions(), &work.faces()).volume;
-    report.components = shape.components;
-    report.handles = shape.genus;
+fn after(mesh: &SurfaceMesh, topology: &Topology, report: &mut UnionReport) {
+    report.volume = measure(&mesh.positions(), &mesh.faces).volume;
+    report.components = topology.components;
+    report.handles = topology.genus;
 }
 
 /// How many faces of the input are no longer there.

@@ -136,7 +136,7 @@ impl Merged {
             )));
         }
         Ok(Self {
-            topology: merged.mesh.topology(),
+            topology: merged.topology,
             quality: options.simulation.then(|| quality(&merged.mesh)),
             mesh: merged.mesh,
             report: merged.report,
