@@ -1,4 +1,4 @@
-//! `--simulation` leaves no handles where a branch bends back into itself.
+//! Where a branch bends back into itself, `--simulation` leaves no handles, and merging cuts nothing off.
 
 use neurotess_testing::shared_data;
 use serde_json::Value;
@@ -46,6 +46,35 @@ fn meshes_of_real_cells_have_no_handles() {
             // Far less than the branch there, of 0.05 µm and more.
             assert!((0.0..0.3).contains(&number("girth")), "{hole}");
             assert!(number("volume").abs() < 1e-4, "{hole}");
+        }
+    }
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::shared))]
+fn merging_cuts_nothing_off_where_a_neurite_turns_back() {
+    let path = shared_data().join("swc/172993.swc").display().to_string();
+    for level in [1, 2] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let run = |arguments: &str| -> Value {
+            let json = neurotess(folder.path(), arguments).expect("it runs");
+            serde_json::from_str::<Value>(&json).expect("JSON")[0].clone()
+        };
+        let options = format!("--crossings merge --level {level} --json");
+        let mesh = run(&format!("mesh {path} -o cell.ply {options}"));
+        let check = run("check cell.ply --json");
+        assert_eq!(check["components"], 1);
+        assert_eq!(check["self_intersections"], 0);
+        let joined = mesh["crossings"]["joined"].as_array().expect("a list");
+        assert!(!joined.is_empty());
+        let warnings = mesh["warnings"].as_array().expect("a list");
+        let told = |code: &str| warnings.iter().find(|warning| warning["code"] == code);
+        assert_eq!(told("joined").expect("told")["count"], joined.len());
+        assert!(told("parts_cut_off").is_none());
+        for piece in joined {
+            let number = |key: &str| piece[key].as_f64().expect("a number");
+            assert!(number("gap") > 0.0 && number("gap") < 16.0, "{piece}");
+            // A thousandth of the cell at most.
+            assert!((0.0..34.0).contains(&number("volume")), "{piece}");
         }
     }
 }
