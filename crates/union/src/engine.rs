@@ -17,8 +17,6 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::robust::cells::{ANTI, NORMAL, VertTables, build_cells, radial_fan};
 use manifold_rust::robust::intersection_graph::{IntersectionGraph, build_graph, edge_key};
 
-use crate::body::Body;
-
 /// Triangles that meet in common edges and vertices only.
 pub(crate) struct Arrangement {
     graph: IntersectionGraph,
@@ -103,19 +101,18 @@ impl Arrangement {
     }
 }
 
-/// The convex hull of points; none if they have no extent in some direction.
-pub(crate) fn hull(points: &[DVec3]) -> Option<Body> {
+/// The convex hull of points, its corners and its faces, which look outwards; none if they have no extent in some
+/// direction.
+pub(crate) fn hull(points: &[DVec3]) -> Option<(Vec<DVec3>, Vec<[u32; 3]>)> {
     let points: Vec<Vec3> = points.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
     let hull = guarded(|| Manifold::hull(&points).get_mesh_gl64(-1)).ok()?;
-    let places = hull.vert_properties.chunks_exact(hull.num_prop as usize);
+    let corners = hull.vert_properties.chunks_exact(hull.num_prop as usize);
+    let corners = corners.map(|p| DVec3::new(p[0], p[1], p[2])).collect();
     let faces = hull.tri_verts.chunks_exact(3);
-    let body = Body {
-        points: places.map(|p| DVec3::new(p[0], p[1], p[2])).collect(),
-        faces: faces
-            .map(|face| [face[0] as u32, face[1] as u32, face[2] as u32])
-            .collect(),
-    };
-    (!body.faces.is_empty()).then_some(body)
+    let faces: Vec<[u32; 3]> = faces
+        .map(|face| [face[0] as u32, face[1] as u32, face[2] as u32])
+        .collect();
+    (!faces.is_empty()).then_some((corners, faces))
 }
 
 /// The text of a panic as an error.

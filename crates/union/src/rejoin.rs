@@ -117,11 +117,14 @@ fn owners(work: &Work, numbers: &[u32], given: usize, moved: bool) -> Vec<Option
 fn hull_of(names: &[SurfaceVertex]) -> Option<Body> {
     let points: Vec<DVec3> = names.iter().map(|name| name.position.as_dvec3()).collect();
     let middle = points.iter().sum::<DVec3>() / points.len() as f64;
-    let mut body = hull(&points)?;
-    for point in &mut body.points {
-        *point = middle + SHRUNK * (*point - middle);
-    }
-    Some(body)
+    let (corners, faces) = hull(&points)?;
+    let shrunk = corners
+        .into_iter()
+        .map(|corner| middle + SHRUNK * (corner - middle));
+    Some(Body {
+        points: shrunk.collect(),
+        faces,
+    })
 }
 
 /// The surface as it was given.
