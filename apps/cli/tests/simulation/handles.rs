@@ -8,11 +8,11 @@ use crate::neurotess;
 #[neurotess_testing::test(needs(neurotess_testing::shared))]
 fn meshes_of_real_cells_have_no_handles() {
     let allen = "sonata/allen/shared_components/morphologies/Scnn1a_473845048_m.swc";
-    // With these options merging makes handles there, unless small holes are filled.
+    // With these options merging makes handles in Neuron, unless small holes are filled.
     let loops = "--radii traced --max-aspect 1";
     for (cell, options) in [
         ("swc/Neuron.swc", loops),
-        (allen, loops),
+        ("h5/Neuron.h5", loops),
         (allen, "--radii equal-area"),
     ] {
         let folder = tempfile::tempdir().expect("a folder");
@@ -78,4 +78,30 @@ fn merging_cuts_nothing_off_where_a_neurite_turns_back() {
             assert!((0.0..34.0).contains(&number("volume")), "{piece}");
         }
     }
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::shared))]
+fn processes_that_would_close_a_loop_become_thinner() {
+    let path = shared_data().join("h5/astrocyte.h5").display().to_string();
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |arguments: &str| -> Value {
+        let json = neurotess(folder.path(), arguments).expect("it runs");
+        serde_json::from_str::<Value>(&json).expect("JSON")[0].clone()
+    };
+    let thinned = |mesh: &Value| {
+        let warnings = mesh["warnings"].as_array().expect("a list");
+        let found = warnings.iter().find(|warning| warning["code"] == "thinned");
+        found.and_then(|warning| warning["count"].as_u64())
+    };
+    let options = "--radii traced --max-aspect 1";
+    let mesh = run(&format!(
+        "mesh {path} -o cell.ply --simulation {options} --json"
+    ));
+    assert!(thinned(&mesh) > Some(0));
+    assert_eq!(mesh["crossings"]["handles_made"], 0);
+    // What is not for simulators stays as thick as traced.
+    let mesh = run(&format!(
+        "mesh {path} -o cell.ply --crossings merge --force --json"
+    ));
+    assert_eq!(thinned(&mesh), None);
 }
