@@ -98,6 +98,15 @@ impl Streamed {
     }
 }
 
+/// A detail that is to be there for a picture.
+#[derive(Clone, Copy, Debug)]
+struct Planned {
+    template: usize,
+    detail: usize,
+    /// Whether it is all that the picture shows.
+    is_enough: bool,
+}
+
 /// Where the arrays of a template were, and how finely it is there, for what reads pictures back.
 #[derive(Clone, Debug)]
 pub(super) struct Residence {
@@ -185,16 +194,23 @@ impl Streaming {
     ) -> Vec<(usize, Shape)> {
         self.picture += 1;
         let pixels = self.nearest_pixels(instances, frame, pixel);
-        let (plan, coarser) = self.plan(&pixels);
-        self.coarser = coarser;
-        for &(template, _) in &plan {
-            self.templates[template].wanted = self.picture;
+        let (plan, no_room) = self.plan(&pixels);
+        self.coarser = no_room + plan.iter().filter(|planned| !planned.is_enough).count();
+        for planned in &plan {
+            self.templates[planned.template].wanted = self.picture;
         }
         let mut victims = self.victims();
         let mut changed = Vec::new();
-        let mut uploaded = 0;
+        let (mut uploaded, mut moved_together) = (0, false);
         self.is_pending = false;
-        for (template, detail) in plan {
+        let mut next = 0;
+        while let Some(&Planned {
+            template,
+            detail,
+            is_enough,
+        }) = plan.get(next)
+        {
+            next += 1;
             if self.templates[template].there() == Some(detail) {
                 continue;
             }
@@ -219,13 +235,29 @@ impl Streaming {
                     uploaded += counts.bytes();
                     self.upload(gpu, buffers, template, detail, room)
                 }
-                // What is free lies in pieces: its base is drawn.
-                None => self.fall_back(gpu, buffers, template),
+                // What is free lies in pieces: all that is planned leaves, and comes back side by side.
+                None if !moved_together && self.bytes(&plan) <= self.most_upload - uploaded => {
+                    moved_together = true;
+                    plan.iter().for_each(|planned| self.leave(planned.template));
+                    next = 0;
+                    continue;
+                }
+                // That would take more than this picture may upload: the base is drawn.
+                None => {
+                    self.coarser += usize::from(is_enough);
+                    self.fall_back(gpu, buffers, template)
+                }
             };
             changed.push((self.first + template, shape));
         }
         self.uploaded += uploaded;
         changed
+    }
+
+    /// Bytes of all that is planned.
+    fn bytes(&self, plan: &[Planned]) -> u64 {
+        let counts = |planned: &Planned| self.templates[planned.template].details[planned.detail].1;
+        plan.iter().map(|planned| counts(planned).bytes()).sum()
     }
 
     /// By template: the size (µm) of a pixel where it is nearest; infinite if it does not show.
@@ -245,9 +277,8 @@ impl Streaming {
         pixels
     }
 
-    /// The details to be there for a picture, those first that show most; and how many templates have no room for the
-    /// detail that shows.
-    fn plan(&self, pixels: &[f32]) -> (Vec<(usize, usize)>, usize) {
+    /// The details to be there for a picture, those first that show most; and how many templates have no room for any.
+    fn plan(&self, pixels: &[f32]) -> (Vec<Planned>, usize) {
         let mut wanted: Vec<(f32, usize)> = (0..)
             .zip(&self.templates)
             .map(|(index, template)| (template.base_error / pixels[index], index))
@@ -261,7 +292,7 @@ impl Streaming {
             color_keys: planned(self.room.color_keys),
         };
         let mut taken = Counts::default();
-        let (mut plan, mut coarser) = (Vec::new(), 0);
+        let (mut plan, mut no_room) = (Vec::new(), 0);
         for (_, index) in wanted {
             let template = &self.templates[index];
             let enough = |&detail: &usize| template.details[detail].0 <= ERROR * pixels[index];
@@ -273,14 +304,18 @@ impl Streaming {
                 let (error, counts) = &template.details[detail];
                 *error < template.base_error && taken.plus(counts).fit(&room)
             });
-            let fitting = fitting.next();
-            coarser += usize::from(fitting.is_none_or(|detail| detail < enough));
-            if let Some(detail) = fitting {
-                taken = taken.plus(&template.details[detail].1);
-                plan.push((index, detail));
-            }
+            let Some(detail) = fitting.next() else {
+                no_room += 1;
+                continue;
+            };
+            taken = taken.plus(&template.details[detail].1);
+            plan.push(Planned {
+                template: index,
+                detail,
+                is_enough: detail >= enough,
+            });
         }
-        (plan, coarser)
+        (plan, no_room)
     }
 
     /// Templates whose details this picture does not want, the longest unwanted first.
