@@ -11,11 +11,12 @@
 //! `G_cc f = g`, and the displacements of all nodes are `K⁻¹ f`: one small dense solve and one pair
 //! of triangular sweeps. Columns of G are solved for at their first use and kept.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
-use super::cholesky::{Block, Cholesky, Columns};
+use super::cholesky::{Cholesky, Clique, Columns, NO_NODE};
 use super::sphere::{self, Sphere};
 
 /// Columns of G that are solved for at once: of 4, 6, 8 and 12 the quickest on spheres of up to 6,000
@@ -37,33 +38,27 @@ impl Elasticity {
     /// Assembles and factors; `None` if the matrix is not positive definite (ν out of range).
     pub(crate) fn new(sphere: &Sphere, poisson: f64) -> Option<Self> {
         let mut free = Vec::new();
-        let mut equation = Vec::with_capacity(sphere.nodes.len());
+        let mut number = Vec::with_capacity(sphere.nodes.len());
         for (node, &point) in sphere.nodes.iter().enumerate() {
             let moves = !sphere.anchored(node);
-            equation.push(moves.then_some(3 * free.len()));
+            number.push(moves.then_some(free.len() as u32));
             free.extend(moves.then_some(point));
         }
-        let mut blocks = Vec::new();
-        for &tetrahedron in &sphere.tetrahedra {
-            let stiffness = element(&sphere.nodes, tetrahedron, poisson);
-            let corners = tetrahedron.map(|node| equation[node as usize]);
-            for (row, values) in corners.iter().zip(&stiffness) {
-                for (column, &value) in corners.iter().zip(values) {
-                    if let (Some(row), Some(column)) = (*row, *column)
-                        && row >= column
-                    {
-                        let [row, column] = [row, column].map(|equation| equation as u32 / 3);
-                        blocks.push(Block { row, column, value });
-                    }
-                }
-            }
-        }
+        let free_corners = |corners: &[u32; 4]| {
+            let corners = corners.map(|node| number[node as usize]);
+            corners.map(|node| node.unwrap_or(NO_NODE))
+        };
+        let elements: Vec<Clique> = sphere.tetrahedra.iter().map(free_corners).collect();
+        let stiffness = |index: usize| element(&sphere.nodes, sphere.tetrahedra[index], poisson);
         let surface_equations = 3 * sphere.surface;
         Some(Self {
-            equation,
+            equation: number
+                .into_iter()
+                .map(|number| number.map(|number| 3 * number as usize))
+                .collect(),
             equations: 3 * free.len(),
             surface_equations,
-            factor: Cholesky::new(&free, &blocks)?,
+            factor: Cholesky::new(&free, &elements, &stiffness)?,
             columns: Mutex::new(vec![None; surface_equations]),
         })
     }
@@ -97,27 +92,37 @@ impl Elasticity {
         )
     }
 
+    fn lock_columns(&self) -> MutexGuard<'_, Vec<Option<Box<[f64]>>>> {
+        let columns = self.columns.lock();
+        columns.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Up to [`COLUMNS`] columns of G, restricted to surface equations.
+    fn solve_columns(&self, equations: &[usize]) -> impl Iterator<Item = Box<[f64]>> {
+        let mut unit = vec![[0.0; COLUMNS]; self.equations];
+        for (column, &equation) in equations.iter().enumerate() {
+            unit[equation][column] = 1.0;
+        }
+        self.factor.solve(&mut unit);
+        unit.truncate(self.surface_equations);
+        (0..equations.len()).map(move |column| unit.iter().map(|row| row[column]).collect())
+    }
+
     /// The rows and columns of G that belong to the constrained equations.
     fn compliance(&self, constrained: &[usize]) -> Columns {
-        let mut columns = self
-            .columns
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        let missing: Vec<usize> = constrained
-            .iter()
-            .copied()
-            .filter(|&c| columns[c].is_none())
+        let missing: Vec<usize> = {
+            let columns = self.lock_columns();
+            let missing = constrained.iter().filter(|&&c| columns[c].is_none());
+            missing.copied().collect()
+        };
+        // Not while the columns are locked: a thread that waits here may take up another soma.
+        let solved: Vec<Box<[f64]>> = missing
+            .par_chunks(COLUMNS)
+            .flat_map_iter(|equations| self.solve_columns(equations))
             .collect();
-        for missing in missing.chunks(COLUMNS) {
-            let mut unit = vec![[0.0; COLUMNS]; self.equations];
-            for (column, &equation) in missing.iter().enumerate() {
-                unit[equation][column] = 1.0;
-            }
-            self.factor.solve(&mut unit);
-            for (column, &equation) in missing.iter().enumerate() {
-                let rows = unit[..self.surface_equations].iter();
-                columns[equation] = Some(rows.map(|row| row[column]).collect());
-            }
+        let mut columns = self.lock_columns();
+        for (equation, column) in missing.into_iter().zip(solved) {
+            columns[equation] = Some(column);
         }
         let columns: Vec<&[f64]> = constrained
             .iter()

@@ -79,8 +79,14 @@ struct Reference {
 
 impl Reference {
     fn elasticity(&self) -> Option<&Elasticity> {
-        let make = || Elasticity::new(&self.sphere, self.poisson);
-        self.elasticity.get_or_init(make).as_ref()
+        // Not by `get_or_init`: a thread that waits for parts of the factor may take up another soma, which
+        // would wait for this one.
+        if self.elasticity.get().is_none() {
+            let made = Elasticity::new(&self.sphere, self.poisson);
+            // Another thread may have been faster, with the same.
+            let _ = self.elasticity.set(made);
+        }
+        self.elasticity.get()?.as_ref()
     }
 }
 

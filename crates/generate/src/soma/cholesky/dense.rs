@@ -5,6 +5,8 @@
 //! the compiler turns into the vector instructions that all processors of a kind have: the result does
 //! not depend on the model of the processor.
 
+use rayon::prelude::*;
+
 /// Rows and columns of a tile.
 const TILE: usize = 4;
 /// Columns that are factored one by one.
@@ -13,8 +15,16 @@ const LEAST_SPLIT: usize = 8;
 const DEPTH: usize = 128;
 /// Columns that a sweep takes at once.
 const SWEPT: usize = 4;
+/// Multiplications from which on columns are worth several threads: half a millisecond.
+const SIDE_BY_SIDE: usize = 1 << 21;
 /// A pivot below this share of its diagonal element is rounding: the matrix is singular.
 const LEAST_PIVOT: f64 = 1e-14;
+
+/// Zeros to be added to. They are written here: pages that the system has yet to clear, and that are read first,
+/// would be made twice, and all threads stopped for it.
+pub(super) fn zeros(count: usize) -> Vec<f64> {
+    std::iter::repeat_n(std::hint::black_box(0.0), count).collect()
+}
 
 /// The first columns of a symmetric matrix on and below the diagonal, one after the other; of their
 /// factor, once they are factored. What lies above the diagonal is undefined.
@@ -32,7 +42,7 @@ impl Columns {
         Self {
             rows,
             columns,
-            values: vec![0.0; rows * columns],
+            values: zeros(rows * columns),
         }
     }
 
@@ -214,18 +224,30 @@ fn subtract_products(
     depth: usize,
 ) {
     let strip = |index: usize| &packed[index * depth * TILE..][..depth * TILE];
-    for across in (0..columns).step_by(TILE) {
+    let subtract = |(number, matrix): (usize, &mut [f64])| {
+        let across = number * TILE;
         let width = TILE.min(columns - across);
         for down in (across..rows).step_by(TILE) {
             let height = TILE.min(rows - down);
-            let products = product(strip(down / TILE), strip(across / TILE));
+            let products = product(strip(down / TILE), strip(number));
             for (column, products) in products.iter().enumerate().take(width) {
-                let values = &mut matrix[(across + column) * stride + down..][..height];
+                let values = &mut matrix[column * stride + down..][..height];
                 for (value, product) in values.iter_mut().zip(products) {
                     *value -= product;
                 }
             }
         }
+    };
+    if matrix.is_empty() {
+        return;
+    }
+    let (strips, length) = (columns.div_ceil(TILE), TILE * stride);
+    if rows * columns * depth < SIDE_BY_SIDE {
+        let strips = matrix.chunks_mut(length).take(strips);
+        strips.enumerate().for_each(subtract);
+    } else {
+        let strips = matrix.par_chunks_mut(length).take(strips);
+        strips.enumerate().for_each(subtract);
     }
 }
 

@@ -7,6 +7,8 @@
 
 use glam::DVec3;
 
+use super::{Clique, NO_NODE};
+
 /// Nodes that are not parted further.
 const LEAST_PARTED: usize = 24;
 
@@ -17,17 +19,36 @@ pub(crate) struct Neighbors {
 }
 
 impl Neighbors {
-    /// From pairs of nodes, any number of times and in any order.
-    pub(crate) fn new(nodes: usize, pairs: impl Iterator<Item = (u32, u32)>) -> Self {
-        let both = |(a, b): (u32, u32)| [(a, b), (b, a)];
-        let mut pairs: Vec<(u32, u32)> = pairs.filter(|(a, b)| a != b).flat_map(both).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        let start = (0..=nodes).map(|node| pairs.partition_point(|pair| (pair.0 as usize) < node));
-        Self {
-            start: start.collect(),
-            list: pairs.iter().map(|pair| pair.1).collect(),
+    /// Of so many nodes, those that are in a clique together.
+    pub(crate) fn new(nodes: usize, cliques: &[Clique]) -> Self {
+        let pairs = |clique: &Clique| {
+            let nodes = clique.map(|node| (node != NO_NODE).then_some(node));
+            let pairs = nodes.map(|a| nodes.map(|b| a.zip(b).filter(|(a, b)| a != b)));
+            pairs.into_iter().flatten().flatten()
+        };
+        let mut start = vec![0_usize; nodes + 1];
+        for (a, _) in cliques.iter().flat_map(pairs) {
+            start[a as usize + 1] += 1;
         }
+        for node in 1..start.len() {
+            start[node] += start[node - 1];
+        }
+        let mut next = start.clone();
+        let mut all = vec![0_u32; start[nodes]];
+        for (a, b) in cliques.iter().flat_map(pairs) {
+            all[next[a as usize]] = b;
+            next[a as usize] += 1;
+        }
+        let mut list = Vec::with_capacity(start[nodes] / 3);
+        for node in 0..nodes {
+            let own = &mut all[start[node]..next[node]];
+            own.sort_unstable();
+            start[node] = list.len();
+            let repeats = |at: usize| at > 0 && own[at] == own[at - 1];
+            list.extend((0..own.len()).filter(|&at| !repeats(at)).map(|at| own[at]));
+        }
+        start[nodes] = list.len();
+        Self { start, list }
     }
 
     pub(crate) fn of(&self, node: u32) -> &[u32] {

@@ -7,8 +7,8 @@
 //! the matrix's elements and what its parts left, is factored as far as its own nodes go ([`dense`]),
 //! and leaves the rest to the front that follows.
 //!
-//! **Practice.** Made once per matrix; the time is that of a few large products of matrices. Solving
-//! passes the fronts forwards and backwards, for several right sides at once.
+//! **Practice.** Made once per matrix; the time is that of a few large products of matrices. Fronts that
+//! part from one another are factored side by side. Solving passes the fronts forwards and backwards, for several right sides at once.
 //!
 //! Why not a library: faer, which is as fast, takes a fifth of the time that all of this program takes
 //! to compile. rsparse compiles at once but factors row by row (Davis's up-looking method): two to four
@@ -22,14 +22,16 @@ use glam::{DMat3, DVec3};
 pub(crate) use dense::Columns;
 use dissection::{Group, Neighbors};
 
-/// A block of the matrix; its transpose, at (column, row), goes without saying. Blocks at the same row
-/// and column add up.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Block {
-    pub(crate) row: u32,
-    pub(crate) column: u32,
-    pub(crate) value: DMat3,
-}
+/// Nodes that share blocks of the matrix, each with itself and with each other: those of an element.
+/// [`NO_NODE`] stands where there are fewer than four.
+pub(crate) type Clique = [u32; 4];
+
+/// The blocks of a clique: row by row of its nodes, symmetric. Those of [`NO_NODE`] are not used, and what
+/// several cliques have at the same row and column adds up.
+pub(crate) type Blocks = [[DMat3; 4]; 4];
+
+/// Stands for no node in a [`Clique`].
+pub(crate) const NO_NODE: u32 = u32::MAX;
 
 /// The factor L, in fronts.
 pub(crate) struct Cholesky {
@@ -49,37 +51,30 @@ struct Front {
 }
 
 impl Cholesky {
-    /// Factors the matrix of nodes at the given points; `None` if it is not positive definite.
-    pub(crate) fn new(points: &[DVec3], blocks: &[Block]) -> Option<Self> {
-        let pairs = blocks.iter().map(|block| (block.row, block.column));
-        let neighbors = Neighbors::new(points.len(), pairs);
+    /// Factors the matrix of nodes at the given points, the sum of the blocks of all cliques; `None` if it
+    /// is not positive definite. `blocks`: by number of the clique.
+    pub(crate) fn new(
+        points: &[DVec3],
+        cliques: &[Clique],
+        blocks: &(impl Fn(usize) -> Blocks + Sync),
+    ) -> Option<Self> {
+        let neighbors = Neighbors::new(points.len(), cliques);
         let groups = dissection::dissect(points, &neighbors);
         let mut position = vec![0; points.len()];
         let order = groups.iter().flat_map(|group| &group.nodes);
         for (index, &node) in order.enumerate() {
             position[node as usize] = index as u32;
         }
-        let by_front = blocks_by_front(&groups, &position, blocks);
-        let mut fronts: Vec<Front> = Vec::with_capacity(groups.len());
-        // What the groups leave to those that follow, by group.
-        let mut left: Vec<Vec<f64>> = vec![Vec::new(); groups.len()];
-        let mut slots = vec![0; points.len()];
-        let mut first = 0;
-        for (group, blocks) in groups.iter().zip(by_front) {
-            let parts = group.parts.iter().map(|&part| &fronts[part]);
-            let later = later_nodes(group, first, &neighbors, &position, parts);
-            let mut front = Assembly::new(first, group.nodes.len(), later, &mut slots);
-            for block in &blocks {
-                front.add_block(block, &position);
-            }
-            for &part in &group.parts {
-                front.add_part(&fronts[part], &std::mem::take(&mut left[part]));
-            }
-            let (front, rest) = front.factor()?;
-            left[fronts.len()] = rest;
-            fronts.push(front);
-            first += group.nodes.len();
-        }
+        let elimination = Elimination {
+            cliques_of: cliques_by_group(&groups, &position, cliques),
+            first: first_positions(&groups),
+            neighbors: &neighbors,
+            groups: &groups,
+            position: &position,
+            cliques,
+            blocks,
+        };
+        let Factored { fronts, .. } = elimination.factor(groups.len() - 1)?;
         Some(Self { position, fronts })
     }
 
@@ -107,108 +102,176 @@ fn copy_node<const W: usize>(to: &mut [[f64; W]], at: usize, from: &[[f64; W]], 
     to[3 * at..][..3].copy_from_slice(&from[3 * node..][..3]);
 }
 
-/// Each block belongs to the front that eliminates the earlier one of its nodes.
-fn blocks_by_front(groups: &[Group], position: &[u32], blocks: &[Block]) -> Vec<Vec<Block>> {
-    let mut front_of = vec![0; position.len()];
-    for (front, group) in groups.iter().enumerate() {
+/// Each clique belongs to the group that eliminates the first of its nodes: there all of them are known.
+fn cliques_by_group(groups: &[Group], position: &[u32], cliques: &[Clique]) -> Vec<Vec<u32>> {
+    let mut group_of = vec![0; position.len()];
+    for (number, group) in groups.iter().enumerate() {
         for &node in &group.nodes {
-            front_of[node as usize] = front;
+            group_of[position[node as usize] as usize] = number;
         }
     }
-    let mut by_front = vec![Vec::new(); groups.len()];
-    for block in blocks {
-        let (row, column) = (block.row as usize, block.column as usize);
-        let earlier = if position[row] < position[column] {
-            row
-        } else {
-            column
-        };
-        by_front[front_of[earlier]].push(*block);
+    let mut by_group = vec![Vec::new(); groups.len()];
+    for (number, clique) in (0..).zip(cliques) {
+        let nodes = clique.iter().filter(|&&node| node != NO_NODE);
+        if let Some(first) = nodes.map(|&node| position[node as usize]).min() {
+            by_group[group_of[first as usize]].push(number);
+        }
     }
-    by_front
+    by_group
 }
 
-/// Positions of the nodes after a group that its own nodes or its parts touch.
-fn later_nodes<'a>(
-    group: &Group,
-    first: usize,
-    neighbors: &Neighbors,
-    position: &[u32],
-    parts: impl Iterator<Item = &'a Front>,
-) -> Vec<u32> {
-    let touched = group.nodes.iter().flat_map(|&node| neighbors.of(node));
-    let touched = touched.map(|&node| position[node as usize]);
-    let passed_on = parts.flat_map(|part| part.later.iter().copied());
-    let after = (first + group.nodes.len()) as u32;
-    let mut later: Vec<u32> = touched.chain(passed_on).filter(|&p| p >= after).collect();
-    later.sort_unstable();
-    later.dedup();
-    later
+/// By group: the position of its first node.
+fn first_positions(groups: &[Group]) -> Vec<usize> {
+    let before = groups.iter().scan(0, |before, group| {
+        let first = *before;
+        *before += group.nodes.len();
+        Some(first)
+    });
+    before.collect()
+}
+
+/// What is eliminated, in which order.
+struct Elimination<'a, B> {
+    neighbors: &'a Neighbors,
+    groups: &'a [Group],
+    /// By group.
+    first: Vec<usize>,
+    cliques_of: Vec<Vec<u32>>,
+    /// By node.
+    position: &'a [u32],
+    cliques: &'a [Clique],
+    blocks: &'a B,
+}
+
+/// The fronts of a group and of all its parts, its own last.
+struct Factored {
+    fronts: Vec<Front>,
+    /// What they leave to the front that follows: the square of the last one's later nodes.
+    left: Vec<f64>,
+}
+
+impl<B: Fn(usize) -> Blocks + Sync> Elimination<'_, B> {
+    /// Factors a group after its parts, which do not know of each other.
+    fn factor(&self, number: usize) -> Option<Factored> {
+        let group = &self.groups[number];
+        let parts = match group.parts[..] {
+            [a, b] => {
+                let (a, b) = rayon::join(|| self.factor(a), || self.factor(b));
+                vec![a?, b?]
+            }
+            _ => Vec::new(),
+        };
+        let later = self.later_nodes(number, &parts);
+        let mut sum = Sum::new(self.first[number], group.nodes.len(), later);
+        for &clique in &self.cliques_of[number] {
+            let nodes = self.cliques[clique as usize];
+            sum.add_clique(
+                nodes.map(|node| self.position.get(node as usize).copied()),
+                &(self.blocks)(clique as usize),
+            );
+        }
+        let mut fronts = Vec::new();
+        for part in parts {
+            if let Some(last) = part.fronts.last() {
+                sum.add_part(last, &part.left);
+            }
+            fronts.extend(part.fronts);
+        }
+        let (front, left) = sum.factor()?;
+        fronts.push(front);
+        Some(Factored { fronts, left })
+    }
+
+    /// Positions of the nodes after a group that its own nodes or its parts touch.
+    fn later_nodes(&self, number: usize, parts: &[Factored]) -> Vec<u32> {
+        let group = &self.groups[number];
+        let touched = group.nodes.iter().flat_map(|&node| self.neighbors.of(node));
+        let touched = touched.map(|&node| self.position[node as usize]);
+        let parts = parts.iter().filter_map(|part| part.fronts.last());
+        let passed_on = parts.flat_map(|part| part.later.iter().copied());
+        let after = (self.first[number] + group.nodes.len()) as u32;
+        let mut later: Vec<u32> = touched.chain(passed_on).filter(|&p| p >= after).collect();
+        later.sort_unstable();
+        later.dedup();
+        later
+    }
 }
 
 /// A front that is being summed.
-struct Assembly<'a> {
+struct Sum {
     front: Front,
     /// The square of the later nodes, column by column.
     rest: Vec<f64>,
-    /// By position of a node: its number in the front. Only those of its nodes are up to date.
-    slots: &'a mut [usize],
 }
 
-impl<'a> Assembly<'a> {
-    fn new(first: usize, own: usize, later: Vec<u32>, slots: &'a mut [usize]) -> Self {
-        for (slot, position) in (first..first + own)
-            .chain(later.iter().map(|&p| p as usize))
-            .enumerate()
-        {
-            slots[position] = slot;
-        }
+impl Sum {
+    fn new(first: usize, own: usize, later: Vec<u32>) -> Self {
         Self {
-            rest: vec![0.0; (3 * later.len()).pow(2)],
+            rest: dense::zeros((3 * later.len()).pow(2)),
             front: Front {
                 first,
                 own,
                 columns: Columns::new(3 * (own + later.len()), 3 * own),
                 later,
             },
-            slots,
         }
     }
 
-    fn add_block(&mut self, block: &Block, position: &[u32]) {
-        let [row, column] =
-            [block.row, block.column].map(|node| self.slots[position[node as usize] as usize]);
-        let (row, column, value) = match row >= column {
-            true => (row, column, block.value),
-            false => (column, row, block.value.transpose()),
-        };
-        for axis in 0..3 {
-            let values = &mut self.front.columns.column_mut(3 * column + axis)[3 * row..][..3];
-            add(values, &value.col(axis).to_array());
+    /// The number in the front of the node at a position.
+    fn slot(&self, position: u32) -> usize {
+        let Front {
+            first, own, later, ..
+        } = &self.front;
+        match (position as usize).checked_sub(*first) {
+            Some(slot) if slot < *own => slot,
+            _ => own + later.partition_point(|&node| node < position),
+        }
+    }
+
+    /// Equations of a node from its own on, and how many equations of the front come before the first of
+    /// them.
+    fn column_mut(&mut self, slot: usize, axis: usize) -> (&mut [f64], usize) {
+        let Front {
+            own,
+            later,
+            columns,
+            ..
+        } = &mut self.front;
+        match slot.checked_sub(*own) {
+            None => (columns.column_mut(3 * slot + axis), 0),
+            Some(slot) => {
+                let rows = 3 * later.len();
+                (&mut self.rest[(3 * slot + axis) * rows..][..rows], 3 * *own)
+            }
+        }
+    }
+
+    /// Adds the blocks of nodes at these positions.
+    fn add_clique(&mut self, positions: [Option<u32>; 4], blocks: &Blocks) {
+        let slots = positions.map(|position| position.map(|position| self.slot(position)));
+        for (row, blocks) in slots.iter().zip(blocks) {
+            for (column, block) in slots.iter().zip(blocks) {
+                let (Some(row), Some(column)) = (*row, *column) else {
+                    continue;
+                };
+                for axis in (0..3).filter(|_| row >= column) {
+                    let (to, above) = self.column_mut(column, axis);
+                    add(&mut to[3 * row - above..][..3], &block.col(axis).to_array());
+                }
+            }
         }
     }
 
     /// Adds what another front left: its later nodes are all in this one, in the same order.
     fn add_part(&mut self, part: &Front, left: &[f64]) {
         let size = 3 * part.later.len();
-        let own = self.front.own;
-        let later = self.front.later.len();
-        for (number, &node) in part.later.iter().enumerate() {
-            let slot = self.slots[node as usize];
+        let slots: Vec<usize> = part.later.iter().map(|&node| self.slot(node)).collect();
+        for (number, &slot) in slots.iter().enumerate() {
             for axis in 0..3 {
                 let from = &left[(3 * number + axis) * size..][..size];
-                let (to, above) = match slot < own {
-                    true => (self.front.columns.column_mut(3 * slot + axis), 0),
-                    false => (
-                        &mut self.rest[(3 * (slot - own) + axis) * 3 * later..][..3 * later],
-                        own,
-                    ),
-                };
-                for (row, values) in part.later.iter().zip(from.as_chunks::<3>().0).skip(number) {
-                    add(
-                        &mut to[3 * (self.slots[*row as usize] - above)..][..3],
-                        values,
-                    );
+                let (to, above) = self.column_mut(slot, axis);
+                for (row, values) in slots.iter().zip(from.as_chunks::<3>().0).skip(number) {
+                    add(&mut to[3 * row - above..][..3], values);
                 }
             }
         }

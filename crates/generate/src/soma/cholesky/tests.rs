@@ -10,6 +10,34 @@ fn numbers(mut seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
+/// A block of a matrix, and its transpose at (column, row).
+struct Block {
+    row: u32,
+    column: u32,
+    value: DMat3,
+}
+
+fn factor(points: &[DVec3], blocks: &[Block]) -> Option<Cholesky> {
+    let clique = |block: &Block| match block.row == block.column {
+        true => [NO_NODE, block.row, NO_NODE, NO_NODE],
+        false => [NO_NODE, block.row, NO_NODE, block.column],
+    };
+    let cliques: Vec<Clique> = blocks.iter().map(clique).collect();
+    let values = |number: usize| {
+        let Block { row, column, value } = blocks[number];
+        let mut values = [[DMat3::NAN; 4]; 4];
+        match row == column {
+            true => values[1][1] = value,
+            false => {
+                (values[1][1], values[3][3]) = (DMat3::ZERO, DMat3::ZERO);
+                (values[1][3], values[3][1]) = (value, value.transpose());
+            }
+        }
+        values
+    };
+    Cholesky::new(points, &cliques, &values)
+}
+
 /// Points in a cube, and a matrix that joins near ones; positive definite as its diagonal outweighs
 /// the rest of each row.
 fn random_matrix(nodes: usize, seed: u64) -> (Vec<DVec3>, Vec<Block>) {
@@ -87,7 +115,7 @@ fn eliminate(mut matrix: Vec<Vec<f64>>, mut x: Vec<f64>) -> Vec<f64> {
 fn sparse_factor_solves_as_dense_elimination_does() {
     for nodes in [1, 2, 20, 75, 150] {
         let (points, blocks) = random_matrix(nodes, nodes as u64);
-        let factor = Cholesky::new(&points, &blocks).unwrap();
+        let factor = factor(&points, &blocks).unwrap();
         let mut number = numbers(7);
         let right: Vec<[f64; 2]> = (0..3 * nodes).map(|_| [number(), 0.0]).collect();
         let mut solved = right.clone();
@@ -133,7 +161,7 @@ fn a_matrix_that_is_not_positive_definite_has_no_factor() {
         column: 31,
         value,
     });
-    assert!(Cholesky::new(&points, &blocks).is_none());
+    assert!(factor(&points, &blocks).is_none());
     assert!(
         Columns::from_fn(9, |i, j| (i * j + 1) as f64)
             .factor()
@@ -148,7 +176,8 @@ fn dissection_parts_a_grid_by_its_smallest_layer() {
     let points: Vec<DVec3> = (0..729).map(grid).collect();
     let all = (0..729_u32).flat_map(|a| (0..a).map(move |b| (a, b)));
     let near = all.filter(|&(a, b)| grid(a).distance(grid(b)) < 1.1);
-    let groups = dissection::dissect(&points, &Neighbors::new(729, near));
+    let near: Vec<Clique> = near.map(|(a, b)| [a, NO_NODE, b, NO_NODE]).collect();
+    let groups = dissection::dissect(&points, &Neighbors::new(729, &near));
     let last = groups.last().unwrap();
     // Across the body diagonal; along the axes a layer has 81 nodes.
     assert_eq!(last.nodes.len(), 61);
