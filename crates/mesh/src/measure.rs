@@ -49,19 +49,18 @@ impl CoarseMesh {
     }
 }
 
-/// Volume and area of a surface made block by block; holds the positions and one block of faces.
+/// Volume and area of a surface made block by block; holds the positions and a block of faces a thread.
 pub fn measure_surface(surface: &dyn Surface) -> Measure {
     let positions = positions(surface);
     let center = center(&positions);
-    let mut sum = Measure::default();
-    let mut faces = Faces::default();
-    for block in 0..surface.face_blocks() {
-        faces.triangles.clear();
-        faces.quads.clear();
+    let of_block = |block: usize| {
+        let mut faces = Faces::default();
         surface.faces(block, &mut faces);
-        sum = sum.plus(measure_about(center, &positions, &faces));
-    }
-    sum
+        measure_about(center, &positions, &faces)
+    };
+    let blocks = (0..surface.face_blocks()).into_par_iter();
+    let sums: Vec<Measure> = blocks.map(of_block).collect();
+    sums.into_iter().fold(Measure::default(), Measure::plus)
 }
 
 /// Volume and area of faces. Equal input gives equal sums, whatever the number of threads.
@@ -69,14 +68,22 @@ pub fn measure(positions: &[Vec3], faces: &Faces) -> Measure {
     measure_about(center(positions), positions, faces)
 }
 
+/// Blocks of vertices that are made at once.
+const AT_ONCE: usize = 64;
+
 /// Positions of all blocks.
 pub(crate) fn positions(surface: &dyn Surface) -> Vec<Vec3> {
     let mut positions = Vec::with_capacity(surface.vertex_count());
-    let mut block_of = Vec::new();
-    for block in 0..surface.vertex_blocks() {
-        block_of.clear();
-        surface.vertices(block, &mut block_of);
-        positions.extend(block_of.iter().map(|vertex| vertex.position));
+    let of_block = |&block: &usize| {
+        let mut vertices = Vec::new();
+        surface.vertices(block, &mut vertices);
+        let positions: Vec<Vec3> = vertices.iter().map(|vertex| vertex.position).collect();
+        positions
+    };
+    let blocks: Vec<usize> = (0..surface.vertex_blocks()).collect();
+    for some in blocks.chunks(AT_ONCE) {
+        let made: Vec<Vec<Vec3>> = some.par_iter().map(of_block).collect();
+        made.into_iter().for_each(|made| positions.extend(made));
     }
     positions
 }

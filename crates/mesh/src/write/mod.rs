@@ -1,13 +1,14 @@
 //! Writers of surfaces.
 //!
 //! **Practice.** A surface is made group by group: some blocks at a time, in parallel, each encoded
-//! where it is made, then written in order. What is held at a time is two groups a thread, so the
-//! surface may be far larger than memory. Sizes are known beforehand, therefore arrays that a
+//! where it is made, then written in order while the next are made. What is held at a time is four
+//! groups a thread, so the surface may be far larger than memory. Sizes are known beforehand, therefore arrays that a
 //! format wants one after the other are written side by side, each from its own place in the file;
 //! that is what `Seek` is for.
 
 pub(crate) mod corners;
 mod glb;
+mod in_order;
 mod msh;
 mod obj;
 mod off;
@@ -20,13 +21,14 @@ pub use glb::GlbNode;
 
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 #[cfg(doc)]
 use crate::FaceLabel;
 use crate::{Faces, Format, Surface, SurfaceVertex};
+use in_order::in_order;
 
 /// Why a surface could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -187,30 +189,30 @@ impl<'a> File<'a> {
         encode: impl Fn(Range<usize>, &[SurfaceVertex], &mut [Vec<u8>; N]) + Sync,
     ) -> Result<(), WriteError> {
         let announced = surface.vertex_count();
-        let mut found = 0;
         let groups = groups(surface.vertex_blocks(), announced);
-        for window in groups.chunks(window()) {
-            let encoded: Vec<_> = window
-                .par_iter()
-                .map(|blocks| {
-                    let mut group = Vec::new();
-                    for block in blocks.clone() {
-                        surface.vertices(block, &mut group);
-                    }
-                    let mut buffers = [const { Vec::new() }; N];
-                    encode(blocks.clone(), &group, &mut buffers);
-                    let lost = group.iter().position(|v| !v.position.is_finite());
-                    (group.len(), lost, buffers)
-                })
-                .collect();
-            for (count, lost, buffers) in encoded {
-                if let Some(lost) = lost {
-                    return Err(WriteError::NotFinite(found + lost));
-                }
-                found += count;
-                self.put_all(places, &buffers)?;
+        // Room of groups that were written, to be used again.
+        let spare = Mutex::new(Vec::new());
+        let encoded = |blocks: &Range<usize>| {
+            let new = || (Vec::new(), [const { Vec::new() }; N]);
+            let (mut group, mut buffers) = taken_from(&spare, new);
+            group.clear();
+            buffers.iter_mut().for_each(Vec::clear);
+            for block in blocks.clone() {
+                surface.vertices(block, &mut group);
             }
-        }
+            encode(blocks.clone(), &group, &mut buffers);
+            (group, buffers)
+        };
+        let mut found = 0;
+        in_order(&groups, encoded, |(group, buffers)| {
+            if let Some(lost) = group.iter().position(|v| !v.position.is_finite()) {
+                return Err(WriteError::NotFinite(found + lost));
+            }
+            found += group.len();
+            self.put_all(places, &buffers)?;
+            lock(&spare).push((group, buffers));
+            Ok(())
+        })?;
         agree("vertices", announced, found)
     }
 
@@ -222,26 +224,27 @@ impl<'a> File<'a> {
         encode: impl Fn(&Faces, &mut [Vec<u8>; N]) + Sync,
     ) -> Result<(), WriteError> {
         let announced = (surface.triangle_count(), surface.quad_count());
-        let mut found = (0, 0);
         let groups = groups(surface.face_blocks(), announced.0 + announced.1);
-        for window in groups.chunks(window()) {
-            let encoded: Vec<_> = window
-                .par_iter()
-                .map(|blocks| {
-                    let mut group = Faces::default();
-                    for block in blocks.clone() {
-                        surface.faces(block, &mut group);
-                    }
-                    let mut buffers = [const { Vec::new() }; N];
-                    encode(&group, &mut buffers);
-                    (group.triangles.len(), group.quads.len(), buffers)
-                })
-                .collect();
-            for (triangles, quads, buffers) in encoded {
-                found = (found.0 + triangles, found.1 + quads);
-                self.put_all(places, &buffers)?;
+        let spare = Mutex::new(Vec::new());
+        let encoded = |blocks: &Range<usize>| {
+            let new = || (Faces::default(), [const { Vec::new() }; N]);
+            let (mut group, mut buffers) = taken_from(&spare, new);
+            group.triangles.clear();
+            group.quads.clear();
+            buffers.iter_mut().for_each(Vec::clear);
+            for block in blocks.clone() {
+                surface.faces(block, &mut group);
             }
-        }
+            encode(&group, &mut buffers);
+            (group, buffers)
+        };
+        let mut found = (0, 0);
+        in_order(&groups, encoded, |(group, buffers)| {
+            found = (found.0 + group.triangles.len(), found.1 + group.quads.len());
+            self.put_all(places, &buffers)?;
+            lock(&spare).push((group, buffers));
+            Ok(())
+        })?;
         agree("triangles", announced.0, found.0)?;
         agree("quads", announced.1, found.1)
     }
@@ -258,6 +261,15 @@ impl<'a> File<'a> {
     }
 }
 
+fn lock<T>(spare: &Mutex<T>) -> MutexGuard<'_, T> {
+    spare.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn taken_from<T>(spare: &Mutex<Vec<T>>, new: impl FnOnce() -> T) -> T {
+    let taken = lock(spare).pop();
+    taken.unwrap_or_else(new)
+}
+
 pub(crate) fn agree(what: &'static str, announced: usize, found: usize) -> Result<(), WriteError> {
     if announced == found {
         return Ok(());
@@ -270,7 +282,7 @@ pub(crate) fn agree(what: &'static str, announced: usize, found: usize) -> Resul
 }
 
 /// Vertices or faces of a group, at least: enough for a write, few enough for the cache.
-const GROUP: usize = 1 << 15;
+const GROUP: usize = 1 << 14;
 
 /// Blocks, so many together that a group is worth a write.
 pub(crate) fn groups(blocks: usize, items: usize) -> Vec<Range<usize>> {

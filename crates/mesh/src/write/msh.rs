@@ -15,12 +15,14 @@
 //! element is its number among the triangles of the surface, from 1 on.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::corners::{Corners, VertexBlocks, triangles};
-use super::{File, WriteError, absolute, agree, faces_of, groups, record, window};
+use super::in_order::in_order;
+use super::{File, WriteError, absolute, agree, faces_of, groups, record};
 use crate::{Faces, Surface, region_code, region_name};
 
 /// Bytes of a triangle: its tag and those of its corners.
@@ -242,20 +244,18 @@ fn write_elements(
         surface.triangle_count() + surface.quad_count(),
     );
     let groups: Vec<_> = groups.into_iter().zip(&census.first).collect();
-    for window in groups.chunks(window()) {
-        let encoded: Vec<BTreeMap<Label, Vec<u8>>> = window
-            .par_iter()
-            .map(|(group, first)| {
-                let faces = faces_of(surface, group.clone());
-                encode(&faces, &blocks.corners(&faces), **first)
-            })
-            .collect();
-        for (label, bytes) in encoded.into_iter().flatten() {
+    let encoded = |&(ref group, first): &(Range<usize>, &[u64; 2])| {
+        let faces = faces_of(surface, group.clone());
+        encode(&faces, &blocks.corners(&faces), *first)
+    };
+    in_order(&groups, encoded, |encoded| {
+        for (label, bytes) in encoded {
             if let Some(place) = places.get_mut(&label) {
                 file.put(place, &bytes)?;
             }
         }
-    }
+        Ok(())
+    })?;
     file.put(&mut at, b"\n$EndElements\n")
 }
 

@@ -63,10 +63,11 @@ impl<'m> CellSurface<'m> {
             };
         }
         let clock = Instant::now();
+        // Refinement does not change the topology.
+        let (refined, topology) = rayon::join(|| refined(mesh, options), || mesh.topology());
         Self {
-            made: MadeSurface::Refined(refined(mesh, options)),
-            // Refinement does not change the topology.
-            topology: mesh.topology(),
+            made: MadeSurface::Refined(refined),
+            topology,
             seconds: clock.elapsed().as_secs_f64(),
         }
     }
@@ -157,7 +158,7 @@ fn least_angle(levels: MeshLevels) -> f64 {
 }
 
 /// The surface of a coarse mesh, made block by block.
-fn refined<'m>(mesh: &'m CoarseMesh, options: &MeshOptions) -> Box<dyn Surface + 'm> {
+fn refined<'m>(mesh: &'m CoarseMesh, options: &MeshOptions) -> Box<dyn Surface + Send + 'm> {
     let refined = |lod: Lod<'_>| Box::new(Refinement::new(mesh, lod, &options.refine));
     match options.levels {
         MeshLevels::Coarse => Box::new(CoarseSurface::new(mesh, options.format.has_quads())),
