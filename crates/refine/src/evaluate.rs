@@ -96,26 +96,47 @@ impl Corner {
     }
 }
 
-/// Center line between two tracing points, y ∈ [0, 1].
-pub(crate) fn center_line(a: &Corner, b: &Corner, path: Path, y: f32) -> Jet {
-    let way = b.center - a.center;
-    if path == Path::Linear {
-        return Jet {
-            position: a.center * (1.0 - y) + b.center * y,
-            derivative: way,
-        };
+/// The center line between two tracing points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CenterLine {
+    from: Vec3,
+    to: Vec3,
+    way: Vec3,
+    /// Of a curve: those at its ends.
+    tangents: Option<(Vec3, Vec3)>,
+}
+
+impl CenterLine {
+    pub(crate) fn new(a: &Corner, b: &Corner, path: Path) -> Self {
+        Self {
+            from: a.center,
+            to: b.center,
+            way: b.center - a.center,
+            tangents: (path == Path::Hermite).then(|| hermite_tangents(a, b)),
+        }
     }
-    let (m0, m1) = hermite_tangents(a, b);
-    let (y2, y3) = (y * y, y * y * y);
-    let position = a.center * (2.0 * y3 - 3.0 * y2 + 1.0)
-        + m0 * (y3 - 2.0 * y2 + y)
-        + b.center * (3.0 * y2 - 2.0 * y3)
-        + m1 * (y3 - y2);
-    let derivative =
-        way * (6.0 * y - 6.0 * y2) + m0 * (3.0 * y2 - 4.0 * y + 1.0) + m1 * (3.0 * y2 - 2.0 * y);
-    Jet {
-        position,
-        derivative,
+
+    /// At y ∈ [0, 1].
+    pub(crate) fn at(&self, y: f32) -> Jet {
+        let Self { from, to, way, .. } = *self;
+        let Some((m0, m1)) = self.tangents else {
+            return Jet {
+                position: from * (1.0 - y) + to * y,
+                derivative: way,
+            };
+        };
+        let (y2, y3) = (y * y, y * y * y);
+        let position = from * (2.0 * y3 - 3.0 * y2 + 1.0)
+            + m0 * (y3 - 2.0 * y2 + y)
+            + to * (3.0 * y2 - 2.0 * y3)
+            + m1 * (y3 - y2);
+        let derivative = way * (6.0 * y - 6.0 * y2)
+            + m0 * (3.0 * y2 - 4.0 * y + 1.0)
+            + m1 * (3.0 * y2 - 2.0 * y);
+        Jet {
+            position,
+            derivative,
+        }
     }
 }
 
@@ -167,34 +188,67 @@ fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
 
 /// A point of an edge, t ∈ [0, 1] from `a` to `b`.
 pub(crate) fn edge(kind: EdgeKind, a: &Corner, b: &Corner, path: Path, t: f32) -> Jet {
-    match kind {
-        EdgeKind::Ring => {
-            let offset = over_length(
-                mix(a.offset, b.offset, t),
-                b.offset - a.offset,
-                mix(a.radial, b.radial, t),
-                b.radial - a.radial,
-            );
-            Jet {
-                position: a.center + offset.position,
-                ..offset
+    EdgeCurve::new(kind, a, b, path).at(t)
+}
+
+/// An edge, ready to be evaluated at many points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeCurve<'c> {
+    a: &'c Corner,
+    b: &'c Corner,
+    course: Course,
+}
+
+/// What the points of an edge have in common.
+#[derive(Clone, Copy, Debug)]
+enum Course {
+    Ring,
+    Along(CenterLine),
+    Cubic([Vec3; 4]),
+}
+
+impl<'c> EdgeCurve<'c> {
+    /// From `a` to `b`.
+    pub(crate) fn new(kind: EdgeKind, a: &'c Corner, b: &'c Corner, path: Path) -> Self {
+        let course = match kind {
+            EdgeKind::Ring => Course::Ring,
+            EdgeKind::Along => Course::Along(CenterLine::new(a, b, path)),
+            EdgeKind::Soma => Course::Cubic(soma_controls(a, b)),
+            EdgeKind::Loft => Course::Cubic(loft_controls(a, b)),
+        };
+        Self { a, b, course }
+    }
+
+    /// At t ∈ [0, 1].
+    pub(crate) fn at(&self, t: f32) -> Jet {
+        match self.course {
+            Course::Ring => {
+                let offset = self.offset(t);
+                Jet {
+                    position: self.a.center + offset.position,
+                    ..offset
+                }
             }
-        }
-        EdgeKind::Along => {
-            let center = center_line(a, b, path, t);
-            let offset = over_length(
-                mix(a.offset, b.offset, t),
-                b.offset - a.offset,
-                mix(a.radial, b.radial, t),
-                b.radial - a.radial,
-            );
-            Jet {
-                position: center.position + offset.position,
-                derivative: center.derivative + offset.derivative,
+            Course::Along(line) => {
+                let (center, offset) = (line.at(t), self.offset(t));
+                Jet {
+                    position: center.position + offset.position,
+                    derivative: center.derivative + offset.derivative,
+                }
             }
+            Course::Cubic(controls) => cubic(controls, t),
         }
-        EdgeKind::Soma => cubic(soma_controls(a, b), t),
-        EdgeKind::Loft => cubic(loft_controls(a, b), t),
+    }
+
+    /// From the center line.
+    fn offset(&self, t: f32) -> Jet {
+        let Self { a, b, .. } = self;
+        over_length(
+            mix(a.offset, b.offset, t),
+            b.offset - a.offset,
+            mix(a.radial, b.radial, t),
+            b.radial - a.radial,
+        )
     }
 }
 
@@ -255,6 +309,27 @@ pub(crate) struct PatchShape {
 /// at y = 0 and 1, sides 1 and 3 along y at x = 1 and 0.
 pub(crate) const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
 
+/// A patch ready to be evaluated row by row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchRows<'s> {
+    shape: &'s PatchShape,
+    options: &'s RefineOptions,
+    /// Of a tube: its center line, which all rows have.
+    line: Option<CenterLine>,
+}
+
+impl<'s> PatchRows<'s> {
+    /// The points inside at this y ∈ (0, 1).
+    pub(crate) fn at(&self, y: f32) -> PatchRow<'s> {
+        PatchRow {
+            shape: self.shape,
+            options: self.options,
+            y,
+            center: self.line.map_or(Jet::default(), |line| line.at(y)),
+        }
+    }
+}
+
 /// Points of a patch with the same y.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchRow<'s> {
@@ -279,23 +354,20 @@ impl PatchRow<'_> {
 }
 
 impl PatchShape {
-    /// The points inside at this y ∈ (0, 1).
-    pub(crate) fn row<'s>(&'s self, options: &'s RefineOptions, y: f32) -> PatchRow<'s> {
+    /// The points inside, row by row.
+    pub(crate) fn rows<'s>(&'s self, options: &'s RefineOptions) -> PatchRows<'s> {
         let [a, .., d] = &self.corners;
-        PatchRow {
+        let is_tube = self.kind == PatchKind::Lateral;
+        PatchRows {
             shape: self,
             options,
-            y,
-            center: match self.kind {
-                PatchKind::Lateral => center_line(a, d, options.path, y),
-                PatchKind::Soma | PatchKind::Loft | PatchKind::Cap => Jet::default(),
-            },
+            line: is_tube.then(|| CenterLine::new(a, d, options.path)),
         }
     }
 
     /// A point inside with its normal, x and y ∈ (0, 1).
     pub(crate) fn interior(&self, options: &RefineOptions, x: f32, y: f32) -> (Vec3, Vec3) {
-        self.row(options, y).point(x)
+        self.rows(options).at(y).point(x)
     }
 
     fn lateral(&self, center: &Jet, x: f32, y: f32) -> (Vec3, Vec3) {

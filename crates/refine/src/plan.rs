@@ -5,6 +5,7 @@
 //! only, not with the level.
 
 use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
+use rayon::prelude::*;
 
 use crate::evaluate::{Corner, EdgeKind, SIDES};
 use crate::level::{HIGHEST_LEVEL, bend, edge_level};
@@ -41,15 +42,23 @@ pub(crate) struct Grid {
     levels: [u32; 4],
 }
 
+/// Edges that are worth a thread.
+const LEAST_EDGES: usize = 4096;
+
 impl Plan {
     pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
         let (mut edges, patch_edges) = find_edges(mesh);
+        edges
+            .par_iter_mut()
+            .with_min_len(LEAST_EDGES)
+            .for_each(|edge| {
+                let ends = [edge.from, edge.to]
+                    .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
+                let [(a, ta), (b, tb)] = &ends;
+                edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u8;
+            });
         let mut next = mesh.vertices.len() as u32;
         for edge in &mut edges {
-            let ends = [edge.from, edge.to]
-                .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
-            let [(a, ta), (b, tb)] = &ends;
-            edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u8;
             edge.first = next;
             next += u32::from(edge.level) - 1;
         }

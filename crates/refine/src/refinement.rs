@@ -8,7 +8,9 @@ use neurotess_mesh::{
 };
 use rayon::prelude::*;
 
-use crate::evaluate::{Corner, EdgeKind, PatchRow, PatchShape, SIDES, edge, edge_normal};
+use crate::evaluate::{
+    Corner, EdgeCurve, EdgeKind, PatchRow, PatchRows, PatchShape, SIDES, edge_normal,
+};
 use crate::plan::{Edge, Grid, Plan};
 use crate::{Lod, RefineOptions};
 
@@ -21,7 +23,7 @@ pub struct Refinement<'m> {
 }
 
 /// Coarse vertices, edges or patches in one block.
-const BLOCK: usize = 4096;
+const BLOCK: usize = 1024;
 
 impl<'m> Refinement<'m> {
     /// Plans the refinement of a closed mesh.
@@ -79,7 +81,7 @@ impl<'m> Refinement<'m> {
         if let Some(inner) = index.checked_sub(self.plan.patch_first[patch]) {
             let (x, y) = (inner % (grid.nx - 1) + 1, inner / (grid.nx - 1) + 1);
             let inner = InnerVertices::new(self, patch);
-            return inner.vertex(&inner.row(y), [x, y]);
+            return inner.vertex(&inner.row(&inner.rows(), y), [x, y]);
         }
         let on_edge = |&e: &u32| {
             let edge = &self.plan.edges[e as usize];
@@ -196,32 +198,23 @@ impl<'m> Refinement<'m> {
 
     /// Inner vertex k of an edge, 0 < k < level.
     fn edge_vertex(&self, plan: &Edge, k: u32) -> SurfaceVertex {
-        self.vertex_between(plan, &self.ends(plan), k)
+        let ends = self.ends(plan);
+        InnerEdge::new(self, plan, &ends).vertex(k)
     }
 
-    /// The inner vertices of an edge.
-    fn edge_vertices(&self, plan: &Edge) -> impl Iterator<Item = SurfaceVertex> {
+    /// Appends the inner vertices of an edge.
+    fn edge_vertices(&self, plan: &Edge, out: &mut Vec<SurfaceVertex>) {
+        let level = u32::from(plan.level);
+        if level < 2 {
+            return;
+        }
         let ends = self.ends(plan);
-        (1..u32::from(plan.level)).map(move |k| self.vertex_between(plan, &ends, k))
+        let inner = InnerEdge::new(self, plan, &ends);
+        out.extend((1..level).map(|k| inner.vertex(k)));
     }
 
     fn ends(&self, plan: &Edge) -> [Corner; 2] {
         [plan.from, plan.to].map(|v| Corner::new(self.mesh, v))
-    }
-
-    fn vertex_between(&self, plan: &Edge, [a, b]: &[Corner; 2], k: u32) -> SurfaceVertex {
-        let t = k as f32 / f32::from(plan.level);
-        let jet = edge(plan.kind, a, b, self.options.path, t);
-        let normal = edge_normal(a, b, jet.derivative, t);
-        let (ta, tb) = (self.tracing(plan.from), self.tracing(plan.to));
-        let radius = ta.radius * (1.0 - t) + tb.radius * t;
-        let nearest = if t < 0.5 { ta } else { tb };
-        attributed(
-            jet.position,
-            normal,
-            on_soma(plan.kind, [ta, tb], nearest),
-            radius,
-        )
     }
 
     fn patch_vertices(&self, patch: usize, out: &mut Vec<SurfaceVertex>) {
@@ -230,10 +223,48 @@ impl<'m> Refinement<'m> {
             return;
         }
         let inner = InnerVertices::new(self, patch);
+        let rows = inner.rows();
         for j in 1..grid.ny {
-            let row = inner.row(j);
+            let row = inner.row(&rows, j);
             out.extend((1..grid.nx).map(|i| inner.vertex(&row, [i, j])));
         }
+    }
+}
+
+/// What the inner vertices of an edge have in common.
+struct InnerEdge<'r> {
+    curve: EdgeCurve<'r>,
+    ends: &'r [Corner; 2],
+    level: u8,
+    tracing: [&'r TracingPoint; 2],
+    /// That of the soma, which all vertices of its edges show, so that the color changes at the neurite's ring.
+    soma: Option<&'r TracingPoint>,
+}
+
+impl<'r> InnerEdge<'r> {
+    fn new(refinement: &'r Refinement<'_>, plan: &Edge, ends: &'r [Corner; 2]) -> Self {
+        let [a, b] = ends;
+        let tracing = [plan.from, plan.to].map(|v| refinement.tracing(v));
+        let of_soma = |t: &&TracingPoint| plan.kind == EdgeKind::Soma && t.role == Role::Soma;
+        Self {
+            curve: EdgeCurve::new(plan.kind, a, b, refinement.options.path),
+            ends,
+            level: plan.level,
+            tracing,
+            soma: tracing.into_iter().find(of_soma),
+        }
+    }
+
+    /// Vertex k, 0 < k < level.
+    fn vertex(&self, k: u32) -> SurfaceVertex {
+        let t = k as f32 / f32::from(self.level);
+        let jet = self.curve.at(t);
+        let [a, b] = self.ends;
+        let normal = edge_normal(a, b, jet.derivative, t);
+        let [ta, tb] = self.tracing;
+        let radius = ta.radius * (1.0 - t) + tb.radius * t;
+        let nearest = if t < 0.5 { ta } else { tb };
+        attributed(jet.position, normal, self.soma.unwrap_or(nearest), radius)
     }
 }
 
@@ -264,9 +295,13 @@ impl<'r> InnerVertices<'r> {
         }
     }
 
+    fn rows(&self) -> PatchRows<'_> {
+        self.shape.rows(self.options)
+    }
+
     /// Points of row j of the grid.
-    fn row(&self, j: u32) -> PatchRow<'_> {
-        self.shape.row(self.options, j as f32 / self.grid.ny as f32)
+    fn row<'s>(&self, rows: &PatchRows<'s>, j: u32) -> PatchRow<'s> {
+        rows.at(j as f32 / self.grid.ny as f32)
     }
 
     /// The vertex at column i of row j.
@@ -283,19 +318,6 @@ impl<'r> InnerVertices<'r> {
         let tracing = self.soma.unwrap_or(self.tracing[nearest]);
         attributed(position, normal, tracing, radius)
     }
-}
-
-/// The tracing point of a vertex on an edge. A soma's edges belong to the soma as far as the
-/// neurite's ring, so that the color changes there.
-fn on_soma<'t>(
-    kind: EdgeKind,
-    ends: [&'t TracingPoint; 2],
-    nearest: &'t TracingPoint,
-) -> &'t TracingPoint {
-    let soma = ends
-        .into_iter()
-        .find(|t| kind == EdgeKind::Soma && t.role == Role::Soma);
-    soma.unwrap_or(nearest)
 }
 
 fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32) -> SurfaceVertex {
@@ -351,7 +373,7 @@ impl Surface for Refinement<'_> {
             out.extend(range(block, corners).map(|v| self.coarse_vertex(v)));
         } else if block < corner_blocks + edge_blocks {
             for edge in &self.plan.edges[range(block - corner_blocks, edges)] {
-                out.extend(self.edge_vertices(edge));
+                self.edge_vertices(edge, out);
             }
         } else {
             for patch in range(block - corner_blocks - edge_blocks, self.mesh.patches.len()) {
