@@ -51,6 +51,10 @@ fn kept(whole: &Skeleton, forks: &[u32]) -> Vec<bool> {
         let mut steps = 0;
         // A tree must not begin with a fork that is none at the beginning of the whole.
         while here != NONE && (steps <= STEPS || children.of(here).len() > 1) {
+            // From here on another fork has kept all that this one needs.
+            if steps > STEPS && keep[here as usize] {
+                break;
+            }
             keep[here as usize] = true;
             here = whole.node(here).parent;
             steps += 1;

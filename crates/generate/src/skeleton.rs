@@ -3,7 +3,7 @@
 //! Parents come before their children at all times, so that every step is a sweep over an array
 //! and no tree is too deep.
 
-use std::cell::OnceCell;
+use std::sync::OnceLock;
 
 use glam::DVec3;
 use neurotess_mesh::{SectionNumber, SwcType};
@@ -87,7 +87,7 @@ pub(crate) enum Root {
 pub(crate) struct Skeleton {
     nodes: Vec<SkeletonNode>,
     /// Listed at first use.
-    children: OnceCell<Children>,
+    children: OnceLock<Children>,
 }
 
 /// Children of every node, in order.
@@ -188,7 +188,7 @@ impl Skeleton {
     pub(crate) fn from_nodes(nodes: Vec<SkeletonNode>) -> Self {
         Self {
             nodes,
-            children: OnceCell::new(),
+            children: OnceLock::new(),
         }
     }
 

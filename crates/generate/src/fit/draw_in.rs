@@ -88,8 +88,11 @@ impl DrawIn {
         if best.0 == before {
             return false;
         }
-        self.set(best.1);
-        self.give_back();
+        let changed = self.set(best.1);
+        if !changed.is_empty() {
+            faults = self.stretch.faults_again(&faults, &changed);
+        }
+        self.give_back(faults);
         true
     }
 
@@ -176,8 +179,8 @@ impl DrawIn {
         ring.neighbors().map(most).fold(1.0, f32::min)
     }
 
-    /// Restores rings as far as that makes no faults, the least drawn in first.
-    fn give_back(&mut self) {
+    /// Restores rings as far as that makes no faults, the least drawn in first. `faults`: those that there are.
+    fn give_back(&mut self, mut faults: Vec<Fault>) {
         for kept in KEPT {
             let drawn = |number: &usize| self.drawn[*number] != Drawn::NOT;
             let mut order: Vec<usize> = (0..self.rings.len()).filter(drawn).collect();
@@ -185,17 +188,38 @@ impl DrawIn {
             order.sort_by(|&a, &b| scale(b).total_cmp(&scale(a)).then(a.cmp(&b)));
             for number in order {
                 let before = self.drawn[number];
-                let patches = self.rings[number].patches.clone();
-                let faults = self.stretch.faults_of(&patches);
                 let even = self.most_even(number, &self.drawn).max(before.scale);
                 let less = Drawn {
                     scale: (1.0 + kept * (before.scale - 1.0)).min(even),
                     shift: before.shift * kept,
                 };
-                self.set_one(number, less, &patches);
-                if self.stretch.faults_of(&patches) > faults {
-                    self.set_one(number, before, &patches);
+                if less != before {
+                    self.try_one(number, less, &mut faults);
                 }
+            }
+        }
+    }
+
+    /// Draws one ring in anew if that makes no faults.
+    fn try_one(&mut self, number: usize, drawn: Drawn, faults: &mut Vec<Fault>) {
+        let patches = &self.rings[number].patches;
+        let concerned = |fault: &Fault| fault.patches.iter().any(|p| patches.contains(p));
+        let of_others = |fault: &&Fault| !concerned(fault);
+        let others: Vec<Fault> = faults.iter().filter(of_others).copied().collect();
+        let most = count(faults) - count(&others);
+        let saved = self.stretch.saved(patches);
+        self.rings[number].draw(&drawn, &mut self.stretch.part.mesh, number);
+        self.stretch.update(patches);
+        match self.stretch.faults_of(patches, most) {
+            Some(own) => {
+                self.drawn[number] = drawn;
+                *faults = others;
+                faults.extend(own);
+            }
+            None => {
+                let before = &self.drawn[number];
+                self.rings[number].draw(before, &mut self.stretch.part.mesh, number);
+                self.stretch.restore(patches, &saved);
             }
         }
     }
@@ -214,12 +238,6 @@ impl DrawIn {
         patches.dedup();
         self.stretch.update(&patches);
         patches
-    }
-
-    fn set_one(&mut self, number: usize, drawn: Drawn, patches: &[u32]) {
-        self.drawn[number] = drawn;
-        self.rings[number].draw(&drawn, &mut self.stretch.part.mesh, number);
-        self.stretch.update(patches);
     }
 
     /// Writes the rings that are drawn in into the whole; returns their tracing points there.

@@ -21,6 +21,8 @@ mod ring;
 mod stretches;
 mod suspects;
 
+use std::cmp::Reverse;
+
 use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
@@ -45,12 +47,18 @@ pub(crate) fn draw_in_rings(mesh: &mut CoarseMesh, faulty: &[u32], stop: Stop<'_
         suspects.add(corners.map(|v| mesh.vertices[v as usize].tracing));
     }
     let stretches = Stretches::new(mesh, &graph, &suspects);
-    let drawn: Vec<DrawIn> = (0..stretches.patches.len())
+    // Long ones first, so that no thread has one left when the others are done.
+    let mut order: Vec<usize> = (0..stretches.patches.len()).collect();
+    order.sort_by_key(|&number| Reverse(stretches.patches[number].len()));
+    let mut drawn: Vec<(usize, DrawIn)> = order
         .into_par_iter()
+        .with_max_len(1)
         .filter(|_| !stop.asked())
-        .filter_map(|number| draw_in(mesh, &stretches, number))
+        .filter_map(|number| Some((number, draw_in(mesh, &stretches, number)?)))
         .collect();
-    let mut rings: Vec<u32> = drawn.into_iter().flat_map(|d| d.write(mesh)).collect();
+    drawn.sort_unstable_by_key(|&(number, _)| number);
+    let drawn = drawn.into_iter().map(|(_, drawn)| drawn);
+    let mut rings: Vec<u32> = drawn.flat_map(|d| d.write(mesh)).collect();
     rings.sort_unstable();
     if !rings.is_empty() {
         average_normals(mesh);

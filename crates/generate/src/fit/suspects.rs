@@ -35,24 +35,31 @@ impl Suspects {
             rings: vec![false; mesh.tracing.len()],
             pairs: pairs(mesh, graph),
         };
-        for &ends in graph.tubes() {
+        let steep = |ends: &&[u32; 2]| {
             let [a, b] = ends.map(|t| &mesh.tracing[t as usize]);
-            if follow_badly(a, b) {
-                suspects.add(ends);
-            }
-        }
-        for ring in 0..mesh.tracing.len() as u32 {
-            if turns_back(mesh, graph, ring) {
-                suspects.add([ring]);
-            }
-        }
-        let tubes = mesh.patches.iter();
-        for patch in tubes.filter(|p| matches!(p.kind, PatchKind::Lateral | PatchKind::Loft)) {
-            if is_inside_out(mesh, patch.corners) {
-                let [a, _, _, d] = patch.corners.map(|v| mesh.vertices[v as usize].tracing);
-                suspects.add([a, d]);
-            }
-        }
+            follow_badly(a, b)
+        };
+        let rings = 0..mesh.tracing.len() as u32;
+        let turned = rings.into_par_iter().with_min_len(CHUNK);
+        let tubes = mesh.patches.par_iter().with_min_len(CHUNK);
+        let tubes = tubes.filter(|p| matches!(p.kind, PatchKind::Lateral | PatchKind::Loft));
+        let found: [Vec<u32>; 3] = [
+            (graph.tubes().par_iter().with_min_len(CHUNK))
+                .filter(steep)
+                .flat_map_iter(|&ends| ends)
+                .collect(),
+            turned
+                .filter(|&ring| turns_back(mesh, graph, ring))
+                .collect(),
+            tubes
+                .filter(|patch| is_inside_out(mesh, patch.corners))
+                .flat_map_iter(|patch| {
+                    let [a, _, _, d] = patch.corners;
+                    [a, d].map(|v| mesh.vertices[v as usize].tracing)
+                })
+                .collect(),
+        ];
+        suspects.add(found.into_iter().flatten());
         for number in 0..suspects.pairs.len() {
             suspects.add(suspects.pairs[number]);
         }

@@ -1,14 +1,17 @@
 //! Where each branch of a path leaves it, and how it goes on from its inset.
 
+use rayon::prelude::*;
+
 use super::ForkChoice;
 use super::arrange::{Group, arrange};
 use super::cone::distance;
-use super::path::{Beginning, Planner, Start, Way};
+use super::path::{Planner, Start, Way};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
-use super::zone::{Branch, NoZone, Zone};
+use super::zone::{Beginning, Branch, NoZone, Zone};
 use crate::fork;
 use crate::joint::{Joint, Neighbor};
+use crate::skeleton::{Children, Skeleton};
 
 /// Free way between the inset's corners and the branch's next ring, in radii.
 const AHEAD: f64 = 0.35;
@@ -19,6 +22,20 @@ const MOST_LOOKED_AT: usize = 40;
 /// A fork of more neighbors is split into several joints, none of which reaches far.
 const MOST_NEIGHBORS: usize = 6;
 
+/// Branches of a path that are worth a thread.
+const LEAST_BRANCHES: usize = 8;
+
+/// How a branch leaves its trunk.
+enum Leaving {
+    Through(Box<Zone>),
+    /// It ends inside the trunk.
+    Never,
+    /// There is no room for its inset.
+    Refused,
+    /// Not through an inset.
+    Joint,
+}
+
 impl Planner<'_> {
     pub(super) fn zones_of(
         &mut self,
@@ -27,25 +44,25 @@ impl Planner<'_> {
         path: &Polyline,
     ) -> Result<Vec<Group>, Vec<u32>> {
         let room = self.room(start, way, path);
+        let leaving: Vec<(u32, Leaving)> = way
+            .branches
+            .par_iter()
+            .with_min_len(LEAST_BRANCHES)
+            .map(|&(index, child)| {
+                (
+                    child,
+                    self.leaving(way.nodes[index], index, child, path, room),
+                )
+            })
+            .collect();
         let (mut zones, mut refused) = (Vec::new(), Vec::new());
         let mut buried = Vec::new();
-        for &(index, child) in &way.branches {
-            let fork = way.nodes[index];
-            let ForkChoice::Inset { lift, .. } = self.choices[fork as usize] else {
-                continue;
-            };
-            let (line, ends) = self.branch_line(fork, child);
-            let branch = Branch {
-                fork,
-                child,
-                path: &line,
-                radius: self.base.node(child).radius,
-                lift,
-            };
-            match branch.zone(path, path.arcs[index], room) {
-                Ok(zone) if self.goes_on(&zone, path).is_some() => zones.push(zone),
-                Err(NoZone::Inside) if ends => buried.push(child),
-                Ok(_) | Err(_) => refused.push(fork),
+        for (&(index, _), (child, leaving)) in way.branches.iter().zip(leaving) {
+            match leaving {
+                Leaving::Through(zone) => zones.push(*zone),
+                Leaving::Never => buried.push(child),
+                Leaving::Refused => refused.push(way.nodes[index]),
+                Leaving::Joint => {}
             }
         }
         if !refused.is_empty() {
@@ -54,6 +71,39 @@ impl Planner<'_> {
         let groups = arrange(zones, path)?;
         self.buried.extend(buried);
         Ok(groups)
+    }
+
+    /// How a branch leaves the path at a fork, one of its nodes.
+    fn leaving(
+        &self,
+        fork: u32,
+        index: usize,
+        child: u32,
+        path: &Polyline,
+        room: [f64; 2],
+    ) -> Leaving {
+        let ForkChoice::Inset { lift, .. } = self.choices[fork as usize] else {
+            return Leaving::Joint;
+        };
+        let (line, ends) = self.branch_line(fork, child);
+        let branch = Branch {
+            fork,
+            child,
+            path: &line,
+            radius: self.base.node(child).radius,
+            lift,
+        };
+        match branch.zone(path, path.arcs[index], room) {
+            Ok(mut zone) => {
+                zone.onward = self.goes_on(&zone, path);
+                match zone.onward {
+                    Some(_) => Leaving::Through(Box::new(zone)),
+                    None => Leaving::Refused,
+                }
+            }
+            Err(NoZone::Inside) if ends => Leaving::Never,
+            Err(_) => Leaving::Refused,
+        }
     }
 
     /// From a fork along a branch's main children, as thick as the branch's first point; and whether that
@@ -106,7 +156,7 @@ impl Planner<'_> {
     }
 
     /// Arc lengths that the path's own ends leave free for zones.
-    pub(super) fn room(&self, start: &Start, way: &Way, path: &Polyline) -> [f64; 2] {
+    pub(super) fn room(&mut self, start: &Start, way: &Way, path: &Polyline) -> [f64; 2] {
         let last = way.nodes.len() - 1;
         let low = match start {
             Start::Root(_) => 0.0,
@@ -123,22 +173,33 @@ impl Planner<'_> {
     }
 
     /// How far a joint reaches towards a neighbor, with room for all.
-    fn joint_reach(&self, fork: u32, neighbor: u32) -> f64 {
-        if self.children.of(fork).len() >= MOST_NEIGHBORS {
-            return 2.0 * self.base.node(fork).radius;
-        }
-        let around = fork::neighbors(self.children, self.base, fork);
-        let tubes = fork::tubes(self.base, self.children, fork, &around);
-        let free: Vec<Neighbor> = tubes
-            .iter()
-            .map(|tube| Neighbor {
-                length: f64::INFINITY,
-                ..*tube
-            })
-            .collect();
-        let joint = Joint::new(self.base.node(fork).radius, &free);
+    fn joint_reach(&mut self, fork: u32, neighbor: u32) -> f64 {
+        let (base, children) = (self.base, self.children);
+        let reaches = self.joint_reaches.entry(fork);
+        let reaches = reaches.or_insert_with(|| joint_reaches(base, children, fork));
         // The node before a joint on its path may lie beyond an inset: then the parent stands for it.
-        let slot = around.iter().position(|&n| n == neighbor).unwrap_or(0);
-        joint.reach(slot, free[slot].direction)
+        let reach = reaches.iter().find(|(node, _)| *node == neighbor);
+        reach.or(reaches.first()).map_or(0.0, |(_, reach)| *reach)
     }
+}
+
+/// How far a joint reaches towards each of its neighbors.
+fn joint_reaches(base: &Skeleton, children: &Children, fork: u32) -> Vec<(u32, f64)> {
+    let around = fork::neighbors(children, base, fork);
+    if children.of(fork).len() >= MOST_NEIGHBORS {
+        let reach = 2.0 * base.node(fork).radius;
+        return around.into_iter().map(|node| (node, reach)).collect();
+    }
+    let tubes = fork::tubes(base, children, fork, &around);
+    let free: Vec<Neighbor> = tubes
+        .iter()
+        .map(|tube| Neighbor {
+            length: f64::INFINITY,
+            ..*tube
+        })
+        .collect();
+    let joint = Joint::new(base.node(fork).radius, &free);
+    let reaches = (0..).zip(&free);
+    let reaches = reaches.map(|(slot, tube)| joint.reach(slot, tube.direction));
+    around.into_iter().zip(reaches).collect()
 }

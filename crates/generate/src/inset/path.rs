@@ -1,13 +1,15 @@
 //! Paths: from a root, a joint or an inset along main children to an end or a joint, with the branches
 //! that leave them.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use super::arrange::Group;
 use super::path_rings::{RingKind, nearest, rings};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
-use super::zone::Zone;
+use super::zone::{Beginning, Zone};
 use super::{ForkChoice, Inset, Layout};
 use crate::fork;
 use crate::skeleton::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
@@ -39,14 +41,6 @@ pub(super) struct InsetStart {
     pub(super) radius: f64,
 }
 
-/// How a branch goes on from its inset.
-pub(super) enum Beginning {
-    /// At a node that is clear of the trunk.
-    At(u32),
-    /// It ends before: at a ring right ahead, with the last node's attributes.
-    Ends(u32),
-}
-
 pub(crate) struct Planner<'a> {
     pub(super) base: &'a Skeleton,
     pub(super) children: &'a Children,
@@ -57,6 +51,8 @@ pub(crate) struct Planner<'a> {
     refused: Vec<u32>,
     thickened: Vec<u32>,
     pub(super) buried: Vec<u32>,
+    /// By fork, once asked for: its neighbors, and how far its joint reaches towards them.
+    pub(super) joint_reaches: HashMap<u32, Vec<(u32, f64)>>,
 }
 
 /// A path's nodes and where branches leave it.
@@ -80,6 +76,7 @@ impl<'a> Planner<'a> {
             refused: Vec::new(),
             thickened: Vec::new(),
             buried: Vec::new(),
+            joint_reaches: HashMap::new(),
         }
     }
 
@@ -319,8 +316,9 @@ impl<'a> Planner<'a> {
             radius: zone.radius,
             lift: zone.lift,
         });
-        let (shape, way) = self
-            .goes_on(zone, path)
+        let (shape, way) = zone
+            .onward
+            .or_else(|| self.goes_on(zone, path))
             // Pushed along the trunk it may not be clear any more.
             .unwrap_or_else(|| {
                 let cones = zone.cones(path);

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::cone::{RoundCone, distance, outwards};
 use super::polyline::Polyline;
-use super::shape::{InsetSite, LEAST_STEEP, not_too_steep};
+use super::shape::{InsetShape, InsetSite, LEAST_STEEP, not_too_steep};
 
 /// Stretch of the trunk that is looked at to either side, in its radii.
 const TRUNK_REACH: f64 = 8.0;
@@ -35,6 +35,17 @@ pub(crate) struct Zone {
     pub(crate) fork: u32,
     pub(crate) child: u32,
     pub(crate) lift: f64,
+    /// The inset's shape and how the branch goes on from it, once known; not any more where the zone was moved.
+    pub(super) onward: Option<(InsetShape, Beginning)>,
+}
+
+/// How a branch goes on from its inset.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Beginning {
+    /// At a node that is clear of the trunk.
+    At(u32),
+    /// It ends before: at a ring right ahead, with the last node's attributes.
+    Ends(u32),
 }
 
 /// What there is instead of a zone.
@@ -107,6 +118,7 @@ impl Branch<'_> {
             fork: self.fork,
             child: self.child,
             lift: self.lift,
+            onward: None,
         };
         zone.move_exit(shift, trunk);
         Ok(zone)
@@ -183,6 +195,7 @@ impl Zone {
     /// Moves all of it along the trunk.
     pub(crate) fn shift(&mut self, by: f64, trunk: &Polyline) {
         self.move_exit(by, trunk);
+        self.onward = None;
         self.low += by;
         self.high += by;
     }

@@ -107,11 +107,7 @@ impl RefinedPatches {
             .map(|edge| (self.common_vertices(edge), edge))
             .collect();
         folded.sort_unstable();
-        folded.into_iter().map(|(_, edge)| Fault {
-            patches: edge.map(|facet| facet / FACETS as u32),
-            count: 1,
-            folded: true,
-        })
+        folded.into_iter().map(|(_, edge)| fold(edge))
     }
 
     /// Pairs of facets that share an edge within a patch.
@@ -149,38 +145,68 @@ impl RefinedPatches {
         kept.copied().chain(crossings).chain(self.folds()).collect()
     }
 
-    /// How many faults some patches have, with each other and with all others. `patches`: ascending.
-    pub(crate) fn faults_of(&self, patches: &[u32]) -> usize {
+    /// The faults that some patches have, with each other and with all others; none if they are more than
+    /// `most`. `patches`: ascending.
+    pub(crate) fn faults_of(&self, patches: &[u32], most: usize) -> Option<Vec<Fault>> {
+        let boxes = patches.iter().map(|&patch| self.boxes[patch as usize]);
+        let around = boxes.reduce(|a, b| a.with(&b))?;
+        let mut faults = Vec::new();
         let mut count = 0;
-        let mut seams: Vec<u32> = Vec::new();
+        let mut is_too_many = |fault: Fault| {
+            count += fault.count;
+            faults.extend((fault.count > 0).then_some(fault));
+            count > most
+        };
+        let within = patches.iter().flat_map(|&patch| self.edges_within(patch));
+        let mut seams: Vec<u32> = patches.iter().flat_map(|&p| self.seams.of(p)).collect();
+        seams.sort_unstable();
+        seams.dedup();
+        let across = seams.iter().flat_map(|&seam| self.seams.edges(seam));
+        for edge in within.chain(across).filter(|edge| self.is_folded(edge)) {
+            if is_too_many(fold(edge)) {
+                return None;
+            }
+        }
+        let all = 0..self.boxes.len() as u32;
+        let near = all.filter(|&other| around.overlaps(&self.boxes[other as usize]));
+        let near: Vec<u32> = near.collect();
         for &patch in patches {
-            count += self
-                .edges_within(patch)
-                .filter(|edge| self.is_folded(edge))
-                .count();
-            seams.extend(self.seams.of(patch));
-            for other in 0..self.boxes.len() as u32 {
+            for &other in &near {
                 let counted = other < patch && patches.binary_search(&other).is_ok();
-                if !counted && self.boxes[patch as usize].overlaps(&self.boxes[other as usize]) {
-                    count += self.crossings([patch, other]);
+                let overlap = self.boxes[patch as usize].overlaps(&self.boxes[other as usize]);
+                if !counted && overlap && is_too_many(self.crossing([patch, other])) {
+                    return None;
                 }
             }
         }
-        seams.sort_unstable();
-        seams.dedup();
-        let edges = seams.iter().flat_map(|&seam| self.seams.edges(seam));
-        count + edges.filter(|edge| self.is_folded(edge)).count()
+        Some(faults)
     }
 
     /// Refines patches again whose corners moved.
     pub(crate) fn update(&mut self, patches: &[u32]) {
         for &patch in patches {
-            let patch = patch as usize;
-            let facets = self.patch_facets(patch);
-            self.facets[FACETS * patch..FACETS * (patch + 1)].copy_from_slice(&facets);
-            self.boxes[patch] = bounds(&facets);
-            self.facing[patch] = facing(&facets);
+            self.put(patch, &self.patch_facets(patch as usize));
         }
+    }
+
+    /// The facets of some patches, to be [restored](Self::restore).
+    pub(crate) fn saved(&self, patches: &[u32]) -> Vec<[Facet; FACETS]> {
+        let saved = |&patch: &u32| std::array::from_fn(|k| self.facets_of(patch)[k]);
+        patches.iter().map(saved).collect()
+    }
+
+    /// Gives patches the facets back that were saved; their corners are where they were then.
+    pub(crate) fn restore(&mut self, patches: &[u32], saved: &[[Facet; FACETS]]) {
+        for (&patch, facets) in patches.iter().zip(saved) {
+            self.put(patch, facets);
+        }
+    }
+
+    fn put(&mut self, patch: u32, facets: &[Facet; FACETS]) {
+        let patch = patch as usize;
+        self.facets[FACETS * patch..FACETS * (patch + 1)].copy_from_slice(facets);
+        self.boxes[patch] = bounds(facets);
+        self.facing[patch] = facing(facets);
     }
 
     fn patch_facets(&self, patch: usize) -> [Facet; FACETS] {
@@ -262,6 +288,15 @@ impl RefinedPatches {
     fn is_folded(&self, edge: &[u32; 2]) -> bool {
         let [a, b] = edge.map(|facet| &self.facets[facet as usize]);
         a.folds(b)
+    }
+}
+
+/// The fault of facets that fold over at their edge.
+fn fold(edge: [u32; 2]) -> Fault {
+    Fault {
+        patches: edge.map(|facet| facet / FACETS as u32),
+        count: 1,
+        folded: true,
     }
 }
 
