@@ -117,6 +117,27 @@ mod tests {
     }
 
     #[test]
+    fn forks_keep_together_what_each_keeps_alone() {
+        let mut nodes: Vec<SkeletonNode> = tree().nodes().to_vec();
+        // Twigs at every node of a stretch, and some more beyond.
+        for fork in (20..60).chain([75, 76, 90]) {
+            nodes.push(SkeletonNode {
+                parent: fork,
+                ..nodes[fork as usize]
+            });
+        }
+        let whole = Skeleton::from_nodes(nodes);
+        let forks: Vec<u32> = (0..100)
+            .filter(|&node| whole.children().of(node).len() > 1)
+            .collect();
+        assert_eq!(forks.len(), 43);
+        let alone = forks.iter().map(|&fork| kept(&whole, &[fork]));
+        let either = |a: Vec<bool>, b: Vec<bool>| a.iter().zip(b).map(|(a, b)| *a || b).collect();
+        let expected: Vec<bool> = alone.reduce(either).expect("there are forks");
+        assert_eq!(kept(&whole, &forks), expected);
+    }
+
+    #[test]
     fn links_are_those_of_the_whole() {
         let whole = tree();
         let near = Neighborhood::new(&whole, &[50]);

@@ -308,3 +308,83 @@ fn bounds(facets: &[Facet; FACETS]) -> Bounds {
 fn facing(facets: &[Facet; FACETS]) -> Vec3A {
     facets.iter().map(|facet| facet.normal).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use neurotess_mesh::{Patch, PatchKind, TracingPoint, Vertex};
+
+    use super::*;
+
+    /// An open tube of radius 1 around a spiral of half of its radius: it folds over and crosses itself.
+    fn tight_spiral() -> CoarseMesh {
+        let mut mesh = CoarseMesh::default();
+        for ring in 0..16_u32 {
+            let (sin, cos) = (0.5 * ring as f32).sin_cos();
+            let center = Vec3::new(0.5 * cos, 0.5 * sin, 0.12 * ring as f32);
+            let radial = Vec3::new(cos, sin, 0.0);
+            mesh.tracing.push(TracingPoint {
+                center,
+                radius: 1.0,
+                tangent: Vec3::new(-sin, cos, 0.0),
+                ..TracingPoint::default()
+            });
+            for normal in [radial, Vec3::Z, -radial, -Vec3::Z] {
+                mesh.vertices.push(Vertex {
+                    position: center + normal,
+                    normal,
+                    tracing: ring,
+                });
+            }
+            let first = 4 * ring;
+            mesh.patches.extend((0..4).filter(|_| ring > 0).map(|k| {
+                let [a, b] = [first + k, first + (k + 1) % 4];
+                Patch {
+                    corners: [a - 4, b - 4, b, a],
+                    kind: PatchKind::Lateral,
+                }
+            }));
+        }
+        mesh
+    }
+
+    /// Those that some patches have a part in.
+    fn concerned(faults: &[Fault], patches: &[u32]) -> Vec<Fault> {
+        let concerned = |fault: &&Fault| fault.patches.iter().any(|p| patches.contains(p));
+        faults.iter().filter(concerned).copied().collect()
+    }
+
+    #[test]
+    fn faults_of_some_patches_are_those_of_all_that_concern_them() {
+        let mesh = tight_spiral();
+        let all = 0..mesh.patches.len() as u32;
+        let refined = RefinedPatches::new(&mesh, all.clone().collect());
+        let faults = refined.faults();
+        assert!(faults.iter().any(|f| f.folded) && faults.iter().any(|f| !f.folded));
+        let all: Vec<u32> = all.collect();
+        for patches in all.chunks(7).chain([&all[..]]) {
+            let expected = count(&concerned(&faults, patches));
+            let of = |most: usize| refined.faults_of(patches, most);
+            assert_eq!(of(expected).map(|of| count(&of)), Some(expected));
+            if let Some(fewer) = expected.checked_sub(1) {
+                assert!(of(fewer).is_none(), "more than {fewer}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_was_saved_comes_back() {
+        let mesh = tight_spiral();
+        let mut refined = RefinedPatches::new(&mesh, (0..60).collect());
+        let before = refined.faults();
+        let patches = [20, 21, 22, 23, 24, 25, 26, 27];
+        let saved = refined.saved(&patches);
+        let moved = refined.part.mesh.vertices[24].position;
+        refined.part.mesh.vertices[24].position = moved + Vec3::splat(0.4);
+        refined.update(&patches);
+        assert_ne!(refined.faults(), before);
+        refined.part.mesh.vertices[24].position = moved;
+        refined.restore(&patches, &saved);
+        assert_eq!(refined.faults(), before);
+    }
+}
