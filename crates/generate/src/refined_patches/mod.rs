@@ -316,17 +316,18 @@ mod tests {
 
     use super::*;
 
-    /// An open tube of radius 1 around a spiral of half of its radius: it folds over and crosses itself.
-    fn tight_spiral() -> CoarseMesh {
+    /// An open tube of radius 1 along a path that turns back within that: it folds over and crosses itself.
+    fn hairpin() -> CoarseMesh {
         let mut mesh = CoarseMesh::default();
         for ring in 0..16_u32 {
-            let (sin, cos) = (0.5 * ring as f32).sin_cos();
-            let center = Vec3::new(0.5 * cos, 0.5 * sin, 0.12 * ring as f32);
-            let radial = Vec3::new(cos, sin, 0.0);
+            let (along, back) = (ring as f32 - 7.5, ring > 7);
+            let center = Vec3::new(-along.abs(), if back { 0.3 } else { 0.0 }, 0.0);
+            let tangent = if back { -Vec3::X } else { Vec3::X };
+            let radial = tangent.cross(Vec3::Z);
             mesh.tracing.push(TracingPoint {
                 center,
                 radius: 1.0,
-                tangent: Vec3::new(-sin, cos, 0.0),
+                tangent,
                 ..TracingPoint::default()
             });
             for normal in [radial, Vec3::Z, -radial, -Vec3::Z] {
@@ -356,11 +357,14 @@ mod tests {
 
     #[test]
     fn faults_of_some_patches_are_those_of_all_that_concern_them() {
-        let mesh = tight_spiral();
+        let mesh = hairpin();
         let all = 0..mesh.patches.len() as u32;
         let refined = RefinedPatches::new(&mesh, all.clone().collect());
         let faults = refined.faults();
-        assert!(faults.iter().any(|f| f.folded) && faults.iter().any(|f| !f.folded));
+        let [folded, crossing] =
+            [true, false].map(|k| faults.iter().filter(move |f| f.folded == k));
+        let found = [folded.count(), crossing.count()];
+        assert!(found.iter().all(|&found| found > 0), "{found:?}");
         let all: Vec<u32> = all.collect();
         for patches in all.chunks(7).chain([&all[..]]) {
             let expected = count(&concerned(&faults, patches));
@@ -374,7 +378,7 @@ mod tests {
 
     #[test]
     fn what_was_saved_comes_back() {
-        let mesh = tight_spiral();
+        let mesh = hairpin();
         let mut refined = RefinedPatches::new(&mesh, (0..60).collect());
         let before = refined.faults();
         let patches = [20, 21, 22, 23, 24, 25, 26, 27];
