@@ -20,6 +20,20 @@ fn simulators() -> Result<(), String> {
         .try_for_each(|module| python_with(module).map(drop))
 }
 
+/// The need of dolfinx, and of what it compiles equations with.
+fn dolfinx() -> Result<(), String> {
+    simulators()?;
+    // Its wheel takes the MPI that mpi4py has loaded.
+    let python = python_with("mpi4py.MPI, dolfinx")
+        .map_err(|missing| format!("{missing}: its wheel is for Python 3.12 or newer on Linux"))?;
+    let header = "import os, sysconfig; os.stat(sysconfig.get_path('include') + '/Python.h')";
+    let found = Command::new(python).args(["-c", header]).output();
+    found
+        .is_ok_and(|found| found.status.success())
+        .then_some(())
+        .ok_or_else(|| "no Python.h: Debian and Ubuntu have it in python3-dev".to_owned())
+}
+
 /// The need of TetGen's own program.
 fn tetgen_program() -> Result<(), String> {
     let found = Command::new("tetgen").arg("-h").output();
@@ -123,6 +137,29 @@ fn the_page_runs_from_tracing_to_calcium() {
     assert_eq!(volumes.len(), 6, "the soma and five neurites: {printed}");
     let all = volumes.iter().sum::<f64>();
     assert!((all / surface.volume - 1.0).abs() < 1e-3, "{all}");
+}
+
+#[neurotess_testing::test(needs(dolfinx))]
+fn dolfinx_gives_the_same_calcium() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [surface, _, _, by_gmsh, _, by_skfem] =
+        <[String; 6]>::try_from(blocks("sh")).expect("the commands of the page");
+    let by_dolfinx = blocks("sh dolfinx");
+    assert_eq!(by_dolfinx.len(), 1);
+    // What dolfinx compiles stays in this folder.
+    let cache = "export XDG_CACHE_HOME=\"$PWD/cache\"\n".to_owned();
+    let commands = [cache, surface, by_gmsh, by_skfem, by_dolfinx.concat()];
+    run(folder.path(), &commands.concat());
+
+    let out = folder.path().join("out");
+    let [expected, found] =
+        ["sections2.csv", "sections3.csv"].map(|file| sections(&out.join(file)));
+    assert!(found.keys().eq(expected.keys()));
+    // One mesh and one scheme: only the two factorizations round differently, by 4e-9 when it was measured.
+    for (section, calcium) in &expected {
+        let ratio = found[section] / calcium;
+        assert!((ratio - 1.0).abs() < 1e-6, "{section}: {ratio}");
+    }
 }
 
 /// meshio and Gmsh read a file in meters: the group of the tetrahedra, and their volume in m³.
