@@ -1,4 +1,4 @@
-//! The level of an edge, 1 to 64, from the edge alone.
+//! The level of an edge from the edge alone: 1 to 64, along neurites by length 1 to 256.
 //!
 //! A level depends on the edge's two corners and their tracing points alone, and not on their
 //! order, so the two faces beside the edge always agree: no cracks for any choice of levels.
@@ -10,6 +10,10 @@ use crate::{EdgeRule, Lod, LodCriterion, LodView, Path};
 
 /// Highest level.
 pub const HIGHEST_LEVEL: u32 = 64;
+
+/// Highest level of edges along neurites that are cut by length: sparse tracings have segments of hundreds of
+/// radii. It is bounded, so that thin paths of a careless tracing do not fill the memory.
+const HIGHEST_LEVEL_BY_LENGTH: u32 = 256;
 
 /// The share of the permitted error that each direction of a patch may take, around and along; the
 /// rest is for the error of flat triangles on a twisted quad. Checked by `adaptive_error_is_kept`.
@@ -32,7 +36,7 @@ pub(crate) fn edge_level(
     (b, tb): (&Corner, u32),
 ) -> u32 {
     if let Some(rule) = lod.edges {
-        return by_rule(rule, kind, a, b).clamp(1, HIGHEST_LEVEL);
+        return by_rule(rule, kind, a, b);
     }
     let level = match lod.criterion {
         LodCriterion::Homogeneous(level) => level,
@@ -62,16 +66,13 @@ pub(crate) fn edge_level(
     level.clamp(1, HIGHEST_LEVEL)
 }
 
-/// The level that a rule gives an edge; see [`EdgeRule`].
+/// The level that a rule gives an edge, within its bounds; see [`EdgeRule`].
 fn by_rule(rule: EdgeRule, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
     let lengthwise = matches!(kind, EdgeKind::Along | EdgeKind::Loft);
     match rule {
         EdgeRule::Levels { around, along } => {
-            if lengthwise {
-                along
-            } else {
-                around
-            }
+            let level = if lengthwise { along } else { around };
+            level.clamp(1, HIGHEST_LEVEL)
         }
         EdgeRule::Lengths {
             radii,
@@ -83,16 +84,19 @@ fn by_rule(rule: EdgeRule, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
             let pieces = |wanted: f32| edge_length(kind, a, b) / wanted.max(least).min(most);
             let piece = radii * a.radius.min(b.radius);
             let level = pieces(piece).round();
-            let level = match lengthwise {
+            let (level, highest) = match lengthwise {
                 // No piece longer than it may be, and no more of them than without that.
-                true => level.min(pieces(piece * aspect).ceil()),
-                false => level,
+                true => (
+                    level.min(pieces(piece * aspect).ceil()),
+                    HIGHEST_LEVEL_BY_LENGTH,
+                ),
+                false => (level, HIGHEST_LEVEL),
             };
             // Also where it is not a number.
-            if level < HIGHEST_LEVEL as f32 {
+            if level < highest as f32 {
                 level.max(1.0) as u32
             } else {
-                HIGHEST_LEVEL
+                highest
             }
         }
     }

@@ -106,7 +106,8 @@ pub enum EdgeRule {
         /// Of edges along a neurite, 1 to 64.
         along: u32,
     },
-    /// Pieces about as long as a share of the local radius: triangles that solvers like.
+    /// Pieces about as long as a share of the local radius: triangles that solvers like. At most 64 of an edge,
+    /// or 256 along a neurite.
     Lengths {
         /// Length of a piece, in radii of the thinner end.
         radii: f32,

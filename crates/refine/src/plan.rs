@@ -19,7 +19,7 @@ pub(crate) struct Edge {
     pub(crate) from: u32,
     pub(crate) to: u32,
     pub(crate) kind: EdgeKind,
-    pub(crate) level: u8,
+    pub(crate) level: u16,
     /// Number of its first inner vertex.
     pub(crate) first: u32,
 }
@@ -55,7 +55,7 @@ impl Plan {
                 let ends = [edge.from, edge.to]
                     .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
                 let [(a, ta), (b, tb)] = &ends;
-                edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u8;
+                edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u16;
             });
         let mut next = mesh.vertices.len() as u32;
         for edge in &mut edges {

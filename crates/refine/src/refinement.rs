@@ -235,7 +235,7 @@ impl<'m> Refinement<'m> {
 struct InnerEdge<'r> {
     curve: EdgeCurve<'r>,
     ends: &'r [Corner; 2],
-    level: u8,
+    level: u16,
     tracing: [&'r TracingPoint; 2],
     /// That of the soma, which all vertices of its edges show, so that the color changes at the neurite's ring.
     soma: Option<&'r TracingPoint>,
