@@ -7,6 +7,7 @@ mod seams;
 use glam::Vec3A;
 use neurotess_mesh::CoarseMesh;
 use neurotess_refine::{RefineOptions, patch_points};
+use rayon::prelude::*;
 
 use crate::facets::{Bounds, Facet};
 use crate::part::Part;
@@ -20,6 +21,10 @@ const CROWDED: usize = 16;
 /// Facets are seen from one side if they face it by more than this: cosine of 72°, to stay clear of outlines
 /// that cross. With 90° little more time is saved, and cells with many folds have a few more of them.
 const LEAST_COS: f32 = 0.3;
+
+/// Patches to be refined, and pairs to be searched, that are worth a thread.
+const LEAST_PATCHES: usize = 64;
+const LEAST_PAIRS: usize = 256;
 
 /// Faults between two patches, or of one patch with itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,11 +67,12 @@ impl RefinedPatches {
             facing: Vec::with_capacity(count),
             seams,
         };
-        for patch in 0..count {
-            let facets = refined.patch_facets(patch);
-            refined.facets.extend(facets);
+        let patches = (0..count).into_par_iter().with_min_len(LEAST_PATCHES);
+        let facets: Vec<[Facet; FACETS]> = patches.map(|p| refined.patch_facets(p)).collect();
+        for facets in facets {
             refined.boxes.push(bounds(&facets));
             refined.facing.push(facing(&facets));
+            refined.facets.extend(facets);
         }
         refined
     }
@@ -83,10 +89,26 @@ impl RefinedPatches {
         Some(self.faults_of_pairs(near))
     }
 
+    /// Pairs of facets that cross, one of the first `first` patches and one of the others.
+    pub(crate) fn crossings_across(&self, first: u32) -> usize {
+        let near = self.near_pairs(usize::MAX).unwrap_or_default();
+        let across = near
+            .into_iter()
+            .filter(|[a, b]| (*a < first) != (*b < first));
+        across.map(|patches| self.crossings(patches)).sum()
+    }
+
     fn faults_of_pairs(&self, near: Vec<[u32; 2]>) -> Vec<Fault> {
-        let crossings = near.into_iter().map(|patches| self.crossing(patches));
-        let crossings = crossings.filter(|fault| fault.count > 0);
-        crossings.chain(self.folds()).collect()
+        let mut faults = self.crossings_of(near);
+        faults.extend(self.folds());
+        faults
+    }
+
+    /// The pairs of patches that cross, in their order.
+    fn crossings_of(&self, pairs: Vec<[u32; 2]>) -> Vec<Fault> {
+        let pairs = pairs.into_par_iter().with_min_len(LEAST_PAIRS);
+        let crossings = pairs.map(|patches| self.crossing(patches));
+        crossings.filter(|fault| fault.count > 0).collect()
     }
 
     fn crossing(&self, patches: [u32; 2]) -> Fault {
@@ -139,9 +161,8 @@ impl RefinedPatches {
             .iter()
             .filter(|f| !f.folded && !concerned(&f.patches));
         let near = self.near_pairs(usize::MAX).unwrap_or_default();
-        let near = near.into_iter().filter(concerned);
-        let crossings = near.map(|patches| self.crossing(patches));
-        let crossings = crossings.filter(|fault| fault.count > 0);
+        let near = near.into_iter().filter(concerned).collect();
+        let crossings = self.crossings_of(near);
         kept.copied().chain(crossings).chain(self.folds()).collect()
     }
 
