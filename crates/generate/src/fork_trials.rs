@@ -17,6 +17,10 @@ const CHOICES: [ForkChoice; 6] = [
 ];
 const JOINT: usize = CHOICES.len() - 1;
 
+/// Number of a choice, in the order in which they are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ChoiceNumber(usize);
+
 /// A fork of more children is split over several joints, and not judged: its patches are too many.
 const MOST_CHILDREN: usize = 5;
 
@@ -71,6 +75,33 @@ impl ForkTrials {
     pub(crate) fn is_sound(&self, fork: u32) -> bool {
         let trial = self.trials.get(&fork);
         trial.is_some_and(|trial| trial.faults[trial.current] == Some(0))
+    }
+
+    /// Forks whose present choice has no faults.
+    pub(crate) fn sound(&self) -> impl Iterator<Item = u32> {
+        let sound = self.trials.keys().copied();
+        sound.filter(|&fork| self.is_sound(fork))
+    }
+
+    /// The present choice of a fork and all others that may be sound.
+    pub(crate) fn alternatives(&self, fork: u32) -> Vec<(ChoiceNumber, ForkChoice)> {
+        let Some(trial) = self.trials.get(&fork) else {
+            return Vec::new();
+        };
+        let others =
+            (0..CHOICES.len()).filter(|&n| trial.faults[n].is_none_or(|faults| faults == 0));
+        let others = others.filter(|&n| n != trial.current);
+        let all = std::iter::once(trial.current).chain(others);
+        all.map(|n| (ChoiceNumber(n), CHOICES[n])).collect()
+    }
+
+    /// Gives a fork another sound choice.
+    pub(crate) fn replace(&mut self, fork: u32, choice: ChoiceNumber) {
+        if let Some(trial) = self.trials.get_mut(&fork) {
+            trial.current = choice.0;
+            trial.faults[choice.0] = Some(0);
+            self.choices[fork as usize] = CHOICES[choice.0];
+        }
     }
 
     /// A fork became a joint for lack of room.

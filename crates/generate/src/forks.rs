@@ -4,26 +4,24 @@
 //! No rule from angles and radii foretells which does best on a real tracing: points are too dense, bend
 //! too tightly, or another branch is in the way. So forks whose patches cross or fold over get the next
 //! choice, until all are sound or all choices were tried. After the first try only the neighborhoods of
-//! such forks are laid out again, and in the end the whole once more.
+//! such forks are laid out again, then those of forks that other branches run through (passing.rs), and in
+//! the end the whole once more.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
-use crate::assemble::{Assembly, Somata};
+use crate::assemble::Somata;
 use crate::fork_trials::ForkTrials;
-use crate::inset::{self, ForkChoice};
+use crate::inset::ForkChoice;
+use crate::made::{Made, MayJoin};
 use crate::neighborhood::Neighborhood;
 use crate::refined_patches::{RefinedPatches, count};
 use crate::skeleton::Skeleton;
 use crate::stop::Stop;
 use crate::warning::Warnings;
-use crate::{bends, crowd, fit, fork, uncross};
-
-/// Whether a path may go straight from one node to another below it.
-type MayJoin<'a> = dyn Fn(u32, u32) -> bool + 'a;
+use crate::{fit, passing};
 
 /// The mesh of a skeleton with the best choice for each fork.
 pub(crate) fn mesh(
@@ -53,6 +51,7 @@ pub(crate) fn mesh(
         let made = Made::new(&near.skeleton, &choices, None, &may_join);
         judge(&mut trials, &made, &old, stop);
     }
+    passing::choose(&mut trials, skeleton, &made, may_join, stop);
     let made = if trials.choices() == first || stop.asked() {
         made
     } else {
@@ -73,46 +72,6 @@ pub(crate) fn mesh(
         );
     }
     mesh
-}
-
-/// A mesh, and what became of the forks.
-struct Made {
-    mesh: CoarseMesh,
-    /// Patches near a fork, by the fork's node.
-    patches: Vec<(u32, Range<u32>)>,
-    refused: Vec<u32>,
-    warnings: Warnings,
-}
-
-impl Made {
-    /// Without somata their neurites are closed by caps.
-    fn new(
-        skeleton: &Skeleton,
-        choices: &[ForkChoice],
-        somata: Option<&Somata<'_>>,
-        may_join: &MayJoin<'_>,
-    ) -> Self {
-        let mut warnings = Warnings::default();
-        let mut layout = inset::lay_out(skeleton, choices);
-        warn(&layout, skeleton, &mut warnings);
-        crowd::split_crowded_forks(&mut layout.skeleton, &mut warnings);
-        fork::clear_the_way(&mut layout.skeleton, &mut warnings);
-        let spheres = somata.map_or(&[][..], |somata| somata.soma_spheres);
-        let mut orientations =
-            uncross::uncross_rings(&mut layout, spheres, may_join, &mut warnings);
-        bends::split_sharp_bends(&mut layout.skeleton, &mut orientations);
-        let mut assembly = Assembly::new(&layout, &orientations);
-        if let Some(somata) = somata {
-            assembly.somata(somata);
-        }
-        let (mesh, patches) = assembly.finish();
-        Self {
-            mesh,
-            patches,
-            refused: layout.refused,
-            warnings,
-        }
-    }
 }
 
 /// Judges the forks that are not settled. `old`: a node of the skeleton by that of the mesh's.
@@ -142,21 +101,4 @@ fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: S
         })
         .collect();
     trials.advance(&judged.into_iter().collect());
-}
-
-fn warn(layout: &inset::Layout, skeleton: &Skeleton, warnings: &mut Warnings) {
-    for &twig in &layout.buried {
-        warnings.add(
-            "buried_twig",
-            Some(skeleton.node(twig).sample),
-            "twig ends inside the neurite that it branches from: left out of the mesh",
-        );
-    }
-    for &fork in &layout.thickened {
-        warnings.add(
-            "fork_thickened",
-            Some(skeleton.node(fork).sample),
-            "sample at a fork is thinner than two of its neighbors: meshed as thick as the thinner of them",
-        );
-    }
 }

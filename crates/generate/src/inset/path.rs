@@ -164,11 +164,10 @@ impl<'a> Planner<'a> {
                     return way;
                 }
                 _ => {
-                    let main = self.main_child(way.nodes[last - 1], here);
-                    if !self.leaves_through_insets(here, main) {
+                    let Some(main) = self.trunk_child(way.nodes[last - 1], here) else {
                         way.ends_at_joint = true;
                         return way;
-                    }
+                    };
                     let rest = children.iter().filter(|&&child| child != main);
                     way.branches.extend(rest.map(|&child| (last, child)));
                     way.nodes.push(main);
@@ -177,8 +176,33 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// The child that continues the trunk: thick and straight on.
+    /// The child that continues the trunk, so that all others can leave it through insets: the
+    /// [main child](Self::main_child), or else the next thick and straight one. None where one of the others
+    /// is always too thick.
+    fn trunk_child(&self, before: u32, fork: u32) -> Option<u32> {
+        let main = self.main_child(before, fork);
+        if self.leaves_through_insets(fork, main) {
+            return Some(main);
+        }
+        let others = self.children.of(fork).iter().copied();
+        let able = others.filter(|&c| c != main && self.leaves_through_insets(fork, c));
+        self.best_child(before, fork, able)
+    }
+
+    /// Of all children, the one that is thick and goes straight on.
     pub(super) fn main_child(&self, before: u32, fork: u32) -> u32 {
+        let children = self.children.of(fork).iter().copied();
+        let best = self.best_child(before, fork, children);
+        best.expect("a fork has children")
+    }
+
+    /// Of some children, the one that is thick and goes straight on.
+    fn best_child(
+        &self,
+        before: u32,
+        fork: u32,
+        children: impl Iterator<Item = u32>,
+    ) -> Option<u32> {
         let direction = |a: u32, b: u32| {
             let way = self.base.node(b).center - self.base.node(a).center;
             way.normalize_or_zero()
@@ -188,9 +212,7 @@ impl<'a> Planner<'a> {
             let relative = self.base.node(child).radius / radius;
             relative + STRAIGHTNESS * incoming.dot(direction(fork, child))
         };
-        let children = self.children.of(fork).iter().copied();
-        let best = children.reduce(|best, c| if score(&c) > score(&best) { c } else { best });
-        best.expect("a fork has children")
+        children.reduce(|best, c| if score(&c) > score(&best) { c } else { best })
     }
 
     /// Radius of a node; of a fork, as its choice has it.

@@ -1,0 +1,96 @@
+//! What forks are made of: which child is the trunk, and which shape other branches cross least.
+
+use glam::{Vec3, vec3};
+use neurotess_generate::{GenerateOptions, generate};
+use neurotess_mesh::{CoarseMesh, Role, SurfaceMesh, self_intersections};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Point, Section, SectionId};
+use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
+
+fn add(m: &mut Morphology, attachment: Attachment, points: impl IntoIterator<Item = (Vec3, f32)>) {
+    let first = m.points.len() as u32;
+    for (position, radius) in points {
+        m.sample_ids.push(m.points.len() as i64 + 1);
+        m.points.push(Point { position, radius });
+    }
+    m.sections.push(Section {
+        kind: NeuriteKind(3),
+        attachment,
+        first,
+        end: m.points.len() as u32,
+    });
+}
+
+fn meshed(morphology: &Morphology) -> CoarseMesh {
+    let generated = generate(morphology, &GenerateOptions::default());
+    generated.expect("meshed").mesh
+}
+
+fn crossings(mesh: &CoarseMesh) -> usize {
+    let level = LodCriterion::Homogeneous(2);
+    let refined = Refinement::new(mesh, level, &RefineOptions::default());
+    let surface = SurfaceMesh::collect(&refined);
+    let positions: Vec<Vec3> = surface.vertices.iter().map(|v| v.position).collect();
+    self_intersections(&positions, &surface.faces).len()
+}
+
+/// A trunk along x that forks at the origin, and a neurite that runs through the fork: through `middle`, with
+/// points `step` apart.
+fn run_through(branch: [f32; 2], branch_radius: f32, middle: Vec3, step: Vec3) -> Morphology {
+    let mut m = Morphology::default();
+    let along =
+        |range: std::ops::RangeInclusive<i32>, step: Vec3| range.map(move |i| step * i as f32);
+    let of_radius = |radius: f32| move |position: Vec3| (position, radius);
+    let x = vec3(3.0, 0.0, 0.0);
+    let [cos, sin] = branch;
+    add(
+        &mut m,
+        Attachment::Free,
+        along(-4..=0, x).map(of_radius(1.0)),
+    );
+    let trunk = Attachment::Section(SectionId(0));
+    add(&mut m, trunk, along(1..=4, x).map(of_radius(1.0)));
+    let branch = along(1..=4, 3.0 * vec3(cos, sin, 0.0));
+    add(&mut m, trunk, branch.map(of_radius(branch_radius)));
+    let other = along(-4..=4, step).map(|way| middle + way);
+    add(&mut m, Attachment::Free, other.map(of_radius(0.8)));
+    m
+}
+
+#[test]
+fn a_fork_takes_the_shape_that_others_cross_least() {
+    let beside = run_through(
+        [0.0, 1.0],
+        0.8,
+        vec3(0.85, 1.23, 0.27),
+        vec3(2.57, 1.5, 0.34),
+    );
+    let pairs = crossings(&meshed(&beside));
+    assert!(pairs <= 98, "{pairs}"); // with the first sound shape: 115
+    let across = run_through(
+        [0.766, 0.643],
+        0.6,
+        vec3(1.54, 2.79, -0.65),
+        vec3(-1.09, 2.68, 0.79),
+    );
+    let pairs = crossings(&meshed(&across));
+    assert!(pairs <= 47, "{pairs}"); // with the first sound shape: 60
+}
+
+/// A thin child goes straight on, and one twice as thick turns back: too thick to leave the thin one.
+#[test]
+fn a_thick_child_that_turns_back_is_the_trunk() {
+    let mut m = Morphology::default();
+    let trunk = [(-6.0, 0.4), (-3.4, 0.38), (-1.2, 0.35), (0.0, 0.26)];
+    let thin = [(0.7, 0.2, 0.1), (3.0, 0.8, 0.4), (6.0, 1.4, 0.4)];
+    let thick = [(-0.6, 0.6, 0.0), (-2.4, 2.4, 0.1), (-5.0, 5.0, 0.2)];
+    let at = |radius: f32| move |(x, y, z): (f32, f32, f32)| (vec3(x, y, z), radius);
+    let on_axis = |(x, radius): (f32, f32)| (vec3(x, 0.0, 0.0), radius);
+    add(&mut m, Attachment::Free, trunk.map(on_axis));
+    let fork = Attachment::Section(SectionId(0));
+    add(&mut m, fork, thin.map(at(0.12)));
+    add(&mut m, fork, thick.map(at(0.21)));
+    let mesh = meshed(&m);
+    let count = |role: Role| mesh.tracing.iter().filter(|t| t.role == role).count();
+    assert_eq!([count(Role::Joint), count(Role::Inset)], [0, 1]);
+    assert_eq!(crossings(&mesh), 0);
+}
