@@ -95,7 +95,7 @@ fn passed(made: &Made, forks: impl Iterator<Item = u32>) -> Vec<Passed> {
             let part = Part::new(mesh, own.clone());
             crossings(part.mesh, &Part::new(mesh, passing.to_vec()).mesh) > 0
         };
-        (few && crossed(&passing)).then(|| Passed { fork, passing })
+        (few && crossed(&passing)).then_some(Passed { fork, passing })
     });
     passed.collect()
 }
