@@ -5,9 +5,9 @@
 //! other: one passes sample 1671 of `bio_neuron-000` at 2.1 of its radii, one crosses `IF4_140201` at 82.
 //!
 //! Boxes tell which forks have such patches near them, nearly always none. For these alone all choices are
-//! made, each in the fork's neighborhood, and compared.
+//! made, in the forks' neighborhoods, and compared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3A;
 use neurotess_mesh::{CoarseMesh, PatchKind};
@@ -25,11 +25,20 @@ use crate::stop::Stop;
 
 /// Most patches of others that a fork is compared with: in crowds nothing can be gained.
 const MOST_PASSING: usize = 200;
+/// Most forks whose boxes are compared with one patch, and most that it is taken to pass.
+const MOST_LOOKED_AT: usize = 256;
+const MOST_FORKS: usize = 16;
+/// A fork's box is wide from this many times the median width on. Wide ones are compared with all patches, so
+/// more of them than this are left out.
+const WIDE: f32 = 8.0;
+const MOST_WIDE: usize = 32;
 
 /// A fork, and patches of other branches that pass it.
 struct Passed {
     fork: u32,
-    passing: Vec<u32>,
+    passing: CoarseMesh,
+    /// The present choice first.
+    alternatives: Vec<(ChoiceNumber, ForkChoice)>,
 }
 
 /// Gives sound forks the sound choice that the branches that pass them cross least. `made`: the whole with the
@@ -41,63 +50,136 @@ pub(crate) fn choose(
     may_join: &MayJoin<'_>,
     stop: Stop<'_>,
 ) {
-    let passed = passed(made, trials.sound());
-    let better: Vec<(u32, ChoiceNumber)> = passed
-        .iter()
-        .filter(|_| !stop.asked())
-        .filter_map(|passed| {
-            let choice = least_crossed(passed, trials, skeleton, &made.mesh, may_join)?;
-            Some((passed.fork, choice))
-        })
-        .collect();
-    for (fork, choice) in better {
-        trials.replace(fork, choice);
+    let passed = passed(made, trials);
+    if passed.is_empty() {
+        return;
+    }
+    let forks: Vec<u32> = passed.iter().map(|passed| passed.fork).collect();
+    let near = Neighborhood::new(skeleton, &forks);
+    let rounds = passed.iter().map(|passed| passed.alternatives.len()).max();
+    let mut crossings: Vec<Vec<Option<usize>>> = vec![Vec::new(); passed.len()];
+    for round in 0..rounds.unwrap_or(0) {
+        if stop.asked() {
+            return;
+        }
+        let found = crossings_of_round(&passed, round, trials, &near, may_join);
+        for (of_fork, found) in crossings.iter_mut().zip(found) {
+            of_fork.push(found);
+        }
+    }
+    for (passed, crossings) in passed.iter().zip(crossings) {
+        if let Some(choice) = least_crossed(passed, &crossings) {
+            trials.replace(passed.fork, choice);
+        }
     }
 }
 
-/// Forks whose boxes overlap those of patches of other branches.
-fn passed(made: &Made, forks: impl Iterator<Item = u32>) -> Vec<Passed> {
+/// Another choice than the present one, if it is sound and crossed less. `crossings`: of each alternative that is
+/// sound.
+fn least_crossed(passed: &Passed, crossings: &[Option<usize>]) -> Option<ChoiceNumber> {
+    let (present, others) = crossings.split_first()?;
+    let present = (*present)?;
+    let numbers = passed.alternatives[1..].iter().map(|(number, _)| *number);
+    let others = others.iter().zip(numbers);
+    let sound = others.filter_map(|(crossings, number)| Some(((*crossings)?, number)));
+    let best = sound.min_by_key(|(crossings, _)| *crossings);
+    best.filter(|(crossings, _)| *crossings < present)
+        .map(|(_, number)| number)
+}
+
+/// Makes the same alternative of all forks at once. For each: how many facets cross, if it is sound.
+fn crossings_of_round(
+    passed: &[Passed],
+    round: usize,
+    trials: &ForkTrials,
+    near: &Neighborhood,
+    may_join: &MayJoin<'_>,
+) -> Vec<Option<usize>> {
+    let old = |node: u32| near.nodes[node as usize];
+    let may_join = |from: u32, to: u32| may_join(old(from), old(to));
+    let alternative = |fork: u32| {
+        let number = passed.binary_search_by_key(&fork, |passed| passed.fork);
+        let of_fork = &passed[number.ok()?].alternatives;
+        of_fork.get(round).map(|(_, choice)| *choice)
+    };
+    let present = |node: u32| trials.choices()[node as usize];
+    let choices = near.nodes.iter();
+    let choices = choices.map(|&node| alternative(node).unwrap_or_else(|| present(node)));
+    let choices: Vec<ForkChoice> = choices.collect();
+    let made = Made::new(&near.skeleton, &choices, None, &may_join);
+    let refused: BTreeSet<u32> = made.refused.iter().map(|&fork| old(fork)).collect();
+    let mut own: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (fork, range) in &made.patches {
+        own.entry(old(*fork)).or_default().extend(range.clone());
+    }
+    let found = passed.par_iter().map(|passed| {
+        passed.alternatives.get(round)?;
+        let own = own.get(&passed.fork)?;
+        let own = RefinedPatches::new(&made.mesh, own.clone());
+        let sound = !refused.contains(&passed.fork) && count(&own.faults()) == 0;
+        sound.then(|| crossings(own.part.mesh, &passed.passing))
+    });
+    found.collect()
+}
+
+/// Sound forks that patches of other branches cross, ascending.
+fn passed(made: &Made, trials: &ForkTrials) -> Vec<Passed> {
     let mesh = &made.mesh;
-    let mut own: BTreeMap<u32, Vec<u32>> = forks.map(|fork| (fork, Vec::new())).collect();
+    let mut own: BTreeMap<u32, Vec<u32>> = trials.sound().map(|fork| (fork, Vec::new())).collect();
     for (fork, range) in &made.patches {
         if let Some(patches) = own.get_mut(fork) {
             patches.extend(range.clone());
         }
     }
-    let mut boxes: Vec<(Bounds, u32)> = own
+    let mut near: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (fork, patch) in patches_near(mesh, &own) {
+        near.entry(fork).or_default().push(patch);
+    }
+    let passed = near.into_par_iter().filter_map(|(fork, near)| {
+        let own = own.get(&fork)?;
+        let passing = of_others(mesh, own, &near);
+        if !(1..=MOST_PASSING).contains(&passing.len()) {
+            return None;
+        }
+        let passing = Part::new(mesh, passing).mesh;
+        let crossed = crossings(Part::new(mesh, own.clone()).mesh, &passing) > 0;
+        crossed.then(|| Passed {
+            fork,
+            passing,
+            alternatives: trials.alternatives(fork),
+        })
+    });
+    passed.collect()
+}
+
+/// Patches whose boxes overlap those of forks, which are given by their patches: pairs of fork and patch. Where
+/// very many are in one place not all are found, so that crowds cost no square.
+fn patches_near(mesh: &CoarseMesh, forks: &BTreeMap<u32, Vec<u32>>) -> Vec<(u32, u32)> {
+    let mut boxes: Vec<(Bounds, u32)> = forks
         .iter()
         .filter_map(|(&fork, patches)| Some((around(mesh, patches)?, fork)))
         .collect();
-    boxes.sort_by(|(a, _), (b, _)| a.low.x.total_cmp(&b.low.x));
     let width = |(bounds, _): &(Bounds, u32)| bounds.high.x - bounds.low.x;
-    let widest = boxes.iter().map(width).fold(0.0, f32::max);
-    let near: Vec<(u32, u32)> = (0..mesh.patches.len() as u32)
-        .into_par_iter()
-        .filter(|&patch| mesh.patches[patch as usize].kind != PatchKind::Soma)
-        .flat_map_iter(|patch| {
-            let bounds = patch_bounds(mesh, patch);
-            let first = boxes.partition_point(|(b, _)| b.low.x < bounds.low.x - widest);
-            let until = boxes.partition_point(|(b, _)| b.low.x <= bounds.high.x);
-            let overlapping = boxes[first..until.max(first)].iter();
-            let overlapping = overlapping.filter(move |(b, _)| b.overlaps(&bounds));
-            overlapping.map(move |&(_, fork)| (fork, patch))
-        })
-        .collect();
-    let mut near_fork: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for (fork, patch) in near {
-        near_fork.entry(fork).or_default().push(patch);
-    }
-    let passed = near_fork.into_par_iter().filter_map(|(fork, near)| {
-        let own = own.get(&fork)?;
-        let passing = of_others(mesh, own, &near);
-        let few = (1..=MOST_PASSING).contains(&passing.len());
-        let crossed = |passing: &[u32]| {
-            let part = Part::new(mesh, own.clone());
-            crossings(part.mesh, &Part::new(mesh, passing.to_vec()).mesh) > 0
-        };
-        (few && crossed(&passing)).then_some(Passed { fork, passing })
+    let mut widths: Vec<f32> = boxes.iter().map(width).collect();
+    widths.sort_by(f32::total_cmp);
+    let widest = WIDE * widths.get(widths.len() / 2).copied().unwrap_or(0.0);
+    let mut wide: Vec<(Bounds, u32)> = boxes.extract_if(.., |b| width(b) > widest).collect();
+    wide.truncate(MOST_WIDE);
+    boxes.sort_by(|(a, _), (b, _)| a.low.x.total_cmp(&b.low.x));
+    let near = (0..mesh.patches.len() as u32).into_par_iter();
+    let near = near.filter(|&patch| mesh.patches[patch as usize].kind != PatchKind::Soma);
+    let near = near.flat_map_iter(|patch| {
+        let bounds = patch_bounds(mesh, patch);
+        let first = boxes.partition_point(|(b, _)| b.low.x < bounds.low.x - widest);
+        let until = boxes.partition_point(|(b, _)| b.low.x <= bounds.high.x);
+        let beside = boxes[first..until.max(first)].iter().take(MOST_LOOKED_AT);
+        let overlapping = beside
+            .chain(&wide)
+            .filter(move |(b, _)| b.overlaps(&bounds));
+        let overlapping = overlapping.take(MOST_FORKS);
+        overlapping.map(move |&(_, fork)| (fork, patch))
     });
-    passed.collect()
+    near.collect()
 }
 
 /// Those of the patches `near` that belong to no section of the fork's own patches, and touch none of them.
@@ -116,42 +198,6 @@ fn of_others(mesh: &CoarseMesh, own: &[u32], near: &[u32]) -> Vec<u32> {
     others
         .filter(|&patch| !corners(patch).into_iter().any(is_own))
         .collect()
-}
-
-/// Another choice than the present one, if it is sound and crossed less.
-fn least_crossed(
-    passed: &Passed,
-    trials: &ForkTrials,
-    skeleton: &Skeleton,
-    whole: &CoarseMesh,
-    may_join: &MayJoin<'_>,
-) -> Option<ChoiceNumber> {
-    let near = Neighborhood::new(skeleton, &[passed.fork]);
-    let old = |node: u32| near.nodes[node as usize];
-    let may_join = |from: u32, to: u32| may_join(old(from), old(to));
-    let passing = Part::new(whole, passed.passing.clone()).mesh;
-    let crossed = |choice: ForkChoice| {
-        let choices = near.nodes.iter().map(|&node| match node == passed.fork {
-            true => choice,
-            false => trials.choices()[node as usize],
-        });
-        let choices: Vec<ForkChoice> = choices.collect();
-        let made = Made::new(&near.skeleton, &choices, None, &may_join);
-        let is_fork = |node: u32| old(node) == passed.fork;
-        let refused = made.refused.iter().any(|&fork| is_fork(fork));
-        let own = made.patches.iter().filter(|(fork, _)| is_fork(*fork));
-        let own: Vec<u32> = own.flat_map(|(_, range)| range.clone()).collect();
-        let own = RefinedPatches::new(&made.mesh, own);
-        let sound = !refused && count(&own.faults()) == 0;
-        sound.then(|| crossings(own.part.mesh, &passing))
-    };
-    let mut alternatives = trials.alternatives(passed.fork).into_iter();
-    let (_, present) = alternatives.next()?;
-    let present = crossed(present)?;
-    let others = alternatives.filter_map(|(number, choice)| Some((crossed(choice)?, number)));
-    let best = others.min_by_key(|(crossings, _)| *crossings);
-    best.filter(|(crossings, _)| *crossings < present)
-        .map(|(_, number)| number)
 }
 
 /// How many facets of two meshes without a common vertex cross.

@@ -93,12 +93,15 @@ fn processes_that_would_close_a_loop_become_thinner() {
         let found = warnings.iter().find(|warning| warning["code"] == "thinned");
         found.and_then(|warning| warning["count"].as_u64())
     };
-    let options = "--radii traced --max-aspect 1";
-    let mesh = run(&format!(
-        "mesh {path} -o cell.ply --simulation {options} --json"
-    ));
-    assert!(thinned(&mesh) > Some(0));
-    assert_eq!(mesh["crossings"]["handles_made"], 0);
+    // Which of these leave a loop at first depends on where vertices happen to lie.
+    let several = ["--isotropic 0.7", "--isotropic 2", "--max-aspect 4"].map(|options| {
+        let mesh = run(&format!(
+            "mesh {path} -o cell.ply --simulation {options} --force --json"
+        ));
+        assert_eq!(mesh["crossings"]["handles_made"], 0, "{options}");
+        thinned(&mesh)
+    });
+    assert!(several.into_iter().flatten().sum::<u64>() > 0);
     // What is not for simulators stays as thick as traced.
     let mesh = run(&format!(
         "mesh {path} -o cell.ply --crossings merge --force --json"
