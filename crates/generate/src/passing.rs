@@ -159,19 +159,21 @@ fn patches_near(mesh: &CoarseMesh, forks: &BTreeMap<u32, Vec<u32>>) -> Vec<(u32,
         .iter()
         .filter_map(|(&fork, patches)| Some((around(mesh, patches)?, fork)))
         .collect();
-    let width = |(bounds, _): &(Bounds, u32)| bounds.high.x - bounds.low.x;
+    let axis = longest_axis(&boxes);
+    let width = |(bounds, _): &(Bounds, u32)| bounds.high[axis] - bounds.low[axis];
     let mut widths: Vec<f32> = boxes.iter().map(width).collect();
     widths.sort_by(f32::total_cmp);
     let widest = WIDE * widths.get(widths.len() / 2).copied().unwrap_or(0.0);
     let mut wide: Vec<(Bounds, u32)> = boxes.extract_if(.., |b| width(b) > widest).collect();
     wide.truncate(MOST_WIDE);
-    boxes.sort_by(|(a, _), (b, _)| a.low.x.total_cmp(&b.low.x));
+    boxes.sort_by(|(a, _), (b, _)| a.low[axis].total_cmp(&b.low[axis]));
     let near = (0..mesh.patches.len() as u32).into_par_iter();
     let near = near.filter(|&patch| mesh.patches[patch as usize].kind != PatchKind::Soma);
     let near = near.flat_map_iter(|patch| {
         let bounds = patch_bounds(mesh, patch);
-        let first = boxes.partition_point(|(b, _)| b.low.x < bounds.low.x - widest);
-        let until = boxes.partition_point(|(b, _)| b.low.x <= bounds.high.x);
+        let (low, high) = (bounds.low[axis] - widest, bounds.high[axis]);
+        let first = boxes.partition_point(|(b, _)| b.low[axis] < low);
+        let until = boxes.partition_point(|(b, _)| b.low[axis] <= high);
         let beside = boxes[first..until.max(first)].iter().take(MOST_LOOKED_AT);
         let overlapping = beside
             .chain(&wide)
@@ -180,6 +182,17 @@ fn patches_near(mesh: &CoarseMesh, forks: &BTreeMap<u32, Vec<u32>>) -> Vec<(u32,
         overlapping.map(move |&(_, fork)| (fork, patch))
     });
     near.collect()
+}
+
+/// The axis along which boxes are spread out most.
+fn longest_axis(boxes: &[(Bounds, u32)]) -> usize {
+    let all = boxes.iter().map(|(bounds, _)| *bounds);
+    let Some(all) = all.reduce(|a, b| a.with(&b)) else {
+        return 0;
+    };
+    let size = all.high - all.low;
+    let longer = |a: usize, b: usize| if size[b] > size[a] { b } else { a };
+    longer(longer(0, 1), 2)
 }
 
 /// Those of the patches `near` that belong to no section of the fork's own patches, and touch none of them.

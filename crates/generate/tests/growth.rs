@@ -132,6 +132,26 @@ fn forks_in_a_row(count: usize) -> Morphology {
     m
 }
 
+/// Forks of a long path, each with another neurite that runs through it.
+fn forks_that_are_passed(count: usize) -> Morphology {
+    let mut m = Morphology::default();
+    let count = count / 8;
+    let mut attachment = Attachment::Free;
+    for i in 0..count as u32 {
+        let at = Vec3::Y * (12.0 * i as f32);
+        add_section(&mut m, attachment, &[at - Vec3::Y * 6.0, at], 0.5);
+        attachment = Attachment::Section(SectionId(2 * i));
+        let side = at + vec3(2.0, 2.0, 0.0);
+        add_section(&mut m, attachment, &[side, side + vec3(2.0, 2.0, 0.0)], 0.4);
+    }
+    for i in 0..count {
+        let at = Vec3::Y * (12.0 * i as f32) + vec3(0.9, 0.2, 0.0);
+        let through = [-4.0, -1.0, 1.0, 4.0].map(|z| at + vec3(0.1 * z, 0.3 * z, z));
+        add_section(&mut m, Attachment::Free, &through, 0.3);
+    }
+    m
+}
+
 /// Forks that all lie within each other.
 fn forks_in_one_place(count: usize) -> Morphology {
     let mut m = forks_in_a_row(count);
@@ -268,7 +288,7 @@ fn assert_no_square(kinds: &[Kind], options: &GenerateOptions) {
 
 #[test]
 fn no_stage_takes_the_square_of_what_it_is_given() {
-    let kinds: [Kind; 12] = [
+    let kinds: [Kind; 13] = [
         ("stems all around", stems_all_around, 4_000),
         ("stems in one direction", stems_in_one_direction, 4_000),
         ("branches all around", branches_all_around, 4_000),
@@ -281,6 +301,7 @@ fn no_stage_takes_the_square_of_what_it_is_given() {
         ("short branches", short_branches, 4_000),
         ("forks in a row", forks_in_a_row, 4_000),
         ("forks in one place", forks_in_one_place, 4_000),
+        ("forks that are passed", forks_that_are_passed, 4_000),
         ("lone somata", lone_somata, 1_000),
         ("somata with a stem", somata_with_a_stem, 200),
         ("free trees", free_trees, 4_000),
