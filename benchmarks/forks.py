@@ -40,7 +40,6 @@ class Tracing:
         rows = [line.split() for line in swc.read_text().splitlines() if not line.startswith("#")]
         rows = [row for row in rows if row]
         place = {row[0]: number for number, row in enumerate(rows)}
-        self.samples = [row[0] for row in rows]
         self.soma = np.array([row[1] == "1" for row in rows])
         self.points = np.array([row[2:5] for row in rows], float)
         self.radii = np.array([row[5] for row in rows], float)

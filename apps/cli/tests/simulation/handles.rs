@@ -95,13 +95,14 @@ fn processes_that_would_close_a_loop_become_thinner() {
     };
     // Which of these leave a loop at first depends on where vertices happen to lie.
     let options = ["--isotropic 2", "--isotropic 0.7", "--max-aspect 4"];
-    let is_mended = options.into_iter().any(|options| {
+    let counts = options.map(|options| {
         let mesh = run(&format!(
             "mesh {path} -o cell.ply --simulation {options} --force --json"
         ));
-        thinned(&mesh) > Some(0) && mesh["crossings"]["handles_made"] == 0
+        assert_eq!(mesh["crossings"]["handles_made"], 0, "{options}");
+        thinned(&mesh)
     });
-    assert!(is_mended);
+    assert!(counts.into_iter().max() > Some(Some(0)), "{counts:?}");
     // What is not for simulators stays as thick as traced.
     let mesh = run(&format!(
         "mesh {path} -o cell.ply --crossings merge --force --json"
