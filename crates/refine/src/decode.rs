@@ -3,6 +3,7 @@
 //! | what | bytes | holds |
 //! | --- | --- | --- |
 //! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), color key (10), kind and run (3) |
+//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, collar (16), whether it is an inset |
 //! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
 //! | anchor | 32 | center, reach, radius, tangent, role and collar, color key |
@@ -11,11 +12,18 @@
 //! | cap | 4 | its ring |
 //!
 //! A point has an implicit ring, four vertices a quarter turn apart, and four lateral patches to
-//! the next point: rings and lateral patches are computed from points alone. Joints, insertions and
-//! somata are made of explicit vertices, stored relative to anchors. Errors: at most 0.2 % of the
-//! radius for the center (a ring whose sphere is too large for that becomes explicit), 0.02 % for
-//! the radius, 0.4 % for the tangent, 0.4 % for the turn; for explicit vertices 2⁻¹⁶ of their
-//! distance from the anchor. All together less than a hundredth of the radius:
+//! the next point: rings and lateral patches are computed from points alone. Where branches leave
+//! through insets, the rings beside them have corners that are not a quarter turn apart, and those of
+//! insets lie at different heights along the branch: these are **shaped rings**. Some of the four sides
+//! from such a ring to the next are open. Joints, insertions and somata are made of explicit vertices,
+//! stored relative to anchors.
+//!
+//! Patches outside of runs name explicit vertices by their index, and after them the corners of shaped
+//! rings, four each.
+//!
+//! Errors: at most 0.2 % of the radius for the center (a ring whose sphere is too large for that becomes
+//! explicit), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the turn; for explicit vertices
+//! 2⁻¹⁶ of their distance from the anchor. All together less than a hundredth of the radius:
 //! `resident_form_is_within_a_hundredth_of_the_radius`.
 
 use glam::Vec3;
@@ -28,11 +36,21 @@ pub(crate) const SPHERE_U32S: usize = 5;
 /// Bit of a vertex that is explicit.
 pub(crate) const EXPLICIT: u32 = 1 << 31;
 pub(crate) const POINT_KIND_SHIFT: u32 = 30;
-/// Kinds of a point: with an implicit ring, the same at an end, or with a ring of explicit
-/// vertices.
+/// Kinds of a point: with an implicit ring, the same at an end, with a ring of explicit vertices, or
+/// with a shaped ring. Those of implicit rings come first.
 pub(crate) const POINT_ORDINARY: u32 = 0;
 pub(crate) const POINT_END: u32 = 1;
 pub(crate) const POINT_EXPLICIT: u32 = 2;
+pub(crate) const POINT_SHAPED: u32 = 3;
+/// Number of u32s of a shaped ring.
+pub const SHAPED_U32S: usize = 5;
+/// First bit of a shaped ring's level, and of its four open sides.
+pub(crate) const SHAPED_LEVEL_SHIFT: u32 = 22;
+pub(crate) const SHAPED_OPEN_SHIFT: u32 = 28;
+/// Bit of a shaped ring that is an inset's.
+pub(crate) const SHAPED_INSET: u32 = 1 << 26;
+/// Greatest height of a shaped ring's corner over its center, in radii.
+pub(crate) const MOST_HEIGHT: f32 = 4.0;
 /// Bit of a point where the tube narrows.
 pub(crate) const POINT_NARROWS: u32 = 1 << 29;
 /// Bit of a point that has lateral patches to the next.
@@ -189,6 +207,46 @@ impl ImplicitRing {
         let slope = slope(self.slope.0, self.slope.1);
         let normal = normalize_or(direction - tangent * slope, direction);
         (center + direction * radius(self.radius), normal)
+    }
+}
+
+/// A ring around a point whose corners have turns and heights of their own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShapedRing {
+    /// Its turn is not used.
+    pub(crate) circle: ImplicitRing,
+    pub(crate) turns: [u32; 4],
+    pub(crate) heights: [u32; 4],
+    pub(crate) collar: u32,
+}
+
+impl ShapedRing {
+    /// Position and normal of corner k around a center.
+    pub(crate) fn corner(&self, center: Vec3, k: usize) -> (Vec3, Vec3) {
+        let turned = ImplicitRing {
+            turn: self.turns[k],
+            ..self.circle
+        };
+        let (on_circle, normal) = turned.corner(center, 0);
+        let height = signed16(self.heights[k]) * MOST_HEIGHT * radius(self.circle.radius);
+        (on_circle + self.circle.tangent() * height, normal)
+    }
+
+    /// All but its point and its open sides, as it is stored.
+    pub(crate) fn packed(&self) -> [u32; SHAPED_U32S - 1] {
+        let [a, b, c, d] = self.turns;
+        let inset = if self.circle.role == Role::Inset {
+            SHAPED_INSET
+        } else {
+            0
+        };
+        let pair = |k: usize| self.heights[k] | (self.heights[k + 1] << 16);
+        [
+            a | (b << 10) | (c << 20),
+            d | (self.collar << 10) | inset,
+            pair(0),
+            pair(2),
+        ]
     }
 }
 

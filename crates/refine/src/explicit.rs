@@ -4,13 +4,14 @@ use neurotess_mesh::PatchKind;
 
 use crate::bounding_sphere::sphere_around;
 use crate::decode::{POINTS_OF_SPHERE, accurate};
-use crate::packer::{Packer, cap_ring};
-use crate::runs::{Tube, implicit_ring};
+use crate::packer::{Packer, Pile, cap_ring};
+use crate::runs::Tube;
 
 impl Packer<'_> {
     /// Finds the explicit vertices. A ring is implicit, which means that its vertices are computed
     /// from its point, if it is a circle and belongs to a single run, and to no patch outside that
-    /// run but its cap.
+    /// run but its cap. Other rings of a single run are shaped, if they are near enough to what can
+    /// be computed.
     pub(crate) fn find_explicit(&mut self) {
         let mut uses = vec![0_u8; self.mesh.vertices.len()];
         for ring in self.runs.iter().flat_map(|run| &run.rings) {
@@ -28,20 +29,20 @@ impl Packer<'_> {
             let ring = cap_ring(patch.corners).filter(|&(first, _)| at_end[first as usize]);
             let plain = patch.kind == PatchKind::Cap && ring.is_some();
             for v in patch.corners {
-                self.explicit[v as usize] |= !plain || uses[v as usize] != 1;
+                self.named[v as usize] |= !plain;
+                self.explicit[v as usize] |= uses[v as usize] != 1;
             }
         }
-        for run in &self.runs {
-            for &ring in &run.rings {
-                let implicit = implicit_ring(self.mesh, ring).is_some();
-                let shared = ring
-                    .iter()
-                    .any(|&v| uses[v as usize] != 1 || self.explicit[v as usize]);
-                if !implicit || shared {
+        for run in 0..self.runs.len() {
+            for i in 0..self.runs[run].rings.len() {
+                let ring = self.runs[run].rings[i];
+                let shared = ring.iter().any(|&v| uses[v as usize] != 1);
+                if shared || self.fit(ring).is_none() {
                     ring.iter().for_each(|&v| self.explicit[v as usize] = true);
                 }
             }
         }
+        self.spread_explicit();
         // At worst, a sphere holds points of two runs at opposite ends of the mesh.
         let reach = |run: &Tube| {
             let centers = run.rings.iter().map(|ring| (self.center(ring[0]), 0.0));
@@ -78,6 +79,57 @@ impl Packer<'_> {
             }
             for ring in found {
                 ring.iter().for_each(|&v| self.explicit[v as usize] = true);
+            }
+            self.spread_explicit();
+        }
+    }
+
+    /// Makes shaped rings explicit whose patches are in several parts. Returns whether there were any.
+    pub(crate) fn make_parted_explicit(&mut self, piles: &[Pile]) -> bool {
+        let mut pile_of = vec![usize::MAX; self.runs.len()];
+        for (p, pile) in piles.iter().enumerate() {
+            pile.runs.iter().for_each(|&run| pile_of[run] = p);
+        }
+        let mut found = false;
+        for (p, pile) in piles.iter().enumerate() {
+            for &other in &pile.others {
+                for v in self.mesh.patches[other].corners.map(|v| v as usize) {
+                    if !self.explicit[v] && pile_of[self.run_of[v] as usize] != p {
+                        self.explicit[v] = true;
+                        found = true;
+                    }
+                }
+            }
+        }
+        if found {
+            self.spread_explicit();
+        }
+        found
+    }
+
+    /// Makes a ring explicit where one of its vertices is, and both rings beside a branch where one of them
+    /// is: shaders order corners by their kinds, and the side of a loft must have the direction of the tube
+    /// beside it.
+    fn spread_explicit(&mut self) {
+        loop {
+            let mut changed = false;
+            for ring in self.runs.iter().flat_map(|run| &run.rings) {
+                let count = ring.iter().filter(|&&v| self.explicit[v as usize]).count();
+                if (1..4).contains(&count) {
+                    ring.iter().for_each(|&v| self.explicit[v as usize] = true);
+                    changed = true;
+                }
+            }
+            for &other in &self.others {
+                let patch = &self.mesh.patches[other];
+                let [a, b, ..] = patch.corners.map(|v| v as usize);
+                if patch.kind == PatchKind::Loft && self.explicit[a] != self.explicit[b] {
+                    (self.explicit[a], self.explicit[b]) = (true, true);
+                    changed = true;
+                }
+            }
+            if !changed {
+                return;
             }
         }
     }

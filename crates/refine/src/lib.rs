@@ -18,6 +18,7 @@
 //! packed form of a mesh that they read.
 #![forbid(unsafe_code)]
 
+mod anchors;
 mod bounding_sphere;
 mod coarse_surface;
 mod decode;
@@ -33,6 +34,7 @@ mod part;
 mod patch_points;
 mod plan;
 mod refinement;
+mod ring_form;
 mod runs;
 #[cfg(feature = "testing")]
 pub mod testing;
@@ -40,7 +42,7 @@ pub mod wgsl;
 
 pub use bounding_sphere::{patch_sphere, sphere_around};
 pub use coarse_surface::CoarseSurface;
-pub use decode::POINTS_OF_SPHERE;
+pub use decode::{POINTS_OF_SPHERE, SHAPED_U32S};
 pub use level::HIGHEST_LEVEL;
 pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, RefineOptions};
 pub use pack::{dequantized, pack};

@@ -24,7 +24,11 @@ pub fn pack(
 ) -> Vec<MeshPart> {
     let mut packer = Packer::new(mesh, color_keys, values);
     packer.find_explicit();
-    let piles = packer.piles(most_patches.max(4 * PATCHES_OF_SPHERE));
+    let most = most_patches.max(4 * PATCHES_OF_SPHERE);
+    let mut piles = packer.piles(most);
+    while packer.make_parted_explicit(&piles) {
+        piles = packer.piles(most);
+    }
     let mut parts: Vec<MeshPart> = piles
         .iter()
         .map(|pile| packer.write(&packer.contents(pile)))

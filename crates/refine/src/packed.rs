@@ -5,25 +5,30 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use neurotess_mesh::{Role, TracingPoint};
 
+use crate::anchors::Anchors;
 use crate::bounding_sphere::{patch_sphere, sphere_around};
 use crate::decode::{
-    ImplicitRing, POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS,
-    POINT_ORDINARY, POINTS_OF_SPHERE, collar, from_sphere, octahedral, radius, signed16, to_collar,
-    to_octahedral, to_signed16, to_sphere,
+    POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_ORDINARY,
+    POINT_SHAPED, POINTS_OF_SPHERE, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, collar, from_sphere,
+    radius, to_sphere,
 };
-use crate::packer::{Contents, Packer, Slot, cap_ring, widened};
+use crate::packer::{Contents, Packer, cap_ring, widened};
 use crate::part::{MOST_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
+use crate::ring_form::RingForm;
 
 impl Packer<'_> {
     pub(crate) fn write(&self, contents: &Contents) -> MeshPart {
         let mut part = MeshPart::default();
         self.list_patches(contents, &mut part);
         let rings = contents.slots.iter().filter_map(|slot| slot.ring);
-        let implicit = rings.filter_map(|ring| self.implicit(ring));
-        let color_keys = ColorKeys::new(implicit.map(|implicit| self.color_key(implicit.tracing)));
+        let forms = rings.filter_map(|ring| self.form(ring));
+        let color_keys = ColorKeys::new(forms.map(|form| self.color_key(form.circle().tracing)));
         let point_of = self.write_points(contents, &color_keys, &mut part);
         self.write_explicit(contents, &mut part);
-        part.explicit.clone_from(&contents.explicit);
+        self.write_shaped(contents, &mut part);
+        let shaped = contents.shaped.iter();
+        let shaped = shaped.flat_map(|&(first, _)| first..first + 4);
+        part.explicit = contents.explicit.iter().copied().chain(shaped).collect();
         self.write_patches(contents, &point_of, &mut part);
         part.layout.color_keys = part.packed.len() as u32;
         part.packed.extend(&color_keys.list);
@@ -40,14 +45,8 @@ impl Packer<'_> {
             ..
         } = contents;
         let others: Vec<usize> = [soma, quads, caps].into_iter().flatten().copied().collect();
-        let patches = |slot: &Slot| [0, 1, 2, 3].map(|k| slot.patch.map(|patch| patch + k));
-        let all = slots
-            .iter()
-            .flat_map(patches)
-            .chain(others.iter().map(|&p| Some(p)));
-        part.patches = all
-            .map(|patch| patch.map_or(u32::MAX, |p| p as u32))
-            .collect();
+        let laterals = slots.iter().flat_map(|slot| slot.patches);
+        part.patches = laterals.chain(others.iter().map(|&p| p as u32)).collect();
         part.spheres = slots
             .chunks(POINTS_OF_SPHERE)
             .map(|slots| self.sphere(slots))
@@ -71,29 +70,34 @@ impl Packer<'_> {
     ) -> BTreeMap<u32, u32> {
         let mut point_of = BTreeMap::new();
         for (i, slot) in contents.slots.iter().enumerate() {
-            let goes_on = if slot.patch.is_some() {
-                POINT_GOES_ON
-            } else {
-                0
-            };
-            let implicit = slot
-                .ring
-                .and_then(|ring| self.implicit(ring).map(|implicit| (ring[0], implicit)));
-            let point = match implicit {
-                Some((first, implicit)) => {
-                    point_of.insert(first, i as u32);
+            let form = slot.ring.and_then(|ring| Some((ring[0], self.form(ring)?)));
+            let point = match form {
+                Some((first, form)) => {
                     let sphere = part.spheres[i / POINTS_OF_SPHERE];
-                    self.implicit_point(part, first, &implicit, sphere, goes_on, color_keys)
+                    let [x, y, mut z, w] = self.point_bits(part, first, &form, sphere, color_keys);
+                    let (kind, named) = match &form {
+                        RingForm::Shaped(_) => (POINT_SHAPED, contents.shaped_index(first)),
+                        RingForm::Implicit(circle) => {
+                            point_of.insert(first, i as u32);
+                            let end = circle.role == Role::End;
+                            let turn = circle.turn | ((self.level(circle.tracing) - 1) << 10);
+                            (if end { POINT_END } else { POINT_ORDINARY }, turn)
+                        }
+                    };
+                    z |= named << 16;
+                    [x, y | (kind << POINT_KIND_SHIFT), z, w]
                 }
                 None => {
                     // An empty slot is never drawn.
-                    let ids = slot.ring.map(|ring| ring.map(|v| contents.explicit_id(v)));
+                    let ids = slot.ring.map(|ring| ring.map(|v| contents.id(v)));
                     let [a, b, c, d] = ids.unwrap_or_default();
                     let kind = POINT_EXPLICIT << POINT_KIND_SHIFT;
-                    [a | (b << 16), kind | goes_on, c | (d << 16), 0]
+                    [a | (b << 16), kind | slot.open_sides(), c | (d << 16), 0]
                 }
             };
-            part.packed.extend(point);
+            let goes_on = if slot.goes_on() { POINT_GOES_ON } else { 0 };
+            let [x, y, z, w] = point;
+            part.packed.extend([x, y | goes_on, z, w]);
         }
         part.layout.point_count = contents.slots.len() as u32;
         part.layout.spheres = part.packed.len() as u32;
@@ -118,6 +122,19 @@ impl Packer<'_> {
         anchors.write(self, &mut part.packed, &mut part.tracing);
     }
 
+    fn write_shaped(&self, contents: &Contents, part: &mut MeshPart) {
+        part.layout.shaped = part.packed.len() as u32;
+        for &(_, point) in &contents.shaped {
+            let slot = &contents.slots[point as usize];
+            if let Some(RingForm::Shaped(shaped)) = slot.ring.and_then(|ring| self.form(ring)) {
+                let level = (self.level(shaped.circle.tracing) - 1) << SHAPED_LEVEL_SHIFT;
+                let open = slot.open_sides() << SHAPED_OPEN_SHIFT;
+                part.packed.push(point | level | open);
+                part.packed.extend(shaped.packed());
+            }
+        }
+    }
+
     fn write_patches(
         &self,
         contents: &Contents,
@@ -127,7 +144,7 @@ impl Packer<'_> {
         let MeshPart { packed, layout, .. } = part;
         let corners = |patch: usize| {
             let corners = self.mesh.patches[patch].corners;
-            corners.map(|v| contents.explicit_id(v))
+            corners.map(|v| contents.id(v))
         };
         layout.soma = packed.len() as u32;
         layout.soma_count = contents.soma.len() as u32;
@@ -140,7 +157,6 @@ impl Packer<'_> {
         let pair = |pair: &[u32]| pair[0] | (pair.get(1).copied().unwrap_or(0) << 16);
         packed.extend(halves.chunks(2).map(pair));
         layout.quads = packed.len() as u32;
-        layout.quad_count = contents.quads.len() as u32;
         for &quad in &contents.quads {
             let [a, b, c, d] = corners(quad);
             let kind = self.mesh.patches[quad].kind as u32;
@@ -156,57 +172,47 @@ impl Packer<'_> {
         }
     }
 
-    fn implicit_point(
+    /// The bits of a point that do not depend on its kind: center, radius, tangent, taper and color key.
+    fn point_bits(
         &self,
         part: &mut MeshPart,
         first: u32,
-        implicit: &ImplicitRing,
+        form: &RingForm,
         (middle, reach): (Vec3, f32),
-        goes_on: u32,
         color_keys: &ColorKeys,
     ) -> [u32; 4] {
-        let point = &self.mesh.tracing[implicit.tracing as usize];
+        let circle = form.circle();
+        let point = &self.mesh.tracing[circle.tracing as usize];
         let place = to_sphere(middle, reach, point.center);
         let center = from_sphere(middle, reach, place);
         for k in 0..4 {
-            let (position, normal) = implicit.corner(center, k);
-            part.vertices.push((first + k, position, normal));
+            let (position, normal) = form.corner(center, k);
+            part.vertices.push((first + k as u32, position, normal));
         }
-        let radius = radius(implicit.radius);
-        part.tracing.push((
-            implicit.tracing,
-            TracingPoint {
-                center,
-                radius,
-                tangent: implicit.tangent(),
-                ..*point
-            },
-        ));
-        let [x, y, z] = place;
-        let kind = if implicit.role == Role::End {
-            POINT_END
-        } else {
-            POINT_ORDINARY
+        let collar = match form {
+            RingForm::Implicit(_) => point.collar,
+            RingForm::Shaped(shaped) => collar(shaped.collar),
         };
-        let (slope, narrows) = implicit.slope;
+        let rounded = TracingPoint {
+            center,
+            radius: radius(circle.radius),
+            tangent: circle.tangent(),
+            collar,
+            ..*point
+        };
+        part.tracing.push((circle.tracing, rounded));
+        let [x, y, z] = place;
+        let (slope, narrows) = circle.slope;
         let narrows = if narrows { POINT_NARROWS } else { 0 };
         [
             x | (y << 20),
-            (y >> 12) | (z << 8) | goes_on | narrows | (kind << POINT_KIND_SHIFT),
-            implicit.radius | (implicit.turn << 16) | ((self.level(implicit.tracing) - 1) << 26),
-            implicit.tangent.0
-                | (implicit.tangent.1 << 9)
+            (y >> 12) | (z << 8) | narrows,
+            circle.radius,
+            circle.tangent.0
+                | (circle.tangent.1 << 9)
                 | (slope << 18)
-                | (color_keys.index_of(self.color_key(implicit.tracing)) << 22),
+                | (color_keys.index_of(self.color_key(circle.tracing)) << 22),
         ]
-    }
-}
-
-impl Contents {
-    fn explicit_id(&self, v: u32) -> u32 {
-        self.explicit
-            .binary_search(&v)
-            .expect("a part lists all its explicit vertices") as u32
     }
 }
 
@@ -238,88 +244,5 @@ impl ColorKeys {
         self.list
             .binary_search(&key)
             .expect("a part lists the color keys of all its points") as u32
-    }
-}
-
-/// Anchors, which explicit vertices are stored relative to: their tracing points, or the center of
-/// a soma.
-struct Anchors {
-    /// By key: index, tracing point and greatest coordinate of an offset (µm).
-    all: BTreeMap<(u32, [u32; 3]), (u32, u32, f32)>,
-}
-
-impl Anchors {
-    fn key(packer: &Packer<'_>, tracing: u32) -> (u32, [u32; 3]) {
-        let point = &packer.mesh.tracing[tracing as usize];
-        if point.role == Role::Soma {
-            (u32::MAX, point.center.to_array().map(f32::to_bits))
-        } else {
-            (tracing, [0; 3])
-        }
-    }
-
-    fn new(packer: &Packer<'_>, explicit: &[u32]) -> Self {
-        let mut all = BTreeMap::new();
-        for &v in explicit {
-            let vertex = &packer.mesh.vertices[v as usize];
-            let offset = vertex.position - packer.mesh.tracing[vertex.tracing as usize].center;
-            let key = Self::key(packer, vertex.tracing);
-            let entry = all.entry(key).or_insert((0, vertex.tracing, 0.0_f32));
-            entry.2 = entry.2.max(offset.abs().max_element());
-        }
-        for (index, entry) in (0..).zip(all.values_mut()) {
-            entry.0 = index;
-            entry.2 = (entry.2 * 1.000_001).max(f32::MIN_POSITIVE);
-        }
-        Self { all }
-    }
-
-    fn explicit(&self, packer: &Packer<'_>, v: u32) -> ([u32; 3], Vec3, Vec3) {
-        let vertex = &packer.mesh.vertices[v as usize];
-        let (anchor, tracing, reach) = self
-            .all
-            .get(&Self::key(packer, vertex.tracing))
-            .copied()
-            .expect("anchors are made of all explicit vertices");
-        let center = packer.mesh.tracing[tracing as usize].center;
-        let offset = (vertex.position - center) / reach;
-        let [x, y, z] = offset.to_array().map(to_signed16);
-        let (nx, ny) = to_octahedral(vertex.normal, 4095.0);
-        let position = center + Vec3::new(signed16(x), signed16(y), signed16(z)) * reach;
-        let packed = [
-            x | (y << 16),
-            z | (anchor << 16),
-            nx | (ny << 12) | (packer.level(vertex.tracing) << 24),
-        ];
-        (packed, position, octahedral(nx, ny, 4095.0))
-    }
-
-    fn write(
-        &self,
-        packer: &Packer<'_>,
-        packed: &mut Vec<u32>,
-        read: &mut Vec<(u32, TracingPoint)>,
-    ) {
-        for &(_, tracing, reach) in self.all.values() {
-            let point = &packer.mesh.tracing[tracing as usize];
-            let (x, y) = to_octahedral(point.tangent, 65535.0);
-            packed.extend(point.center.extend(reach).to_array().map(f32::to_bits));
-            packed.extend([
-                point.radius.to_bits(),
-                x | (y << 16),
-                point.role as u32 | (to_collar(point.collar) << 16),
-                packer.color_key(tracing),
-            ]);
-            if point.role != Role::Soma {
-                read.push((
-                    tracing,
-                    TracingPoint {
-                        tangent: octahedral(x, y, 65535.0),
-                        collar: collar(to_collar(point.collar)),
-                        ..*point
-                    },
-                ));
-            }
-        }
     }
 }

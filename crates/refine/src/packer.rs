@@ -4,17 +4,20 @@
 //! explicit, and explicit vertices keep the mesh's order. So the two patches beside an edge have
 //! the same bits for it and evaluate it in the same direction: there are no cracks.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::bounding_sphere::{patch_sphere, sphere_around};
-use crate::decode::{ImplicitRing, POINTS_OF_SPHERE, accurate};
+use crate::decode::{POINTS_OF_SPHERE, accurate};
 use crate::part::{MOST_COLOR_KEYS, PATCHES_OF_SPHERE};
-use crate::runs::{Tube, find_runs, implicit_ring};
+use crate::ring_form::{RingForm, implicit_ring, shaped_ring};
+use crate::runs::{NO_PATCH, Tube, find_runs};
 
-/// Most explicit vertices of a part: their indices have 15 bits.
+/// Most slots for patches of a part: a shaped ring keeps the index of its point in 22 bits.
+const MOST_PATCHES: usize = 1 << 24;
+/// Most explicit vertices and corners of shaped rings of a part: their indices have 15 bits.
 const MOST_EXPLICIT: usize = 1 << 15;
 /// Patches of somata are stored with indices of 12 bits: they reach this many explicit vertices.
 const FEW_EXPLICIT: usize = 1 << 12;
@@ -26,8 +29,8 @@ const MOST_NUMBERS: u32 = 1 << 20;
 /// Runs and other patches that go into one part, by index.
 #[derive(Default)]
 pub(crate) struct Pile {
-    runs: Vec<usize>,
-    others: Vec<usize>,
+    pub(crate) runs: Vec<usize>,
+    pub(crate) others: Vec<usize>,
 }
 
 pub(crate) struct Packer<'m> {
@@ -38,7 +41,14 @@ pub(crate) struct Packer<'m> {
     pub(crate) others: Vec<usize>,
     /// By vertex: whether it is explicit.
     pub(crate) explicit: Vec<bool>,
+    /// By vertex: whether patches name it that belong to no run and are no cap of its ring.
+    pub(crate) named: Vec<bool>,
+    /// By vertex: the last run with a ring that it belongs to, [`NO_RUN`] if there is none.
+    pub(crate) run_of: Vec<u32>,
 }
+
+/// In place of a run.
+pub(crate) const NO_RUN: u32 = u32::MAX;
 
 impl<'m> Packer<'m> {
     /// Finds the runs of a mesh; no vertex is explicit yet.
@@ -57,6 +67,12 @@ impl<'m> Packer<'m> {
                 (low.min(p), high.max(p))
             });
         runs.sort_by_key(|run| morton((middle(run) - low) / (high - low).max_element().max(1e-6)));
+        let mut run_of = vec![NO_RUN; mesh.vertices.len()];
+        for (i, run) in (0..).zip(&runs) {
+            for &v in run.rings.iter().flatten() {
+                run_of[v as usize] = i;
+            }
+        }
         Self {
             mesh,
             color_keys,
@@ -64,6 +80,8 @@ impl<'m> Packer<'m> {
             runs,
             others,
             explicit: vec![false; mesh.vertices.len()],
+            named: vec![false; mesh.vertices.len()],
+            run_of,
         }
     }
 
@@ -77,6 +95,14 @@ impl<'m> Packer<'m> {
 
     /// Runs and other patches by part, in the mesh's order.
     pub(crate) fn piles(&self, most_patches: usize) -> Vec<Pile> {
+        let most_patches = most_patches.min(MOST_PATCHES);
+        // A patch with corners of implicit or shaped rings goes where their run is.
+        let mut with_run = vec![Vec::new(); self.runs.len()];
+        for &other in &self.others {
+            if let Some(run) = self.home(other) {
+                with_run[run].push(other);
+            }
+        }
         let mut piles = vec![Pile::default()];
         let (mut patches, mut explicit) = (PATCHES_OF_SPHERE, 0);
         let exact = self.has_numbers();
@@ -97,10 +123,11 @@ impl<'m> Packer<'m> {
                 piles.len() - 1
             };
         for (i, run) in self.runs.iter().enumerate() {
-            let used = run
-                .rings
-                .iter()
-                .filter(|ring| self.explicit[ring[0] as usize]);
+            let named = |ring: &&[u32; 4]| {
+                ring.iter()
+                    .any(|&v| self.explicit[v as usize] || self.named[v as usize])
+            };
+            let used = run.rings.iter().filter(named).count() + with_run[i].len();
             let most = run.rings.len() + POINTS_OF_SPHERE;
             let tracing = |ring: &[u32; 4]| self.mesh.vertices[ring[0] as usize].tracing;
             let color_keys: Vec<u32> = run
@@ -108,37 +135,29 @@ impl<'m> Packer<'m> {
                 .iter()
                 .map(|r| self.color_key(tracing(r)))
                 .collect();
-            let pile = room(&mut piles, 4 * most, 4 * used.count(), &color_keys);
+            let patches = 4 * most + with_run[i].len();
+            let pile = room(&mut piles, patches, 4 * used, &color_keys);
             piles[pile].runs.push(i);
+            piles[pile].others.append(&mut with_run[i]);
         }
         for &other in &self.others {
-            let corners = self.mesh.patches[other].corners;
-            if self.explicit[corners[0] as usize] {
+            if self.home(other).is_none() {
                 let pile = room(&mut piles, 1, 4, &[]);
                 piles[pile].others.push(other);
             }
         }
-        // The cap of an implicit ring goes into the part of its ring.
-        let mut owner = BTreeMap::new();
-        for (p, pile) in piles.iter().enumerate() {
-            for &run in &pile.runs {
-                let rings = &self.runs[run].rings;
-                for ring in [rings[0], rings[rings.len() - 1]] {
-                    owner.insert(ring[0], p);
-                }
-            }
-        }
-        for &other in &self.others {
-            let corners = self.mesh.patches[other].corners;
-            if !self.explicit[corners[0] as usize] {
-                let first = corners.into_iter().min().unwrap_or(0);
-                if let Some(&pile) = owner.get(&first) {
-                    piles[pile].others.push(other);
-                }
-            }
-        }
+        piles
+            .iter_mut()
+            .for_each(|pile| pile.others.sort_unstable());
         piles.retain(|pile| !pile.runs.is_empty() || !pile.others.is_empty());
         piles
+    }
+
+    /// The run that a patch outside of runs goes with.
+    fn home(&self, other: usize) -> Option<usize> {
+        let corners = self.mesh.patches[other].corners.into_iter();
+        let mut computed = corners.filter(|&v| !self.explicit[v as usize]);
+        computed.next().map(|v| self.run_of[v as usize] as usize)
     }
 
     /// The rings of a pile, one after the other, with the patches from each to the next.
@@ -152,10 +171,9 @@ impl<'m> Packer<'m> {
                 );
             }
             for (i, &ring) in run.rings.iter().enumerate() {
-                let goes_on = i + 1 < run.rings.len();
                 slots.push(Slot {
                     ring: Some(ring),
-                    patch: goes_on.then_some(run.first_patch + 4 * i),
+                    patches: run.patches.get(i).copied().unwrap_or([NO_PATCH; 4]),
                 });
             }
         }
@@ -191,9 +209,10 @@ impl<'m> Packer<'m> {
     pub(crate) fn sphere(&self, slots: &[Slot]) -> (Vec3, f32) {
         let patches = slots
             .iter()
-            .filter_map(|slot| slot.patch)
-            .flat_map(|patch| patch..patch + 4);
-        let patches = patches.map(|patch| patch_sphere(self.mesh, &self.mesh.patches[patch]));
+            .flat_map(|slot| slot.patches)
+            .filter(|&patch| patch != NO_PATCH);
+        let patches =
+            patches.map(|patch| patch_sphere(self.mesh, &self.mesh.patches[patch as usize]));
         let centers = slots.iter().filter_map(|slot| slot.ring);
         let centers = centers.map(|ring| (self.center(ring[0]), 0.0));
         widened(sphere_around(patches.chain(centers)))
@@ -202,10 +221,10 @@ impl<'m> Packer<'m> {
     /// The contents of the part that a pile becomes.
     pub(crate) fn contents(&self, pile: &Pile) -> Contents {
         let slots = self.rings(pile);
-        let (others, caps): (Vec<usize>, Vec<usize>) = pile
-            .others
-            .iter()
-            .partition(|&&other| self.explicit[self.mesh.patches[other].corners[0] as usize]);
+        let (caps, others): (Vec<usize>, Vec<usize>) = pile.others.iter().partition(|&&other| {
+            let patch = &self.mesh.patches[other];
+            patch.kind == PatchKind::Cap && !self.explicit[patch.corners[0] as usize]
+        });
         let corners = |patches: &[usize]| -> Vec<u32> {
             let patches = patches
                 .iter()
@@ -222,18 +241,45 @@ impl<'m> Packer<'m> {
             let patch = &self.mesh.patches[other];
             patch.kind == PatchKind::Soma && patch.corners.iter().all(|&v| v < few)
         });
+        let mut shaped = Vec::new();
+        for (point, slot) in (0..).zip(&slots) {
+            if let Some(ring) = slot.ring.filter(|&ring| self.is_shaped(ring)) {
+                shaped.push((ring[0], point));
+            }
+        }
+        // As in the mesh: an edge between two of them has the direction that it has there.
+        shaped.sort_unstable();
         Contents {
             slots,
             explicit,
+            shaped,
             soma,
             quads,
             caps,
         }
     }
 
-    pub(crate) fn implicit(&self, ring: [u32; 4]) -> Option<ImplicitRing> {
-        let implicit = !self.explicit[ring[0] as usize];
-        implicit.then(|| implicit_ring(self.mesh, ring)).flatten()
+    /// How a ring is computed, if it is not explicit.
+    pub(crate) fn form(&self, ring: [u32; 4]) -> Option<RingForm> {
+        let computed = !self.explicit[ring[0] as usize];
+        computed.then(|| self.fit(ring)).flatten()
+    }
+
+    /// How a ring can be computed, if it can.
+    pub(crate) fn fit(&self, ring: [u32; 4]) -> Option<RingForm> {
+        if self.is_named(ring) {
+            shaped_ring(self.mesh, ring).map(RingForm::Shaped)
+        } else {
+            implicit_ring(self.mesh, ring).map(RingForm::Implicit)
+        }
+    }
+
+    fn is_named(&self, ring: [u32; 4]) -> bool {
+        ring.iter().any(|&v| self.named[v as usize])
+    }
+
+    fn is_shaped(&self, ring: [u32; 4]) -> bool {
+        !self.explicit[ring[0] as usize] && self.is_named(ring)
     }
 
     pub(crate) fn color_key(&self, tracing: u32) -> u32 {
@@ -253,20 +299,59 @@ impl<'m> Packer<'m> {
     }
 }
 
-/// Room for a point: its ring, and the first of the four patches to the next point.
-#[derive(Clone, Copy, Debug, Default)]
+/// Room for a point: its ring, and the four patches to the next point.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Slot {
     pub(crate) ring: Option<[u32; 4]>,
-    pub(crate) patch: Option<usize>,
+    pub(crate) patches: [u32; 4],
+}
+
+impl Default for Slot {
+    fn default() -> Self {
+        Self {
+            ring: None,
+            patches: [NO_PATCH; 4],
+        }
+    }
+}
+
+impl Slot {
+    pub(crate) fn goes_on(&self) -> bool {
+        self.patches.iter().any(|&patch| patch != NO_PATCH)
+    }
+
+    /// Bits of the sides where branches leave.
+    pub(crate) fn open_sides(&self) -> u32 {
+        let sides = (0..4).filter(|&k| self.goes_on() && self.patches[k] == NO_PATCH);
+        sides.fold(0, |bits, k| bits | (1 << k))
+    }
 }
 
 /// The contents of one part, in order: patches by index, explicit vertices sorted.
 pub(crate) struct Contents {
     pub(crate) slots: Vec<Slot>,
     pub(crate) explicit: Vec<u32>,
+    /// First vertex and point of each shaped ring, sorted.
+    pub(crate) shaped: Vec<(u32, u32)>,
     pub(crate) soma: Vec<usize>,
     pub(crate) quads: Vec<usize>,
     pub(crate) caps: Vec<usize>,
+}
+
+impl Contents {
+    /// The index by which patches name a vertex.
+    pub(crate) fn id(&self, v: u32) -> u32 {
+        if let Ok(explicit) = self.explicit.binary_search(&v) {
+            return explicit as u32;
+        }
+        let ring = self.shaped.partition_point(|&(first, _)| first <= v) - 1;
+        self.explicit.len() as u32 + 4 * ring as u32 + (v - self.shaped[ring].0)
+    }
+
+    /// Which of the shaped rings begins with this vertex.
+    pub(crate) fn shaped_index(&self, first: u32) -> u32 {
+        self.shaped.partition_point(|&(other, _)| other < first) as u32
+    }
 }
 
 /// First vertex of the ring that a cap closes, and whether the cap has the ring's vertices in

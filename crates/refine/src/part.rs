@@ -23,14 +23,14 @@ pub struct PartLayout {
     pub explicit: u32,
     /// Anchors.
     pub anchors: u32,
+    /// Shaped rings.
+    pub shaped: u32,
     /// Somata's patches.
     pub soma: u32,
     /// Number of somata's patches.
     pub soma_count: u32,
     /// Other explicit patches.
     pub quads: u32,
-    /// Number of other explicit patches.
-    pub quad_count: u32,
     /// Caps.
     pub caps: u32,
     /// Color keys.
@@ -46,7 +46,7 @@ pub struct MeshPart {
     pub layout: PartLayout,
     /// By slot: index of the mesh's patch, or `u32::MAX` if the slot is empty.
     pub patches: Vec<u32>,
-    /// By explicit vertex: index of the mesh's vertex.
+    /// Index of the mesh's vertex by explicit vertex, then by corner of each shaped ring.
     pub explicit: Vec<u32>,
     /// Bounding sphere (µm) of each [`PATCHES_OF_SPHERE`] slots, at any level.
     pub spheres: Vec<(Vec3, f32)>,
@@ -65,6 +65,7 @@ impl MeshPart {
             "spheres",
             "explicit_vertices",
             "anchors",
+            "shaped_rings",
             "soma_patches",
             "explicit_patches",
             "caps",
@@ -75,6 +76,7 @@ impl MeshPart {
             p.spheres,
             p.explicit,
             p.anchors,
+            p.shaped,
             p.soma,
             p.quads,
             p.caps,

@@ -1,55 +1,62 @@
-//! Runs of rings in a coarse mesh, and which rings are circles that can be computed from their
-//! points.
+//! Runs of rings in a coarse mesh.
 
-use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, PatchKind, Role};
-
-use crate::decode::{ImplicitRing, to_octahedral, to_radius, to_slope, to_turn};
+use neurotess_mesh::{CoarseMesh, PatchKind};
 
 /// Most segments of a run; longer ones are cut.
 const MOST_SEGMENTS: usize = 1 << 14;
-/// Greatest distance, in radii, of a computed corner from the mesh's own, apart from the center's
-/// error.
-const MOST_APART: f32 = 0.0095;
+/// In place of a patch where there is none.
+pub(crate) const NO_PATCH: u32 = u32::MAX;
 
-/// A run: rings in a row, with four lateral patches from each to the next.
+/// A run: rings in a row, with lateral patches from each to the next.
 #[derive(Clone, Debug)]
 pub(crate) struct Tube {
-    pub(crate) first_patch: usize,
     pub(crate) rings: Vec<[u32; 4]>,
+    /// From each ring to the next; [`NO_PATCH`] where a branch leaves.
+    pub(crate) patches: Vec<[u32; 4]>,
+}
+
+/// Lateral patches between two rings.
+struct Segment {
+    ring: [u32; 4],
+    next: [u32; 4],
+    patches: [u32; 4],
 }
 
 /// All runs, and the patches that belong to none.
 pub(crate) fn find_runs(mesh: &CoarseMesh) -> (Vec<Tube>, Vec<usize>) {
     let mut runs: Vec<Tube> = Vec::new();
     let mut others = Vec::new();
+    // Where the last run ends.
+    let mut end = usize::MAX;
     let mut i = 0;
     while i < mesh.patches.len() {
-        let Some((ring, next)) = tube(mesh, i) else {
+        let run = runs.last();
+        let run = run.filter(|run| end == i && run.patches.len() < MOST_SEGMENTS);
+        let last = run.map(|run| run.rings[run.rings.len() - 1]);
+        let open = || last.and_then(|ring| open_segment(mesh, i, ring));
+        let Some(segment) = whole_segment(mesh, i).or_else(open) else {
             others.push(i);
             i += 1;
             continue;
         };
-        let goes_on = |run: &Tube| {
-            let segments = run.rings.len() - 1;
-            run.first_patch + 4 * segments == i
-                && run.rings[segments] == ring
-                && segments < MOST_SEGMENTS
-        };
-        match runs.last_mut().filter(|run| goes_on(run)) {
-            Some(run) => run.rings.push(next),
-            None => runs.push(Tube {
-                first_patch: i,
-                rings: vec![ring, next],
+        i += segment.patches.iter().filter(|&&p| p != NO_PATCH).count();
+        end = i;
+        match runs.last_mut() {
+            Some(run) if last == Some(segment.ring) => {
+                run.rings.push(segment.next);
+                run.patches.push(segment.patches);
+            }
+            _ => runs.push(Tube {
+                rings: vec![segment.ring, segment.next],
+                patches: vec![segment.patches],
             }),
         }
-        i += 4;
     }
     (runs, others)
 }
 
-/// The two rings of four lateral patches that follow one another around a tube.
-fn tube(mesh: &CoarseMesh, first: usize) -> Option<([u32; 4], [u32; 4])> {
+/// Four lateral patches that follow one another around a tube.
+fn whole_segment(mesh: &CoarseMesh, first: usize) -> Option<Segment> {
     let patches = mesh.patches.get(first..first + 4)?;
     let ring = [0, 1, 2, 3].map(|k: usize| patches[k].corners[0]);
     let next = [0, 1, 2, 3].map(|k: usize| patches[k].corners[3]);
@@ -59,38 +66,41 @@ fn tube(mesh: &CoarseMesh, first: usize) -> Option<([u32; 4], [u32; 4])> {
         patch.kind == PatchKind::Lateral
             && patch.corners == [ring[k], ring[after], next[after], next[k]]
     });
-    fits.then_some((ring, next))
+    fits.then_some(Segment {
+        ring,
+        next,
+        patches: [0, 1, 2, 3].map(|k| first as u32 + k),
+    })
 }
 
-/// A ring as a circle around its tracing point, if it is one.
-pub(crate) fn implicit_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<ImplicitRing> {
-    let vertices = [0, 1, 2, 3].map(|k: usize| &mesh.vertices[ring[k] as usize]);
-    let tracing = vertices[0].tracing;
-    let point = &mesh.tracing[tracing as usize];
-    let ours = (0..4).all(|k| ring[k] == ring[0] + k as u32 && vertices[k].tracing == tracing);
-    if !ours || !matches!(point.role, Role::Ordinary | Role::End) {
-        return None;
+/// Lateral patches around a tube from a ring on, some of which are missing; all corners of the next ring are
+/// in those that are there.
+fn open_segment(mesh: &CoarseMesh, first: usize, ring: [u32; 4]) -> Option<Segment> {
+    let mut patches = [NO_PATCH; 4];
+    let mut next: [Option<u32>; 4] = [None; 4];
+    let mut i = first;
+    for k in 0..4 {
+        let after = (k + 1) % 4;
+        let Some(patch) = mesh.patches.get(i) else {
+            break;
+        };
+        let [a, b, c, d] = patch.corners;
+        if patch.kind != PatchKind::Lateral || [a, b] != [ring[k], ring[after]] {
+            continue;
+        }
+        if next[k].is_some_and(|v| v != d) || next[after].is_some_and(|v| v != c) {
+            return None;
+        }
+        (next[k], next[after]) = (Some(d), Some(c));
+        patches[k] = i as u32;
+        i += 1;
     }
-    let (x, y) = to_octahedral(point.tangent, 511.0);
-    let mut implicit = ImplicitRing {
-        tracing,
-        radius: to_radius(point.radius)?,
-        tangent: (x, y),
-        turn: 0,
-        slope: (0, false),
-        role: point.role,
+    let [Some(a), Some(b), Some(c), Some(d)] = next else {
+        return None;
     };
-    let offset = vertices[0].position - point.center;
-    implicit.turn = to_turn(implicit.tangent(), offset.normalize_or(Vec3::X));
-    let normal = vertices[0].normal;
-    let out = offset.normalize_or(normal);
-    implicit.slope = to_slope(-normal.dot(point.tangent) / normal.dot(out).max(1e-3));
-    let near = (0..4).all(|k| {
-        let apart = implicit
-            .corner(point.center, k as u32)
-            .0
-            .distance(vertices[k].position);
-        apart <= MOST_APART * point.radius
-    });
-    near.then_some(implicit)
+    Some(Segment {
+        ring,
+        next: [a, b, c, d],
+        patches,
+    })
 }

@@ -17,19 +17,21 @@ struct Base {
     explicit_vertices: u32,
     // Eight u32s each.
     anchors: u32,
+    // Shaped rings, SHAPED_U32S each.
+    shaped: u32,
     // Somata's patches, three u32s for two.
     soma: u32,
     soma_count: u32,
-    // Two u32s each.
+    // Two u32s each, up to the caps.
     quads: u32,
-    quad_count: u32,
     // One u32 each.
     caps: u32,
     color_keys: u32,
 }
 
 // A patch by its kind and the vertices at its corners. A vertex is four times the index of a point
-// plus the corner of its implicit ring; or, with the bit EXPLICIT, the index of an explicit vertex.
+// plus the corner of its implicit ring; or, with the bit EXPLICIT, the index of an explicit vertex or,
+// after all of these, of a shaped ring's corner.
 struct Patch {
     kind: u32,
     corners: vec4<u32>,
@@ -42,13 +44,40 @@ fn packed_point(base: Base, point: u32) -> vec4<u32> {
     return vec4<u32>(packed[at], packed[at + 1u], packed[at + 2u], packed[at + 3u]);
 }
 
+fn explicit_count(base: Base) -> u32 {
+    return (base.anchors - base.explicit_vertices) / 3u;
+}
+
+// Whether the ring at a point is implicit.
+fn is_implicit(point_bits: vec4<u32>) -> bool {
+    return (point_bits.y >> POINT_KIND_SHIFT) < POINT_EXPLICIT;
+}
+
 // The four vertices of the ring at a point.
-fn ring_of(point: u32, point_bits: vec4<u32>) -> vec4<u32> {
-    if ((point_bits.y >> POINT_KIND_SHIFT) == POINT_EXPLICIT) {
+fn ring_of(base: Base, point: u32, point_bits: vec4<u32>) -> vec4<u32> {
+    let kind = point_bits.y >> POINT_KIND_SHIFT;
+    if (kind == POINT_EXPLICIT) {
         return vec4<u32>(point_bits.x & 0xffffu, point_bits.x >> 16u, point_bits.z & 0xffffu, point_bits.z >> 16u)
             | vec4<u32>(EXPLICIT);
     }
-    return vec4<u32>(4u * point) + vec4<u32>(0u, 1u, 2u, 3u);
+    let corners = vec4<u32>(0u, 1u, 2u, 3u);
+    if (kind == POINT_SHAPED) {
+        let first = explicit_count(base) + 4u * (point_bits.z >> 16u);
+        return (vec4<u32>(first) + corners) | vec4<u32>(EXPLICIT);
+    }
+    return vec4<u32>(4u * point) + corners;
+}
+
+// Bits of the four sides from a point to the next where branches leave.
+fn open_sides(base: Base, point_bits: vec4<u32>) -> u32 {
+    let kind = point_bits.y >> POINT_KIND_SHIFT;
+    if (kind == POINT_EXPLICIT) {
+        return point_bits.y & 0xfu;
+    }
+    if (kind == POINT_SHAPED) {
+        return packed[base.shaped + SHAPED_U32S * (point_bits.z >> 16u)] >> SHAPED_OPEN_SHIFT;
+    }
+    return 0u;
 }
 
 // Whether a patch is part of a tube between two points with implicit rings.
@@ -58,22 +87,32 @@ fn patch_is_tube(base: Base, index: u32) -> bool {
         return false;
     }
     let at = base.points + 4u * point + 1u;
-    return (packed[at] >> POINT_KIND_SHIFT) != POINT_EXPLICIT
-        && (packed[at + 4u] >> POINT_KIND_SHIFT) != POINT_EXPLICIT;
+    return (packed[at] >> POINT_KIND_SHIFT) < POINT_EXPLICIT
+        && (packed[at + 4u] >> POINT_KIND_SHIFT) < POINT_EXPLICIT;
 }
 
-// Whether there is a patch with this index: after the last point of a run there is none.
+// Whether there are lateral patches from a point to the next: after the last point of a run there are
+// none.
+fn goes_on(base: Base, point: u32) -> bool {
+    return (packed[base.points + 4u * point + 1u] & POINT_GOES_ON) != 0u;
+}
+
+// Whether there is a patch with this index: where branches leave there is none.
 fn patch_exists(base: Base, index: u32) -> bool {
     let point = index / 4u;
-    return point >= base.point_count || (packed[base.points + 4u * point + 1u] & POINT_GOES_ON) != 0u;
+    if (point >= base.point_count) {
+        return true;
+    }
+    let open = open_sides(base, packed_point(base, point));
+    return goes_on(base, point) && (open & (1u << (index & 3u))) == 0u;
 }
 
 fn patch_at(base: Base, index: u32) -> Patch {
     if (index < 4u * base.point_count) {
         let point = index / 4u;
         let k = index & 3u;
-        let ring = ring_of(point, packed_point(base, point));
-        let next = ring_of(point + 1u, packed_point(base, point + 1u));
+        let ring = ring_of(base, point, packed_point(base, point));
+        let next = ring_of(base, point + 1u, packed_point(base, point + 1u));
         let after = (k + 1u) & 3u;
         return Patch(PATCH_LATERAL, vec4<u32>(ring[k], ring[after], next[after], next[k]));
     }
@@ -91,14 +130,15 @@ fn patch_at(base: Base, index: u32) -> Patch {
         return Patch(PATCH_SOMA, corners | vec4<u32>(EXPLICIT));
     }
     let quad = soma - base.soma_count;
-    if (quad < base.quad_count) {
+    let quad_count = (base.caps - base.quads) / 2u;
+    if (quad < quad_count) {
         let x = packed[base.quads + 2u * quad];
         let y = packed[base.quads + 2u * quad + 1u];
         let corners = vec4<u32>(x & 0xffffu, x >> 16u, y & 0xffffu, y >> 16u);
         let kind = (corners.x >> 15u) | ((corners.y >> 15u) << 1u);
         return Patch(kind, (corners & vec4<u32>(0x7fffu)) | vec4<u32>(EXPLICIT));
     }
-    let packed = packed[base.caps + quad - base.quad_count];
+    let packed = packed[base.caps + quad - quad_count];
     let first = 4u * (packed >> 1u);
     if ((packed & 1u) != 0u) {
         return Patch(PATCH_CAP, vec4<u32>(first) + vec4<u32>(3u, 2u, 1u, 0u));
@@ -222,6 +262,50 @@ fn ring_corner(ring: ImplicitRing, k: u32) -> Corner {
     );
 }
 
+// Whether a vertex with the bit EXPLICIT is a corner of a shaped ring.
+fn is_shaped(base: Base, vertex: u32) -> bool {
+    return (vertex & ~EXPLICIT) >= explicit_count(base);
+}
+
+// The shaped ring of a vertex, which is one of its corners.
+fn shaped_of(base: Base, vertex: u32) -> u32 {
+    return base.shaped + SHAPED_U32S * (((vertex & ~EXPLICIT) - explicit_count(base)) / 4u);
+}
+
+fn shaped_point(base: Base, vertex: u32) -> u32 {
+    return packed[shaped_of(base, vertex)] & ((1u << SHAPED_LEVEL_SHIFT) - 1u);
+}
+
+fn shaped_role(base: Base, vertex: u32) -> u32 {
+    let inset = (packed[shaped_of(base, vertex) + 2u] & SHAPED_INSET) != 0u;
+    return select(ROLE_ORDINARY, ROLE_INSET, inset);
+}
+
+fn shaped_corner(base: Base, vertex: u32) -> Corner {
+    let at = shaped_of(base, vertex);
+    let k = ((vertex & ~EXPLICIT) - explicit_count(base)) & 3u;
+    let point = shaped_point(base, vertex);
+    let last = packed[at + 2u];
+    let turns = packed[at + 1u] >> (10u * k);
+    var ring = implicit_ring(base, point, packed_point(base, point));
+    ring.turn = select(turns, last, k == 3u) & 0x3ffu;
+    let on_circle = ring_corner(ring, 0u);
+    let height = signed16(packed[at + 3u + k / 2u] >> (16u * (k & 1u)));
+    let offset = on_circle.offset + ring.tangent * (height * MOST_HEIGHT * ring.radius);
+    let role = shaped_role(base, vertex);
+    return Corner(
+        ring.center + offset,
+        on_circle.normal,
+        ring.center,
+        offset,
+        radial_of(role, offset, on_circle.normal),
+        ring.tangent,
+        ring.radius,
+        role,
+        collar_of_code((last >> 10u) & 0xffffu),
+    );
+}
+
 fn own_corner(base: Base, vertex: u32) -> Corner {
     let point = vertex >> 2u;
     return ring_corner(implicit_ring(base, point, packed_point(base, point)), vertex & 3u);
@@ -273,7 +357,10 @@ fn role_of_bits(bits: u32) -> u32 {
 }
 
 fn collar_of_bits(bits: u32) -> f32 {
-    let code = bits >> 16u;
+    return collar_of_code(bits >> 16u);
+}
+
+fn collar_of_code(code: u32) -> f32 {
     return select(0.0, bitcast<f32>((code + RADIUS_BASE) << 12u), code != 0u);
 }
 
@@ -285,9 +372,17 @@ fn radial_of(role: u32, offset: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return normalize_or(offset, normal);
 }
 
+// A corner of a vertex with the bit EXPLICIT.
+fn named_corner(base: Base, vertex: u32) -> Corner {
+    if (is_shaped(base, vertex)) {
+        return shaped_corner(base, vertex);
+    }
+    return explicit_corner(base, vertex);
+}
+
 fn corner(base: Base, vertex: u32) -> Corner {
     if ((vertex & EXPLICIT) != 0u) {
-        return explicit_corner(base, vertex);
+        return named_corner(base, vertex);
     }
     return own_corner(base, vertex);
 }
@@ -295,6 +390,9 @@ fn corner(base: Base, vertex: u32) -> Corner {
 // A number that is different for different tracing points.
 fn tracing_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
+        if (is_shaped(base, vertex)) {
+            return shaped_of(base, vertex) | EXPLICIT;
+        }
         return anchor_of(base, vertex) | EXPLICIT;
     }
     return vertex >> 2u;
@@ -302,6 +400,9 @@ fn tracing_of(base: Base, vertex: u32) -> u32 {
 
 fn role_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
+        if (is_shaped(base, vertex)) {
+            return shaped_role(base, vertex);
+        }
         return role_of_bits(packed[anchor_of(base, vertex) + 6u]);
     }
     let kind = packed[base.points + 4u * (vertex >> 2u) + 1u] >> POINT_KIND_SHIFT;
@@ -311,6 +412,9 @@ fn role_of(base: Base, vertex: u32) -> u32 {
 // The level at a vertex, for LEVELS_PER_POINT.
 fn value_of(base: Base, vertex: u32) -> u32 {
     if ((vertex & EXPLICIT) != 0u) {
+        if (is_shaped(base, vertex)) {
+            return ((packed[shaped_of(base, vertex)] >> SHAPED_LEVEL_SHIFT) & 0x3fu) + 1u;
+        }
         return packed[base.explicit_vertices + 3u * (vertex & ~EXPLICIT) + 2u] >> 24u;
     }
     return (packed[base.points + 4u * (vertex >> 2u) + 2u] >> 26u) + 1u;
@@ -323,8 +427,12 @@ fn point_color_key(base: Base, point_bits: vec4<u32>) -> u32 {
 
 // The color key of a vertex's tracing point.
 fn color_key_of(base: Base, vertex: u32) -> u32 {
+    var point = vertex >> 2u;
     if ((vertex & EXPLICIT) != 0u) {
-        return packed[anchor_of(base, vertex) + 7u];
+        if (!is_shaped(base, vertex)) {
+            return packed[anchor_of(base, vertex) + 7u];
+        }
+        point = shaped_point(base, vertex);
     }
-    return packed[base.color_keys + (packed[base.points + 4u * (vertex >> 2u) + 3u] >> 22u)];
+    return packed[base.color_keys + (packed[base.points + 4u * point + 3u] >> 22u)];
 }

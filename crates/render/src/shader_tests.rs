@@ -62,10 +62,10 @@ fn adaptive_shaders_are_valid_in_every_language_and_have_our_structs() {
             spheres,
             explicit_vertices,
             anchors,
+            shaped,
             soma,
             soma_count,
             quads,
-            quad_count,
             caps,
             color_keys
         ]

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role};
-use neurotess_refine::{PartLayout, pack, sphere_around};
+use neurotess_refine::{PartLayout, SHAPED_U32S, pack, sphere_around};
 use wgpu::util::DeviceExt;
 
 use crate::gpu::buffers::{group_layout, storage};
@@ -31,10 +31,10 @@ pub(crate) struct Base {
     pub(crate) spheres: u32,
     pub(crate) explicit_vertices: u32,
     pub(crate) anchors: u32,
+    pub(crate) shaped: u32,
     pub(crate) soma: u32,
     pub(crate) soma_count: u32,
     pub(crate) quads: u32,
-    pub(crate) quad_count: u32,
     pub(crate) caps: u32,
     pub(crate) color_keys: u32,
 }
@@ -48,10 +48,10 @@ impl Base {
             spheres: first + layout.spheres,
             explicit_vertices: first + layout.explicit,
             anchors: first + layout.anchors,
+            shaped: first + layout.shaped,
             soma: first + layout.soma,
             soma_count: layout.soma_count,
             quads: first + layout.quads,
-            quad_count: layout.quad_count,
             caps: first + layout.caps,
             color_keys: first + layout.color_keys,
         }
@@ -59,9 +59,10 @@ impl Base {
 }
 
 impl Base {
-    /// Number of explicit vertices.
+    /// Number of explicit vertices and corners of shaped rings.
     pub(crate) fn explicit_count(&self) -> u32 {
-        (self.anchors - self.explicit_vertices) / EXPLICIT_VERTEX_U32S
+        let shaped = (self.soma - self.shaped) / SHAPED_U32S as u32;
+        (self.anchors - self.explicit_vertices) / EXPLICIT_VERTEX_U32S + 4 * shaped
     }
 }
 
@@ -95,7 +96,7 @@ pub(crate) struct TemplatePart {
     pub(crate) patches: u32,
     /// By slot: index of the mesh's patch.
     pub(crate) in_mesh: Vec<u32>,
-    /// By explicit vertex: index of the mesh's vertex.
+    /// Index of the mesh's vertex by explicit vertex, then by corner of each shaped ring.
     pub(crate) explicit: Vec<u32>,
     /// Bounding sphere of each cluster of patches, relative to the template's origin (µm).
     pub(crate) spheres: Vec<(Vec3, f32)>,

@@ -26,7 +26,7 @@ fn make_rings(
     let part = placed[owners[cluster]];
     let point = (slot - part.first_slot) / 4u;
     let point_bits = packed_point(part.base, point);
-    if ((point_bits.y >> POINT_KIND_SHIFT) == POINT_EXPLICIT) {
+    if (!is_implicit(point_bits)) {
         return;
     }
     let ring = implicit_ring(part.base, point, point_bits);
@@ -57,7 +57,7 @@ fn make_explicit(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = frame.first_explicit + id.x;
     let part = placed[explicit_owner_of(at)];
     let vertex = (at - part.first_explicit) | EXPLICIT;
-    let v = explicit_corner(part.base, vertex);
+    let v = named_corner(part.base, vertex);
     let position = relative(part, v.position);
     coarse[coarse_index(at)] = CoarsePoint(
         position.x,

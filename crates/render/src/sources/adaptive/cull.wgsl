@@ -69,7 +69,7 @@ fn level_rings(
         let point = asked.point + k;
         if (k == 0u || (last && point < place.base.point_count)) {
             let point_bits = packed_point(place.base, point);
-            if ((point_bits.y >> POINT_KIND_SHIFT) != POINT_EXPLICIT) {
+            if (is_implicit(point_bits)) {
                 ring_levels[asked.slot / 4u + k] = level_of_ring(place, point, point_bits);
             }
         }
@@ -95,7 +95,7 @@ fn decide_tubes(
     let base = place.base;
     let tube = patch_is_tube(base, 4u * asked.point);
     var decided = vec4<u32>(0u);
-    if (patch_exists(base, 4u * asked.point)) {
+    if (goes_on(base, asked.point)) {
         if (tube) {
             decided = ask_tube(place, asked.point, asked.slot);
         } else {
@@ -160,7 +160,7 @@ fn decide_singles(
     let place = placed[owners[slot / CLUSTER]];
     let patch_index = slot - place.first_slot;
     var decided = 0u;
-    if (patch_index < place.patches) {
+    if (patch_index < place.patches && patch_exists(place.base, patch_index)) {
         decided = ask(place, patch_index);
     }
     decisions[slot] = decided;
