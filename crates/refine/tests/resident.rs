@@ -154,7 +154,7 @@ fn spheres_hold_their_patches_at_any_level() {
 }
 
 #[test]
-fn a_cell_of_two_thousand_points_takes_26_bytes_a_point() {
+fn a_cell_of_two_thousand_points_takes_24_bytes_a_point() {
     let mesh = tree(80, 28, 0.5);
     let points = mesh.tracing.iter().filter(|t| t.role != Role::Soma).count();
     let parts = pack(&mesh, &[1, 2, 3], &[], usize::MAX);
@@ -165,9 +165,7 @@ fn a_cell_of_two_thousand_points_takes_26_bytes_a_point() {
         parts[0].bytes()
     );
     assert!((2000..2600).contains(&points), "{points}");
-    // 24 before there were insets: the two rings of a zone and that of an inset are stored as vertices. The aim
-    // was 26, and was met while forks whose straightest child is too thin were joints.
-    assert!(each <= 26.1, "{each}");
+    assert!(each <= 24.0, "{each}");
 }
 
 #[test]

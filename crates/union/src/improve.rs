@@ -1,6 +1,6 @@
 //! Triangles that a solver likes: no narrow ones, as far as the surface allows.
 //!
-//! Where an angle is small, three things are tried, and the one after which the smallest angle nearby is
+//! Cells that were split along the worse diagonal get the other one first. Where an angle is small, three things are tried, and the one after which the smallest angle nearby is
 //! largest is done: an edge is given to the two corners across it, the shortest edge is collapsed, or a corner
 //! moves along the surface towards the middle of its neighbors (L. Freitag, C. Ollivier-Gooch, Tetrahedral Mesh
 //! Improvement Using Swapping and Smoothing, 1997, for volumes). No face turns by more than a bound, and no
@@ -10,6 +10,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use crate::diagonals::choose_diagonals;
 use crate::edits::{Edit, Edits, sharpness};
 use crate::press::press_in;
 use crate::rounds::crossings_of_changed;
@@ -55,6 +56,7 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
     let mut fixed = vec![false; work.vertices.len()];
     for rings in 0..TRIES {
         let mut tried = work.clone();
+        choose_diagonals(&mut tried, &fixed);
         let mut done = passes(&mut tried, goal, &fixed);
         let mut crossing = crossings_of_changed(&tried);
         let mut near = vec![false; work.vertices.len()];

@@ -43,6 +43,7 @@
 
 mod body;
 mod cells;
+mod diagonals;
 mod edits;
 mod engine;
 mod improve;
@@ -62,6 +63,7 @@ mod stars;
 mod tidy;
 mod touch;
 mod tunnels;
+mod vicinity;
 mod winding;
 mod work;
 

@@ -21,8 +21,8 @@ pub struct UnionOptions {
     pub fill: f64,
     /// Pieces that merging cut off, where a tube is inside out, are joined again by the hull of the surface between.
     pub rejoin: bool,
-    /// Angles (degrees) below this are made larger where the surface allows it, wherever they are; 0 leaves all
-    /// as they are.
+    /// Angles (degrees) below this are made larger where the surface allows it, wherever they are, and nearly flat pairs of
+    /// triangles get the better diagonal; 0 leaves all as they are.
     pub least_angle: f64,
 }
 

@@ -8,8 +8,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
-use neurotess_mesh::{Forest, self_intersections_of};
+use neurotess_mesh::Forest;
 
+use crate::vicinity::Vicinity;
 use crate::work::Work;
 
 /// Steps to the farthest that a vertex may go.
@@ -29,20 +30,26 @@ pub(crate) struct Pressed {
 /// Presses the faces of `pairs`, which are all that cross, in: each vertex by `most` of its radius or of the distance
 /// to its neighbors, what is less.
 pub(crate) fn press_in(work: &mut Work, pairs: &[[u32; 2]], most: f64) -> Pressed {
-    let mut start: BTreeMap<u32, Vec3> = BTreeMap::new();
+    let near = work.widened(corners_of(work, pairs), RINGS);
+    let mut pressed = Pressing {
+        vicinity: Vicinity::around(work, &near),
+        work,
+        start: BTreeMap::new(),
+    };
     let mut left = pairs.to_vec();
     for _ in 0..STEPS {
         if left.is_empty() {
             break;
         }
-        step(work, &left, most, &mut start);
-        left = crossings_near(work, &start);
+        pressed.step(&left, most);
+        left = pressed.crossings();
     }
     while !left.is_empty() {
         // What is put back may meet what is not, so it is searched again.
-        put_back(work, &left, &mut start);
-        left = crossings_near(work, &start);
+        pressed.put_back(&left);
+        left = pressed.crossings();
     }
+    let Pressing { start, .. } = pressed;
     for &vertex in start.keys() {
         work.fresh[vertex as usize] = true;
     }
@@ -58,88 +65,131 @@ pub(crate) fn press_in(work: &mut Work, pairs: &[[u32; 2]], most: f64) -> Presse
     }
 }
 
-/// Moves the corners of faces that cross, and what is around them, one step.
-fn step(work: &mut Work, pairs: &[[u32; 2]], most: f64, start: &mut BTreeMap<u32, Vec3>) {
-    let mut near = vec![false; work.vertices.len()];
+/// Which vertices are corners of some pairs of faces.
+fn corners_of(work: &Work, pairs: &[[u32; 2]]) -> Vec<bool> {
+    let mut corners = vec![false; work.vertices.len()];
     for &face in pairs.iter().flatten() {
         for corner in work.triangles[face as usize] {
-            near[corner as usize] = true;
+            corners[corner as usize] = true;
         }
     }
-    let mut shares: BTreeMap<u32, f32> = BTreeMap::new();
-    let mut share = 1.0;
-    for ring in 0..=RINGS {
-        for vertex in (0..).zip(&near).filter(|(_, near)| **near).map(|(v, _)| v) {
-            shares.entry(vertex).or_insert(share);
-        }
-        share *= 0.5;
-        if ring < RINGS {
-            near = work.widened(near, 1);
-        }
-    }
-    let reach = reach(work, &shares);
-    for (vertex, share) in shares {
-        let before = work.vertices[vertex as usize];
-        let first = *start.entry(vertex).or_insert(before.position);
-        let farthest = most as f32 * before.radius.min(reach[&vertex]);
-        let by = share * farthest / STEPS as f32;
-        let way = before.position - by * before.normal - first;
-        let position = first + way.clamp_length_max(farthest);
-        work.vertices[vertex as usize].position = position;
-    }
+    corners
 }
 
-/// Mean distance of vertices to their neighbors.
-fn reach(work: &Work, of: &BTreeMap<u32, f32>) -> BTreeMap<u32, f32> {
-    let mut sums: BTreeMap<u32, (f32, f32)> =
-        of.keys().map(|&vertex| (vertex, (0.0, 0.0))).collect();
-    for face in &work.triangles {
-        for n in 0..3 {
-            let [a, b] = [face[n], face[(n + 1) % 3]];
-            if let Some((sum, count)) = sums.get_mut(&a) {
-                *sum += work.position(a).distance(work.position(b));
-                *count += 1.0;
+/// A surface that is pressed in.
+struct Pressing<'w> {
+    work: &'w mut Work,
+    /// Where vertices were that have moved.
+    start: BTreeMap<u32, Vec3>,
+    vicinity: Vicinity,
+}
+
+impl Pressing<'_> {
+    /// Moves the corners of faces that cross, and what is around them, one step.
+    fn step(&mut self, pairs: &[[u32; 2]], most: f64) {
+        let shares = self.shares(pairs);
+        let reach = self.reach(&shares);
+        for (vertex, share) in shares {
+            let before = self.work.vertices[vertex as usize];
+            let first = *self.start.entry(vertex).or_insert(before.position);
+            let farthest = most as f32 * before.radius.min(reach[&vertex]);
+            let by = share * farthest / STEPS as f32;
+            let way = before.position - by * before.normal - first;
+            let position = first + way.clamp_length_max(farthest);
+            self.work.vertices[vertex as usize].position = position;
+        }
+    }
+
+    /// The vertices that move, and by which share of a step.
+    fn shares(&mut self, pairs: &[[u32; 2]]) -> BTreeMap<u32, f32> {
+        loop {
+            let mut near = corners_of(self.work, pairs);
+            let mut shares: BTreeMap<u32, f32> = BTreeMap::new();
+            let mut share = 1.0;
+            for ring in 0..=RINGS {
+                for vertex in (0..).zip(&near).filter(|(_, near)| **near).map(|(v, _)| v) {
+                    shares.entry(vertex).or_insert(share);
+                }
+                share *= 0.5;
+                if ring < RINGS {
+                    near = self.vicinity.widened(self.work, &near);
+                }
+            }
+            if shares.keys().all(|&vertex| self.vicinity.is_whole(vertex)) {
+                return shares;
+            }
+            self.look_around(near);
+        }
+    }
+
+    /// Mean distance of vertices to their neighbors.
+    fn reach(&self, of: &BTreeMap<u32, f32>) -> BTreeMap<u32, f32> {
+        let mut sums: BTreeMap<u32, (f32, f32)> =
+            of.keys().map(|&vertex| (vertex, (0.0, 0.0))).collect();
+        for &face in self.vicinity.faces() {
+            let face = self.work.triangles[face as usize];
+            for n in 0..3 {
+                let [a, b] = [face[n], face[(n + 1) % 3]];
+                if let Some((sum, count)) = sums.get_mut(&a) {
+                    *sum += self.work.position(a).distance(self.work.position(b));
+                    *count += 1.0;
+                }
             }
         }
+        let means = sums.into_iter();
+        means
+            .map(|(vertex, (sum, count))| (vertex, sum / count))
+            .collect()
     }
-    let means = sums.into_iter();
-    means
-        .map(|(vertex, (sum, count))| (vertex, sum / count))
-        .collect()
-}
 
-/// Crossings of the faces of vertices that have moved.
-fn crossings_near(work: &Work, moved: &BTreeMap<u32, Vec3>) -> Vec<[u32; 2]> {
-    let faces = (0..).zip(&work.triangles);
-    let faces: Vec<u32> = faces
-        .filter(|(_, face)| face.iter().any(|corner| moved.contains_key(corner)))
-        .map(|(face, _)| face)
-        .collect();
-    self_intersections_of(&work.positions(), &work.faces(), &faces)
-}
+    /// Crossings of the faces of vertices that have moved.
+    fn crossings(&mut self) -> Vec<[u32; 2]> {
+        let moved = |start: &BTreeMap<u32, Vec3>, vertex: u32| start.contains_key(&vertex);
+        let start = &self.start;
+        if !self.vicinity.covers(self.work, |v| moved(start, v)) {
+            self.look_around(vec![false; self.work.vertices.len()]);
+        }
+        let start = &self.start;
+        self.vicinity.crossings(self.work, |v| moved(start, v))
+    }
 
-/// Puts those vertices back that hang together with faces that cross.
-fn put_back(work: &mut Work, pairs: &[[u32; 2]], start: &mut BTreeMap<u32, Vec3>) {
-    let mut forest = Forest::new(work.vertices.len());
-    for face in &work.triangles {
-        for n in 0..3 {
-            let [a, b] = [face[n], face[(n + 1) % 3]];
-            if start.contains_key(&a) && start.contains_key(&b) {
-                forest.unite(a, b);
+    /// Makes the vicinity that of some vertices and of all that have moved.
+    fn look_around(&mut self, mut near: Vec<bool>) {
+        for &vertex in self.start.keys() {
+            near[vertex as usize] = true;
+        }
+        self.vicinity = Vicinity::around(self.work, &near);
+    }
+
+    /// Puts those vertices back that hang together with faces that cross.
+    fn put_back(&mut self, pairs: &[[u32; 2]]) {
+        let Self {
+            work,
+            start,
+            vicinity,
+        } = self;
+        let mut forest = Forest::new(work.vertices.len());
+        for &face in vicinity.faces() {
+            let face = work.triangles[face as usize];
+            for n in 0..3 {
+                let [a, b] = [face[n], face[(n + 1) % 3]];
+                if start.contains_key(&a) && start.contains_key(&b) {
+                    forest.unite(a, b);
+                }
             }
         }
+        let corners = pairs.iter().flatten();
+        let corners = corners.flat_map(|&face| work.triangles[face as usize]);
+        let stuck: BTreeSet<u32> = corners
+            .filter(|corner| start.contains_key(corner))
+            .map(|corner| forest.root(corner))
+            .collect();
+        start.retain(|&vertex, position| {
+            let back = stuck.contains(&forest.root(vertex));
+            if back {
+                work.vertices[vertex as usize].position = *position;
+            }
+            !back
+        });
     }
-    let corners = pairs.iter().flatten();
-    let corners = corners.flat_map(|&face| work.triangles[face as usize]);
-    let stuck: BTreeSet<u32> = corners
-        .filter(|corner| start.contains_key(corner))
-        .map(|corner| forest.root(corner))
-        .collect();
-    start.retain(|&vertex, position| {
-        let back = stuck.contains(&forest.root(vertex));
-        if back {
-            work.vertices[vertex as usize].position = *position;
-        }
-        !back
-    });
 }

@@ -53,6 +53,56 @@ fn wide_triangles_stay_to_the_bit() {
     assert_eq!(union.mesh.vertices, mesh.vertices);
 }
 
+/// Nearly flat edges across which the angles are more than 180.5° together.
+fn edges_of_the_wrong_diagonal(mesh: &SurfaceMesh) -> usize {
+    let mut across = std::collections::BTreeMap::<[u32; 2], Vec<(f32, Vec3)>>::new();
+    for &face in &mesh.faces.triangles {
+        for k in 0..3 {
+            let [a, b, c] = [0, 1, 2].map(|n| face[(k + n) % 3]);
+            let at = |v: u32| mesh.vertices[v as usize].position;
+            let angle = (at(a) - at(c)).angle_between(at(b) - at(c));
+            let normal = (at(b) - at(a)).cross(at(c) - at(a)).normalize();
+            let edge = across.entry([a.min(b), a.max(b)]).or_default();
+            edge.push((angle.to_degrees(), normal));
+        }
+    }
+    let wrong = |edge: &&Vec<(f32, Vec3)>| {
+        edge[0].0 + edge[1].0 > 180.6 && edge[0].1.dot(edge[1].1) > 0.996
+    };
+    across.values().filter(wrong).count()
+}
+
+#[test]
+fn a_twisted_tube_gets_the_better_diagonals_and_keeps_its_vertices() {
+    for twist in [0.06_f32, -0.06] {
+        let line: Vec<Vec3> = (0..30).map(|n| Vec3::X * n as f32 * 0.3).collect();
+        let mut mesh = tube(&line, 1.0, 24, 1);
+        for vertex in &mut mesh.vertices {
+            let turn = glam::Quat::from_rotation_x(twist * vertex.position.x / 0.3);
+            vertex.position = turn * vertex.position;
+        }
+        let (as_it_was, before) = merged(&mesh, &BARE);
+        let options = UnionOptions {
+            least_angle: 1.0,
+            ..BARE
+        };
+        let (chosen, after) = merged(&mesh, &options);
+        let counts = [&as_it_was, &chosen].map(|union| edges_of_the_wrong_diagonal(&union.mesh));
+        // The diagonal from the first corner is the right one for one of the two.
+        assert_eq!(
+            counts,
+            if twist > 0.0 { [24 * 29, 0] } else { [0, 0] },
+            "{twist}"
+        );
+        assert!(after.quality.min_angle >= before.quality.min_angle);
+        let positions = |union: &neurotess_union::Union| union.mesh.positions();
+        assert_eq!(positions(&as_it_was), positions(&chosen));
+        // The better diagonal lies on the tube, the other one within it.
+        assert!(after.volume >= before.volume);
+        assert_near(after.volume, before.volume, 0.01);
+    }
+}
+
 #[test]
 fn what_would_cross_another_branch_stays() {
     // Two tubes with narrow faces side by side, a thousandth of a radius apart.
