@@ -69,9 +69,8 @@ fn better(work: &Work, first: u32, fixed: &[bool]) -> Option<Pair> {
     let at = |v: u32| work.position(v).as_dvec3();
     let [a, b, p, q] = [from, to, apex, far].map(at);
     let angle = |corner: DVec3| (a - corner).angle_between(b - corner);
-    if !(angle(p) + angle(q) > PI + SLACK) {
-        return None;
-    }
+    // Without a number for a triangle without a shape.
+    let wide = angle(p) + angle(q) > PI + SLACK;
     let triangles = [[apex, from, far], [far, to, apex]];
     let old = [one, other].map(|face| normal(&face.map(at)));
     let new = triangles.map(|face| normal(&face.map(at)));
@@ -79,7 +78,7 @@ fn better(work: &Work, first: u32, fixed: &[bool]) -> Option<Pair> {
         let cosine = n.dot(old[0]);
         cosine > FLAT * n.length() * old[0].length()
     });
-    flat.then_some(Pair {
+    (wide && flat).then_some(Pair {
         first,
         triangles,
         edge: [apex.min(far), apex.max(far)],
