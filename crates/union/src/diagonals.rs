@@ -69,7 +69,7 @@ fn better(work: &Work, first: u32, fixed: &[bool]) -> Option<Pair> {
     let at = |v: u32| work.position(v).as_dvec3();
     let [a, b, p, q] = [from, to, apex, far].map(at);
     let angle = |corner: DVec3| (a - corner).angle_between(b - corner);
-    // Without a number for a triangle without a shape.
+    // False of a triangle without a shape, whose angles are no numbers.
     let wide = angle(p) + angle(q) > PI + SLACK;
     let triangles = [[apex, from, far], [far, to, apex]];
     let old = [one, other].map(|face| normal(&face.map(at)));

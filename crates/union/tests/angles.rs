@@ -61,7 +61,7 @@ fn edges_of_the_wrong_diagonal(mesh: &SurfaceMesh) -> usize {
             let [a, b, c] = [0, 1, 2].map(|n| face[(k + n) % 3]);
             let at = |v: u32| mesh.vertices[v as usize].position;
             let angle = (at(a) - at(c)).angle_between(at(b) - at(c));
-            let normal = (at(b) - at(a)).cross(at(c) - at(a)).normalize();
+            let normal = (at(b) - at(a)).cross(at(c) - at(a)).normalize_or_zero();
             let edge = across.entry([a.min(b), a.max(b)]).or_default();
             edge.push((angle.to_degrees(), normal));
         }
