@@ -87,21 +87,23 @@ fn a_slow_camera_sees_no_level_change() {
     };
     let reference = sequence(LodCriterion::Homogeneous(32));
     let reference = changes(&reference);
-    let worst = |lod| {
+    // Mean and greatest ratio.
+    let ratios = |lod| {
         let changes = changes(&sequence(lod));
-        let ratios = changes
-            .iter()
-            .zip(&reference)
-            .map(|(found, expected)| found / expected);
         note!("{lod:?}: {changes:.3?}");
-        ratios.fold(0.0, f64::max)
+        let pairs = changes.iter().zip(&reference);
+        let ratios: Vec<f64> = pairs.map(|(found, expected)| found / expected).collect();
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        (mean, ratios.into_iter().fold(0.0, f64::max))
     };
     note!("level 32: {reference:.3?}");
-    let [half, coarse] = [0.5, 8.0].map(LodCriterion::PixelError).map(worst);
-    note!("{half} {coarse}");
-    // Measured on lavapipe: 1.064, and 1.200 where the error may be eight pixels. That the measure
-    // sees popping is judged against the first: another driver changes both.
-    assert!(half < 1.08, "{half}");
+    let [(half, worst), (coarse, most)] = [0.5, 8.0].map(LodCriterion::PixelError).map(ratios);
+    note!("{half} {worst}, {coarse} {most}");
+    // The greatest of eight such cells, on lavapipe, is 1.036 to 1.099; with the rings beside branches as
+    // vertices 1.036 to 1.093. For one of them it hangs on the last bits, the mean does not.
+    assert!(worst < 1.12, "{worst}");
+    // Where the error may be eight pixels, the measure sees popping.
+    assert!(half < 1.03, "{half}");
     assert!(coarse - 1.0 > 2.0 * (half - 1.0), "{coarse} {half}");
 }
 
