@@ -5,7 +5,9 @@
 
 use glam::Vec3;
 
-use crate::evaluate::{Corner, EdgeKind, hermite_tangents, loft_controls, soma_controls};
+use crate::evaluate::{
+    Corner, EdgeCurve, EdgeKind, hermite_tangents, loft_controls, soma_controls,
+};
 use crate::{EdgeRule, Lod, LodCriterion, LodView, Path};
 
 /// Highest level.
@@ -36,7 +38,7 @@ pub(crate) fn edge_level(
     (b, tb): (&Corner, u32),
 ) -> u32 {
     if let Some(rule) = lod.edges {
-        return by_rule(rule, kind, a, b);
+        return by_rule(rule, path, kind, a, b);
     }
     let level = match lod.criterion {
         LodCriterion::Homogeneous(level) => level,
@@ -67,7 +69,7 @@ pub(crate) fn edge_level(
 }
 
 /// The level that a rule gives an edge, within its bounds; see [`EdgeRule`].
-fn by_rule(rule: EdgeRule, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
+fn by_rule(rule: EdgeRule, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
     let lengthwise = matches!(kind, EdgeKind::Along | EdgeKind::Loft);
     match rule {
         EdgeRule::Levels { around, along } => {
@@ -81,15 +83,15 @@ fn by_rule(rule: EdgeRule, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
             most,
         } => {
             // The greatest length counts even where it is below the least.
-            let pieces = |wanted: f32| edge_length(kind, a, b) / wanted.max(least).min(most);
+            let pieces = |length: f32, wanted: f32| length / wanted.max(least).min(most);
             let piece = radii * a.radius.min(b.radius);
-            let level = pieces(piece).round();
+            let level = pieces(edge_length(kind, a, b), piece).round();
             let (level, highest) = match lengthwise {
                 // No piece longer than it may be, and no more of them than without that.
-                true => (
-                    level.min(pieces(piece * aspect).ceil()),
-                    HIGHEST_LEVEL_BY_LENGTH,
-                ),
+                true => {
+                    let fewest = pieces(longest_length(path, kind, a, b), piece * aspect).ceil();
+                    (level.min(fewest), HIGHEST_LEVEL_BY_LENGTH)
+                }
                 false => (level, HIGHEST_LEVEL),
             };
             // Also where it is not a number.
@@ -109,6 +111,19 @@ fn edge_length(kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
         return radius * a.radial.angle_between(b.radial);
     }
     (b.position - a.position).length()
+}
+
+/// Length (µm) of an edge if all its pieces were about as long as the longest. A curve goes faster at some parameters
+/// than at others, as at the outer side of a bend. So this is midway between its length (by Boole's rule) and
+/// its greatest speed: by the length alone, one triangle in a hundred is narrower than 13.5° in noisy tracings;
+/// by the speed alone those have a quarter more triangles.
+fn longest_length(path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
+    let curve = EdgeCurve::new(kind, a, b, path);
+    let speeds = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| curve.at(t).derivative.length());
+    let [start, early, middle, late, end] = speeds;
+    let length = (7.0 * (start + end) + 32.0 * (early + late) + 12.0 * middle) / 90.0;
+    let greatest = speeds.into_iter().fold(0.0, f32::max);
+    0.5 * (length + greatest)
 }
 
 /// A curve with a second derivative of at most M, cut into n parts, is at most M / (8 n²) from its

@@ -112,7 +112,7 @@ pub enum EdgeRule {
         /// Length of a piece, in radii of the thinner end.
         radii: f32,
         /// How many times as long as that pieces along a neurite may be. With 1 or less they are about as long;
-        /// with more none is longer.
+        /// with more only a few are longer, where a neurite bends.
         aspect: f32,
         /// Least length of a piece (µm).
         least: f32,

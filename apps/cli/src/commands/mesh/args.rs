@@ -71,7 +71,7 @@ pub(crate) struct MeshArgs {
           help_heading = "Refinement")]
     pub(crate) min_edge: Option<f64>,
     /// With --isotropic: how many times F radii long edges along neurites may be [default: 1; with
-    /// --simulation 2.5]
+    /// --simulation 3]
     #[arg(long, value_name = "A", value_parser = positive, allow_negative_numbers = true,
           help_heading = "Refinement")]
     pub(crate) max_aspect: Option<f64>,
@@ -87,7 +87,7 @@ pub(crate) struct MeshArgs {
           value_parser = crate::options::numbers::radius_factor, allow_negative_numbers = true,
           help_heading = "Surface")]
     pub(crate) radius_factor: f64,
-    /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 2.5 --radii equal-area,
+    /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 3 --radii equal-area,
     /// or an error that says where it fails
     #[arg(long, conflicts_with_all = ["level", "level_along", "max_error", "quads"],
           help_heading = "Crossings")]

@@ -12,9 +12,9 @@ use crate::io::output::is_standard;
 use crate::io::targets;
 use crate::report::usage;
 
-/// How many times the local radius edges along neurites of a mesh for simulators may be long: half as many
-/// triangles as with 1, and still none narrower than 15° but for a few. With 2.7 more of them stay narrow.
-const SIMULATION_ASPECT: f64 = 2.5;
+/// How many times the local radius edges along neurites of a mesh for simulators may be long: a third to a half as
+/// many triangles as with 1, and still none narrower than 15° but for a few.
+const SIMULATION_ASPECT: f64 = 3.0;
 
 /// Levels of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
