@@ -16,12 +16,14 @@ fn rod(radius: f32, steps: &[f32]) -> Morphology {
     let mut at = 0.0;
     let places = std::iter::once(&0.0).chain(steps).map(|step| {
         at += step;
-        Point {
-            position: Vec3::X * at,
-            radius,
-        }
+        Vec3::X * at
     });
-    let points: Vec<Point> = places.collect();
+    neurite(radius, places)
+}
+
+/// An unbranched neurite of this radius through these places.
+fn neurite(radius: f32, places: impl Iterator<Item = Vec3>) -> Morphology {
+    let points: Vec<Point> = places.map(|position| Point { position, radius }).collect();
     Morphology {
         sample_ids: (1..).take(points.len()).collect(),
         sections: vec![Section {
@@ -44,17 +46,19 @@ fn refined(cell: &Morphology, generate_options: &GenerateOptions, rule: EdgeRule
     SurfaceMesh::collect(&Refinement::new(&mesh, Lod::by_edge(rule), &options))
 }
 
+/// The edges of all triangles, from one end to the other.
+fn edges(mesh: &SurfaceMesh) -> impl Iterator<Item = Vec3> {
+    let triangles = mesh.faces.triangles.iter();
+    let edges = triangles.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    edges.map(|edge| {
+        let [a, b] = edge.map(|vertex| mesh.vertices[vertex as usize].position);
+        b - a
+    })
+}
+
 /// Lengths of the edges along x between the ends of a rod.
 fn lengthwise(mesh: &SurfaceMesh) -> Vec<f32> {
-    let edges = mesh
-        .faces
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let ways = edges.map(|edge| {
-        let [a, b] = edge.map(|vertex| mesh.vertices[vertex as usize].position);
-        (b - a).abs()
-    });
+    let ways = edges(mesh).map(Vec3::abs);
     ways.filter(|way| way.x > 0.0 && way.y.max(way.z) < 1e-3 * way.x)
         .map(|way| way.x)
         .collect()
@@ -86,6 +90,24 @@ fn no_piece_along_a_neurite_is_longer_than_it_may_be() {
         assert!(longest <= aspect * radius * 1.01, "{aspect}: {longest}");
         assert!(longest > 0.7 * aspect * radius, "{aspect}: {longest}");
         assert!(longer.len() < even.len(), "{aspect}");
+    }
+}
+
+/// At the outer side of a bend an edge is longer than the straight line between its ends. Cut by that line, one edge in
+/// a hundred was 1.36 to 1.54 times as long as pieces may be, diagonals included; now 1.13 to 1.3 times.
+#[test]
+fn pieces_at_bends_are_hardly_longer() {
+    for (along, aside) in [(6.0, 6.0), (5.0, 8.0)] {
+        let zigzag = |k: u16| Vec3::new(along * f32::from(k), aside * f32::from(k % 2), 0.0);
+        let cell = neurite(1.0, (0..60).map(zigzag));
+        for aspect in [2.0, 2.5, 3.0] {
+            let mesh = refined(&cell, &GenerateOptions::default(), lengths(1.0, aspect));
+            assert_closed(&mesh, "a zigzag");
+            let mut lengths: Vec<f32> = edges(&mesh).map(|way| way.length()).collect();
+            lengths.sort_by(f32::total_cmp);
+            let long = lengths[lengths.len() * 99 / 100];
+            assert!(long < 1.3 * aspect, "{along} {aside} {aspect}: {long}");
+        }
     }
 }
 
