@@ -103,7 +103,7 @@ fn pieces_at_bends_are_hardly_longer() {
         for aspect in [2.0, 2.5, 3.0] {
             let mesh = refined(&cell, &GenerateOptions::default(), lengths(1.0, aspect));
             assert_closed(&mesh, "a zigzag");
-            let mut lengths: Vec<f32> = edges(&mesh).map(|way| way.length()).collect();
+            let mut lengths: Vec<f32> = edges(&mesh).map(Vec3::length).collect();
             lengths.sort_by(f32::total_cmp);
             let long = lengths[lengths.len() * 99 / 100];
             assert!(long < 1.3 * aspect, "{along} {aside} {aspect}: {long}");
