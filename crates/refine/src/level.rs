@@ -87,7 +87,7 @@ fn by_rule(rule: EdgeRule, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -
             let piece = radii * a.radius.min(b.radius);
             let level = pieces(edge_length(kind, a, b), piece).round();
             let (level, highest) = match lengthwise {
-                // No piece longer than it may be, and no more of them than without that.
+                // Hardly a piece longer than it may be, and no more of them than without that.
                 true => {
                     let fewest = pieces(longest_length(path, kind, a, b), piece * aspect).ceil();
                     (level.min(fewest), HIGHEST_LEVEL_BY_LENGTH)

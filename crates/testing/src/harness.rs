@@ -1,5 +1,6 @@
 //! Runs the tests of a program: filters, threads and lines are those of libtest.
 
+use std::panic::resume_unwind;
 use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
@@ -44,6 +45,13 @@ impl Test {
     }
 }
 
+/// Runs a test on a thread that is joined. libtest-mimic waits for the work of its own threads only; what a driver
+/// keeps for one is freed after that, and where the program ends meanwhile it crashes.
+fn joined<T: Send + 'static>(test: impl FnOnce() -> T + Send + 'static) -> T {
+    let ended = std::thread::spawn(test).join();
+    ended.unwrap_or_else(|panic| resume_unwind(panic))
+}
+
 /// Runs the tests of this program that its arguments select.
 pub fn run() -> ExitCode {
     let mut arguments = Arguments::from_args();
@@ -56,7 +64,7 @@ pub fn run() -> ExitCode {
     tests.sort_by_key(|test| test.name());
     let trials = tests.into_iter().map(|test| {
         let test = *test;
-        Trial::ignorable_test(test.name(), move || test.attempt())
+        Trial::ignorable_test(test.name(), move || joined(move || test.attempt()))
     });
     libtest_mimic::run(&arguments, trials.collect()).exit_code()
 }

@@ -1,42 +1,49 @@
-//! Threads beside the window, counted: a driver takes itself down when the program ends, and a thread that
-//! still draws then would crash it. So whoever ends the program waits for them.
+//! Threads beside the window, kept: a driver takes itself down when the program ends, and a thread that
+//! still draws then would crash it. So whoever ends the program joins them.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::{JoinHandle, sleep};
+use std::time::{Duration, Instant};
 
-static RUNNING: Mutex<usize> = Mutex::new(0);
-static ENDED: Condvar = Condvar::new();
+/// Time between looks at whether threads have ended.
+const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
-fn running() -> MutexGuard<'static, usize> {
-    RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
-}
+static THREADS: Mutex<Vec<JoinHandle<()>>> = Mutex::new(Vec::new());
 
-/// Counts a thread while it lives, also if it panics.
-struct Counted;
-
-impl Drop for Counted {
-    fn drop(&mut self) {
-        *running() -= 1;
-        ENDED.notify_all();
-    }
+fn threads() -> MutexGuard<'static, Vec<JoinHandle<()>>> {
+    THREADS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Runs `work` on a thread of its own.
 pub(crate) fn spawn(work: impl FnOnce() + Send + 'static) {
-    *running() += 1;
-    let counted = Counted;
-    std::thread::spawn(move || {
-        // Dropped after the work, with all that it holds.
-        let _counted = counted;
-        work();
-    });
+    join_ended();
+    threads().push(std::thread::spawn(work));
 }
 
 /// Waits until no thread runs that the window has started, `limit` at most. Returns whether none does.
 pub fn wait_for_background(limit: Duration) -> bool {
-    let waited = ENDED.wait_timeout_while(running(), limit, |running| *running > 0);
-    let (running, _) = waited.unwrap_or_else(PoisonError::into_inner);
-    *running == 0
+    let end = Instant::now() + limit;
+    while join_ended() > 0 {
+        if Instant::now() >= end {
+            return false;
+        }
+        sleep(CHECK_INTERVAL);
+    }
+    true
+}
+
+/// Joins threads whose work is done, and returns how many are left. Only then is what a driver keeps for a thread
+/// gone, too: that is freed after the work.
+fn join_ended() -> usize {
+    let mut kept = threads();
+    let ended: Vec<_> = kept.extract_if(.., |thread| thread.is_finished()).collect();
+    let left = kept.len();
+    drop(kept);
+    for thread in ended {
+        // One that panicked has said so.
+        let _ = thread.join();
+    }
+    left
 }
 
 #[cfg(test)]

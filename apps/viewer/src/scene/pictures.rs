@@ -208,7 +208,7 @@ fn prepared(
     let (sender, made) = channel();
     let (still_scene, options) = (Arc::clone(still_scene), options.clone());
     let first = film_frames.first().copied();
-    std::thread::spawn(move || {
+    spawn(move || {
         let made = caught(|| Prepared::new(&still_scene, first.as_ref(), &options));
         // If saving was canceled, nothing receives it.
         let _ = sender.send(made);
