@@ -11,7 +11,7 @@ use crate::warning::Warnings;
 use crate::{bends, crowd, fork, uncross};
 
 /// Whether a path may go straight from one node to another below it.
-pub(crate) type MayJoin<'a> = dyn Fn(u32, u32) -> bool + 'a;
+pub(crate) type MayJoin<'a> = dyn Fn(u32, u32) -> bool + Sync + 'a;
 
 /// A mesh, and what became of the forks.
 pub(crate) struct Made {

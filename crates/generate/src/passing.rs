@@ -57,16 +57,19 @@ pub(crate) fn choose(
     let forks: Vec<u32> = passed.iter().map(|passed| passed.fork).collect();
     let near = Neighborhood::new(skeleton, &forks);
     let rounds = passed.iter().map(|passed| passed.alternatives.len()).max();
-    let mut crossings: Vec<Vec<Option<usize>>> = vec![Vec::new(); passed.len()];
-    for round in 0..rounds.unwrap_or(0) {
-        if stop.asked() {
-            return;
-        }
-        let found = crossings_of_round(&passed, round, trials, &near, may_join);
-        for (of_fork, found) in crossings.iter_mut().zip(found) {
-            of_fork.push(found);
-        }
+    let rounds = (0..rounds.unwrap_or(0)).into_par_iter().with_max_len(1);
+    let rounds = rounds.map(|round| match stop.asked() {
+        true => vec![None; passed.len()],
+        false => crossings_of_round(&passed, round, trials, &near, may_join),
+    });
+    let rounds: Vec<Vec<Option<usize>>> = rounds.collect();
+    if stop.asked() {
+        return;
     }
+    let crossings = (0..passed.len()).map(|number| {
+        let found = rounds.iter().map(|round| round[number]);
+        found.collect::<Vec<_>>()
+    });
     for (passed, crossings) in passed.iter().zip(crossings) {
         if let Some(choice) = least_crossed(passed, &crossings) {
             trials.replace(passed.fork, choice);

@@ -36,6 +36,9 @@ use suspects::Suspects;
 
 /// Patches of a stretch from which on it is left as it is.
 const MOST_PATCHES: usize = 4_000;
+/// Patches around suspect rings are few if the stretch has this many times as many: then they are looked at alone
+/// first, since most stretches are sound.
+const FEW: usize = 2;
 
 /// Draws in rings of a mesh. `faulty`: patches around forks whose best shape is known to have faults.
 /// Returns the tracing points that are drawn in, ascending.
@@ -72,12 +75,21 @@ fn draw_in(mesh: &CoarseMesh, stretches: &Stretches, number: usize) -> Option<Dr
     if patches.len() > MOST_PATCHES {
         return None;
     }
-    let suspect = RefinedPatches::new(mesh, stretches.suspect[number].clone());
-    if suspect.faults_unless_crowd()?.is_empty() {
-        return None;
+    let suspect = &stretches.suspect[number];
+    let look_there_first = FEW * suspect.len() <= patches.len();
+    if look_there_first {
+        let suspect = RefinedPatches::new(mesh, suspect.clone());
+        if suspect.faults_unless_crowd()?.is_empty() {
+            return None;
+        }
     }
     let stretch = RefinedPatches::new(mesh, patches.clone());
     let faults = stretch.faults_unless_crowd()?;
+    let is_suspect = |patch: &u32| suspect.binary_search(&patches[*patch as usize]).is_ok();
+    let is_sound = || !faults.iter().any(|f| f.patches.iter().all(is_suspect));
+    if !look_there_first && is_sound() {
+        return None;
+    }
     let mut draw_in = DrawIn::new(stretch, |ring| stretches.has(number, ring));
     draw_in.run(faults).then_some(draw_in)
 }

@@ -2,6 +2,7 @@
 //!
 //! By this forks are judged, thousands of times a cell, and rings are drawn in.
 
+mod pairs;
 mod seams;
 
 use glam::Vec3A;
@@ -160,9 +161,7 @@ impl RefinedPatches {
         let kept = before
             .iter()
             .filter(|f| !f.folded && !concerned(&f.patches));
-        let near = self.near_pairs(usize::MAX).unwrap_or_default();
-        let near = near.into_iter().filter(concerned).collect();
-        let crossings = self.crossings_of(near);
+        let crossings = self.crossings_of(self.pairs_near(&has_changed));
         kept.copied().chain(crossings).chain(self.folds()).collect()
     }
 
@@ -205,8 +204,12 @@ impl RefinedPatches {
 
     /// Refines patches again whose corners moved.
     pub(crate) fn update(&mut self, patches: &[u32]) {
-        for &patch in patches {
-            self.put(patch, &self.patch_facets(patch as usize));
+        let refined = patches.par_iter().with_min_len(LEAST_PATCHES);
+        let refined: Vec<[Facet; FACETS]> = refined
+            .map(|&patch| self.patch_facets(patch as usize))
+            .collect();
+        for (&patch, facets) in patches.iter().zip(&refined) {
+            self.put(patch, facets);
         }
     }
 
@@ -237,27 +240,6 @@ impl RefinedPatches {
         let numbers = &self.points[patch];
         let triangles = Pattern::of(&mesh.patches[patch]).triangles;
         triangles.map(|t| Facet::new(t.map(|k| numbers[k]), t.map(|k| points[k])))
-    }
-
-    /// Pairs of patches whose boxes overlap, each with itself too; none if there are more than `most`.
-    fn near_pairs(&self, most: usize) -> Option<Vec<[u32; 2]>> {
-        let mut order: Vec<u32> = (0..self.boxes.len() as u32).collect();
-        let low = |patch: u32| self.boxes[patch as usize].low.x;
-        order.sort_by(|&a, &b| low(a).total_cmp(&low(b)).then(a.cmp(&b)));
-        let mut pairs = Vec::with_capacity(12 * order.len());
-        for (i, &a) in order.iter().enumerate() {
-            let end = self.boxes[a as usize].high.x;
-            pairs.push([a, a]);
-            for &b in order[i + 1..].iter().take_while(|&&b| low(b) <= end) {
-                if self.boxes[a as usize].overlaps(&self.boxes[b as usize]) {
-                    pairs.push([a, b]);
-                }
-            }
-            if pairs.len() > most {
-                return None;
-            }
-        }
-        Some(pairs)
     }
 
     /// Pairs of facets of two patches that cross.
@@ -338,7 +320,7 @@ mod tests {
     use super::*;
 
     /// An open tube of radius 1 along a path that turns back within that: it folds over and crosses itself.
-    fn hairpin() -> CoarseMesh {
+    pub(super) fn hairpin() -> CoarseMesh {
         let mut mesh = CoarseMesh::default();
         for ring in 0..16_u32 {
             let (along, back) = (ring as f32 - 7.5, ring > 7);
