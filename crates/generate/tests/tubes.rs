@@ -1,30 +1,19 @@
 //! Tubes that bend more tightly than they are thick, jump in thickness, or fork at acute angles: refined,
 //! they neither fold over nor cross themselves, or far less than the rings as traced would.
 
+mod branches;
+
+use branches::add;
 use glam::{Vec3, vec3};
 use neurotess_generate::{GenerateOptions, Generated, generate};
 use neurotess_mesh::{SurfaceMesh, self_intersections, topology};
-use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Point, Section, SectionId};
+use neurotess_morphology::{Attachment, Morphology, SectionId};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use proptest::prelude::*;
 
-fn add(m: &mut Morphology, attachment: Attachment, points: &[(Vec3, f32)]) {
-    let first = m.points.len() as u32;
-    for &(position, radius) in points {
-        m.sample_ids.push(m.points.len() as i64 + 1);
-        m.points.push(Point { position, radius });
-    }
-    m.sections.push(Section {
-        kind: NeuriteKind(3),
-        attachment,
-        first,
-        end: m.points.len() as u32,
-    });
-}
-
 fn path(points: &[(Vec3, f32)]) -> Morphology {
     let mut m = Morphology::default();
-    add(&mut m, Attachment::Free, points);
+    add(&mut m, Attachment::Free, points.iter().copied());
     m
 }
 
@@ -76,7 +65,7 @@ fn acute_fork(angle: f32, step: f32) -> Morphology {
                 )
             })
             .collect();
-        add(&mut m, Attachment::Section(SectionId(0)), &points);
+        add(&mut m, Attachment::Section(SectionId(0)), points);
     }
     m
 }

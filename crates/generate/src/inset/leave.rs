@@ -17,6 +17,8 @@ use crate::skeleton::{Children, Skeleton};
 const AHEAD: f64 = 0.35;
 /// The branch's rings begin outside the trunk by this share of their radius.
 const CLEAR: f64 = 1.05;
+/// An inset stands across its branch up to this cosine of the angle between its direction and the branch's.
+const ACROSS: f64 = 0.92;
 /// Points of a branch that are looked at to find its way out.
 const MOST_LOOKED_AT: usize = 40;
 /// A fork of more neighbors is split into several joints, none of which reaches far.
@@ -153,6 +155,41 @@ impl Planner<'_> {
             }
         }
         ahead.map(|node| (shape, Beginning::At(node)))
+    }
+
+    /// Way (µm) from the inset towards the first free node to where the branch is clear of its trunk; none where the
+    /// inset stands across the branch.
+    pub(super) fn clear_after(
+        &self,
+        zone: &Zone,
+        shape: &InsetShape,
+        node: u32,
+        path: &Polyline,
+    ) -> Option<f64> {
+        let node = self.base.node(node);
+        let way = node.center - shape.center;
+        let length = way.length();
+        if shape.direction.dot(way) > ACROSS * length {
+            return None;
+        }
+        let cones = zone.cones(path);
+        let is_clear = |arc: f64| {
+            let center = shape.center + way * (arc / length);
+            distance(&cones, center) > CLEAR * zone.radius
+        };
+        let (mut low, mut high) = (shape.reach + AHEAD * zone.radius, length);
+        if low >= high || !is_clear(high) {
+            return None;
+        }
+        for _ in 0..12 {
+            let middle = 0.5 * (low + high);
+            if is_clear(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Some(high)
     }
 
     /// Arc lengths that the path's own ends leave free for zones.

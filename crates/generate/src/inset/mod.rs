@@ -11,7 +11,7 @@
 //!    ──────●───────────────────●──────
 //! ```
 //!
-//! Planned here, on the skeleton: which child of a fork continues the trunk, where each other child
+//! Planned here, on the skeleton: which child of a fork continues the trunk (trunk.rs), where each other child
 //! leaves it (zone.rs), and how several share it (arrange.rs). A branch becomes a tree of its own, whose
 //! root stands for the inset; two nodes of the trunk stand for the zone's rings. A branch for which
 //! there is no room stays with its fork, which becomes a joint. The quads are made when the trunk's final
@@ -24,6 +24,7 @@ mod path;
 mod path_rings;
 mod polyline;
 mod shape;
+mod trunk;
 mod zone;
 
 use glam::DVec3;

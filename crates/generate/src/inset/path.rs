@@ -6,20 +6,13 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::arrange::Group;
-use super::path_rings::{RingKind, nearest, rings};
+use super::path_rings::{Ring, RingKind, nearest, rings};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
 use super::zone::{Beginning, Zone};
 use super::{ForkChoice, Inset, Layout};
-use crate::fork;
 use crate::skeleton::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
 
-/// Weight of a child's direction beside its relative radius when the trunk's continuation is chosen.
-const STRAIGHTNESS: f64 = 0.5;
-/// A branch may be this much thicker than its trunk.
-const MOST_THICK: f64 = 1.05;
-/// A fork of more children becomes joints: branches of one point need a side of the trunk each.
-const MOST_CHILDREN: usize = 4;
 /// Tries to lay out a path before all forks left on it become joints.
 const MOST_TRIES: usize = 6;
 
@@ -39,6 +32,21 @@ pub(super) struct InsetStart {
     fork: u32,
     way: Beginning,
     pub(super) radius: f64,
+    /// Way from the inset to where a branch is clear that leaves its trunk side by side with it (µm).
+    clear: Option<f64>,
+}
+
+impl InsetStart {
+    /// A ring across the branch where it is clear of its trunk. Leant over it, the inset's own ring is narrower across
+    /// the branch than the branch is, which then stayed a ribbon up to a far first point.
+    fn upright(&self, path: &Polyline, rings: &[Ring]) -> Option<Ring> {
+        let arc = self.clear?;
+        let first = rings.first()?;
+        (first.arc > arc + 2.0 * path.radius(arc)).then_some(Ring {
+            arc,
+            what: RingKind::Zone(None, None),
+        })
+    }
 }
 
 pub(crate) struct Planner<'a> {
@@ -176,78 +184,6 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// The child that continues the trunk, so that all others can leave it through insets: the
-    /// [main child](Self::main_child), or else the next thick and straight one. None where one of the others
-    /// is always too thick.
-    fn trunk_child(&self, before: u32, fork: u32) -> Option<u32> {
-        let main = self.main_child(before, fork);
-        if self.leaves_through_insets(fork, main) {
-            return Some(main);
-        }
-        let others = self.children.of(fork).iter().copied();
-        let able = others.filter(|&c| c != main && self.leaves_through_insets(fork, c));
-        self.best_child(before, fork, able)
-    }
-
-    /// Of all children, the one that is thick and goes straight on.
-    pub(super) fn main_child(&self, before: u32, fork: u32) -> u32 {
-        let children = self.children.of(fork).iter().copied();
-        let best = self.best_child(before, fork, children);
-        best.expect("a fork has children")
-    }
-
-    /// Of some children, the one that is thick and goes straight on.
-    fn best_child(
-        &self,
-        before: u32,
-        fork: u32,
-        children: impl Iterator<Item = u32>,
-    ) -> Option<u32> {
-        let direction = |a: u32, b: u32| {
-            let way = self.base.node(b).center - self.base.node(a).center;
-            way.normalize_or_zero()
-        };
-        let (incoming, radius) = (direction(before, fork), self.radius(fork));
-        let score = |&child: &u32| {
-            let relative = self.base.node(child).radius / radius;
-            relative + STRAIGHTNESS * incoming.dot(direction(fork, child))
-        };
-        children.reduce(|best, c| if score(&c) > score(&best) { c } else { best })
-    }
-
-    /// Radius of a node; of a fork, as its choice has it.
-    fn radius(&self, node: u32) -> f64 {
-        let own = self.base.node(node).radius;
-        let thickened = matches!(
-            self.choices[node as usize],
-            ForkChoice::Inset {
-                thickened: true,
-                ..
-            }
-        );
-        if !thickened || self.children.of(node).len() < 2 {
-            return own;
-        }
-        let around = fork::neighbors(self.children, self.base, node).into_iter();
-        let mut radii: Vec<f64> = around.map(|n| self.base.node(n).radius).collect();
-        radii.sort_by(f64::total_cmp);
-        own.max(radii[radii.len() - 2])
-    }
-
-    fn leaves_through_insets(&self, fork: u32, main: u32) -> bool {
-        let [here, main_radius] = [fork, main].map(|n| self.radius(n));
-        let trunk = if main_radius > 0.3 * here {
-            here.min(main_radius)
-        } else {
-            here
-        };
-        if self.children.of(fork).len() > MOST_CHILDREN {
-            return false;
-        }
-        let mut others = self.children.of(fork).iter().filter(|&&c| c != main);
-        others.all(|&child| self.base.node(child).radius < MOST_THICK * trunk)
-    }
-
     fn polyline(&self, start: &Start, way: &Way) -> Polyline {
         let nodes = way.nodes.iter();
         let mut centers: Vec<DVec3> = nodes.clone().map(|&n| self.base.node(n).center).collect();
@@ -287,7 +223,12 @@ impl<'a> Planner<'a> {
             Start::Joint(_, joint, _) => *joint,
             Start::Inset(inset) => self.inset_root(inset, way.nodes[1]),
         };
-        for ring in rings(path, groups, room, way.ends_at_joint) {
+        let rings = rings(path, groups, room, way.ends_at_joint);
+        let upright = match start {
+            Start::Inset(inset) => inset.upright(path, &rings),
+            Start::Root(_) | Start::Joint(..) => None,
+        };
+        for ring in upright.into_iter().chain(rings) {
             parent = match ring.what {
                 RingKind::Point(index) => self.copy(way.nodes[index], parent, Root::Free),
                 RingKind::Zone(begins, ends) => {
@@ -346,8 +287,13 @@ impl<'a> Planner<'a> {
                 let cones = zone.cones(path);
                 (zone.site(path).shape(&cones), Beginning::At(zone.child))
             });
+        let clear = match way {
+            Beginning::At(node) => self.clear_after(zone, &shape, node, path),
+            Beginning::Ends(_) => None,
+        };
         starts.push(Start::Inset(Box::new(InsetStart {
             inset,
+            clear,
             shape,
             fork: zone.fork,
             way,
