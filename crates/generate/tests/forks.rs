@@ -104,7 +104,6 @@ fn siblings_side_by_side_part_where_they_are_clear() {
         "{insets:?}"
     );
     // Soon after its inset, which leans over the trunk, the branch is as thick as traced.
-    for t in &mesh.tracing {}
     let ring = |t: &&TracingPoint| (8.5..15.5).contains(&t.center.x);
     assert_eq!(mesh.tracing.iter().filter(ring).count(), 1);
     assert_eq!(crossings(&mesh), 0);

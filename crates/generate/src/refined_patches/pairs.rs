@@ -5,7 +5,7 @@ use super::RefinedPatches;
 impl RefinedPatches {
     /// Pairs of patches whose boxes overlap, each with itself too; none if there are more than `most`.
     pub(super) fn near_pairs(&self, most: usize) -> Option<Vec<[u32; 2]>> {
-        let order = self.from_low_to_high();
+        let order = self.order_along_x();
         let mut pairs = Vec::with_capacity(12 * order.len());
         for (i, &a) in order.iter().enumerate() {
             pairs.push([a, a]);
@@ -19,7 +19,7 @@ impl RefinedPatches {
 
     /// Those of all pairs of patches whose boxes overlap that some patches have a part in, in the same order.
     pub(super) fn pairs_near(&self, concerned: &[bool]) -> Vec<[u32; 2]> {
-        let order = self.from_low_to_high();
+        let order = self.order_along_x();
         let is_concerned = |patch: &u32| concerned[*patch as usize];
         let few: Vec<u32> = order.iter().copied().filter(is_concerned).collect();
         let mut pairs = Vec::with_capacity(16 * few.len());
@@ -36,15 +36,15 @@ impl RefinedPatches {
         pairs
     }
 
-    /// All patches by where their boxes begin.
-    fn from_low_to_high(&self) -> Vec<u32> {
+    /// All patches by where their boxes begin along x.
+    fn order_along_x(&self) -> Vec<u32> {
         let mut order: Vec<u32> = (0..self.boxes.len() as u32).collect();
         let low = |patch: u32| self.boxes[patch as usize].low.x;
         order.sort_by(|&a, &b| low(a).total_cmp(&low(b)).then(a.cmp(&b)));
         order
     }
 
-    /// Adds the pairs of a patch with those of the ones after it, from low to high, whose boxes overlap its own.
+    /// Adds the pairs of a patch with those of the ones after it, in that order, whose boxes overlap its own.
     fn add_pairs(&self, patch: u32, after: &[u32], pairs: &mut Vec<[u32; 2]>) {
         let own = &self.boxes[patch as usize];
         for &other in after {
