@@ -17,7 +17,8 @@ pub(super) struct Ring {
 pub(super) enum RingKind {
     /// A point of the path, by its index.
     Point(usize),
-    /// A zone's ring: the group that begins with it, and the one that ends.
+    /// A ring between points, for a zone: the group that begins with it, and the one that ends. With neither it is that
+    /// of a branch where it is clear of its trunk.
     Zone(Option<usize>, Option<usize>),
 }
 
