@@ -268,12 +268,32 @@ pub(crate) fn soma_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
 pub(crate) fn loft_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
     let way = b.position - a.position;
     let normal = a.cubic_normal();
+    let over = way - normal * way.dot(normal);
     [
         a.position,
-        a.position + (way - normal * way.dot(normal)) / 3.0,
+        a.position + over * first_leg(a, b, over, Vec3::ZERO).0,
         b.position - b.tangent * b.collar.min(way.length() / 3.0),
         b.position,
     ]
+}
+
+/// Width of the fillet around a branch on a soma, in the branch's radii.
+pub(crate) const SOMA_FILLET: f32 = 0.5;
+
+/// Share of the way `over` its trunk's tangent plane that the first leg of a loft takes, and its derivative;
+/// `over_x` is that of the way.
+///
+/// On a soma the quad is square and the branch is round: the corners are twice as far from the branch as the
+/// middles of the sides. With a third everywhere four ridges led to the corners. There the first leg leaves
+/// no more than [`SOMA_FILLET`], so that the fillet is as wide all around. A trunk is too curved for that.
+fn first_leg(a: &Corner, b: &Corner, over: Vec3, over_x: Vec3) -> (f32, f32) {
+    let length = over.length().max(f32::MIN_POSITIVE);
+    let left = SOMA_FILLET * b.radius / length;
+    if a.role == Role::Soma && left < 2.0 / 3.0 {
+        (1.0 - left, left * over.dot(over_x) / (length * length))
+    } else {
+        (1.0 / 3.0, 0.0)
+    }
 }
 
 fn cubic([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Jet {
@@ -422,8 +442,10 @@ impl PatchShape {
         let normal = over_length(mixed, mixed_x, mixed, mixed_x);
         let rise = way.dot(normal.position);
         let rise_x = way_x.dot(normal.position) + way.dot(normal.derivative);
-        let leave = (way - normal.position * rise) / 3.0;
-        let leave_x = (way_x - normal.derivative * rise - normal.position * rise_x) / 3.0;
+        let over = way - normal.position * rise;
+        let over_x = way_x - normal.derivative * rise - normal.position * rise_x;
+        let (share, share_x) = first_leg(a, c, over, over_x);
+        let (leave, leave_x) = (over * share, over_x * share + over * share_x);
         let third = way.length() / 3.0;
         let arrive = c.tangent * c.collar.min(third);
         let third_x = way.dot(way_x) / (9.0 * third).max(f32::MIN_POSITIVE);

@@ -156,12 +156,23 @@ fn soma_controls(a: Corner, b: Corner) -> array<vec3<f32>, 4> {
 fn loft_controls(a: Corner, b: Corner) -> array<vec3<f32>, 4> {
     let way = b.position - a.position;
     let normal = cubic_normal(a);
+    let over = way - normal * dot(way, normal);
     return array<vec3<f32>, 4>(
         a.position,
-        a.position + (way - normal * dot(way, normal)) / 3.0,
+        a.position + over * first_leg(a, b, over, vec3<f32>(0.0)).x,
         b.position - b.tangent * min(b.collar, length(way) / 3.0),
         b.position,
     );
+}
+
+// Share of the way over the tangent plane that the first leg of a loft takes, and its derivative.
+fn first_leg(a: Corner, b: Corner, over: vec3<f32>, over_x: vec3<f32>) -> vec2<f32> {
+    let span = max(length(over), 1e-37);
+    let left = SOMA_FILLET * b.radius / span;
+    if (a.role == ROLE_SOMA && left < 2.0 / 3.0) {
+        return vec2(1.0 - left, left * dot(over, over_x) / (span * span));
+    }
+    return vec2(1.0 / 3.0, 0.0);
 }
 
 fn cubic(p: array<vec3<f32>, 4>, t: f32) -> Jet {
@@ -285,8 +296,11 @@ fn loft(shape: PatchShape, path: u32, x: f32, y: f32) -> Inside {
     let normal = over_length(mixed, normal_b - normal_a, mixed, normal_b - normal_a);
     let rise = dot(way, normal.position);
     let rise_x = dot(way_x, normal.position) + dot(way, normal.derivative);
-    let leave = (way - normal.position * rise) / 3.0;
-    let leave_x = (way_x - normal.derivative * rise - normal.position * rise_x) / 3.0;
+    let over = way - normal.position * rise;
+    let over_x = way_x - normal.derivative * rise - normal.position * rise_x;
+    let leg = first_leg(shape.a, shape.c, over, over_x);
+    let leave = over * leg.x;
+    let leave_x = over_x * leg.x + over * leg.y;
     let third = length(way) / 3.0;
     let arrive = shape.c.tangent * min(shape.c.collar, third);
     let third_x = dot(way, way_x) / max(9.0 * third, 1e-37);

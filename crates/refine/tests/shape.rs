@@ -212,3 +212,38 @@ fn smooth_neurite_has_the_area_of_its_frusta() {
         "{area} for {frusta_area}"
     );
 }
+
+/// A thin neurite stands on its soma in a fillet that is as wide all around, not a star with four points
+/// towards the corners of its quad.
+#[test]
+fn fillet_on_a_soma_is_round() {
+    let twig = Twig {
+        parent: 0,
+        seed: 7,
+        points: 6,
+        step: 6.0,
+        wild: 0.0,
+        radius: 0.5,
+    };
+    let soma = 8.0;
+    let generated = generate(&grow(&[twig], Some(soma)), &GenerateOptions::default());
+    let mesh = generated.expect("meshed").mesh;
+    let insets = mesh.tracing.iter().filter(|t| t.role == Role::Inset);
+    let insets: Vec<_> = insets.collect();
+    let [inset] = insets[..] else {
+        panic!("one inset, not {}", insets.len());
+    };
+    let soma_center = inset.center - inset.tangent * inset.tangent.dot(inset.center);
+    assert!(soma_center.length() < 0.1, "the soma is at the origin");
+    let surface = surface(&mesh, LodCriterion::Homogeneous(32), Path::Hermite);
+    let low = surface.vertices.iter().filter_map(|v| {
+        let height = (v.position.length() - soma) / inset.radius;
+        let beside = v.position - inset.tangent * v.position.dot(inset.tangent);
+        ((0.08..0.16).contains(&height)).then_some(beside.length() / inset.radius)
+    });
+    let widths: Vec<f32> = low.collect();
+    assert!(widths.len() > 40, "{} vertices", widths.len());
+    let least = widths.iter().copied().fold(f32::INFINITY, f32::min);
+    let most = widths.iter().copied().fold(0.0, f32::max);
+    assert!(most < 1.3 * least, "{least} to {most} radii");
+}
