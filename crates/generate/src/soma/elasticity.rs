@@ -6,18 +6,21 @@
 //! λ = ν / ((1 + ν)(1 − 2ν)) and μ = 1 / (2 (1 + ν)) (Zienkiewicz & Taylor, The Finite Element
 //! Method, vol. 1, 5th ed., chapter 6, written without the B matrix).
 //!
-//! **Practice.** K depends on the sphere and ν alone, so it is factored once. A soma prescribes the
-//! displacements g of a few surface nodes c. With G = K⁻¹ the forces f that do so solve
-//! `G_cc f = g`, and the displacements of all nodes are `K⁻¹ f`: one small dense solve and one pair
-//! of triangular sweeps. Columns of G are solved for at their first use and kept.
+//! **Practice.** K depends on the sphere and ν alone, so it is factored once, in eight parts of an eighth of the
+//! sphere ([`mirrors`]). A soma prescribes the displacements g of a few surface nodes c. With G = K⁻¹ the forces f
+//! that do so solve `G_cc f = g`, and the displacements of all nodes are `K⁻¹ f`: one small dense solve and one
+//! pair of triangular sweeps. Columns of G are solved for at their first use and kept.
+
+mod mirrors;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::cholesky::{Cholesky, Clique, Columns, NO_NODE};
+use super::cholesky::{Blocks, Cholesky, Clique, Columns, Elimination, NO_NODE};
 use super::sphere::{self, Sphere};
+use mirrors::{Image, Mirrors, Parity};
 
 /// Columns of G that are solved for at once: of 4, 6, 8 and 12 the quickest on spheres of up to 6,000
 /// nodes.
@@ -25,41 +28,83 @@ const COLUMNS: usize = 4;
 
 /// The factored stiffness of a sphere.
 pub(crate) struct Elasticity {
-    /// First of a node's three equations, or `None` for an anchored node.
-    equation: Vec<Option<usize>>,
-    equations: usize,
-    surface_equations: usize,
+    mirrors: Mirrors,
+    /// By class of fields.
+    fields: Vec<Field>,
+}
+
+/// Displacements of the representatives, three equations each, in the fields of a class.
+struct Field {
+    parity: Parity,
+    /// Equations of displacements that are zero.
+    held: Vec<bool>,
     factor: Cholesky,
-    /// Columns of G restricted to surface equations.
+    /// Columns of the inverse restricted to surface equations.
     columns: Mutex<Vec<Option<Box<[f64]>>>>,
+}
+
+/// A displacement that is prescribed: of a node along an axis.
+#[derive(Clone, Copy)]
+struct Constraint {
+    image: Image,
+    axis: usize,
+}
+
+impl Constraint {
+    /// Equation of the representative.
+    fn equation(self) -> usize {
+        3 * self.image.of as usize + self.axis
+    }
+
+    fn sign(self, parity: Parity) -> f64 {
+        self.image.sign(parity, self.axis)
+    }
 }
 
 impl Elasticity {
     /// Assembles and factors; `None` if the matrix is not positive definite (ν out of range).
     pub(crate) fn new(sphere: &Sphere, poisson: f64) -> Option<Self> {
-        let mut free = Vec::new();
-        let mut number = Vec::with_capacity(sphere.nodes.len());
-        for (node, &point) in sphere.nodes.iter().enumerate() {
-            let moves = !sphere.anchored(node);
-            number.push(moves.then_some(free.len() as u32));
-            free.extend(moves.then_some(point));
-        }
-        let free_corners = |corners: &[u32; 4]| {
-            let corners = corners.map(|node| number[node as usize]);
-            corners.map(|node| node.unwrap_or(NO_NODE))
+        let mirrors = Mirrors::new(sphere);
+        let points = mirrors.representatives.iter();
+        let points: Vec<DVec3> = points.map(|&node| sphere.nodes[node as usize]).collect();
+        let represents = |tetrahedron: &&[u32; 4]| {
+            let mut corners = tetrahedron.iter().map(|&node| sphere.nodes[node as usize]);
+            mirrors.classes == 1 || corners.all(mirrors::is_first_eighth)
         };
-        let elements: Vec<Clique> = sphere.tetrahedra.iter().map(free_corners).collect();
-        let stiffness = |index: usize| element(&sphere.nodes, sphere.tetrahedra[index], poisson);
-        let surface_equations = 3 * sphere.surface;
+        let tetrahedra: Vec<[u32; 4]> = sphere
+            .tetrahedra
+            .iter()
+            .filter(represents)
+            .copied()
+            .collect();
+        let free_corners = |corners: &[u32; 4]| {
+            let images = corners.map(|node| mirrors.image(node));
+            images.map(|image| image.map_or(NO_NODE, |image| image.of))
+        };
+        let elements: Vec<Clique> = tetrahedra.iter().map(free_corners).collect();
+        let stiffness = tetrahedra.par_iter().with_min_len(256);
+        let stiffness: Vec<Blocks> = stiffness
+            .map(|&t| element(&sphere.nodes, t, poisson))
+            .collect();
+        let elimination = Elimination::new(&points, &elements);
+        let fields = (0..mirrors.classes).into_par_iter().map(|parity| {
+            let equations = points
+                .iter()
+                .flat_map(|&point| [0, 1, 2].map(|axis| (point, axis)));
+            let held = equations.map(|(point, axis)| mirrors.holds(parity, point, axis));
+            let held: Vec<bool> = held.collect();
+            let blocks = |number: usize| hold(stiffness[number], elements[number], &held);
+            Some(Field {
+                factor: elimination.factor(&blocks)?,
+                columns: Mutex::new(vec![None; 3 * mirrors.surface]),
+                held,
+                parity,
+            })
+        });
+        let fields: Option<Vec<Field>> = fields.collect();
         Some(Self {
-            equation: number
-                .into_iter()
-                .map(|number| number.map(|number| 3 * number as usize))
-                .collect(),
-            equations: 3 * free.len(),
-            surface_equations,
-            factor: Cholesky::new(&free, &elements, &stiffness)?,
-            columns: Mutex::new(vec![None; surface_equations]),
+            fields: fields?,
+            mirrors,
         })
     }
 
@@ -67,71 +112,135 @@ impl Elasticity {
     ///
     /// `None` if the prescription is singular (a node named twice). Nodes that are anchored stay.
     pub(crate) fn solve(&self, prescribed: &[(u32, DVec3)]) -> Option<Vec<DVec3>> {
-        let constrained: Vec<usize> = prescribed
-            .iter()
-            .filter_map(|&(node, _)| self.equation[node as usize])
-            .flat_map(|first| first..first + 3)
-            .collect();
-        let goals = prescribed.iter().flat_map(|(_, goal)| goal.to_array());
+        let free = prescribed.iter();
+        let free = free.filter_map(|&(node, goal)| Some((self.mirrors.image(node)?, goal)));
+        let constraints = free
+            .clone()
+            .flat_map(|(image, _)| [0, 1, 2].map(|axis| Constraint { image, axis }));
+        let constraints: Vec<Constraint> = constraints.collect();
+        let goals = free.flat_map(|(_, goal)| goal.to_array());
         let mut small: Vec<[f64; 1]> = goals.map(|goal| [goal]).collect();
-        let compliance = self.compliance(&constrained).factor()?;
+        let compliance = self.compliance(&constraints).factor()?;
         compliance.forward(&mut small);
         compliance.backward(&mut small);
-        let mut forces = vec![[0.0]; self.equations];
-        for (&equation, force) in constrained.iter().zip(small) {
-            forces[equation] = force;
-        }
-        self.factor.solve(&mut forces);
-        let displacement =
-            |first: usize| DVec3::from_array([0, 1, 2].map(|i| forces[first + i][0]));
+        let forces: Vec<(Constraint, f64)> = (constraints.into_iter().zip(small))
+            .map(|(constraint, [force])| (constraint, force))
+            .collect();
+        let solved = self
+            .fields
+            .par_iter()
+            .map(|field| self.answer(field, &forces));
+        let solved: Vec<Vec<[f64; 1]>> = solved.collect();
+        let displacement = |image: Image| {
+            let along = |axis: usize| {
+                let by_class = self.fields.iter().zip(&solved);
+                let by_class = by_class.map(|(field, solved)| {
+                    image.sign(field.parity, axis) * solved[3 * image.of as usize + axis][0]
+                });
+                by_class.sum::<f64>()
+            };
+            DVec3::from_array([0, 1, 2].map(along))
+        };
+        let images = self.mirrors.images();
         Some(
-            self.equation
-                .iter()
-                .map(|e| e.map_or(DVec3::ZERO, displacement))
+            images
+                .map(|image| image.map_or(DVec3::ZERO, displacement))
                 .collect(),
         )
+    }
+
+    /// Displacements of the representatives under forces, in the fields of a class.
+    fn answer(&self, field: &Field, forces: &[(Constraint, f64)]) -> Vec<[f64; 1]> {
+        let mut x = vec![[0.0]; field.held.len()];
+        for &(constraint, force) in forces {
+            let equation = constraint.equation();
+            if !field.held[equation] {
+                x[equation][0] += constraint.sign(field.parity) * force * self.share();
+            }
+        }
+        field.factor.solve(&mut x);
+        x
+    }
+
+    /// Share of the sphere that the representatives stand for, of which alone the stiffness was summed.
+    fn share(&self) -> f64 {
+        1.0 / f64::from(self.mirrors.classes)
+    }
+
+    /// The rows and columns of G that belong to the constraints.
+    fn compliance(&self, constraints: &[Constraint]) -> Columns {
+        let mut equations: Vec<usize> = constraints.iter().map(|c| c.equation()).collect();
+        equations.sort_unstable();
+        equations.dedup();
+        // Not while columns are locked: a thread that waits here may take up another soma.
+        let chunks = equations.chunks(COLUMNS);
+        let pieces: Vec<(&Field, &[usize])> = (self.fields.iter())
+            .flat_map(|field| chunks.clone().map(move |chunk| (field, chunk)))
+            .collect();
+        pieces
+            .into_par_iter()
+            .for_each(|(field, chunk)| field.know(chunk));
+        let columns: Vec<_> = self.fields.iter().map(Field::lock_columns).collect();
+        let share = self.share();
+        Columns::from_fn(constraints.len(), |row, column| {
+            let [to, from] = [row, column].map(|at| constraints[at]);
+            let by_class = self.fields.iter().zip(&columns).map(|(field, columns)| {
+                let column = columns[from.equation()].as_deref();
+                let column = column.expect("made known above");
+                to.sign(field.parity) * from.sign(field.parity) * column[to.equation()]
+            });
+            by_class.sum::<f64>() * share
+        })
+    }
+}
+
+impl Field {
+    /// Solves for those of up to [`COLUMNS`] columns that are not known yet.
+    fn know(&self, equations: &[usize]) {
+        let missing: Vec<usize> = {
+            let columns = self.lock_columns();
+            let missing = equations.iter().filter(|&&e| columns[e].is_none());
+            missing.copied().collect()
+        };
+        if missing.is_empty() {
+            return;
+        }
+        let mut unit = vec![[0.0; COLUMNS]; self.held.len()];
+        for (column, &equation) in missing.iter().enumerate() {
+            unit[equation][column] = f64::from(u8::from(!self.held[equation]));
+        }
+        self.factor.solve(&mut unit);
+        let mut columns = self.lock_columns();
+        unit.truncate(columns.len());
+        for (column, &equation) in missing.iter().enumerate() {
+            columns[equation] = Some(unit.iter().map(|row| row[column]).collect());
+        }
     }
 
     fn lock_columns(&self) -> MutexGuard<'_, Vec<Option<Box<[f64]>>>> {
         let columns = self.columns.lock();
         columns.unwrap_or_else(PoisonError::into_inner)
     }
+}
 
-    /// Up to [`COLUMNS`] columns of G, restricted to surface equations.
-    fn solve_columns(&self, equations: &[usize]) -> impl Iterator<Item = Box<[f64]>> {
-        let mut unit = vec![[0.0; COLUMNS]; self.equations];
-        for (column, &equation) in equations.iter().enumerate() {
-            unit[equation][column] = 1.0;
+/// Blocks without what belongs to equations that are held: there they have a one on the diagonal.
+fn hold(mut blocks: Blocks, clique: Clique, held: &[bool]) -> Blocks {
+    for (corner, &node) in clique
+        .iter()
+        .enumerate()
+        .filter(|(_, node)| **node != NO_NODE)
+    {
+        for axis in (0..3).filter(|axis| held[3 * node as usize + axis]) {
+            for row in &mut blocks {
+                *row[corner].col_mut(axis) = DVec3::ZERO;
+            }
+            for block in &mut blocks[corner] {
+                (0..3).for_each(|column| block.col_mut(column)[axis] = 0.0);
+            }
+            blocks[corner][corner].col_mut(axis)[axis] = 1.0;
         }
-        self.factor.solve(&mut unit);
-        unit.truncate(self.surface_equations);
-        (0..equations.len()).map(move |column| unit.iter().map(|row| row[column]).collect())
     }
-
-    /// The rows and columns of G that belong to the constrained equations.
-    fn compliance(&self, constrained: &[usize]) -> Columns {
-        let missing: Vec<usize> = {
-            let columns = self.lock_columns();
-            let missing = constrained.iter().filter(|&&c| columns[c].is_none());
-            missing.copied().collect()
-        };
-        // Not while the columns are locked: a thread that waits here may take up another soma.
-        let solved: Vec<Box<[f64]>> = missing
-            .par_chunks(COLUMNS)
-            .flat_map_iter(|equations| self.solve_columns(equations))
-            .collect();
-        let mut columns = self.lock_columns();
-        for (equation, column) in missing.into_iter().zip(solved) {
-            columns[equation] = Some(column);
-        }
-        let columns: Vec<&[f64]> = constrained
-            .iter()
-            .map(|&c| columns[c].as_deref().expect("solved for above"))
-            .collect();
-        Columns::from_fn(constrained.len(), |row, column| {
-            columns[column][constrained[row]]
-        })
-    }
+    blocks
 }
 
 /// Stiffness blocks of one tetrahedron, E = 1.

@@ -164,7 +164,7 @@ pub(crate) const ATTEMPTS: u32 = 3;
 fn finer(kind: SphereKind) -> u32 {
     match kind {
         SphereKind::Octahedron => 1,
-        SphereKind::Cube => 3,
+        SphereKind::Cube => 4,
     }
 }
 
@@ -218,7 +218,9 @@ fn fitting_level(kind: SphereKind, insertions: &[Insertion]) -> u32 {
     let median = angles.get(angles.len() / 2).copied().unwrap_or(0.15);
     let fit = (std::f64::consts::FRAC_PI_4 * std::f64::consts::SQRT_2 / median).round();
     let room = (4.0 * insertions.len() as f64).sqrt().ceil();
-    fit.clamp(6.0, 10.0).max(room).min(14.0) as u32
+    let level = fit.clamp(6.0, 10.0).max(room).min(14.0) as u32;
+    // A sphere that is its own mirror image is factored in a fraction of the time.
+    level.next_multiple_of(2)
 }
 
 /// Spheres that are kept for later somata: (kind, level, ν in bits).

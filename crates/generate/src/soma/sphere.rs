@@ -34,6 +34,9 @@ pub(crate) struct Sphere {
     pub(crate) tetrahedra: Vec<[u32; 4]>,
     /// Surface quads, counter-clockwise seen from outside.
     pub(crate) quads: Vec<[u32; 4]>,
+    /// Whether it is the same, tetrahedra included, mirrored at the planes x = 0, y = 0 and z = 0, and no
+    /// tetrahedron crosses one of them.
+    pub(crate) mirrored: bool,
 }
 
 impl Sphere {
@@ -107,6 +110,7 @@ fn octahedron(level: u32) -> Sphere {
         surface,
         tetrahedra,
         quads,
+        mirrored: true,
     }
 }
 
@@ -187,11 +191,19 @@ fn cube(level: u32) -> Sphere {
         .flat_map(|&radius| directions.iter().map(move |&d| d * radius))
         .collect();
 
+    // Diagonals run by this order, so that they are mirrored where the cube's middle is a line between quads.
+    let order = |v: u32| {
+        let p = lattice[v as usize];
+        ((p * 2 - n).abs().to_array(), v)
+    };
     let mut tetrahedra = Vec::new();
     for quad in &quads {
-        let lowest = (0..4).min_by_key(|&i| quad[i]).expect("a quad has corners");
-        let q = |i: usize| quad[(lowest + i) % 4];
-        for triangle in [[q(0), q(1), q(2)], [q(0), q(2), q(3)]] {
+        let first = (0..4)
+            .min_by_key(|&i| order(quad[i]))
+            .expect("a quad has corners");
+        let q = |i: usize| quad[(first + i) % 4];
+        for mut triangle in [[q(0), q(1), q(2)], [q(0), q(2), q(3)]] {
+            triangle.sort_unstable_by_key(|&v| order(v));
             for layer in 0..CUBE_SHELLS.len() - 1 {
                 prism(
                     &nodes,
@@ -208,15 +220,14 @@ fn cube(level: u32) -> Sphere {
         surface,
         tetrahedra,
         quads,
+        mirrored: n % 2 == 0,
     }
 }
 
 /// Splits the prism over a triangle between two shells in three, so that neighbors agree on the
-/// diagonals: each runs from the lower index outside to the higher one inside.
+/// diagonals: each runs from the earlier corner outside to the later one inside.
 fn prism(nodes: &[DVec3], triangle: [u32; 3], first: u32, shell: u32, out: &mut Vec<[u32; 4]>) {
-    let mut sorted = triangle;
-    sorted.sort_unstable();
-    let [a, b, c] = sorted.map(|v| v + first);
+    let [a, b, c] = triangle.map(|v| v + first);
     let [a1, b1, c1] = [a + shell, b + shell, c + shell];
     for corners in [[a, b, c, c1], [a, b, b1, c1], [a, a1, b1, c1]] {
         out.push(positive(nodes, corners));

@@ -7,8 +7,9 @@
 //! the matrix's elements and what its parts left, is factored as far as its own nodes go ([`dense`]),
 //! and leaves the rest to the front that follows.
 //!
-//! **Practice.** Made once per matrix; the time is that of a few large products of matrices. Fronts that
-//! part from one another are factored side by side. Solving passes the fronts forwards and backwards, for several right sides at once.
+//! **Practice.** The order is made once for all matrices of a pattern, and a factor once per matrix; its time is
+//! that of a few large products of matrices. Fronts that part from one another are factored side by side. Solving
+//! passes the fronts forwards and backwards, for several right sides at once.
 //!
 //! Why not a library: faer, which is as fast, takes a fifth of the time that all of this program takes
 //! to compile. rsparse compiles at once but factors row by row (Davis's up-looking method): two to four
@@ -16,6 +17,8 @@
 
 mod dense;
 mod dissection;
+
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
@@ -33,10 +36,24 @@ pub(crate) type Blocks = [[DMat3; 4]; 4];
 /// Stands for no node in a [`Clique`].
 pub(crate) const NO_NODE: u32 = u32::MAX;
 
+/// In which order the nodes of matrices of the same pattern are eliminated.
+pub(crate) struct Elimination<'c> {
+    cliques: &'c [Clique],
+    /// Position of each node in the order of elimination.
+    position: Arc<[u32]>,
+    groups: Vec<Group>,
+    /// By group: the position of its first node.
+    first: Vec<usize>,
+    /// By group: positions of the nodes after it that its own nodes or its parts touch, in order.
+    later: Vec<Arc<[u32]>>,
+    /// By group: the cliques whose first node it eliminates. There all of their nodes are known.
+    cliques_of: Vec<Vec<u32>>,
+}
+
 /// The factor L, in fronts.
 pub(crate) struct Cholesky {
     /// Position of each node in the order of elimination.
-    position: Vec<u32>,
+    position: Arc<[u32]>,
     fronts: Vec<Front>,
 }
 
@@ -46,18 +63,13 @@ struct Front {
     first: usize,
     own: usize,
     /// Positions of later nodes that they touch, in order.
-    later: Vec<u32>,
+    later: Arc<[u32]>,
     columns: Columns,
 }
 
-impl Cholesky {
-    /// Factors the matrix of nodes at the given points, the sum of the blocks of all cliques; `None` if it
-    /// is not positive definite. `blocks`: by number of the clique.
-    pub(crate) fn new(
-        points: &[DVec3],
-        cliques: &[Clique],
-        blocks: &(impl Fn(usize) -> Blocks + Sync),
-    ) -> Option<Self> {
+impl<'c> Elimination<'c> {
+    /// Of nodes at the given points that share blocks by clique.
+    pub(crate) fn new(points: &[DVec3], cliques: &'c [Clique]) -> Self {
         let neighbors = Neighbors::new(points.len(), cliques);
         let groups = dissection::dissect(points, &neighbors);
         let mut position = vec![0; points.len()];
@@ -65,19 +77,65 @@ impl Cholesky {
         for (index, &node) in order.enumerate() {
             position[node as usize] = index as u32;
         }
-        let elimination = Elimination {
+        let first = first_positions(&groups);
+        Self {
+            later: later_nodes(&groups, &first, &position, &neighbors),
             cliques_of: cliques_by_group(&groups, &position, cliques),
-            first: first_positions(&groups),
-            neighbors: &neighbors,
-            groups: &groups,
-            position: &position,
+            position: position.into(),
             cliques,
-            blocks,
-        };
-        let Factored { fronts, .. } = elimination.factor(groups.len() - 1)?;
-        Some(Self { position, fronts })
+            groups,
+            first,
+        }
     }
 
+    /// Factors the sum of the blocks of all cliques; `None` if it is not positive definite. `blocks`: by number of
+    /// the clique.
+    pub(crate) fn factor(&self, blocks: &(impl Fn(usize) -> Blocks + Sync)) -> Option<Cholesky> {
+        let Factored { fronts, .. } = self.factor_group(self.groups.len() - 1, blocks)?;
+        Some(Cholesky {
+            position: Arc::clone(&self.position),
+            fronts,
+        })
+    }
+
+    /// Factors a group after its parts, which do not know of each other.
+    fn factor_group(
+        &self,
+        number: usize,
+        blocks: &(impl Fn(usize) -> Blocks + Sync),
+    ) -> Option<Factored> {
+        let group = &self.groups[number];
+        let parts = match group.parts[..] {
+            [a, b] => {
+                let factor = |part: usize| self.factor_group(part, blocks);
+                let (a, b) = rayon::join(|| factor(a), || factor(b));
+                vec![a?, b?]
+            }
+            _ => Vec::new(),
+        };
+        let later = Arc::clone(&self.later[number]);
+        let mut sum = Sum::new(self.first[number], group.nodes.len(), later);
+        for &clique in &self.cliques_of[number] {
+            let nodes = self.cliques[clique as usize];
+            sum.add_clique(
+                nodes.map(|node| self.position.get(node as usize).copied()),
+                &blocks(clique as usize),
+            );
+        }
+        let mut fronts = Vec::new();
+        for part in parts {
+            if let Some(last) = part.fronts.last() {
+                sum.add_part(last, &part.left);
+            }
+            fronts.extend(part.fronts);
+        }
+        let (front, left) = sum.factor()?;
+        fronts.push(front);
+        Some(Factored { fronts, left })
+    }
+}
+
+impl Cholesky {
     /// Solves for W right sides at once, in place: three rows a node.
     pub(crate) fn solve<const W: usize>(&self, x: &mut [[f64; W]]) {
         let mut ordered = vec![[0.0; W]; x.len()];
@@ -102,7 +160,6 @@ fn copy_node<const W: usize>(to: &mut [[f64; W]], at: usize, from: &[[f64; W]], 
     to[3 * at..][..3].copy_from_slice(&from[3 * node..][..3]);
 }
 
-/// Each clique belongs to the group that eliminates the first of its nodes: there all of them are known.
 fn cliques_by_group(groups: &[Group], position: &[u32], cliques: &[Clique]) -> Vec<Vec<u32>> {
     let mut group_of = vec![0; position.len()];
     for (number, group) in groups.iter().enumerate() {
@@ -120,7 +177,6 @@ fn cliques_by_group(groups: &[Group], position: &[u32], cliques: &[Clique]) -> V
     by_group
 }
 
-/// By group: the position of its first node.
 fn first_positions(groups: &[Group]) -> Vec<usize> {
     let before = groups.iter().scan(0, |before, group| {
         let first = *before;
@@ -130,17 +186,27 @@ fn first_positions(groups: &[Group]) -> Vec<usize> {
     before.collect()
 }
 
-/// What is eliminated, in which order.
-struct Elimination<'a, B> {
-    neighbors: &'a Neighbors,
-    groups: &'a [Group],
-    /// By group.
-    first: Vec<usize>,
-    cliques_of: Vec<Vec<u32>>,
-    /// By node.
-    position: &'a [u32],
-    cliques: &'a [Clique],
-    blocks: &'a B,
+fn later_nodes(
+    groups: &[Group],
+    first: &[usize],
+    position: &[u32],
+    neighbors: &Neighbors,
+) -> Vec<Arc<[u32]>> {
+    let mut all: Vec<Arc<[u32]>> = Vec::with_capacity(groups.len());
+    for (group, first) in groups.iter().zip(first) {
+        let touched = group.nodes.iter().flat_map(|&node| neighbors.of(node));
+        let touched = touched.map(|&node| position[node as usize]);
+        let passed_on = group
+            .parts
+            .iter()
+            .flat_map(|&part| all[part].iter().copied());
+        let after = (first + group.nodes.len()) as u32;
+        let mut later: Vec<u32> = touched.chain(passed_on).filter(|&p| p >= after).collect();
+        later.sort_unstable();
+        later.dedup();
+        all.push(later.into());
+    }
+    all
 }
 
 /// The fronts of a group and of all its parts, its own last.
@@ -148,53 +214,6 @@ struct Factored {
     fronts: Vec<Front>,
     /// What they leave to the front that follows: the square of the last one's later nodes.
     left: Vec<f64>,
-}
-
-impl<B: Fn(usize) -> Blocks + Sync> Elimination<'_, B> {
-    /// Factors a group after its parts, which do not know of each other.
-    fn factor(&self, number: usize) -> Option<Factored> {
-        let group = &self.groups[number];
-        let parts = match group.parts[..] {
-            [a, b] => {
-                let (a, b) = rayon::join(|| self.factor(a), || self.factor(b));
-                vec![a?, b?]
-            }
-            _ => Vec::new(),
-        };
-        let later = self.later_nodes(number, &parts);
-        let mut sum = Sum::new(self.first[number], group.nodes.len(), later);
-        for &clique in &self.cliques_of[number] {
-            let nodes = self.cliques[clique as usize];
-            sum.add_clique(
-                nodes.map(|node| self.position.get(node as usize).copied()),
-                &(self.blocks)(clique as usize),
-            );
-        }
-        let mut fronts = Vec::new();
-        for part in parts {
-            if let Some(last) = part.fronts.last() {
-                sum.add_part(last, &part.left);
-            }
-            fronts.extend(part.fronts);
-        }
-        let (front, left) = sum.factor()?;
-        fronts.push(front);
-        Some(Factored { fronts, left })
-    }
-
-    /// Positions of the nodes after a group that its own nodes or its parts touch.
-    fn later_nodes(&self, number: usize, parts: &[Factored]) -> Vec<u32> {
-        let group = &self.groups[number];
-        let touched = group.nodes.iter().flat_map(|&node| self.neighbors.of(node));
-        let touched = touched.map(|&node| self.position[node as usize]);
-        let parts = parts.iter().filter_map(|part| part.fronts.last());
-        let passed_on = parts.flat_map(|part| part.later.iter().copied());
-        let after = (self.first[number] + group.nodes.len()) as u32;
-        let mut later: Vec<u32> = touched.chain(passed_on).filter(|&p| p >= after).collect();
-        later.sort_unstable();
-        later.dedup();
-        later
-    }
 }
 
 /// A front that is being summed.
@@ -205,7 +224,7 @@ struct Sum {
 }
 
 impl Sum {
-    fn new(first: usize, own: usize, later: Vec<u32>) -> Self {
+    fn new(first: usize, own: usize, later: Arc<[u32]>) -> Self {
         Self {
             rest: dense::zeros((3 * later.len()).pow(2)),
             front: Front {
@@ -320,7 +339,7 @@ impl Front {
     fn backward<const W: usize>(&self, x: &mut [[f64; W]], local: &mut Vec<[f64; W]>) {
         local.clear();
         local.extend_from_slice(&x[3 * self.first..][..3 * self.own]);
-        for &node in &self.later {
+        for &node in self.later.iter() {
             local.extend_from_slice(&x[3 * node as usize..][..3]);
         }
         self.columns.backward(local);

@@ -35,7 +35,7 @@ fn factor(points: &[DVec3], blocks: &[Block]) -> Option<Cholesky> {
         }
         values
     };
-    Cholesky::new(points, &cliques, &values)
+    Elimination::new(points, &cliques).factor(&values)
 }
 
 /// Points in a cube, and a matrix that joins near ones; positive definite as its diagonal outweighs

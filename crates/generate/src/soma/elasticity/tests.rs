@@ -78,6 +78,53 @@ fn prescribed_nodes_reach_their_goals() {
     );
 }
 
+/// What is solved for is in equilibrium wherever nothing is prescribed, on spheres that are their own mirror
+/// images and on one that is not.
+#[test]
+fn nodes_that_are_free_bear_no_force() {
+    let spheres = [
+        (SphereKind::Octahedron, 2),
+        (SphereKind::Cube, 6),
+        (SphereKind::Cube, 7),
+    ];
+    for (kind, level) in spheres {
+        let sphere = Sphere::new(kind, level);
+        let elasticity = Elasticity::new(&sphere, 0.3).unwrap();
+        // On planes and edges of the mirrorings, and off them; mirror images of one another, and not.
+        let prescribed: Vec<(u32, DVec3)> = (0..sphere.surface as u32)
+            .filter(|v| v % 7 < 2)
+            .map(|v| {
+                (
+                    v,
+                    DVec3::new(0.1, 0.2 * f64::from(v % 3), -0.05 * f64::from(v % 5)),
+                )
+            })
+            .collect();
+        let moved = elasticity.solve(&prescribed).unwrap();
+        for &(node, goal) in &prescribed {
+            assert!((moved[node as usize] - goal).length() < 1e-10);
+        }
+        let mut forces = vec![DVec3::ZERO; sphere.nodes.len()];
+        for &t in &sphere.tetrahedra {
+            let blocks = element(&sphere.nodes, t, 0.3);
+            for (&node, row) in t.iter().zip(blocks) {
+                for (&other, block) in t.iter().zip(row) {
+                    forces[node as usize] += block * moved[other as usize];
+                }
+            }
+        }
+        for (node, force) in forces.iter().enumerate() {
+            let is_prescribed = prescribed.iter().any(|&(p, _)| p as usize == node);
+            if !is_prescribed && !sphere.anchored(node) {
+                assert!(
+                    force.length() < 1e-11,
+                    "{kind:?} {level}, node {node}: {force}"
+                );
+            }
+        }
+    }
+}
+
 /// Mean error at half the radius of a shell held at radius a and moved out by 1 at radius 1, which
 /// moves radially by `A r + B / r²` (Lamé's thick sphere), whatever ν is.
 fn lame_error(level: u32) -> f64 {
