@@ -1,9 +1,10 @@
-//! Normals of the vertices whose surface is no tube: those of somata and joints.
+//! Normals of the vertices of somata and joints.
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role, Vertex};
 
-/// Normals of joints' and somata's vertices: the mean of their faces', by area.
+/// Normals of joints' and somata's vertices: the mean of their faces', by area. At the first ring of a neurite on
+/// its soma they are the tube's: the soma runs smoothly into it.
 pub(crate) fn average_normals(mesh: &mut CoarseMesh) {
     let averaged = |vertex: &Vertex| {
         let role = mesh.tracing[vertex.tracing as usize].role;
@@ -26,8 +27,11 @@ pub(crate) fn average_normals(mesh: &mut CoarseMesh) {
             let vertex = &mut mesh.vertices[v];
             let center = mesh.tracing[vertex.tracing as usize].center;
             let outwards = (vertex.position - center).normalize_or(Vec3::Y);
-            vertex.normal = sum.normalize_or(outwards);
             let tracing = &mut mesh.tracing[vertex.tracing as usize];
+            vertex.normal = match tracing.role {
+                Role::Insertion => outwards,
+                _ => sum.normalize_or(outwards),
+            };
             if tracing.role == Role::Soma {
                 tracing.tangent = vertex.normal;
             }

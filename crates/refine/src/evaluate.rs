@@ -481,7 +481,8 @@ impl PatchShape {
         sum.normalize_or(Vec3::Y)
     }
 
-    /// Bilinearly blended Coons patch.
+    /// Bilinearly blended Coons patch. Its normal is that of the sides, the nearer one more: that of the surface
+    /// jumps at the sides, which shows as lines where a ring pulls a soma out.
     fn coons(&self, x: f32, y: f32) -> (Vec3, Vec3) {
         let [near, right, far, left] = [
             self.side(0, Path::Hermite, x),
@@ -492,13 +493,20 @@ impl PatchShape {
         let [a, b, c, d] = self.corners.map(|k| k.position);
         let position = mix(near.position, far.position, y) + mix(left.position, right.position, x)
             - mix(mix(a, b, x), mix(d, c, x), y);
-        let by_x = mix(near.derivative, far.derivative, y) + right.position
-            - left.position
-            - mix(b - a, c - d, y);
-        let by_y = mix(left.derivative, right.derivative, x) + far.position
-            - near.position
-            - mix(d - a, c - b, x);
-        (position, by_x.cross(by_y).normalize_or(self.mean_normal()))
+        let [along_near, along_right, along_far, along_left] = [
+            self.side_normal(0, &near, x),
+            self.side_normal(1, &right, y),
+            self.side_normal(2, &far, x),
+            self.side_normal(3, &left, y),
+        ];
+        let normal = mix(along_near, along_far, y) * (x * (1.0 - x))
+            + mix(along_left, along_right, x) * (y * (1.0 - y));
+        (position, normal.normalize_or(self.mean_normal()))
+    }
+
+    fn side_normal(&self, side: usize, jet: &Jet, t: f32) -> Vec3 {
+        let (from, to) = SIDES[side];
+        edge_normal(&self.corners[from], &self.corners[to], jet.derivative, t)
     }
 
     /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the

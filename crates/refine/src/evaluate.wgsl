@@ -255,7 +255,7 @@ fn side(shape: u32, from_corner: Corner, to_corner: Corner, path: u32, t: f32) -
     return Jet(jet.position, select(jet.derivative, -jet.derivative, reversed));
 }
 
-// Bilinearly blended Coons patch.
+// Bilinearly blended Coons patch. Its normal is that of the sides, the nearer one more.
 fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
     let near = side(shape.sides.x, shape.a, shape.b, PATH_HERMITE, x);
     let right = side(shape.sides.y, shape.b, shape.c, PATH_HERMITE, y);
@@ -267,13 +267,13 @@ fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
     let d = shape.d.position;
     let position = blend(near.position, far.position, y) + blend(left.position, right.position, x)
         - blend(blend(a, b, x), blend(d, c, x), y);
-    let by_x = blend(near.derivative, far.derivative, y) + right.position
-        - left.position
-        - blend(b - a, c - d, y);
-    let by_y = blend(left.derivative, right.derivative, x) + far.position
-        - near.position
-        - blend(d - a, c - b, x);
-    return Inside(position, normalize_or(cross(by_x, by_y), mean_normal(shape)));
+    let along_near = edge_normal(shape.a, shape.b, near.derivative, x);
+    let along_right = edge_normal(shape.b, shape.c, right.derivative, y);
+    let along_far = edge_normal(shape.d, shape.c, far.derivative, x);
+    let along_left = edge_normal(shape.a, shape.d, left.derivative, y);
+    let normal = blend(along_near, along_far, y) * (x * (1.0 - x))
+        + blend(along_left, along_right, x) * (y * (1.0 - y));
+    return Inside(position, normalize_or(normal, mean_normal(shape)));
 }
 
 fn mean_normal(shape: PatchShape) -> vec3<f32> {
