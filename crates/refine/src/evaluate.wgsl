@@ -185,12 +185,23 @@ fn cubic(p: array<vec3<f32>, 4>, t: f32) -> Jet {
     return Jet(position, derivative);
 }
 
-// Normal on an edge: that of the corners, made perpendicular to the edge's own direction.
-fn edge_normal(a: Corner, b: Corner, derivative: vec3<f32>, t: f32) -> vec3<f32> {
+// Normal on an edge, at right angles to the edge's own direction, and along a tube to those around it.
+fn edge_normal(kind: u32, a: Corner, b: Corner, derivative: vec3<f32>, t: f32) -> vec3<f32> {
     let along = normalize_or(derivative, vec3<f32>(0.0));
-    let normal = blend(a.normal, b.normal, t);
-    let otherwise = normalize_or(normal, vec3<f32>(0.0, 1.0, 0.0));
-    return normalize_or(normal - along * dot(normal, along), otherwise);
+    let plain = blend(a.normal, b.normal, t);
+    let otherwise = normalize_or(plain, vec3<f32>(0.0, 1.0, 0.0));
+    let mixed = normalize_or(plain - along * dot(plain, along), otherwise);
+    if (kind != EDGE_ALONG || !on_ring(a) || !on_ring(b)) {
+        return mixed;
+    }
+    let around = blend(cross(a.tangent, a.radial), cross(b.tangent, b.radial), t);
+    let normal = normalize_or(cross(around, along), mixed);
+    return select(normal, mixed, dot(normal, mixed) < 0.0);
+}
+
+// Whether a corner is of a circle around a path, across its tangent.
+fn on_ring(corner: Corner) -> bool {
+    return corner.role != ROLE_JOINT && corner.role != ROLE_SOMA;
 }
 
 struct Inside {
@@ -267,10 +278,10 @@ fn coons(shape: PatchShape, x: f32, y: f32) -> Inside {
     let d = shape.d.position;
     let position = blend(near.position, far.position, y) + blend(left.position, right.position, x)
         - blend(blend(a, b, x), blend(d, c, x), y);
-    let along_near = edge_normal(shape.a, shape.b, near.derivative, x);
-    let along_right = edge_normal(shape.b, shape.c, right.derivative, y);
-    let along_far = edge_normal(shape.d, shape.c, far.derivative, x);
-    let along_left = edge_normal(shape.a, shape.d, left.derivative, y);
+    let along_near = edge_normal(shape.sides.x & SIDE_KIND, shape.a, shape.b, near.derivative, x);
+    let along_right = edge_normal(shape.sides.y & SIDE_KIND, shape.b, shape.c, right.derivative, y);
+    let along_far = edge_normal(shape.sides.z & SIDE_KIND, shape.d, shape.c, far.derivative, x);
+    let along_left = edge_normal(shape.sides.w & SIDE_KIND, shape.a, shape.d, left.derivative, y);
     let normal = blend(along_near, along_far, y) * (x * (1.0 - x))
         + blend(along_left, along_right, x) * (y * (1.0 - y));
     return Inside(position, normalize_or(normal, mean_normal(shape)));

@@ -155,7 +155,7 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     let b = corner_of(source, s.end);
     let t = f32(k) / f32(level);
     let jet = edge(s.kind, a, b, options.path, t);
-    let normal = edge_normal(a, b, jet.derivative, t);
+    let normal = edge_normal(s.kind, a, b, jet.derivative, t);
     var nearest = s.end;
     if (t < 0.5) {
         nearest = s.start;

@@ -233,6 +233,7 @@ impl<'m> Refinement<'m> {
 
 /// What the inner vertices of an edge have in common.
 struct InnerEdge<'r> {
+    kind: EdgeKind,
     curve: EdgeCurve<'r>,
     ends: &'r [Corner; 2],
     level: u16,
@@ -247,6 +248,7 @@ impl<'r> InnerEdge<'r> {
         let tracing = [plan.from, plan.to].map(|v| refinement.tracing(v));
         let of_soma = |t: &&TracingPoint| plan.kind == EdgeKind::Soma && t.role == Role::Soma;
         Self {
+            kind: plan.kind,
             curve: EdgeCurve::new(plan.kind, a, b, refinement.options.path),
             ends,
             level: plan.level,
@@ -260,7 +262,7 @@ impl<'r> InnerEdge<'r> {
         let t = k as f32 / f32::from(self.level);
         let jet = self.curve.at(t);
         let [a, b] = self.ends;
-        let normal = edge_normal(a, b, jet.derivative, t);
+        let normal = edge_normal(self.kind, a, b, jet.derivative, t);
         let [ta, tb] = self.tracing;
         let radius = ta.radius * (1.0 - t) + tb.radius * t;
         let nearest = if t < 0.5 { ta } else { tb };

@@ -57,11 +57,11 @@ fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32
         wire_grid(PATCH_LATERAL, grid, i, j),
     );
     if (on_ring) {
-        v.normal = edge_normal(a, b, made.by_x, x);
+        v.normal = edge_normal(EDGE_RING, a, b, made.by_x, x);
         v.axis = start.center;
         v.radius = start.radius;
     } else if (on_side) {
-        v.normal = edge_normal(a, d, made.by_y, y);
+        v.normal = edge_normal(EDGE_ALONG, a, d, made.by_y, y);
     }
     // Corners are taken as they are, so that all patches around them agree to the bit.
     let at_start = (on_ring || on_side) && place == 0u;
