@@ -123,9 +123,9 @@ fn an_edge_whose_faces_disagree_is_found() {
                 text
             }
         };
-        let (_, back) = count(&gpu, &source, 1, 8);
+        let (_, back) = count(&gpu, &source, 3, 8);
         note!("{back} pixels of back faces");
-        // Measured on lavapipe: 35 of what draws tubes, which makes few sides; 350 of all else.
+        // Measured on lavapipe: 39 of what draws tubes, which makes few sides; 2,740 of all else.
         assert!(back > 25, "{honest}: {back}");
     }
 }
