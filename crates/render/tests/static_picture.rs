@@ -112,13 +112,12 @@ fn drawn(
     whole
 }
 
-/// What one sample of a pixel's sixteen may change of 255.
-const ONE_SAMPLE: u8 = 16;
+/// Most of 255 by which a pixel of 10,000 may be off. It was 3, before somata changed: since then one pixel of 24,000, at
+/// the outline of a cut, is off by 9, the same one in each run, about what one of its sixteen samples weighs. Why is not
+/// known: drawn anew it is the same, so it is not the order in which patches are listed.
+const MOST_OFF: u8 = 10;
 
-/// At most 1 of 255 in all but one pixel of 10,000; told with the numbers. There up to [`ONE_SAMPLE`].
-///
-/// The two passes list patches in orders of their own, and where two facets are equally far at a sample, the one that
-/// comes first shows: at the outline of a cut, once in 24,000 pixels, it is another one, and the pixel is off by 9.
+/// At most 1 of 255 in all but one pixel of 10,000; told with the numbers. There up to [`MOST_OFF`].
 fn assert_equal(what: &str, expected: &Image, found: &Image) {
     assert_eq!(
         (expected.width, expected.height),
@@ -143,7 +142,7 @@ fn assert_equal(what: &str, expected: &Image, found: &Image) {
         .count();
     note!("{what}: {covered} pixels, {above} differ by more than 1, worst {worst}");
     assert!(covered > 500, "{what}: hardly anything shows");
-    assert!(worst <= ONE_SAMPLE, "{what}: {worst} of 255");
+    assert!(worst <= MOST_OFF, "{what}: {worst} of 255");
     assert!(
         above * 10_000 <= differences.len(),
         "{what}: {above} pixels differ"
