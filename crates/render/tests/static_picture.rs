@@ -112,13 +112,18 @@ fn drawn(
     whole
 }
 
-/// Most of 255 by which a pixel of 10,000 may be off. It was 3, before somata changed: since then one pixel of 24,000, at
-/// the outline of a cut, is off by 9, the same one in each run, about what one of its sixteen samples weighs. Why is not
-/// known: drawn anew it is the same, so it is not the order in which patches are listed.
-const MOST_OFF: u8 = 10;
-
-/// At most 1 of 255 in all but one pixel of 10,000; told with the numbers. There up to [`MOST_OFF`].
+/// At most 1 of 255 in all but one pixel of 10,000, and 3 there; told with the numbers.
 fn assert_equal(what: &str, expected: &Image, found: &Image) {
+    assert_near(what, expected, found, 3);
+}
+
+/// At the outline of this file's cut one pixel of 24,000, always the same, is off by 9 since somata changed. Why is not
+/// known. It is off wherever within 0.1 µm the cut is, with and without occlusion, and not without a cut; so it is no tie
+/// at the plane. No weight there is clamped, and no share of a corner is below −0.02. Drawn anew it is the same each time.
+const AT_THE_CUT: u8 = 10;
+
+/// At most 1 of 255 in all but one pixel of 10,000, and `most` there.
+fn assert_near(what: &str, expected: &Image, found: &Image, most: u8) {
     assert_eq!(
         (expected.width, expected.height),
         (found.width, found.height)
@@ -142,7 +147,7 @@ fn assert_equal(what: &str, expected: &Image, found: &Image) {
         .count();
     note!("{what}: {covered} pixels, {above} differ by more than 1, worst {worst}");
     assert!(covered > 500, "{what}: hardly anything shows");
-    assert!(worst <= MOST_OFF, "{what}: {worst} of 255");
+    assert!(worst <= most, "{what}: {worst} of 255");
     assert!(
         above * 10_000 <= differences.len(),
         "{what}: {above} pixels differ"
@@ -387,7 +392,7 @@ fn a_window_recolors_its_picture_as_if_it_drew_it_anew() {
         },
         ..whole
     };
-    for (what, params) in [("window", whole), ("cut in a window", cut)] {
+    for (what, params, most) in [("window", whole, 3), ("cut in a window", cut, AT_THE_CUT)] {
         let mut renderer = ProgressiveRenderer::new(&gpu);
         renderer.set_colors(tables[0].clone());
         // Without a picture before, and after one.
@@ -410,10 +415,10 @@ fn a_window_recolors_its_picture_as_if_it_drew_it_anew() {
             other.set_colors(table.clone());
             other.set_states(states);
             let expected = renderer::picture(&gpu, &mut other, &mut source, params, STEPS);
-            assert_equal(what, &expected, &found);
+            assert_near(what, &expected, &found, most);
         }
         let last = renderer::pixels(&gpu, &renderer);
-        assert_equal("as it was", &first, &last);
+        assert_near("as it was", &first, &last, most);
     }
 }
 
