@@ -56,3 +56,33 @@ fn normals_along_a_sheared_tube_are_those_beside() {
         }
     }
 }
+
+/// Patches of a soma would show as facets if their normals jumped at the sides.
+#[test]
+fn normals_of_a_soma_s_patch_go_over_into_those_of_its_sides() {
+    let at = |x: f32, y: f32, normal: Vec3| Corner {
+        role: Role::Soma,
+        position: Vec3::new(x, y, 0.2 * x * y),
+        normal: normal.normalize_or(Vec3::Z),
+        ..corner(Vec3::ZERO, Vec3::Z, 1.0, 0.0)
+    };
+    let shape = PatchShape {
+        kind: PatchKind::Soma,
+        corners: [
+            at(0.0, 0.0, Vec3::new(-0.5, -0.3, 1.0)),
+            at(1.0, 0.0, Vec3::new(0.6, -0.2, 1.0)),
+            at(1.0, 1.0, Vec3::new(0.3, 0.8, 1.0)),
+            at(0.0, 1.0, Vec3::new(-0.7, 0.4, 1.0)),
+        ],
+        sides: [(EdgeKind::Soma, false); 4],
+    };
+    let (low, high) = (1e-4, 1.0 - 1e-4);
+    for t in [0.1, 0.4, 0.8] {
+        for (side, x, y) in [(0, t, low), (1, high, t), (2, t, high), (3, low, t)] {
+            let on = shape.side_normal(side, &shape.side(side, Path::Hermite, t), t);
+            let (_, beside) = shape.interior(&RefineOptions::default(), x, y);
+            let off = on.angle_between(beside).to_degrees();
+            assert!(off < 0.2, "{off}° at {t} of side {side}");
+        }
+    }
+}
