@@ -25,10 +25,10 @@ use neurotess_mesh::PatchKind;
 
 use crate::{Caps, Path, RefineOptions};
 pub(crate) use edges::{
-    CenterLine, Corner, EdgeCurve, EdgeKind, Jet, MOST_SWAY, SOMA_FILLET, edge, edge_normal,
+    CenterLine, Corner, EdgeCurve, EdgeKind, EdgeNormals, Jet, MOST_SWAY, SOMA_FILLET, edge,
     hermite_tangents, loft_controls, soma_controls,
 };
-use edges::{cubic, first_leg, mix, over_length};
+use edges::{OverLength, cubic, first_leg, mix};
 
 /// A patch ready to be evaluated inside.
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +48,25 @@ pub(crate) const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
 pub(crate) struct PatchRows<'s> {
     shape: &'s PatchShape,
     options: &'s RefineOptions,
-    /// Of a tube: its center line, which all rows have.
-    line: Option<CenterLine>,
+    /// Of a tube: what all rows have in common.
+    tube: Option<Tube>,
+}
+
+/// A tube's center line, and what its corners' offsets and radials change by along it, at x = 0 and 1.
+#[derive(Clone, Copy, Debug)]
+struct Tube {
+    line: CenterLine,
+    offset_y: [Vec3; 2],
+    radial_y: [Vec3; 2],
+}
+
+/// A tube at some y: its center, and the offsets and radials at x = 0 and 1.
+#[derive(Clone, Copy, Debug)]
+struct TubeRow {
+    tube: Tube,
+    center: Jet,
+    offsets: [Vec3; 2],
+    radials: [Vec3; 2],
 }
 
 impl<'s> PatchRows<'s> {
@@ -59,7 +76,7 @@ impl<'s> PatchRows<'s> {
             shape: self.shape,
             options: self.options,
             y,
-            center: self.line.map_or(Jet::default(), |line| line.at(y)),
+            tube: self.tube.map(|tube| TubeRow::new(self.shape, tube, y)),
         }
     }
 }
@@ -70,63 +87,87 @@ pub(crate) struct PatchRow<'s> {
     shape: &'s PatchShape,
     options: &'s RefineOptions,
     y: f32,
-    /// Of a tube: the center line at y, which the whole row has.
-    center: Jet,
+    tube: Option<TubeRow>,
 }
 
 impl PatchRow<'_> {
     /// A point inside with its normal, x ∈ (0, 1).
     pub(crate) fn point(&self, x: f32) -> (Vec3, Vec3) {
         let Self { shape, options, .. } = self;
+        if let Some(tube) = &self.tube {
+            return tube.point(&shape.corners[0], x);
+        }
         match shape.kind {
-            PatchKind::Lateral => shape.lateral(&self.center, x, self.y),
-            PatchKind::Soma => shape.coons(x, self.y),
+            PatchKind::Lateral | PatchKind::Soma => shape.coons(x, self.y),
             PatchKind::Loft => shape.loft(options.path, x, self.y),
             PatchKind::Cap => shape.cap(options.caps, x, self.y),
         }
     }
 }
 
+impl Tube {
+    fn new(shape: &PatchShape, path: Path) -> Self {
+        let [a, b, c, d] = &shape.corners;
+        Self {
+            line: CenterLine::new(a, d, path),
+            offset_y: [d.offset - a.offset, c.offset - b.offset],
+            radial_y: [d.radial - a.radial, c.radial - b.radial],
+        }
+    }
+}
+
+impl TubeRow {
+    fn new(shape: &PatchShape, tube: Tube, y: f32) -> Self {
+        let [a, b, c, d] = &shape.corners;
+        Self {
+            tube,
+            center: tube.line.at(y),
+            offsets: [mix(a.offset, d.offset, y), mix(b.offset, c.offset, y)],
+            radials: [mix(a.radial, d.radial, y), mix(b.radial, c.radial, y)],
+        }
+    }
+
+    /// `a`: the patch's first corner.
+    fn point(&self, a: &Corner, x: f32) -> (Vec3, Vec3) {
+        let blend = |[at_0, at_1]: [Vec3; 2]| mix(at_0, at_1, x);
+        let change = |[at_0, at_1]: [Vec3; 2]| at_1 - at_0;
+        let (offset, radial) = (blend(self.offsets), blend(self.radials));
+        let over = OverLength::of(radial);
+        let around = over.jet(offset, change(self.offsets), change(self.radials));
+        let along = over.jet(offset, blend(self.tube.offset_y), blend(self.tube.radial_y));
+        let normal = around
+            .derivative
+            .cross(self.center.derivative + along.derivative)
+            .normalize_or_zero();
+        let outwards = if radial == Vec3::ZERO {
+            a.normal
+        } else {
+            radial
+        };
+        // Where a sharp bend folds the surface over, it gets the normal of a tube without the fold.
+        let normal = if normal.dot(outwards) > 0.0 {
+            normal
+        } else {
+            outwards.normalize_or(a.normal)
+        };
+        (self.center.position + around.position, normal)
+    }
+}
+
 impl PatchShape {
     /// The points inside, row by row.
     pub(crate) fn rows<'s>(&'s self, options: &'s RefineOptions) -> PatchRows<'s> {
-        let [a, .., d] = &self.corners;
         let is_tube = self.kind == PatchKind::Lateral;
         PatchRows {
             shape: self,
             options,
-            line: is_tube.then(|| CenterLine::new(a, d, options.path)),
+            tube: is_tube.then(|| Tube::new(self, options.path)),
         }
     }
 
     /// A point inside with its normal, x and y ∈ (0, 1).
     pub(crate) fn interior(&self, options: &RefineOptions, x: f32, y: f32) -> (Vec3, Vec3) {
         self.rows(options).at(y).point(x)
-    }
-
-    fn lateral(&self, center: &Jet, x: f32, y: f32) -> (Vec3, Vec3) {
-        let [a, b, c, d] = &self.corners;
-        let blend = |f: fn(&Corner) -> Vec3| {
-            let (near, far) = (mix(f(a), f(b), x), mix(f(d), f(c), x));
-            let across = mix(f(b) - f(a), f(c) - f(d), y);
-            (mix(near, far, y), across, far - near)
-        };
-        let (offset, offset_x, offset_y) = blend(|k| k.offset);
-        let (radial, radial_x, radial_y) = blend(|k| k.radial);
-        let around = over_length(offset, offset_x, radial, radial_x);
-        let along = over_length(offset, offset_y, radial, radial_y);
-        let normal = around
-            .derivative
-            .cross(center.derivative + along.derivative);
-        let outwards = radial.normalize_or(a.normal);
-        // Where a sharp bend folds the surface over, it gets the normal of a tube without the fold.
-        let normal = normal.normalize_or(outwards);
-        let normal = if normal.dot(outwards) > 0.0 {
-            normal
-        } else {
-            outwards
-        };
-        (center.position + around.position, normal)
     }
 
     pub(crate) fn side(&self, side: usize, path: Path, t: f32) -> Jet {
@@ -153,7 +194,7 @@ impl PatchShape {
         let way_x = far.derivative - near.derivative;
         let mixed = mix(a.cubic_normal(), b.cubic_normal(), x);
         let mixed_x = b.cubic_normal() - a.cubic_normal();
-        let normal = over_length(mixed, mixed_x, mixed, mixed_x);
+        let normal = OverLength::of(mixed).jet(mixed, mixed_x, mixed_x);
         let rise = way.dot(normal.position);
         let rise_x = way_x.dot(normal.position) + way.dot(normal.derivative);
         let over = way - normal.position * rise;
@@ -221,13 +262,7 @@ impl PatchShape {
     fn side_normal(&self, side: usize, jet: &Jet, t: f32) -> Vec3 {
         let (from, to) = SIDES[side];
         let (kind, _) = self.sides[side];
-        edge_normal(
-            kind,
-            &self.corners[from],
-            &self.corners[to],
-            jet.derivative,
-            t,
-        )
+        EdgeNormals::new(kind, &self.corners[from], &self.corners[to]).at(jet.derivative, t)
     }
 
     /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the

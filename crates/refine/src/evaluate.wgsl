@@ -187,16 +187,17 @@ fn cubic(p: array<vec3<f32>, 4>, t: f32) -> Jet {
 
 // Normal on an edge, at right angles to the edge's own direction, and along a tube to those around it.
 fn edge_normal(kind: u32, a: Corner, b: Corner, derivative: vec3<f32>, t: f32) -> vec3<f32> {
-    let along = normalize_or(derivative, vec3<f32>(0.0));
-    let plain = blend(a.normal, b.normal, t);
-    let otherwise = normalize_or(plain, vec3<f32>(0.0, 1.0, 0.0));
-    let mixed = normalize_or(plain - along * dot(plain, along), otherwise);
-    if (kind != EDGE_ALONG || !on_ring(a) || !on_ring(b)) {
-        return mixed;
+    let mixed = blend(a.normal, b.normal, t);
+    if (kind == EDGE_ALONG && on_ring(a) && on_ring(b)) {
+        let around = blend(cross(a.tangent, a.radial), cross(b.tangent, b.radial), t);
+        let normal = normalize_or(cross(around, derivative), vec3<f32>(0.0));
+        if (any(normal != vec3<f32>(0.0)) && dot(normal, mixed) >= 0.0) {
+            return normal;
+        }
     }
-    let around = blend(cross(a.tangent, a.radial), cross(b.tangent, b.radial), t);
-    let normal = normalize_or(cross(around, along), mixed);
-    return select(normal, mixed, dot(normal, mixed) < 0.0);
+    let along = normalize_or(derivative, vec3<f32>(0.0));
+    let otherwise = normalize_or(mixed, vec3<f32>(0.0, 1.0, 0.0));
+    return normalize_or(mixed - along * dot(mixed, along), otherwise);
 }
 
 // Whether a corner is of a circle around a path, across its tangent.

@@ -9,7 +9,7 @@ use neurotess_mesh::{
 use rayon::prelude::*;
 
 use crate::evaluate::{
-    Corner, EdgeCurve, EdgeKind, PatchRow, PatchRows, PatchShape, SIDES, edge_normal,
+    Corner, EdgeCurve, EdgeKind, EdgeNormals, PatchRow, PatchRows, PatchShape, SIDES,
 };
 use crate::plan::{Edge, Grid, Plan};
 use crate::{Lod, RefineOptions};
@@ -233,9 +233,8 @@ impl<'m> Refinement<'m> {
 
 /// What the inner vertices of an edge have in common.
 struct InnerEdge<'r> {
-    kind: EdgeKind,
     curve: EdgeCurve<'r>,
-    ends: &'r [Corner; 2],
+    normals: EdgeNormals,
     level: u16,
     tracing: [&'r TracingPoint; 2],
     /// That of the soma, which all vertices of its edges show, so that the color changes at the neurite's ring.
@@ -248,9 +247,8 @@ impl<'r> InnerEdge<'r> {
         let tracing = [plan.from, plan.to].map(|v| refinement.tracing(v));
         let of_soma = |t: &&TracingPoint| plan.kind == EdgeKind::Soma && t.role == Role::Soma;
         Self {
-            kind: plan.kind,
             curve: EdgeCurve::new(plan.kind, a, b, refinement.options.path),
-            ends,
+            normals: EdgeNormals::new(plan.kind, a, b),
             level: plan.level,
             tracing,
             soma: tracing.into_iter().find(of_soma),
@@ -261,8 +259,7 @@ impl<'r> InnerEdge<'r> {
     fn vertex(&self, k: u32) -> SurfaceVertex {
         let t = k as f32 / f32::from(self.level);
         let jet = self.curve.at(t);
-        let [a, b] = self.ends;
-        let normal = edge_normal(self.kind, a, b, jet.derivative, t);
+        let normal = self.normals.at(jet.derivative, t);
         let [ta, tb] = self.tracing;
         let radius = ta.radius * (1.0 - t) + tb.radius * t;
         let nearest = if t < 0.5 { ta } else { tb };

@@ -159,13 +159,29 @@ pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
     (tangent(a), tangent(b))
 }
 
-/// `A / |B|` and its derivative.
-pub(super) fn over_length(a: Vec3, a_dot: Vec3, b: Vec3, b_dot: Vec3) -> Jet {
-    let inverse = 1.0 / b.length().max(1e-3);
-    let derivative = a_dot * inverse - a * (b.dot(b_dot) * inverse * inverse * inverse);
-    Jet {
-        position: a * inverse,
-        derivative,
+/// Divides by the length of a vector.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OverLength {
+    by: Vec3,
+    inverse: f32,
+}
+
+impl OverLength {
+    pub(super) fn of(by: Vec3) -> Self {
+        Self {
+            by,
+            inverse: 1.0 / by.length().max(1e-3),
+        }
+    }
+
+    /// `A / |B|` and its derivative, from those of A and B.
+    pub(super) fn jet(&self, a: Vec3, a_dot: Vec3, by_dot: Vec3) -> Jet {
+        let position = a * self.inverse;
+        let shrinking = self.by.dot(by_dot) * self.inverse * self.inverse;
+        Jet {
+            position,
+            derivative: a_dot * self.inverse - position * shrinking,
+        }
     }
 }
 
@@ -230,10 +246,9 @@ impl<'c> EdgeCurve<'c> {
     /// From the center line.
     fn offset(&self, t: f32) -> Jet {
         let Self { a, b, .. } = self;
-        over_length(
+        OverLength::of(mix(a.radial, b.radial, t)).jet(
             mix(a.offset, b.offset, t),
             b.offset - a.offset,
-            mix(a.radial, b.radial, t),
             b.radial - a.radial,
         )
     }
@@ -295,27 +310,36 @@ pub(super) fn cubic([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Jet {
     }
 }
 
-/// Normal on an edge, at right angles to the edge's own direction. It depends on the edge alone, so that both
-/// patches beside it have the same. Along a tube it is at right angles to the directions around it, too, which a
-/// sheared tube's edges are not; elsewhere it is nearest to that of the corners.
-pub(crate) fn edge_normal(
-    kind: EdgeKind,
-    a: &Corner,
-    b: &Corner,
-    derivative: Vec3,
-    t: f32,
-) -> Vec3 {
-    let along = derivative.normalize_or_zero();
-    let mixed = mix(a.normal, b.normal, t);
-    let mixed = (mixed - along * mixed.dot(along)).normalize_or(mixed.normalize_or(Vec3::Y));
-    if kind != EdgeKind::Along || !a.on_ring() || !b.on_ring() {
-        return mixed;
+/// Normals on an edge, at right angles to the edge's own direction. They depend on the edge alone, so that both
+/// patches beside it have the same. Along a tube they are at right angles to the directions around it, too, which a
+/// sheared tube's edges are not; elsewhere they are nearest to those of the corners.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeNormals {
+    normals: [Vec3; 2],
+    /// Along a tube: directions around it at both ends.
+    around: Option<[Vec3; 2]>,
+}
+
+impl EdgeNormals {
+    pub(crate) fn new(kind: EdgeKind, a: &Corner, b: &Corner) -> Self {
+        let along_tube = kind == EdgeKind::Along && a.on_ring() && b.on_ring();
+        Self {
+            normals: [a.normal, b.normal],
+            around: along_tube.then(|| [a, b].map(|k| k.tangent.cross(k.radial))),
+        }
     }
-    let around = mix(a.tangent.cross(a.radial), b.tangent.cross(b.radial), t);
-    let normal = around.cross(along).normalize_or(mixed);
-    if normal.dot(mixed) < 0.0 {
-        mixed
-    } else {
-        normal
+
+    /// At t ∈ [0, 1], where the edge has this derivative.
+    pub(crate) fn at(&self, derivative: Vec3, t: f32) -> Vec3 {
+        let mixed = mix(self.normals[0], self.normals[1], t);
+        if let Some([a, b]) = self.around {
+            let normal = mix(a, b, t).cross(derivative).normalize_or_zero();
+            if normal != Vec3::ZERO && normal.dot(mixed) >= 0.0 {
+                return normal;
+            }
+        }
+        let along = derivative.normalize_or_zero();
+        let across = (mixed - along * mixed.dot(along)).try_normalize();
+        across.unwrap_or_else(|| mixed.normalize_or(Vec3::Y))
     }
 }

@@ -48,7 +48,7 @@ fn normals_along_a_sheared_tube_are_those_beside() {
             let [a, .., d] = &shape.corners;
             for y in [0.1, 0.3, 0.5, 0.7, 0.9] {
                 let jet = edge(EdgeKind::Along, a, d, Path::Hermite, y);
-                let on = edge_normal(EdgeKind::Along, a, d, jet.derivative, y);
+                let on = EdgeNormals::new(EdgeKind::Along, a, d).at(jet.derivative, y);
                 let (_, beside) = shape.interior(&RefineOptions::default(), 1e-3, y);
                 let off = on.angle_between(beside).to_degrees();
                 assert!(off < 8.0, "{off}° at {y}, rings lean by {from} and {to}");
