@@ -36,6 +36,9 @@ pub(super) struct Facing {
     angles: [f64; 2],
 }
 
+/// Angles of the corners of a ring that no branch leaves from.
+pub(super) const QUARTERS: [f64; 4] = [0.0, FRAC_PI_2, 2.0 * FRAC_PI_2, 3.0 * FRAC_PI_2];
+
 /// Angle difference within half a turn.
 fn wrap(angle: f64) -> f64 {
     (angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
@@ -112,10 +115,10 @@ pub(super) fn assign(path: &PathRings, ring: usize, insets: &[(u32, Inset)]) -> 
 
 /// Angles of the corners of a ring whose quads are as wide as the branches at it need.
 pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
-    let usual = [0, 1, 2, 3].map(|k| f64::from(k) * FRAC_PI_2);
+    let usual = QUARTERS;
     let at = |facing: &Facing| facing.angles[ring - facing.ring];
     match facing {
-        [] => usual,
+        [] => QUARTERS,
         [one] => {
             let middle = FRAC_PI_4 + one.side as f64 * FRAC_PI_2;
             let turn = wrap(at(one) - middle).clamp(-MOST_TURN, MOST_TURN);

@@ -26,6 +26,7 @@ use crate::rings;
 use crate::skeleton::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::soma::SomaSurface;
 use crate::somata::{self, BuiltSoma};
+use facing::QUARTERS;
 
 /// Four vertices, counter-clockwise about the path's direction.
 type Ring = [u32; 4];
@@ -294,10 +295,13 @@ impl<'a> Assembly<'a> {
         let tracing = self.tracing(node, role);
         self.mesh.tracing[tracing as usize].tangent = tangent.as_vec3();
         let side = tangent.cross(frame);
-        let ring = angles.map(|angle| {
-            let direction = frame * angle.cos() + side * angle.sin();
-            self.vertex(center, direction * radius, tracing)
-        });
+        let directions = if *angles == QUARTERS {
+            // Nearly all rings, without sines.
+            [frame, side, -frame, -side]
+        } else {
+            angles.map(|angle| frame * angle.cos() + side * angle.sin())
+        };
+        let ring = directions.map(|direction| self.vertex(center, direction * radius, tracing));
         let slope = if role == Role::Ordinary {
             self.taper(node)
         } else {
