@@ -1,5 +1,7 @@
 //! Which rings follow one another, through forks and insets too.
 
+use std::ops::Range;
+
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
 
 /// Tracing points of a mesh with the tubes and lofts between them. Vertices of somata have none.
@@ -9,6 +11,8 @@ pub(super) struct RingGraph {
     /// Where the neighbors of each tracing point begin in the list, and one past the last.
     first: Vec<u32>,
     neighbors: Vec<u32>,
+    /// How far (µm) each of them is.
+    ways: Vec<f32>,
 }
 
 impl RingGraph {
@@ -35,10 +39,14 @@ impl RingGraph {
         }
         let mut fill = first.clone();
         let mut neighbors = vec![0; 2 * tubes.len()];
+        let mut ways = vec![0.0; 2 * tubes.len()];
         for &[a, b] in &tubes {
+            let [center_a, center_b] = [a, b].map(|t| mesh.tracing[t as usize].center);
+            let way = center_a.distance(center_b);
             for (from, to) in [(a, b), (b, a)] {
                 let slot = &mut fill[from as usize];
                 neighbors[*slot as usize] = to;
+                ways[*slot as usize] = way;
                 *slot += 1;
             }
         }
@@ -46,6 +54,7 @@ impl RingGraph {
             tubes,
             first,
             neighbors,
+            ways,
         }
     }
 
@@ -55,7 +64,18 @@ impl RingGraph {
 
     /// Tracing points at the other ends of the tubes from one.
     pub(super) fn neighbors(&self, of: u32) -> &[u32] {
+        &self.neighbors[self.range(of)]
+    }
+
+    /// The same, and how far (µm) each is.
+    pub(super) fn ways(&self, of: u32) -> impl Iterator<Item = (u32, f32)> {
+        let range = self.range(of);
+        let neighbors = self.neighbors[range.clone()].iter().copied();
+        neighbors.zip(self.ways[range].iter().copied())
+    }
+
+    fn range(&self, of: u32) -> Range<usize> {
         let [from, to] = [of, of + 1].map(|ring| self.first[ring as usize] as usize);
-        &self.neighbors[from..to]
+        from..to
     }
 }

@@ -76,6 +76,7 @@ impl Suspects {
 /// Rings that are in each other's way, the thicker first, though they do not follow one another.
 fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
     let margins = margins(mesh, graph);
+    let balls: Vec<Ball> = mesh.tracing.iter().map(Ball::around).collect();
     let count = mesh.tracing.len() as u32;
     let chunks: Vec<u32> = (0..count).step_by(CHUNK).collect();
     let found: Vec<Vec<[u32; 2]>> = chunks
@@ -84,6 +85,7 @@ fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
             let mut walk = Walk {
                 mesh,
                 graph,
+                balls: &balls,
                 margins: &margins,
                 queue: Vec::with_capacity(MOST_VISITED + 8),
                 pairs: Vec::new(),
@@ -100,9 +102,26 @@ fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
 struct Walk<'a> {
     mesh: &'a CoarseMesh,
     graph: &'a RingGraph,
+    balls: &'a [Ball],
     margins: &'a [f32],
     queue: Vec<Step>,
     pairs: Vec<[u32; 2]>,
+}
+
+/// What most rings on a walk are told by, close together in memory.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+impl Ball {
+    fn around(ring: &TracingPoint) -> Self {
+        Self {
+            center: ring.center,
+            radius: ring.radius,
+        }
+    }
 }
 
 /// A ring on a walk: where from, how far along the tree (µm), and in how many steps.
@@ -116,11 +135,11 @@ struct Step {
 
 impl Walk<'_> {
     fn from(&mut self, start: u32) {
-        let ring = &self.mesh.tracing[start as usize];
-        if ring.role == Role::Soma {
+        if self.mesh.tracing[start as usize].role == Role::Soma {
             return;
         }
-        let farthest = REACH * ring.radius;
+        let ball = self.balls[start as usize];
+        let farthest = (REACH + 2.0) * ball.radius;
         self.queue.clear();
         self.queue.push(Step {
             ring: start,
@@ -137,19 +156,19 @@ impl Walk<'_> {
         }) = self.queue.get(next)
         {
             next += 1;
-            let other = &self.mesh.tracing[here as usize];
-            let thinner = (other.radius, here) < (ring.radius, start);
-            let margins = [start, here].map(|t| self.margins[t as usize]);
-            if steps > 1 && thinner && in_the_way(ring, other, margins) {
+            let other = self.balls[here as usize];
+            let thinner = (other.radius, here) < (ball.radius, start);
+            let apart = ball.center.distance_squared(other.center);
+            let reach = ball.radius + other.radius;
+            if steps > 1 && thinner && apart <= reach * reach && self.in_the_way(start, here) {
                 self.pairs.push([start, here]);
             }
             // Beyond, the way back to here is too long.
-            let apart = ring.center.distance(other.center);
-            if apart + way > farthest + 2.0 * ring.radius || self.queue.len() > MOST_VISITED {
+            let left = farthest - way;
+            if left < 0.0 || apart > left * left || self.queue.len() > MOST_VISITED {
                 continue;
             }
-            for &to in self.graph.neighbors(here).iter().filter(|&&to| to != from) {
-                let step = other.center.distance(self.mesh.tracing[to as usize].center);
+            for (to, step) in self.graph.ways(here).filter(|&(to, _)| to != from) {
                 self.queue.push(Step {
                     ring: to,
                     from: here,
@@ -158,6 +177,19 @@ impl Walk<'_> {
                 });
             }
         }
+    }
+
+    /// Whether the disks of two rings whose balls overlap do so too, each as thick as its margin to either side.
+    fn in_the_way(&self, start: u32, here: u32) -> bool {
+        let [a, b] = [start, here].map(|t| &self.mesh.tracing[t as usize]);
+        let way = b.center - a.center;
+        let sin = a.tangent.cross(b.tangent).length();
+        let beside = |ring: &TracingPoint, margin: f32, other: &TracingPoint| {
+            let height = way.dot(ring.tangent).abs();
+            ring.role == Role::Joint || height <= other.radius * sin + margin
+        };
+        let [margin_a, margin_b] = [start, here].map(|t| self.margins[t as usize]);
+        beside(a, margin_a, b) && beside(b, margin_b, a)
     }
 }
 
@@ -205,21 +237,6 @@ fn turns_back(mesh: &CoarseMesh, graph: &RingGraph, ring: u32) -> bool {
     let center = |ring: u32| mesh.tracing[ring as usize].center;
     let [a, b] = [before, after].map(|neighbor| center(neighbor) - center(ring));
     a.dot(b) > TURN_BACK * a.length() * b.length()
-}
-
-/// Whether two disks, each as thick as its margin to either side, overlap.
-fn in_the_way(a: &TracingPoint, b: &TracingPoint, margins: [f32; 2]) -> bool {
-    let way = b.center - a.center;
-    let reach = a.radius + b.radius;
-    if way.length_squared() > reach * reach {
-        return false;
-    }
-    let sin = a.tangent.cross(b.tangent).length();
-    let beside = |ring: &TracingPoint, margin: f32, other: &TracingPoint| {
-        let height = way.dot(ring.tangent).abs();
-        ring.role == Role::Joint || height <= other.radius * sin + margin
-    };
-    beside(a, margins[0], b) && beside(b, margins[1], a)
 }
 
 /// Whether a patch of a tube looks inwards at one of its corners.
