@@ -120,12 +120,8 @@ mod tests {
 
     #[test]
     fn ring_stands_over_its_trunk() {
-        let trunk = [RoundCone {
-            a: DVec3::new(-20.0, 0.0, 0.0),
-            b: DVec3::new(20.0, 0.0, 0.0),
-            radius_a: 1.0,
-            radius_b: 1.0,
-        }];
+        let ends = [-20.0, 20.0].map(|x| DVec3::new(x, 0.0, 0.0));
+        let trunk = [RoundCone::new(ends, [1.0; 2])];
         for slant in [0.0_f64, 0.5, -0.8] {
             let site = InsetSite {
                 exit: DVec3::new(0.0, 1.0, 0.0),
