@@ -40,13 +40,31 @@ impl Polyline {
             return (0, 0.0);
         }
         let i = self.arcs.partition_point(|&a| a <= arc).clamp(1, last) - 1;
-        let length = self.arcs[i + 1] - self.arcs[i];
-        let share = if length > 0.0 {
-            ((arc - self.arcs[i]) / length).clamp(0.0, 1.0)
+        (i, self.share(i, arc))
+    }
+
+    /// Share of a segment at which an arc length is.
+    fn share(&self, segment: usize, arc: f64) -> f64 {
+        let length = self.arcs[segment + 1] - self.arcs[segment];
+        if length > 0.0 {
+            ((arc - self.arcs[segment]) / length).clamp(0.0, 1.0)
         } else {
             0.0
-        };
-        (i, share)
+        }
+    }
+
+    /// [`Polyline::at`] for arc lengths that grow from one call to the next: no segment is searched for.
+    pub(crate) fn walk(&self) -> impl FnMut(f64) -> DVec3 {
+        let mut segment = 0;
+        move |arc| {
+            while segment + 2 < self.arcs.len() && self.arcs[segment + 1] <= arc {
+                segment += 1;
+            }
+            match self.centers.get(segment + 1) {
+                Some(&next) => self.centers[segment].lerp(next, self.share(segment, arc)),
+                None => self.centers[0],
+            }
+        }
     }
 
     pub(crate) fn at(&self, arc: f64) -> DVec3 {
@@ -116,6 +134,12 @@ mod tests {
         assert_eq!(line.at(2.25), DVec3::X * 2.25);
         assert_eq!(line.at(-1.0), DVec3::ZERO);
         assert_eq!(line.at(9.0), DVec3::X * 4.0);
+        let mut walk = line.walk();
+        for arc in [-1.0, 0.0, 0.4, 1.0, 1.1, 3.7, 4.0, 9.0] {
+            assert_eq!(walk(arc), line.at(arc), "{arc}");
+        }
+        let point = Polyline::new(vec![DVec3::ONE], vec![1.0]);
+        assert_eq!(point.walk()(2.0), DVec3::ONE);
         assert!((line.radius(2.5) - 0.75).abs() < 1e-12);
         assert!((line.foot(DVec3::new(1.3, 4.0, 0.0), [0.0, 4.0]) - 1.3).abs() < 1e-12);
     }

@@ -161,8 +161,9 @@ impl Branch<'_> {
         let count = (reach / step).ceil() as usize;
         let (mut first, mut inside) = (None, None);
         let mut run = 0;
+        let mut walk = self.path.walk();
         for i in 0..=count {
-            if outside(self.path.at(i as f64 * step)) > 0.0 {
+            if outside(walk(i as f64 * step)) > 0.0 {
                 first = first.or(Some(i));
                 run += 1;
                 if run == lasting {
