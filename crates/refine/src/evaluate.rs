@@ -94,6 +94,7 @@ impl PatchRow<'_> {
     /// A point inside with its normal, x ∈ (0, 1).
     pub(crate) fn point(&self, x: f32) -> (Vec3, Vec3) {
         let Self { shape, options, .. } = self;
+        // Lateral patches, all of them.
         if let Some(tube) = &self.tube {
             return tube.point(&shape.corners[0], x);
         }
