@@ -48,7 +48,7 @@ pub(crate) const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
 pub(crate) struct PatchRows<'s> {
     shape: &'s PatchShape,
     options: &'s RefineOptions,
-    /// Of a tube: what all rows have in common.
+    /// Of a lateral patch: what all rows have in common.
     tube: Option<Tube>,
 }
 
@@ -87,6 +87,7 @@ pub(crate) struct PatchRow<'s> {
     shape: &'s PatchShape,
     options: &'s RefineOptions,
     y: f32,
+    /// Of a lateral patch.
     tube: Option<TubeRow>,
 }
 
@@ -94,12 +95,13 @@ impl PatchRow<'_> {
     /// A point inside with its normal, x ∈ (0, 1).
     pub(crate) fn point(&self, x: f32) -> (Vec3, Vec3) {
         let Self { shape, options, .. } = self;
-        // Lateral patches, all of them.
-        if let Some(tube) = &self.tube {
-            return tube.point(&shape.corners[0], x);
-        }
         match shape.kind {
-            PatchKind::Lateral | PatchKind::Soma => shape.coons(x, self.y),
+            PatchKind::Lateral => {
+                let tube = self.tube.as_ref();
+                let tube = tube.expect("rows of lateral patches are those of a tube");
+                tube.point(&shape.corners[0], x)
+            }
+            PatchKind::Soma => shape.coons(x, self.y),
             PatchKind::Loft => shape.loft(options.path, x, self.y),
             PatchKind::Cap => shape.cap(options.caps, x, self.y),
         }

@@ -115,7 +115,6 @@ pub(super) fn assign(path: &PathRings, ring: usize, insets: &[(u32, Inset)]) -> 
 
 /// Angles of the corners of a ring whose quads are as wide as the branches at it need.
 pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
-    let usual = QUARTERS;
     let at = |facing: &Facing| facing.angles[ring - facing.ring];
     match facing {
         [] => QUARTERS,
@@ -134,20 +133,20 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
             for (k, angle) in around.into_iter().enumerate() {
                 angles[(one.side + k) % 4] = middle + turn + angle;
             }
-            [0, 1, 2, 3].map(|k| usual[k] + wrap(angles[k] - usual[k]))
+            [0, 1, 2, 3].map(|k| QUARTERS[k] + wrap(angles[k] - QUARTERS[k]))
         }
         several => {
             let mut pulls = [(0.0, 0.0); 4];
             for one in several {
                 for (k, half) in [(one.side, -one.half), ((one.side + 1) % 4, one.half)] {
-                    pulls[k].0 += wrap(at(one) + half - usual[k]);
+                    pulls[k].0 += wrap(at(one) + half - QUARTERS[k]);
                     pulls[k].1 += 1.0;
                 }
             }
             [0, 1, 2, 3].map(|k| {
                 let (sum, count) = pulls[k];
                 let pull = if count > 0.0 { sum / count } else { 0.0 };
-                usual[k] + f64::clamp(pull, -MOST_PULL, MOST_PULL)
+                QUARTERS[k] + f64::clamp(pull, -MOST_PULL, MOST_PULL)
             })
         }
     }

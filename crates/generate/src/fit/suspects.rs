@@ -76,7 +76,7 @@ impl Suspects {
 /// Rings that are in each other's way, the thicker first, though they do not follow one another.
 fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
     let margins = margins(mesh, graph);
-    let balls: Vec<Ball> = mesh.tracing.iter().map(Ball::around).collect();
+    let disks: Vec<Disk> = mesh.tracing.iter().map(Disk::of).collect();
     let count = mesh.tracing.len() as u32;
     let chunks: Vec<u32> = (0..count).step_by(CHUNK).collect();
     let found: Vec<Vec<[u32; 2]>> = chunks
@@ -85,7 +85,7 @@ fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
             let mut walk = Walk {
                 mesh,
                 graph,
-                balls: &balls,
+                disks: &disks,
                 margins: &margins,
                 queue: Vec::with_capacity(MOST_VISITED + 8),
                 pairs: Vec::new(),
@@ -102,21 +102,21 @@ fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
 struct Walk<'a> {
     mesh: &'a CoarseMesh,
     graph: &'a RingGraph,
-    balls: &'a [Ball],
+    disks: &'a [Disk],
     margins: &'a [f32],
     queue: Vec<Step>,
     pairs: Vec<[u32; 2]>,
 }
 
-/// What most rings on a walk are told by, close together in memory.
+/// Of a ring, what nearly all steps of a walk need: close together in memory, beside the rest in the mesh.
 #[derive(Clone, Copy, Debug)]
-struct Ball {
+struct Disk {
     center: Vec3,
     radius: f32,
 }
 
-impl Ball {
-    fn around(ring: &TracingPoint) -> Self {
+impl Disk {
+    fn of(ring: &TracingPoint) -> Self {
         Self {
             center: ring.center,
             radius: ring.radius,
@@ -138,8 +138,9 @@ impl Walk<'_> {
         if self.mesh.tracing[start as usize].role == Role::Soma {
             return;
         }
-        let ball = self.balls[start as usize];
-        let farthest = (REACH + 2.0) * ball.radius;
+        let disk = self.disks[start as usize];
+        // Rings in each other's way are two radii apart at most.
+        let farthest = (REACH + 2.0) * disk.radius;
         self.queue.clear();
         self.queue.push(Step {
             ring: start,
@@ -156,10 +157,10 @@ impl Walk<'_> {
         }) = self.queue.get(next)
         {
             next += 1;
-            let other = self.balls[here as usize];
-            let thinner = (other.radius, here) < (ball.radius, start);
-            let apart = ball.center.distance_squared(other.center);
-            let reach = ball.radius + other.radius;
+            let other = self.disks[here as usize];
+            let thinner = (other.radius, here) < (disk.radius, start);
+            let apart = disk.center.distance_squared(other.center);
+            let reach = disk.radius + other.radius;
             if steps > 1 && thinner && apart <= reach * reach && self.in_the_way(start, here) {
                 self.pairs.push([start, here]);
             }
@@ -179,7 +180,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether the disks of two rings whose balls overlap do so too, each as thick as its margin to either side.
+    /// Whether the disks of two rings whose bounding spheres overlap do so too, each as thick as its margin to either side.
     fn in_the_way(&self, start: u32, here: u32) -> bool {
         let [a, b] = [start, here].map(|t| &self.mesh.tracing[t as usize]);
         let way = b.center - a.center;

@@ -9,7 +9,7 @@ pub(crate) struct RoundCone {
     pub(crate) b: DVec3,
     pub(crate) radius_a: f64,
     pub(crate) radius_b: f64,
-    /// A ball that holds it: its center and radius.
+    /// Center and radius of a bounding sphere.
     middle: DVec3,
     reach: f64,
 }
@@ -64,8 +64,8 @@ impl RoundCone {
     }
 }
 
-/// Signed distance (µm) from the union of cones. Fastest where the nearest are in the middle of the list: of most
-/// others it takes a look at their balls.
+/// Signed distance (µm) from the union of cones. Fastest where the nearest are in the middle of the list:
+/// of most others only the bounding spheres are looked at.
 pub(crate) fn distance(cones: &[RoundCone], p: DVec3) -> f64 {
     let (before, after) = cones.split_at(cones.len() / 2);
     let mut least = f64::INFINITY;

@@ -193,8 +193,7 @@ impl<'a> File<'a> {
         // Room of groups that were written, to be used again.
         let spare = Mutex::new(Vec::new());
         let encoded = |blocks: &Range<usize>| {
-            let room = announced.min(2 * GROUP);
-            let new = || (Vec::with_capacity(room), [const { Vec::new() }; N]);
+            let new = || (Vec::new(), [const { Vec::new() }; N]);
             let (mut group, mut buffers) = taken_from(&spare, new);
             group.clear();
             buffers.iter_mut().for_each(Vec::clear);
@@ -228,13 +227,7 @@ impl<'a> File<'a> {
         let groups = groups(surface.face_blocks(), announced.0 + announced.1);
         let spare = Mutex::new(Vec::new());
         let encoded = |blocks: &Range<usize>| {
-            let new = || {
-                let group = Faces {
-                    triangles: Vec::with_capacity(announced.0.min(2 * GROUP)),
-                    quads: Vec::with_capacity(announced.1.min(2 * GROUP)),
-                };
-                (group, [const { Vec::new() }; N])
-            };
+            let new = || (Faces::default(), [const { Vec::new() }; N]);
             let (mut group, mut buffers) = taken_from(&spare, new);
             group.triangles.clear();
             group.quads.clear();
@@ -288,7 +281,7 @@ pub(crate) fn agree(what: &'static str, announced: usize, found: usize) -> Resul
     })
 }
 
-/// Vertices or faces of a group, at least: enough for a write, few enough for the cache.
+/// Vertices or faces of a group, about: enough for a write, few enough for the cache. A block may hold more.
 const GROUP: usize = 1 << 12;
 
 /// Blocks, so many together that a group is worth a write.
