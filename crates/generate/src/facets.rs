@@ -9,7 +9,7 @@ use glam::{Vec3, Vec3A};
 const FOLDED: f32 = -0.5;
 
 /// A triangle of a refined surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Facet {
     /// Vertices' numbers.
     pub(crate) corners: [u32; 3],
@@ -20,7 +20,7 @@ pub(crate) struct Facet {
 }
 
 /// A box along the axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bounds {
     pub(crate) low: Vec3A,
     pub(crate) high: Vec3A,

@@ -3,16 +3,18 @@
 use std::collections::BTreeMap;
 
 use crate::inset::ForkChoice;
+use crate::refined_patches::{FinerFaults, RefinedPatches, count};
 use crate::skeleton::Skeleton;
 
 /// What is tried, in this order. The lift decides most: 0.4 keeps the branch closest to the tracing,
 /// higher ones cross the trunk's bends less.
-const CHOICES: [ForkChoice; 6] = [
-    inset(0.4, false),
-    inset(0.7, false),
-    inset(1.0, false),
-    inset(0.4, true),
-    inset(1.0, true),
+const CHOICES: [ForkChoice; 7] = [
+    inset(0.4, false, false),
+    inset(0.4, true, false),
+    inset(0.7, false, false),
+    inset(1.0, false, false),
+    inset(0.4, false, true),
+    inset(1.0, false, true),
     ForkChoice::Joint,
 ];
 const JOINT: usize = CHOICES.len() - 1;
@@ -24,8 +26,56 @@ pub(crate) struct ChoiceNumber(usize);
 /// A fork of more children is split over several joints, and not judged: its patches are too many.
 const MOST_CHILDREN: usize = 5;
 
-const fn inset(lift: f64, thickened: bool) -> ForkChoice {
-    ForkChoice::Inset { lift, thickened }
+const fn inset(lift: f64, leaning: bool, thickened: bool) -> ForkChoice {
+    ForkChoice::Inset {
+        lift,
+        leaning,
+        thickened,
+    }
+}
+
+/// Faults of a fork's shape, in the order in which they count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct ForkFaults {
+    level_2: usize,
+    /// Where there are none at level 2: what only level 4 shows.
+    level_4: FinerFaults,
+}
+
+impl ForkFaults {
+    const NONE: Self = Self::at_level_2(0);
+    const MOST: Self = Self::at_level_2(usize::MAX);
+
+    const fn at_level_2(level_2: usize) -> Self {
+        Self {
+            level_2,
+            level_4: FinerFaults {
+                crossings: 0,
+                folds: 0,
+            },
+        }
+    }
+
+    /// The faults of patches around a fork.
+    pub(crate) fn of(patches: &RefinedPatches) -> Self {
+        match count(&patches.faults()) {
+            0 => Self {
+                level_2: 0,
+                level_4: patches.finer_faults(),
+            },
+            level_2 => Self::at_level_2(level_2),
+        }
+    }
+
+    /// Whether there are none at level 2.
+    pub(crate) fn is_sound(self) -> bool {
+        self.level_2 == 0
+    }
+
+    /// Whether there are none but folds that only level 4 shows: they are small.
+    fn is_nearly_none(self) -> bool {
+        self.is_sound() && self.level_4.crossings == 0
+    }
 }
 
 /// Choices as they are tried.
@@ -39,7 +89,7 @@ pub(crate) struct ForkTrials {
 struct Trial {
     current: usize,
     /// Faults of each choice that was tried.
-    faults: [Option<usize>; CHOICES.len()],
+    faults: [Option<ForkFaults>; CHOICES.len()],
     settled: bool,
 }
 
@@ -71,35 +121,41 @@ impl ForkTrials {
         open.map(|(&fork, _)| fork).collect()
     }
 
-    /// Whether a fork's present choice was judged and has no faults.
-    pub(crate) fn is_sound(&self, fork: u32) -> bool {
-        let trial = self.trials.get(&fork);
-        trial.is_some_and(|trial| trial.faults[trial.current] == Some(0))
+    /// Faults of a fork's present choice, if it was judged.
+    fn faults(&self, fork: u32) -> Option<ForkFaults> {
+        let trial = self.trials.get(&fork)?;
+        trial.faults[trial.current]
     }
 
-    /// Forks whose present choice has no faults.
+    /// Whether a fork's present choice was judged and has no faults at level 2.
+    pub(crate) fn is_sound(&self, fork: u32) -> bool {
+        self.faults(fork).is_some_and(ForkFaults::is_sound)
+    }
+
+    /// Forks whose present choice has no faults at level 2.
     pub(crate) fn sound(&self) -> impl Iterator<Item = u32> {
         let sound = self.trials.keys().copied();
         sound.filter(|&fork| self.is_sound(fork))
     }
 
-    /// The present choice of a fork and all others that may be sound.
+    /// The present choice of a fork and all others that may be as sound.
     pub(crate) fn alternatives(&self, fork: u32) -> Vec<(ChoiceNumber, ForkChoice)> {
         let Some(trial) = self.trials.get(&fork) else {
             return Vec::new();
         };
-        let others =
-            (0..CHOICES.len()).filter(|&n| trial.faults[n].is_none_or(|faults| faults == 0));
+        let present = trial.faults[trial.current].unwrap_or_default();
+        let as_sound = |n: &usize| trial.faults[*n].is_none_or(|faults| faults <= present);
+        let others = (0..CHOICES.len()).filter(as_sound);
         let others = others.filter(|&n| n != trial.current);
         let all = std::iter::once(trial.current).chain(others);
         all.map(|n| (ChoiceNumber(n), CHOICES[n])).collect()
     }
 
-    /// Gives a fork another sound choice.
-    pub(crate) fn replace(&mut self, fork: u32, choice: ChoiceNumber) {
+    /// Gives a fork another choice.
+    pub(crate) fn replace(&mut self, fork: u32, choice: ChoiceNumber, faults: ForkFaults) {
         if let Some(trial) = self.trials.get_mut(&fork) {
             trial.current = choice.0;
-            trial.faults[choice.0] = Some(0);
+            trial.faults[choice.0] = Some(faults);
             self.choices[fork as usize] = CHOICES[choice.0];
         }
     }
@@ -112,10 +168,10 @@ impl ForkTrials {
     }
 
     /// Goes on to what is tried next. `faults`: by fork, of its present choice.
-    pub(crate) fn advance(&mut self, faults: &BTreeMap<u32, usize>) {
+    pub(crate) fn advance(&mut self, faults: &BTreeMap<u32, ForkFaults>) {
         for (fork, trial) in self.trials.iter_mut().filter(|(_, trial)| !trial.settled) {
             // A fork without patches was left out with its branch.
-            trial.faults[trial.current] = Some(faults.get(fork).copied().unwrap_or(0));
+            trial.faults[trial.current] = Some(faults.get(fork).copied().unwrap_or_default());
             trial.next();
             self.choices[*fork as usize] = CHOICES[trial.current];
         }
@@ -136,24 +192,77 @@ impl Trial {
         };
         for (choice, faults) in CHOICES.iter().zip(&mut self.faults).take(JOINT) {
             if thick(choice) == thick(&CHOICES[self.current]) {
-                faults.get_or_insert(usize::MAX);
+                faults.get_or_insert(ForkFaults::MOST);
             }
         }
         self.current = JOINT;
     }
 
-    /// Goes on to the first choice that was not tried, or back to the best if all were or one is sound.
+    /// Goes on to the first choice that was not tried, or back to the best if all were or one has no faults.
     fn next(&mut self) {
-        let sound = self.faults[self.current] == Some(0);
-        let untried = self.faults.iter().position(Option::is_none);
+        let sound = self.faults[self.current] == Some(ForkFaults::NONE);
+        // A joint's creases are larger than the folds that it would avoid.
+        let tried = self.faults.iter().flatten();
+        let needs_joint = !tried.into_iter().any(|faults| faults.is_nearly_none());
+        let choices = if needs_joint { CHOICES.len() } else { JOINT };
+        let untried = self.faults[..choices].iter().position(Option::is_none);
         match untried.filter(|_| !sound) {
             Some(next) => self.current = next,
             None => {
                 self.settled = true;
                 let tried = self.faults.iter().enumerate();
-                let best = tried.min_by_key(|(i, faults)| (faults.unwrap_or(usize::MAX), *i));
+                let best = tried.min_by_key(|(i, faults)| (faults.unwrap_or(ForkFaults::MOST), *i));
                 self.current = best.map_or(self.current, |(i, _)| i);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The choice that is kept, and how many were tried. `faults`: level 2, crossings and folds at level 4, by choice.
+    fn tried(faults: [[usize; 3]; CHOICES.len()]) -> (usize, usize) {
+        let mut trial = Trial::default();
+        let mut tried = 0;
+        while !trial.settled {
+            let [level_2, crossings, folds] = faults[trial.current];
+            let level_4 = FinerFaults { crossings, folds };
+            trial.faults[trial.current] = Some(ForkFaults { level_2, level_4 });
+            tried += 1;
+            trial.next();
+        }
+        (trial.current, tried)
+    }
+
+    #[test]
+    fn the_first_choice_without_faults_is_kept() {
+        let mut faults = [[3, 0, 0]; CHOICES.len()];
+        faults[2] = [0; 3];
+        faults[3] = [0; 3];
+        assert_eq!(tried(faults), (2, 3));
+        assert_eq!(tried([[0; 3]; CHOICES.len()]), (0, 1));
+    }
+
+    #[test]
+    fn faults_at_level_2_count_first_then_crossings_then_folds() {
+        let mut faults = [[1, 0, 0]; CHOICES.len()];
+        faults[1] = [0, 2, 0];
+        faults[3] = [0, 1, 9];
+        assert_eq!(tried(faults), (3, CHOICES.len()));
+        faults[4] = [0, 1, 3];
+        assert_eq!(tried(faults), (4, CHOICES.len()));
+    }
+
+    #[test]
+    fn only_small_folds_make_no_joint() {
+        let mut faults = [[1, 0, 0]; CHOICES.len()];
+        faults[JOINT] = [0; 3];
+        assert_eq!(tried(faults), (JOINT, CHOICES.len()));
+        faults[1] = [0, 0, 4];
+        assert_eq!(tried(faults), (1, JOINT));
+        faults[1] = [0, 1, 0];
+        assert_eq!(tried(faults), (JOINT, CHOICES.len()));
     }
 }

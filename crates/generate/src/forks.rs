@@ -13,11 +13,11 @@ use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
 use crate::assemble::Somata;
-use crate::fork_trials::ForkTrials;
+use crate::fork_trials::{ForkFaults, ForkTrials};
 use crate::inset::ForkChoice;
 use crate::made::{Made, MayJoin};
 use crate::neighborhood::Neighborhood;
-use crate::refined_patches::{RefinedPatches, count};
+use crate::refined_patches::RefinedPatches;
 use crate::skeleton::Skeleton;
 use crate::stop::Stop;
 use crate::warning::Warnings;
@@ -90,13 +90,13 @@ fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: S
         }
     }
     let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
-    let judged: Vec<(u32, usize)> = near
+    let judged: Vec<(u32, ForkFaults)> = near
         .par_iter()
         .map(|(fork, patches)| match stop.asked() {
-            true => (*fork, 0),
+            true => (*fork, ForkFaults::default()),
             false => {
                 let patches = RefinedPatches::new(&made.mesh, patches.clone());
-                (*fork, count(&patches.faults()))
+                (*fork, ForkFaults::of(&patches))
             }
         })
         .collect();

@@ -1,4 +1,4 @@
-//! Forks that another branch runs through or touches: of the sound choices, that which it crosses least.
+//! Forks that another branch runs through or touches: of the choices as sound, that which it crosses least.
 //!
 //! Branches that were traced through one another cross whatever a fork is made of, but not equally. An inset is
 //! lifted off its trunk and a joint is not, so a branch that passes within the lift crosses the one and not the
@@ -14,12 +14,12 @@ use neurotess_mesh::{CoarseMesh, PatchKind};
 use rayon::prelude::*;
 
 use crate::facets::Bounds;
-use crate::fork_trials::{ChoiceNumber, ForkTrials};
+use crate::fork_trials::{ChoiceNumber, ForkFaults, ForkTrials};
 use crate::inset::ForkChoice;
 use crate::made::{Made, MayJoin};
 use crate::neighborhood::Neighborhood;
 use crate::part::Part;
-use crate::refined_patches::{RefinedPatches, count};
+use crate::refined_patches::RefinedPatches;
 use crate::skeleton::Skeleton;
 use crate::stop::Stop;
 
@@ -41,7 +41,15 @@ struct Passed {
     alternatives: Vec<(ChoiceNumber, ForkChoice)>,
 }
 
-/// Gives sound forks the sound choice that the branches that pass them cross least. `made`: the whole with the
+/// What is wrong with a fork that branches pass.
+#[derive(Clone, Copy)]
+struct Found {
+    /// Facets of it and of branches that pass it that cross.
+    crossings: usize,
+    faults: ForkFaults,
+}
+
+/// Gives sound forks the choice as sound that the branches that pass them cross least. `made`: the whole with the
 /// choices that were tried first.
 pub(crate) fn choose(
     trials: &mut ForkTrials,
@@ -62,42 +70,40 @@ pub(crate) fn choose(
         true => vec![None; passed.len()],
         false => crossings_of_round(&passed, round, trials, &near, may_join),
     });
-    let rounds: Vec<Vec<Option<usize>>> = rounds.collect();
+    let rounds: Vec<Vec<Option<Found>>> = rounds.collect();
     if stop.asked() {
         return;
     }
-    let crossings = (0..passed.len()).map(|number| {
-        let found = rounds.iter().map(|round| round[number]);
-        found.collect::<Vec<_>>()
-    });
-    for (passed, crossings) in passed.iter().zip(crossings) {
-        if let Some(choice) = least_crossed(passed, &crossings) {
-            trials.replace(passed.fork, choice);
+    for (number, passed) in passed.iter().enumerate() {
+        let found: Vec<Option<Found>> = rounds.iter().map(|round| round[number]).collect();
+        if let Some((choice, faults)) = least_crossed(passed, &found) {
+            trials.replace(passed.fork, choice, faults);
         }
     }
 }
 
-/// Another choice than the present one, if it is sound and crossed less. `crossings`: of each alternative that is
-/// sound.
-fn least_crossed(passed: &Passed, crossings: &[Option<usize>]) -> Option<ChoiceNumber> {
-    let (present, others) = crossings.split_first()?;
+/// Another choice than the present one, if it is as sound and crossed less. `found`: of each alternative that is
+/// sound at level 2.
+fn least_crossed(passed: &Passed, found: &[Option<Found>]) -> Option<(ChoiceNumber, ForkFaults)> {
+    let (present, others) = found.split_first()?;
     let present = (*present)?;
     let numbers = passed.alternatives[1..].iter().map(|(number, _)| *number);
     let others = others.iter().zip(numbers);
-    let sound = others.filter_map(|(crossings, number)| Some(((*crossings)?, number)));
-    let best = sound.min_by_key(|(crossings, _)| *crossings);
-    best.filter(|(crossings, _)| *crossings < present)
-        .map(|(_, number)| number)
+    let others = others.filter_map(|(found, number)| Some(((*found)?, number)));
+    let as_sound = others.filter(|(found, _)| found.faults <= present.faults);
+    let best = as_sound.min_by_key(|(found, _)| found.crossings);
+    best.filter(|(found, _)| found.crossings < present.crossings)
+        .map(|(found, number)| (number, found.faults))
 }
 
-/// Makes the same alternative of all forks at once. For each: how many facets cross, if it is sound.
+/// Makes the same alternative of all forks at once. For each: what was found, if it is sound at level 2.
 fn crossings_of_round(
     passed: &[Passed],
     round: usize,
     trials: &ForkTrials,
     near: &Neighborhood,
     may_join: &MayJoin<'_>,
-) -> Vec<Option<usize>> {
+) -> Vec<Option<Found>> {
     let old = |node: u32| near.nodes[node as usize];
     let may_join = |from: u32, to: u32| may_join(old(from), old(to));
     let alternative = |fork: u32| {
@@ -119,8 +125,14 @@ fn crossings_of_round(
         passed.alternatives.get(round)?;
         let own = own.get(&passed.fork)?;
         let own = RefinedPatches::new(&made.mesh, own.clone());
-        let sound = !refused.contains(&passed.fork) && count(&own.faults()) == 0;
-        sound.then(|| crossings(own.part.mesh, &passed.passing))
+        if refused.contains(&passed.fork) {
+            return None;
+        }
+        let faults = ForkFaults::of(&own);
+        faults.is_sound().then(|| Found {
+            crossings: crossings(own.part.mesh, &passed.passing),
+            faults,
+        })
     });
     found.collect()
 }

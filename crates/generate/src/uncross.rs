@@ -32,14 +32,26 @@ pub(crate) fn uncross_rings(
     warnings: &mut Warnings,
 ) -> Vec<DVec3> {
     let Layout {
-        skeleton, insets, ..
+        skeleton,
+        insets,
+        zones,
+        ..
     } = layout;
+    let is_leaning = |zone: &Vec<u32>| zone.iter().any(|&inset| insets[inset as usize].leaning);
+    let leaning: Vec<bool> = zones.iter().map(is_leaning).collect();
     let children = skeleton.children();
     let may_join = |from: u32, to: u32| {
         let base = |n: u32| skeleton.node(n).marks.base;
         base(from) == NONE || base(to) == NONE || may_join(base(from), base(to))
     };
-    let mut work = Work::new(skeleton, children, soma_spheres, insets, &may_join);
+    let mut work = Work::new(
+        skeleton,
+        children,
+        soma_spheres,
+        insets,
+        &leaning,
+        &may_join,
+    );
     let mut pending: Vec<u32> = (0..work.parent.len() as u32)
         .rev()
         .filter(|&j| work.crosses(j))
@@ -97,6 +109,8 @@ struct Work<'a> {
     children: &'a Children,
     soma_spheres: &'a [Option<SomaSphere>],
     insets: &'a [Inset],
+    /// By zone: whether its rings lean towards it.
+    leaning: &'a [bool],
     may_join: &'a dyn Fn(u32, u32) -> bool,
     keep: Vec<bool>,
     parent: Vec<u32>,
@@ -116,6 +130,7 @@ impl<'a> Work<'a> {
         children: &'a Children,
         soma_spheres: &'a [Option<SomaSphere>],
         insets: &'a [Inset],
+        leaning: &'a [bool],
         may_join: &'a dyn Fn(u32, u32) -> bool,
     ) -> Self {
         let count = skeleton.nodes().len();
@@ -128,6 +143,7 @@ impl<'a> Work<'a> {
             children,
             soma_spheres,
             insets,
+            leaning,
             may_join,
             keep: vec![true; count],
             parent: skeleton.nodes().iter().map(|n| n.parent).collect(),
@@ -154,8 +170,8 @@ impl<'a> Work<'a> {
 
     /// Paper's orientation: the sum of the unit directions in and out; at an end the one there is;
     /// at a fork the sum of the children's directions; at a soma's ring that away from the soma, at an
-    /// inset's that of the branch. The rings of a zone lean towards the zone, twice as much as to the
-    /// other side, so that its quads stay straight.
+    /// inset's that of the branch. Rings of a zone may lean towards it, twice as much as to the other
+    /// side ([`ForkChoice`](crate::inset::ForkChoice)).
     fn orientation(&self, i: u32) -> DVec3 {
         let node = self.skeleton.node(i);
         if let Root::Insertion(soma) = node.root
@@ -177,8 +193,9 @@ impl<'a> Work<'a> {
                 .filter_map(|&c| self.direction(i, c))
                 .sum(),
             child => {
+                let leaning = |zone: u32| zone != NONE && self.leaning[zone as usize];
+                let weight = |zone: u32| if leaning(zone) { 2.0 } else { 1.0 };
                 let outgoing = self.direction(i, child).unwrap_or(DVec3::ZERO);
-                let weight = |zone: u32| if zone == NONE { 1.0 } else { 2.0 };
                 outgoing * weight(node.marks.zone_begins)
                     + incoming.unwrap_or(DVec3::ZERO) * weight(node.marks.zone_ends)
             }

@@ -44,6 +44,9 @@ pub(crate) enum ForkChoice {
     Inset {
         /// Radii of the branch.
         lift: f64,
+        /// Whether the trunk's rings around a branch lean towards it, twice as much as outwards. Where the trunk bends
+        /// there that shows as edges, but keeps the quads between the rings straight.
+        leaning: bool,
         /// Whether the fork becomes as thick as the second thickest of its neighbors: a single thin sample
         /// between thick ones leaves them no room.
         thickened: bool,
@@ -60,6 +63,8 @@ pub(crate) struct Inset {
     pub(crate) direction: DVec3,
     pub(crate) radius: f64,
     pub(crate) lift: f64,
+    /// Whether the trunk's rings around it lean towards it.
+    pub(crate) leaning: bool,
 }
 
 /// A skeleton whose branches leave through insets where they can.

@@ -1,85 +1,14 @@
-//! How patches are cut into triangles, and where two of them meet: which points and edges they share.
+//! Where two patches meet: which points and edges they share.
 
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
+use neurotess_mesh::CoarseMesh;
 
-/// Facets of a patch.
-pub(super) const FACETS: usize = 8;
-/// Points of a patch.
-pub(super) const POINTS: usize = 9;
-
-/// How a patch is cut into triangles; points are numbered row by row.
-pub(super) struct Pattern {
-    pub(super) triangles: [[usize; 3]; FACETS],
-    /// Triangles that share an edge.
-    pub(super) within: [[u32; 2]; FACETS],
-    /// Triangles at the two halves of each side, in the order of [`sides`].
-    along: [[u32; 2]; 4],
-}
-
-/// With parallel diagonals.
-const PARALLEL: Pattern = Pattern {
-    triangles: [
-        [0, 1, 4],
-        [0, 4, 3],
-        [1, 2, 5],
-        [1, 5, 4],
-        [3, 4, 7],
-        [3, 7, 6],
-        [4, 5, 8],
-        [4, 8, 7],
-    ],
-    within: [
-        [0, 1],
-        [0, 3],
-        [2, 3],
-        [1, 4],
-        [4, 5],
-        [3, 6],
-        [6, 7],
-        [4, 7],
-    ],
-    along: [[0, 2], [2, 6], [5, 7], [1, 5]],
-};
-/// With diagonals that run towards the corners.
-const FANNED: Pattern = Pattern {
-    triangles: [
-        [0, 1, 4],
-        [0, 4, 3],
-        [1, 2, 4],
-        [2, 5, 4],
-        [3, 4, 6],
-        [4, 7, 6],
-        [4, 5, 8],
-        [4, 8, 7],
-    ],
-    within: [
-        [0, 1],
-        [0, 2],
-        [2, 3],
-        [3, 6],
-        [6, 7],
-        [5, 7],
-        [4, 5],
-        [1, 4],
-    ],
-    along: [[0, 2], [3, 6], [5, 7], [1, 4]],
-};
-/// Points of the sides of a patch, in the order of [`sides`].
-const SIDES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]];
-
-impl Pattern {
-    pub(super) fn of(patch: &Patch) -> &'static Self {
-        match patch.kind {
-            PatchKind::Lateral => &PARALLEL,
-            PatchKind::Cap | PatchKind::Soma | PatchKind::Loft => &FANNED,
-        }
-    }
-}
+use super::cut::Cut;
 
 /// Sides that two patches share.
 pub(super) struct Seams {
-    /// Pairs of facets: two of each seam.
+    /// Pairs of facets: as many of each seam as a side has cells.
     pub(super) edges: Vec<[u32; 2]>,
+    steps: usize,
     /// Numbers of the seams by patch and side; [`NO_SEAM`] where no other patch is.
     by_side: Vec<[u32; 4]>,
 }
@@ -95,24 +24,24 @@ impl Seams {
     }
 
     /// Pairs of facets along a seam.
-    pub(super) fn edges(&self, seam: u32) -> [[u32; 2]; 2] {
-        [0, 1].map(|half| self.edges[2 * seam as usize + half])
+    pub(super) fn edges(&self, seam: u32) -> &[[u32; 2]] {
+        &self.edges[self.steps * seam as usize..][..self.steps]
     }
 
     /// Adds the seam between two sides, each given as a patch with a side of it.
-    fn add(&mut self, mesh: &CoarseMesh, [a, b]: [(u32, usize); 2]) {
-        let seam = self.edges.len() as u32 / 2;
+    fn add(&mut self, mesh: &CoarseMesh, cut: &Cut, [a, b]: [(u32, usize); 2]) {
+        let seam = (self.edges.len() / self.steps) as u32;
         let first =
             |(patch, side): (u32, usize)| sides(mesh.patches[patch as usize].corners)[side].0;
         let along = |(patch, side): (u32, usize)| {
-            let halves = Pattern::of(&mesh.patches[patch as usize]).along[side];
-            halves.map(|facet| FACETS as u32 * patch + facet)
+            let along = cut.pattern(&mesh.patches[patch as usize]).along[side].iter();
+            along.map(move |facet| cut.facets() as u32 * patch + facet)
         };
-        let ([a0, a1], mut others) = (along(a), along(b));
-        if first(a) != first(b) {
-            others.reverse();
+        let edges = &mut self.edges;
+        match first(a) == first(b) {
+            true => edges.extend(along(a).zip(along(b)).map(<[u32; 2]>::from)),
+            false => edges.extend(along(a).zip(along(b).rev()).map(<[u32; 2]>::from)),
         }
-        self.edges.extend([[a0, others[0]], [a1, others[1]]]);
         for (patch, side) in [a, b] {
             self.by_side[patch as usize][side] = seam;
         }
@@ -124,9 +53,9 @@ fn sides(c: [u32; 4]) -> [(u32, u32); 4] {
     [(c[0], c[1]), (c[1], c[2]), (c[3], c[2]), (c[0], c[3])]
 }
 
-/// Numbers of the points of each patch: corners first, then the middles of edges, then those of patches;
-/// and where patches meet.
-pub(super) fn numbers(mesh: &CoarseMesh) -> (Vec<[u32; POINTS]>, Seams) {
+/// Numbers of the points of all patches, patch by patch: corners first, then those of edges from the lower corner on,
+/// then those within patches; and where patches meet.
+pub(super) fn numbers(mesh: &CoarseMesh, cut: &Cut) -> (Vec<u32>, Seams) {
     let count = mesh.patches.len();
     let mut at: Vec<(u32, u32, u32)> = Vec::with_capacity(4 * count);
     for (patch, corners) in (0..).zip(mesh.patches.iter().map(|p| p.corners)) {
@@ -134,56 +63,38 @@ pub(super) fn numbers(mesh: &CoarseMesh) -> (Vec<[u32; POINTS]>, Seams) {
         at.extend(sides.map(|(slot, (a, b))| (a.min(b), a.max(b), slot)));
     }
     at.sort_unstable();
-    let mut points = vec![[0; POINTS]; count];
+    let mut points = vec![0; cut.points() * count];
     let mut seams = Seams {
-        edges: Vec::with_capacity(4 * count),
+        edges: Vec::with_capacity(2 * cut.steps * count),
+        steps: cut.steps,
         by_side: vec![[NO_SEAM; 4]; count],
     };
     let mut number = mesh.vertices.len() as u32;
     for same in at.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        for slot in same.iter().map(|&(_, _, slot)| slot as usize) {
-            points[slot / 4][SIDES[slot % 4][1]] = number;
+        for &(low, _, slot) in same {
+            let (patch, side) = (slot as usize / 4, slot as usize % 4);
+            let points = &mut points[cut.points() * patch..][..cut.points()];
+            let between = &cut.sides[side][1..cut.steps];
+            let runs_up = sides(mesh.patches[patch].corners)[side].0 == low;
+            for (k, number) in (0..between.len()).zip(number..) {
+                let k = if runs_up { k } else { between.len() - 1 - k };
+                points[between[k]] = number;
+            }
         }
         for pair in same.windows(2) {
             let side = |slot: u32| (slot / 4, slot as usize % 4);
-            seams.add(mesh, [side(pair[0].2), side(pair[1].2)]);
+            seams.add(mesh, cut, [side(pair[0].2), side(pair[1].2)]);
         }
-        number += 1;
+        number += cut.steps as u32 - 1;
     }
-    for ((points, patch), inner) in points.iter_mut().zip(&mesh.patches).zip(number..) {
-        let [a, b, c, d] = patch.corners;
-        (points[0], points[2], points[8], points[6]) = (a, b, c, d);
-        points[4] = inner;
+    for (points, patch) in points.chunks_mut(cut.points()).zip(&mesh.patches) {
+        for (&place, corner) in cut.corners.iter().zip(patch.corners) {
+            points[place] = corner;
+        }
+        for &place in &cut.inner {
+            points[place] = number;
+            number += 1;
+        }
     }
     (points, seams)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn patterns_say_which_triangles_share_edges() {
-        for pattern in [&PARALLEL, &FANNED] {
-            let has = |triangle: usize, edge: [usize; 2]| {
-                edge.iter()
-                    .all(|point| pattern.triangles[triangle].contains(point))
-            };
-            let mut within: Vec<[u32; 2]> = Vec::new();
-            for (a, b) in (0..FACETS).flat_map(|a| (a + 1..FACETS).map(move |b| (a, b))) {
-                let common = pattern.triangles[a].iter().filter(|p| has(b, [**p; 2]));
-                if common.count() == 2 {
-                    within.push([a as u32, b as u32]);
-                }
-            }
-            let mut said = pattern.within.map(|[a, b]| [a.min(b), a.max(b)]);
-            said.sort_unstable();
-            assert_eq!(within, said);
-            for (points, halves) in SIDES.iter().zip(pattern.along) {
-                for (edge, half) in points.windows(2).zip(halves) {
-                    assert!(has(half as usize, [edge[0], edge[1]]));
-                }
-            }
-        }
-    }
 }
