@@ -7,7 +7,8 @@ use crate::refined_patches::{FinerFaults, RefinedPatches, count};
 use crate::skeleton::Skeleton;
 
 /// What is tried, in this order. The lift decides most: 0.4 keeps the branch closest to the tracing,
-/// higher ones cross the trunk's bends less.
+/// higher ones cross the trunk's bends less. That rings lean is tried for this lift only: for all lifts 172993 and
+/// `Neuron` had more crossings, and the forks of twelve cells were no nearer to their blended branches.
 const CHOICES: [ForkChoice; 7] = [
     inset(0.4, false, false),
     inset(0.4, true, false),

@@ -6,7 +6,7 @@ use neurotess_mesh::{Patch, PatchKind};
 
 /// Cells of a patch to a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Level {
+pub(super) enum Level {
     Two,
     Four,
 }

@@ -3,6 +3,7 @@
 //! By this forks are judged, thousands of times a cell, and rings are drawn in.
 
 mod cut;
+mod finer;
 mod pairs;
 mod seams;
 
@@ -13,8 +14,8 @@ use rayon::prelude::*;
 
 use crate::facets::{Bounds, Facet};
 use crate::part::Part;
-pub(crate) use cut::Level;
-use cut::{Cut, MOST_FACETS};
+use cut::{Cut, Level, MOST_FACETS};
+pub(crate) use finer::FinerFaults;
 use seams::{Seams, numbers};
 
 /// Overlapping boxes by patch from which on patches are a crowd. Forks of the reference cells have six to
@@ -23,11 +24,6 @@ const CROWDED: usize = 16;
 /// Facets are seen from one side if they face it by more than this: cosine of 72°, to stay clear of outlines
 /// that cross. With 90° little more time is saved, and cells with many folds have a few more of them.
 const LEAST_COS: f32 = 0.3;
-
-/// Level 4 is looked at beside edges that bend by more than this at level 2: cosine of 70°. With 78° less than a tenth
-/// of the patches are looked at, and three of the forks that cross
-/// themselves are missed instead of one.
-const BENT: f32 = 0.35;
 
 /// Patches to be refined, and pairs to be searched, that are worth a thread.
 const LEAST_PATCHES: usize = 64;
@@ -40,13 +36,6 @@ pub(crate) struct Fault {
     pub(crate) count: usize,
     /// Whether they fold over at their edge, and do not cross.
     pub(crate) folded: bool,
-}
-
-/// Faults that only level 4 shows, in the order in which they count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct FinerFaults {
-    pub(crate) crossings: usize,
-    pub(crate) folds: usize,
 }
 
 /// How many faults there are in all.
@@ -75,7 +64,7 @@ impl RefinedPatches {
         Self::at_level(Level::Two, mesh, patches)
     }
 
-    pub(crate) fn at_level(level: Level, mesh: &CoarseMesh, patches: Vec<u32>) -> Self {
+    fn at_level(level: Level, mesh: &CoarseMesh, patches: Vec<u32>) -> Self {
         let part = Part::new(mesh, patches);
         let cut = Cut::of(level);
         let count = part.mesh.patches.len();
@@ -101,35 +90,6 @@ impl RefinedPatches {
     /// Pairs of facets that cross, and folded edges, by their patches.
     pub(crate) fn faults(&self) -> Vec<Fault> {
         self.faults_of_pairs(self.near_pairs(usize::MAX).unwrap_or_default())
-    }
-
-    /// Faults at level 4 where the surface bends most. Patches that are smooth at level 2 are hardly ever at fault at
-    /// level 4: of the forks of 31 reference files that are sound at level 2, 300 are not at level 4, 33 of them cross
-    /// themselves, and looking at a sixth of the patches finds 295 and 32 of them.
-    pub(crate) fn finer_faults(&self) -> FinerFaults {
-        let bent = self.bent();
-        if bent.is_empty() {
-            return FinerFaults::default();
-        }
-        let faults = Self::at_level(Level::Four, &self.part.mesh, bent).faults();
-        let folds = faults.iter().filter(|fault| fault.folded).count();
-        FinerFaults {
-            crossings: count(&faults) - folds,
-            folds,
-        }
-    }
-
-    /// Patches with an edge that bends by more than [`BENT`].
-    fn bent(&self) -> Vec<u32> {
-        let patches = 0..self.boxes.len() as u32;
-        let within = patches.flat_map(|patch| self.edges_within(patch));
-        let across = self.seams.edges.iter().copied();
-        let normal = |facet: u32| self.facets[facet as usize].normal;
-        let is_bent = |&[a, b]: &[u32; 2]| normal(a).dot(normal(b)) < BENT;
-        let bent = within.chain(across).filter(is_bent);
-        let facets = self.cut.facets() as u32;
-        bent.flat_map(|edge| edge.map(|facet| facet / facets))
-            .collect()
     }
 
     /// [`RefinedPatches::faults`]; none where there are so many patches in one place that they cannot be looked
@@ -433,22 +393,6 @@ mod tests {
                 assert!(of(fewer).is_none(), "more than {fewer}");
             }
         }
-    }
-
-    #[test]
-    fn finer_faults_are_those_of_level_4_where_it_bends() {
-        let mesh = hairpin();
-        let all: Vec<u32> = (0..mesh.patches.len() as u32).collect();
-        let finer = RefinedPatches::new(&mesh, all.clone()).finer_faults();
-        let faults = RefinedPatches::at_level(Level::Four, &mesh, all).faults();
-        let folds = faults.iter().filter(|fault| fault.folded).count();
-        assert!(folds > 0 && finer.folds == folds, "{finer:?}");
-        // The legs cross away from the bend, too, where nothing is bent.
-        let crossings = count(&faults) - folds;
-        assert!((1..=crossings).contains(&finer.crossings), "{finer:?}");
-        // A straight piece of it.
-        let straight = RefinedPatches::new(&mesh, (0..16).collect());
-        assert_eq!(straight.finer_faults(), FinerFaults::default());
     }
 
     #[test]
