@@ -44,28 +44,23 @@ pub(crate) struct ForkFaults {
 }
 
 impl ForkFaults {
-    const NONE: Self = Self::at_level_2(0);
-    const MOST: Self = Self::at_level_2(usize::MAX);
-
-    const fn at_level_2(level_2: usize) -> Self {
-        Self {
-            level_2,
-            level_4: FinerFaults {
-                crossings: 0,
-                folds: 0,
-            },
-        }
-    }
+    /// More than any shape has.
+    const MOST: Self = Self {
+        level_2: usize::MAX,
+        level_4: FinerFaults {
+            crossings: 0,
+            folds: 0,
+        },
+    };
 
     /// The faults of patches around a fork.
     pub(crate) fn of(patches: &RefinedPatches) -> Self {
-        match count(&patches.faults()) {
-            0 => Self {
-                level_2: 0,
-                level_4: patches.finer_faults(),
-            },
-            level_2 => Self::at_level_2(level_2),
-        }
+        let level_2 = count(&patches.faults());
+        let level_4 = match level_2 {
+            0 => patches.finer_faults(),
+            _ => FinerFaults::default(),
+        };
+        Self { level_2, level_4 }
     }
 
     /// Whether there are none at level 2.
@@ -122,15 +117,11 @@ impl ForkTrials {
         open.map(|(&fork, _)| fork).collect()
     }
 
-    /// Faults of a fork's present choice, if it was judged.
-    fn faults(&self, fork: u32) -> Option<ForkFaults> {
-        let trial = self.trials.get(&fork)?;
-        trial.faults[trial.current]
-    }
-
     /// Whether a fork's present choice was judged and has no faults at level 2.
     pub(crate) fn is_sound(&self, fork: u32) -> bool {
-        self.faults(fork).is_some_and(ForkFaults::is_sound)
+        let trial = self.trials.get(&fork);
+        let faults = trial.and_then(|trial| trial.faults[trial.current]);
+        faults.is_some_and(ForkFaults::is_sound)
     }
 
     /// Forks whose present choice has no faults at level 2.
@@ -182,17 +173,8 @@ impl ForkTrials {
 impl Trial {
     /// There is no room for an inset of this thickness, whatever its lift.
     fn refuse(&mut self) {
-        let thick = |choice: &ForkChoice| {
-            matches!(
-                choice,
-                ForkChoice::Inset {
-                    thickened: true,
-                    ..
-                }
-            )
-        };
         for (choice, faults) in CHOICES.iter().zip(&mut self.faults).take(JOINT) {
-            if thick(choice) == thick(&CHOICES[self.current]) {
+            if choice.is_thickened() == CHOICES[self.current].is_thickened() {
                 faults.get_or_insert(ForkFaults::MOST);
             }
         }
@@ -201,13 +183,13 @@ impl Trial {
 
     /// Goes on to the first choice that was not tried, or back to the best if all were or one has no faults.
     fn next(&mut self) {
-        let sound = self.faults[self.current] == Some(ForkFaults::NONE);
+        let flawless = self.faults[self.current] == Some(ForkFaults::default());
         // A joint's creases are larger than the folds that it would avoid.
-        let tried = self.faults.iter().flatten();
-        let needs_joint = !tried.into_iter().any(|faults| faults.is_nearly_none());
+        let mut tried = self.faults.iter().flatten();
+        let needs_joint = !tried.any(|faults| faults.is_nearly_none());
         let choices = if needs_joint { CHOICES.len() } else { JOINT };
         let untried = self.faults[..choices].iter().position(Option::is_none);
-        match untried.filter(|_| !sound) {
+        match untried.filter(|_| !flawless) {
             Some(next) => self.current = next,
             None => {
                 self.settled = true;

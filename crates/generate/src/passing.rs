@@ -123,11 +123,11 @@ fn crossings_of_round(
     }
     let found = passed.par_iter().map(|passed| {
         passed.alternatives.get(round)?;
-        let own = own.get(&passed.fork)?;
-        let own = RefinedPatches::new(&made.mesh, own.clone());
         if refused.contains(&passed.fork) {
             return None;
         }
+        let own = own.get(&passed.fork)?;
+        let own = RefinedPatches::new(&made.mesh, own.clone());
         let faults = ForkFaults::of(&own);
         faults.is_sound().then(|| Found {
             crossings: crossings(own.part.mesh, &passed.passing),

@@ -53,6 +53,24 @@ pub(crate) enum ForkChoice {
     },
 }
 
+impl ForkChoice {
+    /// Whether it is an inset whose trunk's rings lean towards it.
+    pub(crate) fn is_leaning(self) -> bool {
+        matches!(self, Self::Inset { leaning: true, .. })
+    }
+
+    /// Whether it is an inset on a thickened fork.
+    pub(crate) fn is_thickened(self) -> bool {
+        matches!(
+            self,
+            Self::Inset {
+                thickened: true,
+                ..
+            }
+        )
+    }
+}
+
 /// A branch that leaves through an inset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inset {

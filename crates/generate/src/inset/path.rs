@@ -272,12 +272,8 @@ impl<'a> Planner<'a> {
 
     fn begin_inset(&mut self, zone: &Zone, path: &Polyline, starts: &mut Vec<Start>) -> u32 {
         let inset = self.insets.len() as u32;
-        let leaning = matches!(
-            self.choices[zone.fork as usize],
-            ForkChoice::Inset { leaning: true, .. }
-        );
         self.insets.push(Inset {
-            leaning,
+            leaning: self.choices[zone.fork as usize].is_leaning(),
             fork: zone.fork,
             exit: zone.exit,
             direction: zone.direction,

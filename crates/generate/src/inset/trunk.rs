@@ -1,6 +1,5 @@
 //! Which child of a fork continues the trunk.
 
-use super::ForkChoice;
 use super::path::Planner;
 use crate::fork;
 
@@ -77,14 +76,7 @@ impl Planner<'_> {
     /// Radius of a node; of a fork, as its choice has it.
     pub(super) fn radius(&self, node: u32) -> f64 {
         let own = self.base.node(node).radius;
-        let thickened = matches!(
-            self.choices[node as usize],
-            ForkChoice::Inset {
-                thickened: true,
-                ..
-            }
-        );
-        if !thickened || self.children.of(node).len() < 2 {
+        if !self.choices[node as usize].is_thickened() || self.children.of(node).len() < 2 {
             return own;
         }
         let around = fork::neighbors(self.children, self.base, node).into_iter();

@@ -98,3 +98,62 @@ pub(super) fn numbers(mesh: &CoarseMesh, cut: &Cut) -> (Vec<u32>, Seams) {
     }
     (points, seams)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use neurotess_refine::{RefineOptions, patch_points};
+
+    use super::super::RefinedPatches;
+    use super::super::cut::Level;
+    use super::super::tests::hairpin;
+    use super::*;
+
+    /// A tube whose patches run along their common sides in both directions.
+    fn turned() -> CoarseMesh {
+        let mut mesh = hairpin();
+        for (number, patch) in mesh.patches.iter_mut().enumerate() {
+            patch.corners.rotate_left(number % 4);
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_point_has_one_number_in_all_patches_that_share_it() {
+        let mesh = hairpin();
+        for cut in [Level::Two, Level::Four].map(Cut::of) {
+            let (numbers, _) = numbers(&mesh, cut);
+            let mut at = BTreeMap::new();
+            for (patch, numbers) in numbers.chunks(cut.points()).enumerate() {
+                let mut points = Vec::new();
+                let options = RefineOptions::default();
+                patch_points(&mesh, patch, cut.steps as u32, &options, &mut points);
+                for (&number, point) in numbers.iter().zip(points) {
+                    assert_eq!(*at.entry(number).or_insert(point), point, "{number}");
+                }
+            }
+            // Fifteen pieces of tube, closed around and open at the ends.
+            let s = cut.steps;
+            assert_eq!(at.len(), 4 * s * (15 * s + 1));
+        }
+    }
+
+    #[test]
+    fn facets_along_a_seam_share_an_edge() {
+        for mesh in [hairpin(), turned()] {
+            let all: Vec<u32> = (0..mesh.patches.len() as u32).collect();
+            for level in [Level::Two, Level::Four] {
+                let refined = RefinedPatches::at_level(level, &mesh, all.clone());
+                // Four along the tube for each piece, and four around between two of them.
+                let seams = 4 * 15 + 4 * 14;
+                assert_eq!(refined.seams.edges.len(), seams * refined.cut.steps);
+                for edge in &refined.seams.edges {
+                    let [a, b] = edge.map(|k| refined.facets[k as usize].corners);
+                    let common = a.iter().filter(|corner| b.contains(corner));
+                    assert_eq!(common.count(), 2, "{edge:?}");
+                }
+            }
+        }
+    }
+}
