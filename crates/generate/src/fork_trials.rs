@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::inset::ForkChoice;
+use crate::inset::{self, ForkChoice};
 use crate::refined_patches::{FinerFaults, RefinedPatches, count};
 use crate::skeleton::Skeleton;
 
 /// What is tried, in this order. The lift decides most: 0.4 keeps the branch closest to the tracing,
 /// higher ones cross the trunk's bends less. That rings lean is tried for this lift only: for all lifts 172993 and
 /// `Neuron` had more crossings, and the forks of twelve cells were no nearer to their blended branches.
-const CHOICES: [ForkChoice; 7] = [
+const CHOICES: [ForkChoice; 10] = [
+    across(0.4),
+    across(0.7),
+    across(1.0),
     inset(0.4, false, false),
     inset(0.4, true, false),
     inset(0.7, false, false),
@@ -18,6 +21,8 @@ const CHOICES: [ForkChoice; 7] = [
     inset(1.0, false, true),
     ForkChoice::Joint,
 ];
+/// The first choice of all forks but those whose children are straighter to one another than to the parent.
+const FIRST: usize = 3;
 const JOINT: usize = CHOICES.len() - 1;
 
 /// Number of a choice, in the order in which they are tried.
@@ -27,9 +32,19 @@ pub(crate) struct ChoiceNumber(usize);
 /// A fork of more children is split over several joints, and not judged: its patches are too many.
 const MOST_CHILDREN: usize = 5;
 
+const fn across(lift: f64) -> ForkChoice {
+    ForkChoice::Inset {
+        lift,
+        across: true,
+        leaning: false,
+        thickened: false,
+    }
+}
+
 const fn inset(lift: f64, leaning: bool, thickened: bool) -> ForkChoice {
     ForkChoice::Inset {
         lift,
+        across: false,
         leaning,
         thickened,
     }
@@ -92,13 +107,15 @@ struct Trial {
 impl ForkTrials {
     pub(crate) fn new(skeleton: &Skeleton) -> Self {
         let children = skeleton.children();
-        let mut choices = vec![CHOICES[0]; skeleton.nodes().len()];
+        let mut choices = vec![CHOICES[FIRST]; skeleton.nodes().len()];
         let mut trials = BTreeMap::new();
         for fork in 0..skeleton.nodes().len() as u32 {
             match children.of(fork).len() {
                 0 | 1 => {}
                 2..=MOST_CHILDREN => {
-                    trials.insert(fork, Trial::default());
+                    let trial = Trial::new(inset::is_straight_across(skeleton, fork));
+                    choices[fork as usize] = CHOICES[trial.current];
+                    trials.insert(fork, trial);
                 }
                 _ => choices[fork as usize] = ForkChoice::Joint,
             }
@@ -171,10 +188,20 @@ impl ForkTrials {
 }
 
 impl Trial {
-    /// There is no room for an inset of this thickness, whatever its lift.
+    fn new(is_straight_across: bool) -> Self {
+        let mut trial = Self::default();
+        if !is_straight_across {
+            trial.faults[..FIRST].fill(Some(ForkFaults::MOST));
+            trial.current = FIRST;
+        }
+        trial
+    }
+
+    /// There is no room for an inset of this thickness on this trunk, whatever its lift.
     fn refuse(&mut self) {
+        let of = |choice: ForkChoice| (choice.is_thickened(), choice.is_across());
         for (choice, faults) in CHOICES.iter().zip(&mut self.faults).take(JOINT) {
-            if choice.is_thickened() == CHOICES[self.current].is_thickened() {
+            if of(*choice) == of(CHOICES[self.current]) {
                 faults.get_or_insert(ForkFaults::MOST);
             }
         }
@@ -183,7 +210,9 @@ impl Trial {
 
     /// Goes on to the first choice that was not tried, or back to the best if all were or one has no faults.
     fn next(&mut self) {
-        let flawless = self.faults[self.current] == Some(ForkFaults::default());
+        // A fork that has no room for one trunk may have it for the other.
+        let flawless = self.faults[self.current] == Some(ForkFaults::default())
+            && (self.current < FIRST || self.faults[FIRST].is_some());
         // A joint's creases are larger than the folds that it would avoid.
         let mut tried = self.faults.iter().flatten();
         let needs_joint = !tried.any(|faults| faults.is_nearly_none());
@@ -207,7 +236,7 @@ mod tests {
 
     /// The choice that is kept, and how many were tried. `faults`: level 2, crossings and folds at level 4, by choice.
     fn tried(faults: [[usize; 3]; CHOICES.len()]) -> (usize, usize) {
-        let mut trial = Trial::default();
+        let mut trial = Trial::new(true);
         let mut tried = 0;
         while !trial.settled {
             let [level_2, crossings, folds] = faults[trial.current];
@@ -226,6 +255,18 @@ mod tests {
         faults[3] = [0; 3];
         assert_eq!(tried(faults), (2, 3));
         assert_eq!(tried([[0; 3]; CHOICES.len()]), (0, 1));
+    }
+
+    #[test]
+    fn without_room_across_the_other_trunk_is_tried() {
+        let mut trial = Trial::new(true);
+        trial.refuse();
+        trial.faults[trial.current] = Some(ForkFaults::default());
+        trial.next();
+        assert_eq!((trial.current, trial.settled), (FIRST, false));
+        trial.faults[FIRST] = Some(ForkFaults::default());
+        trial.next();
+        assert_eq!((trial.current, trial.settled), (FIRST, true));
     }
 
     #[test]

@@ -31,6 +31,16 @@ pub(crate) struct SkeletonNode {
     pub(crate) marks: Marks,
 }
 
+impl SkeletonNode {
+    /// The inset that a path begins or ends in here.
+    pub(crate) fn inset(&self) -> Option<u32> {
+        match self.root {
+            Root::Inset(inset) => Some(inset),
+            _ => Some(self.marks.ends_in).filter(|&inset| inset != NONE),
+        }
+    }
+}
+
 /// What a node stands for besides a point of the tracing; each [`NONE`] where it does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Marks {
@@ -38,6 +48,8 @@ pub(crate) struct Marks {
     pub(crate) zone_begins: u32,
     /// Zone whose second ring it is.
     pub(crate) zone_ends: u32,
+    /// Inset that a path ends in here.
+    pub(crate) ends_in: u32,
     /// Node of this joint's fork in the skeleton that was laid out.
     pub(crate) fork: u32,
     /// Its own node there, or the nearest.
@@ -51,6 +63,7 @@ impl Default for Marks {
         Self {
             zone_begins: NONE,
             zone_ends: NONE,
+            ends_in: NONE,
             fork: NONE,
             base: NONE,
             on_soma: false,

@@ -42,7 +42,9 @@ pub(crate) fn uncross_rings(
     let children = skeleton.children();
     let may_join = |from: u32, to: u32| {
         let base = |n: u32| skeleton.node(n).marks.base;
-        base(from) == NONE || base(to) == NONE || may_join(base(from), base(to))
+        // A trunk across a fork begins at an end of one of its children.
+        let [upper, lower] = [base(from).min(base(to)), base(from).max(base(to))];
+        lower == NONE || may_join(upper, lower)
     };
     let mut work = Work::new(
         skeleton,
@@ -180,8 +182,9 @@ impl<'a> Work<'a> {
         {
             return outwards;
         }
-        if let Root::Inset(inset) = node.root {
-            return self.insets[inset as usize].direction;
+        if let Some(inset) = node.inset() {
+            let inset = self.insets[inset as usize];
+            return inset.tangent(inset.direction);
         }
         let parent = Some(self.parent[i as usize]).filter(|&p| p != NONE);
         let incoming = parent.and_then(|p| self.direction(p, i));
@@ -237,7 +240,8 @@ impl<'a> Work<'a> {
         let mut turned = false;
         for n in [i, j] {
             let slot = n as usize;
-            if self.parent[slot] != NONE && !self.fork(n) && self.turns[slot] < MOST_TURNS {
+            let fixed = self.parent[slot] == NONE || self.skeleton.node(n).marks.ends_in != NONE;
+            if !fixed && !self.fork(n) && self.turns[slot] < MOST_TURNS {
                 self.orientations[slot] = (self.orientations[slot] + way)
                     .try_normalize()
                     .unwrap_or(way);

@@ -146,3 +146,102 @@ fn a_child_that_forks_again_at_once_is_the_trunk() {
     // With the thicker or straighter child as the trunk, 90 and 697; with this one, 20 and 292.
     assert!(with_joints <= 25 && pairs <= 350, "{with_joints}, {pairs}");
 }
+
+/// A parent of this radius that rises to the origin, where its children leave to either side, with such a fork at each
+/// of their ends, and so on: an H in an H.
+fn forks_across(parent_radius: f32, depth: u32) -> Morphology {
+    let mut m = Morphology::default();
+    let radius = |i: i32| if i < 0 { parent_radius } else { 0.8 };
+    let rise = (-6..=0).map(|i| (vec3(0.0, 2.0 * i as f32, 0.0), radius(i)));
+    add(&mut m, Attachment::Free, rise);
+    let mut ends = vec![(SectionId(0), Vec3::ZERO, Vec3::Y)];
+    for level in 0..depth {
+        let length = 14.0 * 0.8_f32.powi(level as i32);
+        ends = ends
+            .into_iter()
+            .flat_map(|(parent, at, heading)| {
+                // Turned out of the plane from one level to the next, so that nothing meets.
+                let side = heading.cross(vec3(0.0, 0.5, 1.0)).normalize_or(Vec3::X);
+                [side, -side].map(|side| (parent, at, side))
+            })
+            .map(|(parent, at, side)| {
+                let id = SectionId(m.sections.len() as u32);
+                let points = (1..=5).map(|i| (at + side * (length * 0.2 * i as f32), 0.8));
+                add(&mut m, Attachment::Section(parent), points);
+                (id, at + side * length, side)
+            })
+            .collect();
+    }
+    m
+}
+
+fn is_across(point: &&TracingPoint) -> bool {
+    point.role == Role::Inset && point.collar < 0.0
+}
+
+#[test]
+fn the_parent_ends_on_children_that_are_straighter() {
+    let mesh = meshed(&forks_across(0.6, 1));
+    let of_role = |role: Role| mesh.tracing.iter().filter(move |t| t.role == role);
+    assert_eq!(
+        [Role::Joint, Role::Inset].map(|role| of_role(role).count()),
+        [0, 1]
+    );
+    let inset = mesh
+        .tracing
+        .iter()
+        .find(is_across)
+        .expect("it is the parent's");
+    // Its path runs into the trunk.
+    assert!(inset.tangent.y > 0.99, "{inset:?}");
+    assert!((-1.6..-0.8).contains(&inset.center.y), "{inset:?}");
+    let level = LodCriterion::Homogeneous(4);
+    let refined = Refinement::new(&mesh, level, &RefineOptions::default());
+    let surface = SurfaceMesh::collect(&refined);
+    assert_eq!(surface.topology().genus, Some(0));
+    // The trunk runs on as if there were no fork: no notch on its far side.
+    let far = surface.vertices.iter().map(|v| v.position);
+    let far = far.filter(|p| p.y > 0.0 && p.x.abs() < 10.0);
+    let depths: Vec<f32> = far.map(|p| (p.y.hypot(p.z) - 0.8).abs()).collect();
+    assert!(
+        depths.len() > 50 && depths.iter().all(|&depth| depth < 0.03),
+        "{depths:?}"
+    );
+    assert_eq!(crossings(&mesh), 0);
+}
+
+#[test]
+fn a_thick_parent_is_the_trunk() {
+    let mesh = meshed(&forks_across(0.9, 1));
+    assert_eq!(mesh.tracing.iter().filter(is_across).count(), 0);
+}
+
+#[test]
+fn parents_end_on_trunks_whose_own_ends_are_such_forks() {
+    for depth in 2..=4 {
+        let mesh = meshed(&forks_across(0.6, depth));
+        let forks = (1 << depth) - 1;
+        let insets = mesh
+            .tracing
+            .iter()
+            .filter(|t| t.role == Role::Inset)
+            .count();
+        assert_eq!(insets, forks, "{depth}");
+        // Of two paths that meet in a trunk's inset one ends there, unless the trunk begins there.
+        assert!(
+            mesh.tracing.iter().filter(is_across).count() > forks / 3,
+            "{depth}"
+        );
+        for level in [1, 2, 3] {
+            let level = LodCriterion::Homogeneous(level);
+            let refined = Refinement::new(&mesh, level, &RefineOptions::default());
+            let topology = SurfaceMesh::collect(&refined).topology();
+            assert_eq!(
+                (topology.genus, topology.components),
+                (Some(0), 1),
+                "{depth}"
+            );
+        }
+        assert_eq!(crossings(&mesh), 0, "{depth}");
+    }
+}

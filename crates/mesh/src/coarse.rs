@@ -67,7 +67,8 @@ pub struct TracingPoint {
     /// What it is for the surface.
     pub role: Role,
     /// Of an inset: how long (µm) the patches around it run along its tangent before they turn towards
-    /// the trunk, as the last leg of their cubics; 0 for all others.
+    /// the trunk, as the last leg of their cubics; negative where its path ends at the inset instead of beginning
+    /// there, so that its tangent points into the trunk. 0 for all others.
     pub collar: f32,
     /// SWC type of the section.
     pub kind: SwcType,

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use neurotess_mesh::{Role, TracingPoint};
 
-use crate::decode::{collar, octahedral, signed16, to_collar, to_octahedral, to_signed16};
+use crate::decode::{
+    ANCHOR_COLLAR_SHIFT, collar, octahedral, signed16, to_collar, to_octahedral, to_signed16,
+};
 use crate::packer::Packer;
 
 /// Anchors of explicit vertices: their tracing points, or the center of
@@ -74,7 +76,7 @@ impl Anchors {
             packed.extend([
                 point.radius.to_bits(),
                 x | (y << 16),
-                point.role as u32 | (to_collar(point.collar) << 16),
+                point.role as u32 | (to_collar(point.collar) << ANCHOR_COLLAR_SHIFT),
                 packer.color_key(tracing),
             ]);
             if point.role != Role::Soma {

@@ -3,7 +3,7 @@
 //! | what | bytes | holds |
 //! | --- | --- | --- |
 //! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), color key (10), kind and run (3) |
-//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, collar (16), whether it is an inset |
+//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, collar (17), whether it is an inset |
 //! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
 //! | anchor | 32 | center, reach, radius, tangent, role and collar, color key |
@@ -48,7 +48,11 @@ pub const SHAPED_U32S: usize = 5;
 pub(crate) const SHAPED_LEVEL_SHIFT: u32 = 22;
 pub(crate) const SHAPED_OPEN_SHIFT: u32 = 28;
 /// Bit of a shaped ring that is an inset's.
-pub(crate) const SHAPED_INSET: u32 = 1 << 26;
+pub(crate) const SHAPED_INSET: u32 = 1 << 27;
+/// Bit of a collar that is negative.
+pub(crate) const COLLAR_AGAINST: u32 = 1 << 16;
+/// First bit of an anchor's collar, after its role.
+pub(crate) const ANCHOR_COLLAR_SHIFT: u32 = 15;
 /// Greatest height of a shaped ring's corner over its center, in radii.
 pub(crate) const MOST_HEIGHT: f32 = 4.0;
 /// Bit of a point where the tube narrows.
@@ -140,13 +144,18 @@ pub(crate) fn radius(code: u32) -> f32 {
     f32::from_bits((code + RADIUS_BASE) << 12)
 }
 
-/// A collar's length as 16 bits: as a radius, 0 for none or for one shorter than any.
+/// A collar's length as 17 bits: as a radius, 0 for none or for one shorter than any, and a sign.
 pub(crate) fn to_collar(length: f32) -> u32 {
-    to_radius(length).unwrap_or(0)
+    let against = if length < 0.0 { COLLAR_AGAINST } else { 0 };
+    to_radius(length.abs()).map_or(0, |code| code | against)
 }
 
 pub(crate) fn collar(code: u32) -> f32 {
-    if code == 0 { 0.0 } else { radius(code) }
+    match code {
+        0 => 0.0,
+        _ if code & COLLAR_AGAINST != 0 => -radius(code ^ COLLAR_AGAINST),
+        _ => radius(code),
+    }
 }
 
 /// A taper as 4 bits and a sign. The bits are those of its square root, so that small tapers are
@@ -258,4 +267,21 @@ pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
     // A step is sphere · 2 / POSITION_STEPS; a center is off by up to half a step in each of three
     // directions.
     sphere / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn collars_keep_their_direction() {
+        for length in [0.3_f32, -0.3, 7.0, -7.0, 0.0] {
+            let read = collar(to_collar(length));
+            assert!(
+                (read - length).abs() <= 3e-4 * length.abs(),
+                "{read}, {length}"
+            );
+        }
+        assert_eq!(collar(to_collar(-1e-9)), 0.0);
+    }
 }

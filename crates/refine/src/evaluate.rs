@@ -205,10 +205,10 @@ impl PatchShape {
         let (share, share_x) = first_leg(a, c, over, over_x);
         let (leave, leave_x) = (over * share, over_x * share + over * share_x);
         let third = way.length() / 3.0;
-        let arrive = c.tangent * c.collar.min(third);
+        let arrive = c.tangent * c.collar.max(-third).min(third);
         let third_x = way.dot(way_x) / (9.0 * third).max(f32::MIN_POSITIVE);
-        let arrive_x = if third < c.collar {
-            c.tangent * third_x
+        let arrive_x = if third < c.collar.abs() {
+            c.tangent * (third_x * c.collar.signum())
         } else {
             Vec3::ZERO
         };

@@ -157,10 +157,11 @@ fn loft_controls(a: Corner, b: Corner) -> array<vec3<f32>, 4> {
     let way = b.position - a.position;
     let normal = cubic_normal(a);
     let over = way - normal * dot(way, normal);
+    let third = length(way) / 3.0;
     return array<vec3<f32>, 4>(
         a.position,
         a.position + over * first_leg(a, b, over, vec3<f32>(0.0)).x,
-        b.position - b.tangent * min(b.collar, length(way) / 3.0),
+        b.position - b.tangent * clamp(b.collar, -third, third),
         b.position,
     );
 }
@@ -314,9 +315,9 @@ fn loft(shape: PatchShape, path: u32, x: f32, y: f32) -> Inside {
     let leave = over * leg.x;
     let leave_x = over_x * leg.x + over * leg.y;
     let third = length(way) / 3.0;
-    let arrive = shape.c.tangent * min(shape.c.collar, third);
+    let arrive = shape.c.tangent * clamp(shape.c.collar, -third, third);
     let third_x = dot(way, way_x) / max(9.0 * third, 1e-37);
-    let arrive_x = shape.c.tangent * select(0.0, third_x, third < shape.c.collar);
+    let arrive_x = shape.c.tangent * select(0.0, third_x * sign(shape.c.collar), third < abs(shape.c.collar));
     let across = cubic(
         array<vec3<f32>, 4>(
             near.position,

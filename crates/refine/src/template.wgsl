@@ -302,7 +302,7 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
         ring.tangent,
         ring.radius,
         role,
-        collar_of_code((last >> 10u) & 0xffffu),
+        collar_of_code((last >> 10u) & 0x1ffffu),
     );
 }
 
@@ -351,17 +351,19 @@ fn explicit_corner(base: Base, vertex: u32) -> Corner {
     );
 }
 
-// An anchor's role and collar: 16 bits each, the collar as radii are, 0 for none.
+// An anchor's role, and above it its collar: a sign and 16 bits as radii are, 0 for none.
 fn role_of_bits(bits: u32) -> u32 {
-    return bits & 0xffffu;
+    return bits & ((1u << ANCHOR_COLLAR_SHIFT) - 1u);
 }
 
 fn collar_of_bits(bits: u32) -> f32 {
-    return collar_of_code(bits >> 16u);
+    return collar_of_code(bits >> ANCHOR_COLLAR_SHIFT);
 }
 
 fn collar_of_code(code: u32) -> f32 {
-    return select(0.0, bitcast<f32>((code + RADIUS_BASE) << 12u), code != 0u);
+    let length = bitcast<f32>(((code & ~COLLAR_AGAINST) + RADIUS_BASE) << 12u);
+    let along = select(length, -length, (code & COLLAR_AGAINST) != 0u);
+    return select(0.0, along, code != 0u);
 }
 
 // An inset follows the trunk's surface, so its corners' offsets lean; its tube must not.

@@ -3,7 +3,7 @@ mod adapter;
 mod common;
 
 use adapter::{device, gpu};
-use common::{Random, cell, cull_view, extent, look, random_values};
+use common::{Random, cell, cell_across, cull_view, extent, look, random_values};
 use glam::{DQuat, DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role};
 use neurotess_refine::LodCriterion;
@@ -163,8 +163,8 @@ fn vertices_are_the_reference_s() {
     let mut random = Random(11);
     let (mut most, mut most_normal, mut count) = (0.0_f32, 0.0_f32, 0_usize);
     let mut kinds = [0_usize; 4];
-    for seed in 10..15 {
-        let mesh = cell(seed, 16);
+    let meshes = (10..15).map(|seed| cell(seed, 16));
+    for (seed, mesh) in (10..).zip(meshes.chain([cell_across()])) {
         let values = random_values(&mesh, seed);
         let (middle, reach) = extent(&mesh);
         // The device refines what it holds: positions and directions rounded, by less than a

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use neurotess::mesh::{CoarseMesh, PatchKind};
+use neurotess::mesh::{CoarseMesh, PatchKind, Vertex};
 use neurotess::render::Placement;
 use neurotess::render::outline::{HOVERED, PICKED, SELECTED};
 use neurotess::render::pick::{PickHit, PickId, PickTarget};
@@ -227,9 +227,15 @@ pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Op
             let patch = mesh.patches.get(patch as usize)?;
             let corners = patch.corners.map(|v| &mesh.vertices[v as usize]);
             let sum: DVec3 = corners.iter().map(|v| v.position.as_dvec3()).sum();
-            // Corner 2 is on the child's ring: a lateral patch belongs to the section that it leads
-            // to.
-            (sum / 4.0, corners[2].tracing, patch.kind == PatchKind::Soma)
+            // A lateral patch belongs to the child's section, which has the larger number, whichever way its path
+            // runs; a loft to the branch's, at corner 2.
+            let section = |v: &&&Vertex| mesh.tracing[v.tracing as usize].section;
+            let of_patch = match patch.kind {
+                PatchKind::Lateral => [corners[0], corners[2]].iter().max_by_key(section).copied(),
+                _ => None,
+            };
+            let corner = of_patch.unwrap_or(corners[2]);
+            (sum / 4.0, corner.tracing, patch.kind == PatchKind::Soma)
         }
         PickTarget::Vertex(vertex) => {
             let vertex = mesh.vertices.get(vertex as usize)?;

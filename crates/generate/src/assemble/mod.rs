@@ -9,6 +9,7 @@ mod path;
 mod path_rings;
 mod twist;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
@@ -30,6 +31,8 @@ use facing::QUARTERS;
 
 /// Four vertices, counter-clockwise about the path's direction.
 type Ring = [u32; 4];
+/// First two nodes of a path.
+type PathStart = [u32; 2];
 
 /// Makes the mesh. `orientations`: one per node; `somata`: as many as the morphology has, with the
 /// nodes of their insertions in order.
@@ -43,10 +46,12 @@ pub(crate) struct Assembly<'a> {
     /// Per node: its joint, if it is a fork.
     joints: Vec<Option<Box<MeshJoint>>>,
     layout: &'a Layout,
-    /// Per inset: the node that its branch begins with.
-    inset_roots: Vec<u32>,
+    /// Per inset: the node that its branch begins or ends with.
+    inset_nodes: Vec<u32>,
     /// Per inset, once its trunk is made.
     placed: Vec<Option<PlacedInset>>,
+    /// Paths that end in insets that are not placed yet, by these.
+    waiting: BTreeMap<u32, PathStart>,
     /// Patches near a fork, by the fork's node in the skeleton that was laid out.
     fork_patches: Vec<(u32, Range<u32>)>,
 }
@@ -60,9 +65,11 @@ pub(crate) struct Somata<'a> {
 
 /// An inset in the mesh.
 struct PlacedInset {
+    /// Counter-clockwise about the tangent.
     ring: Ring,
     center: DVec3,
-    direction: DVec3,
+    /// Unit direction of the branch's path.
+    tangent: DVec3,
 }
 
 /// A joint with its vertices in the mesh.
@@ -108,8 +115,9 @@ impl<'a> Assembly<'a> {
             insertion_rings: Vec::new(),
             joints: (0..skeleton.nodes().len()).map(|_| None).collect(),
             layout,
-            inset_roots: inset_roots(layout),
+            inset_nodes: inset_nodes(layout),
             placed: layout.insets.iter().map(|_| None).collect(),
+            waiting: BTreeMap::new(),
             fork_patches: Vec::new(),
         }
     }
@@ -218,13 +226,14 @@ impl<'a> Assembly<'a> {
             // A branch waits until its trunk is made.
             if joint || at.parent == NONE && !matches!(at.root, Root::Inset(_)) {
                 for child in 0..self.children.of(node).len() {
-                    self.path(node, self.children.of(node)[child], &mut starts);
+                    self.path([node, self.children.of(node)[child]], &mut starts);
                 }
             }
-            while let Some(root) = starts.pop() {
-                self.path(root, self.children.of(root)[0], &mut starts);
+            while let Some(start) = starts.pop() {
+                self.path(start, &mut starts);
             }
         }
+        debug_assert!(self.waiting.is_empty(), "each trunk is made at last");
         average_normals(&mut self.mesh);
         (self.mesh, self.fork_patches)
     }
@@ -330,14 +339,14 @@ impl<'a> Assembly<'a> {
     }
 }
 
-fn inset_roots(layout: &Layout) -> Vec<u32> {
-    let mut roots = vec![NONE; layout.insets.len()];
+fn inset_nodes(layout: &Layout) -> Vec<u32> {
+    let mut nodes = vec![NONE; layout.insets.len()];
     for (index, node) in (0..).zip(layout.skeleton.nodes()) {
-        if let Root::Inset(inset) = node.root {
-            roots[inset as usize] = index;
+        if let Some(inset) = node.inset() {
+            nodes[inset as usize] = index;
         }
     }
-    roots
+    nodes
 }
 
 /// Sample numbers beyond 32 bits cannot be exported: they saturate.

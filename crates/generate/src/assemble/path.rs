@@ -1,4 +1,4 @@
-//! Tubes along a path, from a root, a joint or an inset to an end or a joint.
+//! Tubes along a path, from a root, a joint or an inset to an end, a joint or an inset.
 
 use glam::DVec3;
 use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint};
@@ -6,16 +6,24 @@ use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint};
 use super::facing::{self, Facing};
 use super::path_rings::PathRings;
 use super::twist::{FIXED, Target, relax};
-use super::{Assembly, PlacedInset, Ring};
+use super::{Assembly, PathStart, PlacedInset, Ring};
 use crate::frame;
 use crate::inset::{Inset, InsetSite};
 use crate::skeleton::{NONE, Root};
 
 impl Assembly<'_> {
-    /// Builds the tubes from a fork, root or inset down to the next fork or end; what leaves through
-    /// insets on the way goes to `starts`.
-    pub(super) fn path(&mut self, start: u32, second: u32, starts: &mut Vec<u32>) {
-        let mut path = self.path_rings(start, second);
+    /// Builds the tubes from a fork, root or inset to the next fork, end or inset, once that is placed; what leaves
+    /// through insets on the way goes to `starts`.
+    pub(super) fn path(&mut self, start: PathStart, starts: &mut Vec<PathStart>) {
+        let nodes = self.run(start);
+        let end = nodes[nodes.len() - 1];
+        if let Some(inset) = self.skeleton.node(end).inset()
+            && self.placed(end).is_none()
+        {
+            self.waiting.insert(inset, start);
+            return;
+        }
+        let mut path = self.path_rings(nodes);
         let zones = self.zones_of(&path.nodes);
         self.turn_rings(&mut path, &zones);
         let mut facing: Vec<Facing> = Vec::new();
@@ -29,18 +37,23 @@ impl Assembly<'_> {
             let ring = facing.ring;
             let corners = [angles[ring], angles[ring + 1]];
             facing::settle(&mut facing, &path, corners, &path.cones(ring));
-            let root = self.inset(&path, &rings, &facing);
-            starts.push(root);
+            let node = self.inset(&path, &rings, &facing);
+            match self.children.of(node) {
+                // Its branch ends here.
+                [] => starts.extend(self.waiting.remove(&facing.inset)),
+                [second, ..] => starts.push([node, *second]),
+            }
         }
         self.note_forks(&path, &zones, &first_patches);
     }
 
-    fn path_rings(&self, start: u32, second: u32) -> PathRings {
-        let nodes = self.run(start, second);
+    fn path_rings(&self, nodes: Vec<u32>) -> PathRings {
         let mut centers: Vec<DVec3> = Vec::with_capacity(nodes.len());
         centers.extend(nodes.iter().map(|&n| self.skeleton.node(n).center));
-        if let Some(inset) = self.placed(nodes[0]) {
-            centers[0] = inset.center;
+        for end in [0, nodes.len() - 1] {
+            if let Some(inset) = self.placed(nodes[end]) {
+                centers[end] = inset.center;
+            }
         }
         let radii = nodes
             .iter()
@@ -58,9 +71,9 @@ impl Assembly<'_> {
     }
 
     /// Nodes from a fork or root to the next fork or end, both included.
-    fn run(&self, start: u32, second: u32) -> Vec<u32> {
-        let mut nodes = vec![start, second];
-        let mut here = second;
+    fn run(&self, start: PathStart) -> Vec<u32> {
+        let mut nodes = start.to_vec();
+        let [_, mut here] = start;
         while let [only] = self.children.of(here) {
             nodes.push(*only);
             here = *only;
@@ -69,10 +82,8 @@ impl Assembly<'_> {
     }
 
     fn placed(&self, node: u32) -> Option<&PlacedInset> {
-        match self.skeleton.node(node).root {
-            Root::Inset(inset) => self.placed[inset as usize].as_ref(),
-            _ => None,
-        }
+        let inset = self.skeleton.node(node).inset()?;
+        self.placed[inset as usize].as_ref()
     }
 
     /// Zones by their first ring.
@@ -97,7 +108,7 @@ impl Assembly<'_> {
             .map(|i| {
                 let own = self.orientations[nodes[i] as usize];
                 if let Some(inset) = self.placed(nodes[i]) {
-                    inset.direction
+                    inset.tangent
                 } else if self.joints[nodes[i] as usize].is_none() {
                     own
                 } else if i == last {
@@ -145,12 +156,27 @@ impl Assembly<'_> {
         Some(self.insertion_rings[found].1)
     }
 
+    /// Direction of the first corner of the ring that a path's last node has already: a joint's or an inset's.
+    fn end_frame(&self, path: &PathRings) -> Option<DVec3> {
+        let last = path.nodes.len() - 1;
+        let node = path.nodes[last];
+        let corner = match (&self.joints[node as usize], self.placed(node)) {
+            (Some(joint), _) => joint.shape.normal,
+            (None, Some(inset)) => {
+                let corner = self.mesh.vertices[inset.ring[0] as usize].position;
+                corner.as_dvec3() - inset.center
+            }
+            (None, None) => return None,
+        };
+        Some(frame::across(corner, path.tangents[last]))
+    }
+
     /// Turns frames as little as possible between the rings that there are, so that quads face the
     /// branches that leave.
     fn turn_rings(&self, path: &mut PathRings, zones: &[(usize, Vec<(u32, Inset)>)]) {
         let last = path.nodes.len() - 1;
-        let joint = self.joints[path.nodes[last] as usize].as_ref();
-        if zones.is_empty() && joint.is_none() {
+        let end = self.end_frame(path);
+        if zones.is_empty() && end.is_none() {
             return;
         }
         let mut targets = vec![Target::default(); last + 1];
@@ -160,8 +186,7 @@ impl Assembly<'_> {
             targets[0].weight = FIXED;
         }
         facing::targets(path, zones, &mut targets);
-        if let Some(joint) = joint {
-            let goal = frame::across(joint.shape.normal, path.tangents[last]);
+        if let Some(goal) = end {
             let (_, rest) = frame::quarters(path.frames[last], goal, path.tangents[last]);
             let before = targets[..last].iter().rev().find(|t| t.weight > 0.0);
             let before = before.map_or(0.0, |t| t.angle);
@@ -193,22 +218,19 @@ impl Assembly<'_> {
 
     fn ring(&mut self, path: &PathRings, i: usize, angles: &[f64; 4]) -> Ring {
         let (node, last) = (path.nodes[i], path.nodes.len() - 1);
-        match &self.joints[node as usize] {
-            Some(joint) if i == 0 => return joint.ring(path.nodes[1]),
-            Some(joint) => {
-                // Seen from the path the joint's ring runs the other way round.
-                let [up, before, down, after] = joint.ring(path.nodes[i - 1]);
-                let along = [up, after, down, before];
-                let goal = frame::across(joint.shape.normal, path.tangents[i]);
-                let (quarter, _) = frame::quarters(path.frames[i], goal, path.tangents[i]);
-                return [0, 1, 2, 3].map(|k: i32| along[(k - quarter).rem_euclid(4) as usize]);
+        if i == 0 {
+            if let Some(joint) = &self.joints[node as usize] {
+                return joint.ring(path.nodes[1]);
             }
-            None => {}
+            if let Some(ring) = self.first_ring(node) {
+                return ring;
+            }
         }
-        if i == 0
-            && let Some(ring) = self.first_ring(node)
+        if i == last
+            && let (Some(along), Some(goal)) = (self.last_ring(path), self.end_frame(path))
         {
-            return ring;
+            let (quarter, _) = frame::quarters(path.frames[i], goal, path.tangents[i]);
+            return [0, 1, 2, 3].map(|k: i32| along[(k - quarter).rem_euclid(4) as usize]);
         }
         debug_assert!(i > 0 || self.skeleton.node(node).root == Root::Free);
         let role = if i == 0 || i == last {
@@ -217,6 +239,20 @@ impl Assembly<'_> {
             Role::Ordinary
         };
         self.own_ring(node, role, path.tangents[i], path.frames[i], angles)
+    }
+
+    /// The ring that a path's last node has already, counter-clockwise about the path.
+    fn last_ring(&self, path: &PathRings) -> Option<Ring> {
+        let last = path.nodes.len() - 1;
+        let node = path.nodes[last];
+        match &self.joints[node as usize] {
+            Some(joint) => {
+                // Seen from the path the joint's ring runs the other way round.
+                let [up, before, down, after] = joint.ring(path.nodes[last - 1]);
+                Some([up, after, down, before])
+            }
+            None => self.placed(node).map(|inset| inset.ring),
+        }
     }
 
     /// Lateral patches between rings, but for quads that branches leave through, and caps at the ends.
@@ -245,7 +281,7 @@ impl Assembly<'_> {
             }
             first_patches.push(self.mesh.patches.len() as u32);
         }
-        if self.joints[path.nodes[last] as usize].is_none() {
+        if self.last_ring(path).is_none() {
             self.cap(rings[last]);
         }
         first_patches
@@ -258,7 +294,7 @@ impl Assembly<'_> {
         });
     }
 
-    /// Adds an inset with its lofts; returns the node that its branch begins with.
+    /// Adds an inset with its lofts; returns the node that its branch begins or ends with.
     fn inset(&mut self, path: &PathRings, rings: &[Ring], facing: &Facing) -> u32 {
         let (ring, side) = (facing.ring, facing.side);
         let inset = self.layout.insets[facing.inset as usize];
@@ -270,34 +306,38 @@ impl Assembly<'_> {
             along: path.chord(ring),
         }
         .shape(&path.cones(ring));
-        let root = self.inset_roots[facing.inset as usize];
-        let tracing = self.tracing(root, Role::Inset);
+        let node = self.inset_nodes[facing.inset as usize];
+        let tracing = self.tracing(node, Role::Inset);
+        let tangent = inset.tangent(shape.direction);
+        let (collar, order) = match inset.at_end {
+            false => (shape.collar, [0, 1, 2, 3]),
+            // Seen from the path that ends here the corners run the other way round.
+            true => (-shape.collar, [0, 3, 2, 1]),
+        };
         self.mesh.tracing[tracing as usize] = TracingPoint {
             center: shape.center.as_vec3(),
-            tangent: shape.direction.as_vec3(),
-            collar: shape.collar as f32,
+            tangent: tangent.as_vec3(),
+            collar: collar as f32,
             ..self.mesh.tracing[tracing as usize]
         };
-        let inner: Vec<u32> = (0..4)
-            .map(|k| {
-                let vertex = self.vertex(shape.center, shape.corners[k] - shape.center, tracing);
-                self.mesh.vertices[vertex as usize].normal = shape.radials[k].as_vec3();
-                vertex
-            })
-            .collect();
+        let mut inner = [0; 4];
+        for k in order {
+            let vertex = self.vertex(shape.center, shape.corners[k] - shape.center, tracing);
+            self.mesh.vertices[vertex as usize].normal = shape.radials[k].as_vec3();
+            inner[k] = vertex;
+        }
         let (near, far) = (rings[ring], rings[ring + 1]);
         let after = (side + 1) % 4;
         let outer = [near[side], near[after], far[after], far[side]];
-        let inner = [inner[0], inner[1], inner[2], inner[3]];
         let first = self.mesh.patches.len() as u32;
         self.lofts(outer, inner);
         self.fork_patches.push((inset.fork, first..first + 4));
         self.placed[facing.inset as usize] = Some(PlacedInset {
-            ring: inner,
+            ring: order.map(|k| inner[k]),
             center: shape.center,
-            direction: shape.direction,
+            tangent,
         });
-        root
+        node
     }
 
     /// Notes which patches are near a fork: those of two segments from joints and insets, and of the
@@ -310,11 +350,12 @@ impl Assembly<'_> {
     ) {
         let last = path.nodes.len() - 1;
         let segments = |from: usize, to: usize| first[from.min(last)]..first[to.min(last)];
-        let start = match self.skeleton.node(path.nodes[0]).root {
-            Root::Inset(inset) => self.layout.insets[inset as usize].fork,
-            _ => self.skeleton.node(path.nodes[0]).marks.fork,
+        let fork = |end: usize| {
+            let node = self.skeleton.node(path.nodes[end]);
+            let inset = node.inset().map(|inset| inset as usize);
+            inset.map_or(node.marks.fork, |inset| self.layout.insets[inset].fork)
         };
-        let end = self.skeleton.node(path.nodes[last]).marks.fork;
+        let (start, end) = (fork(0), fork(last));
         if start != NONE {
             self.fork_patches.push((start, segments(0, 2)));
         }

@@ -1,22 +1,23 @@
 //! Where each branch of a path leaves it, and how it goes on from its inset.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::ForkChoice;
 use super::arrange::{Group, arrange};
 use super::cone::distance;
-use super::path::{Planner, Start, Way};
+use super::path::{End, Planner, Start, Way};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
 use super::zone::{Beginning, Branch, NoZone, Zone};
 use crate::fork;
 use crate::joint::{Joint, Neighbor};
-use crate::skeleton::{Children, Skeleton};
+use crate::skeleton::{Children, NONE, Skeleton};
 
 /// Free way between the inset's corners and the branch's next ring, in radii.
-const AHEAD: f64 = 0.35;
+pub(super) const AHEAD: f64 = 0.35;
 /// The branch's rings begin outside the trunk by this share of their radius.
-const CLEAR: f64 = 1.05;
+pub(super) const CLEAR: f64 = 1.05;
 /// An inset stands across its branch up to this cosine of the angle between its direction and the branch's.
 const ACROSS: f64 = 0.92;
 /// Points of a branch that are looked at to find its way out.
@@ -87,10 +88,15 @@ impl Planner<'_> {
         let ForkChoice::Inset { lift, .. } = self.choices[fork as usize] else {
             return Leaving::Joint;
         };
-        let (line, ends) = self.branch_line(fork, child);
+        let upward = self.base.node(fork).parent == child;
+        let (line, ends) = match upward {
+            true => (self.line_up(fork), false),
+            false => self.branch_line(fork, child),
+        };
         let branch = Branch {
             fork,
             child,
+            upward,
             path: &line,
             radius: self.base.node(child).radius,
             lift,
@@ -130,11 +136,30 @@ impl Planner<'_> {
         (Polyline::new(centers, vec![radius; nodes.len()]), ends)
     }
 
+    /// From a fork up its parents, as thick as the first of them.
+    fn line_up(&self, fork: u32) -> Polyline {
+        let nodes = self.parents(fork).take(MOST_LOOKED_AT);
+        let centers: Vec<DVec3> = nodes.map(|n| self.base.node(n).center).collect();
+        let radius = self.base.node(self.base.node(fork).parent).radius;
+        let radii = vec![radius; centers.len()];
+        Polyline::new(centers, radii)
+    }
+
+    /// A node, its parent, and so on up to the root.
+    pub(super) fn parents(&self, node: u32) -> impl Iterator<Item = u32> {
+        let parent = |&node: &u32| Some(self.base.node(node).parent).filter(|&p| p != NONE);
+        std::iter::successors(Some(node), parent)
+    }
+
     /// The inset's shape over the path as traced, and where the branch goes on from it. None if it forks
     /// before it is clear of its trunk.
     pub(super) fn goes_on(&self, zone: &Zone, path: &Polyline) -> Option<(InsetShape, Beginning)> {
         let cones = zone.cones(path);
         let shape = zone.site(path).shape(&cones);
+        if zone.upward {
+            let node = self.last_before(zone, &shape, &cones)?;
+            return Some((shape, Beginning::At(node)));
+        }
         let mut ahead = None;
         let mut here = zone.child;
         loop {
@@ -200,12 +225,18 @@ impl Planner<'_> {
             Start::Joint(fork, _, child) => self.joint_reach(*fork, *child) + 0.35 * path.radii[1],
             Start::Inset(inset) => inset.shape.reach + 0.35 * inset.radius,
         };
-        let high = if way.ends_at_joint {
-            let reach = self.joint_reach(way.nodes[last], way.nodes[last - 1]);
-            path.length() - reach - 0.35 * path.radii[last - 1]
-        } else {
-            path.length()
+        let high = match way.end {
+            End::Tip => 0.0,
+            End::Joint => {
+                let reach = self.joint_reach(way.nodes[last], way.nodes[last - 1]);
+                reach + AHEAD * path.radii[last - 1]
+            }
+            End::Inset => {
+                let inset = self.end_of(way);
+                inset.map_or(0.0, |inset| inset.shape.reach + AHEAD * inset.radius)
+            }
         };
+        let high = path.length() - high;
         [low, high]
     }
 

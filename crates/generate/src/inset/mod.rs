@@ -13,10 +13,12 @@
 //!
 //! Planned here, on the skeleton: which child of a fork continues the trunk (trunk.rs), where each other child
 //! leaves it (zone.rs), and how several share it (arrange.rs). A branch becomes a tree of its own, whose
-//! root stands for the inset; two nodes of the trunk stand for the zone's rings. A branch for which
+//! root stands for the inset; two nodes of the trunk stand for the zone's rings. Where the two children of a fork
+//! are the trunk, it is the parent that leaves it, and its path ends in the inset (across.rs). A branch for which
 //! there is no room stays with its fork, which becomes a joint. The quads are made when the trunk's final
 //! rings are known: shape.rs and assemble.
 
+mod across;
 mod arrange;
 mod cone;
 mod leave;
@@ -31,6 +33,7 @@ use glam::DVec3;
 
 use crate::skeleton::Skeleton;
 
+pub(crate) use across::is_straight_across;
 pub(crate) use cone::{RoundCone, outwards};
 pub(crate) use shape::{InsetSite, collar, not_too_steep};
 
@@ -44,6 +47,8 @@ pub(crate) enum ForkChoice {
     Inset {
         /// Radii of the branch.
         lift: f64,
+        /// Whether the two children are the trunk and the parent is the branch.
+        across: bool,
         /// Whether the trunk's rings around a branch lean towards it, twice as much as outwards. Where the trunk bends
         /// there that shows as edges, but keeps the quads between the rings straight.
         leaning: bool,
@@ -54,6 +59,11 @@ pub(crate) enum ForkChoice {
 }
 
 impl ForkChoice {
+    /// Whether it is an inset in which the parent ends.
+    pub(crate) fn is_across(self) -> bool {
+        matches!(self, Self::Inset { across: true, .. })
+    }
+
     /// Whether it is an inset whose trunk's rings lean towards it.
     pub(crate) fn is_leaning(self) -> bool {
         matches!(self, Self::Inset { leaning: true, .. })
@@ -83,12 +93,22 @@ pub(crate) struct Inset {
     pub(crate) lift: f64,
     /// Whether the trunk's rings around it lean towards it.
     pub(crate) leaning: bool,
+    /// Whether the branch's path ends here instead of beginning.
+    pub(crate) at_end: bool,
+}
+
+impl Inset {
+    /// Unit direction of the branch's path here.
+    pub(crate) fn tangent(&self, direction: DVec3) -> DVec3 {
+        if self.at_end { -direction } else { direction }
+    }
 }
 
 /// A skeleton whose branches leave through insets where they can.
 pub(crate) struct Layout {
     pub(crate) skeleton: Skeleton,
-    /// By number of [`Root::Inset`](crate::skeleton::Root).
+    /// By number of [`Root::Inset`](crate::skeleton::Root) or
+    /// [`Marks::ends_in`](crate::skeleton::Marks).
     pub(crate) insets: Vec<Inset>,
     /// By number of the zone: its insets.
     pub(crate) zones: Vec<Vec<u32>>,

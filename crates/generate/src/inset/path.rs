@@ -1,4 +1,4 @@
-//! Paths: from a root, a joint or an inset along main children to an end or a joint, with the branches
+//! Paths: from a root, a joint or an inset along main children to an end, a joint or an inset, with the branches
 //! that leave them.
 
 use std::collections::HashMap;
@@ -22,30 +22,49 @@ pub(super) enum Start {
     Root(u32),
     /// A joint: its node, that in the new skeleton, and the child that the path leads to.
     Joint(u32, u32, u32),
-    /// An inset with its first node.
-    Inset(Box<InsetStart>),
+    /// An inset.
+    Inset(Box<PathInset>),
 }
 
-pub(super) struct InsetStart {
-    inset: u32,
+/// An inset that a path begins or ends in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathInset {
+    pub(super) inset: u32,
     pub(super) shape: InsetShape,
-    fork: u32,
-    way: Beginning,
+    pub(super) fork: u32,
+    /// The path's next node, or at its end the last one before the inset.
+    pub(super) way: Beginning,
     pub(super) radius: f64,
     /// Way from the inset to where a branch is clear that leaves its trunk side by side with it (µm).
     clear: Option<f64>,
 }
 
-impl InsetStart {
-    /// A ring across the branch where it is clear of its trunk. Leant over it, the inset's own ring is narrower across
-    /// the branch than the branch is, which then stayed a ribbon up to a far first point.
-    fn upright(&self, path: &Polyline, rings: &[Ring]) -> Option<Ring> {
-        let arc = self.clear?;
-        let first = rings.first()?;
-        (first.arc > arc + 2.0 * path.radius(arc)).then_some(Ring {
-            arc,
-            what: RingKind::Zone(None, None),
-        })
+impl PathInset {
+    /// A ring across the branch where it is clear of its trunk, `next`: way (µm) from the inset to the next ring. Leant
+    /// over its trunk, the inset's own ring is narrower across the branch than the branch is, which then stayed a ribbon
+    /// up to a far first point.
+    fn upright(&self, next: f64) -> Option<f64> {
+        self.clear.filter(|clear| next > clear + 2.0 * self.radius)
+    }
+}
+
+/// Adds the rings of branches that stand upright where they are clear of the trunks that they begin or end on.
+fn add_upright(rings: &mut Vec<Ring>, path: &Polyline, [start, end]: [Option<&PathInset>; 2]) {
+    let ring = |arc: f64| Ring {
+        arc,
+        what: RingKind::Zone(None, None),
+    };
+    let first = rings.first().map_or(0.0, |ring| ring.arc);
+    if let Some(arc) = start.and_then(|inset| inset.upright(first)) {
+        rings.insert(0, ring(arc));
+    }
+    let before = rings
+        .len()
+        .checked_sub(2)
+        .map_or(0.0, |before| rings[before].arc);
+    let length = path.length();
+    if let Some(arc) = end.and_then(|inset| inset.upright(length - before)) {
+        rings.insert(rings.len() - 1, ring(length - arc));
     }
 }
 
@@ -54,13 +73,15 @@ pub(crate) struct Planner<'a> {
     pub(super) children: &'a Children,
     pub(super) choices: Vec<ForkChoice>,
     nodes: Vec<SkeletonNode>,
-    insets: Vec<Inset>,
+    pub(super) insets: Vec<Inset>,
     zones: Vec<Vec<u32>>,
-    refused: Vec<u32>,
+    pub(super) refused: Vec<u32>,
     thickened: Vec<u32>,
     pub(super) buried: Vec<u32>,
     /// By fork, once asked for: its neighbors, and how far its joint reaches towards them.
     pub(super) joint_reaches: HashMap<u32, Vec<(u32, f64)>>,
+    /// By fork whose children are the trunk, once that is laid out: how the parent ends.
+    pub(super) ends: HashMap<u32, PathInset>,
 }
 
 /// A path's nodes and where branches leave it.
@@ -69,7 +90,16 @@ pub(super) struct Way {
     pub(super) nodes: Vec<u32>,
     /// Index in `nodes` of the fork, the child, by branch.
     pub(super) branches: Vec<(usize, u32)>,
-    pub(super) ends_at_joint: bool,
+    pub(super) end: End,
+}
+
+/// What a path ends in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    Tip,
+    Joint,
+    /// The inset of its last node's fork.
+    Inset,
 }
 
 impl<'a> Planner<'a> {
@@ -85,18 +115,24 @@ impl<'a> Planner<'a> {
             thickened: Vec::new(),
             buried: Vec::new(),
             joint_reaches: HashMap::new(),
+            ends: HashMap::new(),
         }
     }
 
     pub(crate) fn plan(mut self) -> Layout {
         let mut starts = Vec::new();
+        // Trunks first, so that the paths that end on them find them; those farthest from the root first of all.
+        for fork in (0..self.choices.len() as u32).rev() {
+            if self.choices[fork as usize].is_across() {
+                self.lay_out_across(fork, &mut starts);
+                self.lay_out_all(&mut starts);
+            }
+        }
         for (root, node) in (0..).zip(self.base.nodes()) {
             if node.parent == NONE {
                 starts.push(Start::Root(root));
             }
-            while let Some(start) = starts.pop() {
-                self.lay_out(&start, &mut starts);
-            }
+            self.lay_out_all(&mut starts);
         }
         Layout {
             skeleton: Skeleton::from_nodes(self.nodes),
@@ -105,6 +141,12 @@ impl<'a> Planner<'a> {
             refused: self.refused,
             thickened: self.thickened,
             buried: self.buried,
+        }
+    }
+
+    fn lay_out_all(&mut self, starts: &mut Vec<Start>) {
+        while let Some(start) = starts.pop() {
+            self.lay_out(&start, starts);
         }
     }
 
@@ -137,28 +179,31 @@ impl<'a> Planner<'a> {
             let path = self.polyline(start, &way);
             match self.zones_of(start, &way, &path) {
                 Ok(groups) => return self.emit(start, &way, &path, &groups, starts),
-                Err(forks) => {
-                    let all = way.branches.iter().map(|&(i, _)| way.nodes[i]);
-                    let failed = if tries < MOST_TRIES {
-                        forks
-                    } else {
-                        all.collect()
-                    };
-                    for fork in failed {
-                        self.choices[fork as usize] = ForkChoice::Joint;
-                        self.refused.push(fork);
-                    }
-                }
+                Err(forks) => self.refuse(&way, forks, tries),
             }
         }
     }
 
-    /// Main children from the first two nodes on, up to an end or a joint.
-    fn walk(&self, first: [u32; 2]) -> Way {
+    /// Makes joints of forks that have no room for their insets; of all on the path after many tries.
+    pub(super) fn refuse(&mut self, way: &Way, forks: Vec<u32>, tries: usize) {
+        let all = way.branches.iter().map(|&(i, _)| way.nodes[i]);
+        let failed = if tries < MOST_TRIES {
+            forks
+        } else {
+            all.collect()
+        };
+        for fork in failed {
+            self.choices[fork as usize] = ForkChoice::Joint;
+            self.refused.push(fork);
+        }
+    }
+
+    /// Main children from the first two nodes on, up to an end, a joint or an inset.
+    pub(super) fn walk(&self, first: [u32; 2]) -> Way {
         let mut way = Way {
             nodes: first.to_vec(),
             branches: Vec::new(),
-            ends_at_joint: false,
+            end: End::Tip,
         };
         loop {
             let last = way.nodes.len() - 1;
@@ -168,12 +213,16 @@ impl<'a> Planner<'a> {
                 [] => return way,
                 [only] => way.nodes.push(*only),
                 _ if self.choices[here as usize] == ForkChoice::Joint => {
-                    way.ends_at_joint = true;
+                    way.end = End::Joint;
+                    return way;
+                }
+                _ if let Some(inset) = self.ends.get(&here) => {
+                    way.end_in(inset, here);
                     return way;
                 }
                 _ => {
                     let Some(main) = self.trunk_child(way.nodes[last - 1], here) else {
-                        way.ends_at_joint = true;
+                        way.end = End::Joint;
                         return way;
                     };
                     let rest = children.iter().filter(|&&child| child != main);
@@ -184,7 +233,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn polyline(&self, start: &Start, way: &Way) -> Polyline {
+    pub(super) fn polyline(&self, start: &Start, way: &Way) -> Polyline {
         let nodes = way.nodes.iter();
         let mut centers: Vec<DVec3> = nodes.clone().map(|&n| self.base.node(n).center).collect();
         let mut radii: Vec<f64> = nodes.map(|&n| self.radius(n)).collect();
@@ -196,11 +245,24 @@ impl<'a> Planner<'a> {
                 radii[0] = inset.radius;
             }
         }
+        if let Some(inset) = self.end_of(way) {
+            let last = centers.len() - 1;
+            centers[last] = inset.shape.center;
+            radii[last] = inset.radius;
+        }
         Polyline::new(centers, radii)
     }
 
+    /// The inset that a path ends in.
+    pub(super) fn end_of(&self, way: &Way) -> Option<&PathInset> {
+        match way.end {
+            End::Inset => self.ends.get(&way.nodes[way.nodes.len() - 1]),
+            End::Tip | End::Joint => None,
+        }
+    }
+
     /// Adds a path's nodes, and what starts from it to `starts`.
-    fn emit(
+    pub(super) fn emit(
         &mut self,
         start: &Start,
         way: &Way,
@@ -223,13 +285,17 @@ impl<'a> Planner<'a> {
             Start::Joint(_, joint, _) => *joint,
             Start::Inset(inset) => self.inset_root(inset, way.nodes[1]),
         };
-        let rings = rings(path, groups, room, way.ends_at_joint);
-        let upright = match start {
-            Start::Inset(inset) => inset.upright(path, &rings),
+        let mut rings = rings(path, groups, room, way.end != End::Tip);
+        let begins = match start {
+            Start::Inset(inset) => Some(&**inset),
             Start::Root(_) | Start::Joint(..) => None,
         };
-        for ring in upright.into_iter().chain(rings) {
+        add_upright(&mut rings, path, [begins, self.end_of(way)]);
+        for ring in rings {
             parent = match ring.what {
+                RingKind::Point(index) if index == last && way.end == End::Inset => {
+                    self.end_in_inset(way, parent)
+                }
                 RingKind::Point(index) => self.copy(way.nodes[index], parent, Root::Free),
                 RingKind::Zone(begins, ends) => {
                     let number =
@@ -254,7 +320,7 @@ impl<'a> Planner<'a> {
                 }
             };
         }
-        if way.ends_at_joint {
+        if way.end == End::Joint {
             let (joint, fork) = (parent, way.nodes[last]);
             self.nodes[joint as usize].marks.fork = fork;
             let children = self.children.of(fork).iter().rev();
@@ -274,6 +340,7 @@ impl<'a> Planner<'a> {
         let inset = self.insets.len() as u32;
         self.insets.push(Inset {
             leaning: self.choices[zone.fork as usize].is_leaning(),
+            at_end: zone.upward,
             fork: zone.fork,
             exit: zone.exit,
             direction: zone.direction,
@@ -292,19 +359,24 @@ impl<'a> Planner<'a> {
             Beginning::At(node) => self.clear_after(zone, &shape, node, path),
             Beginning::Ends(_) => None,
         };
-        starts.push(Start::Inset(Box::new(InsetStart {
+        let of_path = PathInset {
             inset,
             clear,
             shape,
             fork: zone.fork,
             way,
             radius: zone.radius,
-        })));
+        };
+        if zone.upward {
+            self.ends.insert(zone.fork, of_path);
+        } else {
+            starts.push(Start::Inset(Box::new(of_path)));
+        }
         inset
     }
 
     /// Copies a node; forks remember which they are.
-    fn copy(&mut self, node: u32, parent: u32, root: Root) -> u32 {
+    pub(super) fn copy(&mut self, node: u32, parent: u32, root: Root) -> u32 {
         let fork = if self.children.of(node).len() > 1 {
             node
         } else {
@@ -325,7 +397,7 @@ impl<'a> Planner<'a> {
         self.nodes.len() as u32 - 1
     }
 
-    fn inset_root(&mut self, start: &InsetStart, first: u32) -> u32 {
+    fn inset_root(&mut self, start: &PathInset, first: u32) -> u32 {
         self.nodes.push(SkeletonNode {
             center: start.shape.center,
             radius: start.radius,
@@ -340,8 +412,32 @@ impl<'a> Planner<'a> {
         self.nodes.len() as u32 - 1
     }
 
+    /// The last node of a path that ends in an inset.
+    fn end_in_inset(&mut self, way: &Way, parent: u32) -> u32 {
+        let last = way.nodes.len() - 1;
+        let Some(end) = self.end_of(way) else {
+            return parent;
+        };
+        let node = SkeletonNode {
+            center: end.shape.center,
+            radius: end.radius,
+            parent,
+            root: Root::Free,
+            marks: Marks {
+                ends_in: end.inset,
+                base: end.fork,
+                ..Marks::default()
+            },
+            ..*self
+                .base
+                .node(way.nodes[if last > 1 { last - 1 } else { last }])
+        };
+        self.nodes.push(node);
+        self.nodes.len() as u32 - 1
+    }
+
     /// A branch too short for a ring of its own beyond its inset: one right ahead of it.
-    fn end_ahead(&mut self, start: &InsetStart, last: u32) {
+    fn end_ahead(&mut self, start: &PathInset, last: u32) {
         let parent = self.inset_root(start, last);
         let ahead = start.shape.reach + 0.6 * start.radius;
         self.nodes.push(SkeletonNode {

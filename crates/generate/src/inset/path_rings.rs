@@ -37,12 +37,13 @@ pub(super) fn nearest(path: &Polyline, arc: f64) -> usize {
 }
 
 /// Rings along a path after its start: its own points where they are far enough from zones and from
-/// one another, and two for each zone.
+/// one another, and two for each zone. `is_fixed`: whether the last one is a joint's or an inset's, for which the room
+/// leaves free what it needs.
 pub(super) fn rings(
     path: &Polyline,
     groups: &[Group],
     room: [f64; 2],
-    ends_at_joint: bool,
+    is_fixed: bool,
 ) -> Vec<Ring> {
     let last = path.arcs.len() - 1;
     let mut zones = zone_rings(path, groups).into_iter().peekable();
@@ -63,7 +64,7 @@ pub(super) fn rings(
             if !groups.is_empty() && (!in_room || within) {
                 continue;
             }
-        } else if !groups.is_empty() && !ends_at_joint {
+        } else if !groups.is_empty() && !is_fixed {
             give_way(&mut rings, path, arc, 0.5);
         }
         rings.push(Ring {

@@ -38,6 +38,8 @@ pub(crate) struct Zone {
     /// Fork and first node of the branch.
     pub(crate) fork: u32,
     pub(crate) child: u32,
+    /// Whether that node is the fork's parent.
+    pub(crate) upward: bool,
     pub(crate) lift: f64,
     /// The inset's shape and how the branch goes on from it, once known; not any more where the zone was moved.
     pub(super) onward: Option<(InsetShape, Beginning)>,
@@ -50,6 +52,13 @@ pub(super) enum Beginning {
     At(u32),
     /// It ends before: at a ring right ahead, with the last node's attributes.
     Ends(u32),
+}
+
+impl Beginning {
+    /// Whether it is at this node.
+    pub(super) fn is_at(self, node: u32) -> bool {
+        matches!(self, Self::At(at) if at == node)
+    }
 }
 
 /// What there is instead of a zone.
@@ -65,7 +74,8 @@ pub(crate) enum NoZone {
 pub(crate) struct Branch<'a> {
     pub(crate) fork: u32,
     pub(crate) child: u32,
-    /// From the fork along its main children, with the radius of its first point throughout.
+    pub(crate) upward: bool,
+    /// From the fork along its main children, or up its parents, with the radius of its first point throughout.
     pub(crate) path: &'a Polyline,
     pub(crate) radius: f64,
     pub(crate) lift: f64,
@@ -118,6 +128,7 @@ impl Branch<'_> {
             room,
             fork: self.fork,
             child: self.child,
+            upward: self.upward,
             lift: self.lift,
             onward: None,
         };

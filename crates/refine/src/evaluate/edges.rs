@@ -40,7 +40,7 @@ pub(crate) struct Corner {
     /// Radius of its tracing point.
     pub(crate) radius: f32,
     pub(crate) role: Role,
-    /// Of an inset's corner: length of a loft's last leg along the tangent.
+    /// Of an inset's corner: length of a loft's last leg along the tangent, negative against it.
     pub(crate) collar: f32,
 }
 
@@ -271,10 +271,11 @@ pub(crate) fn loft_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
     let way = b.position - a.position;
     let normal = a.cubic_normal();
     let over = way - normal * way.dot(normal);
+    let third = way.length() / 3.0;
     [
         a.position,
         a.position + over * first_leg(a, b, over, Vec3::ZERO).0,
-        b.position - b.tangent * b.collar.min(way.length() / 3.0),
+        b.position - b.tangent * b.collar.max(-third).min(third),
         b.position,
     ]
 }

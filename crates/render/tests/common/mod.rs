@@ -67,26 +67,37 @@ pub(crate) fn cell(seed: u64, twigs: usize) -> CoarseMesh {
     mesh
 }
 
+/// A cell whose neurites end in forks with the children straight to either side: the children are the trunk, and the
+/// neurite ends in an inset on it.
+pub(crate) fn cell_across() -> CoarseMesh {
+    let mut cell = round_soma("across");
+    for k in 0..4 {
+        let (sin, cos) = (1.3 * k as f32).sin_cos();
+        let out = Vec3::new(cos, sin, 0.4 * k as f32 - 0.6).normalize_or(Vec3::X);
+        let side = out
+            .cross(Vec3::new(0.2, 0.1 * k as f32, 1.0))
+            .normalize_or(Vec3::X);
+        let root = Attachment::Soma { soma: 0, sample: 0 };
+        let id = SectionId(cell.sections.len() as u32);
+        let at = grow_section(&mut cell, root, out * 7.5, out, Vec3::ZERO, 0.7);
+        for side in [side, -side] {
+            let root = Attachment::Section(id);
+            grow_section(&mut cell, root, at + side * 3.5, side, Vec3::ZERO, 0.75);
+        }
+    }
+    let mesh = generate(&cell, &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
+    let ends = mesh.tracing.iter().filter(|t| t.collar < 0.0).count();
+    assert_eq!(ends, 4, "neurites that end in insets");
+    mesh
+}
+
 /// A cell without sharp bends: neurites all around a soma that curve gently and fork once. No part
 /// of its surface is folded over at any level.
 pub(crate) fn smooth_cell(seed: u64) -> CoarseMesh {
     let mut random = Random(seed);
-    let sample = SomaSample {
-        id: 1,
-        position: Vec3::ZERO,
-        radius: 6.0,
-        parent: None,
-    };
-    let mut cell = Morphology {
-        name: "smooth".into(),
-        somata: vec![Soma {
-            kind: SomaKind::Point,
-            samples: vec![sample],
-            center: Vec3::ZERO,
-            radius: 6.0,
-        }],
-        ..Morphology::default()
-    };
+    let mut cell = round_soma("smooth");
     for k in 0..5 {
         // Evenly over the sphere.
         let z = 0.8 - 0.4 * k as f32;
@@ -107,6 +118,26 @@ pub(crate) fn smooth_cell(seed: u64) -> CoarseMesh {
     generate(&cell, &GenerateOptions::default())
         .expect("meshed")
         .mesh
+}
+
+/// A soma of radius 6 µm.
+fn round_soma(name: &str) -> Morphology {
+    let sample = SomaSample {
+        id: 1,
+        position: Vec3::ZERO,
+        radius: 6.0,
+        parent: None,
+    };
+    Morphology {
+        name: name.into(),
+        somata: vec![Soma {
+            kind: SomaKind::Point,
+            samples: vec![sample],
+            center: Vec3::ZERO,
+            radius: 6.0,
+        }],
+        ..Morphology::default()
+    }
 }
 
 fn grow_section(

@@ -1,9 +1,11 @@
 //! A coarse mesh's tubes as paths: from a start through forks to a tip, always along the branch
 //! that reaches farthest. A branch that leaves such a path is a path of its own, which starts at
-//! the fork.
+//! the fork, or ends there where the fork's children are the trunk.
 //!
 //! Since paths go on through forks, there are only as many paths as tips, and a neuron far away
 //! takes only as many chunks; and there is no seam along the main branch of a fork.
+
+use std::collections::BTreeMap;
 
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind, Role};
@@ -70,7 +72,15 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
             let main = children
                 .iter()
                 .max_by(|a, b| farthest(a).total_cmp(&farthest(b)).then(b.cmp(a)));
-            let Some(&main) = main else { break };
+            let Some(&main) = main else {
+                // The parent of a trunk ends inside it, so that no gap shows.
+                if let Some(&trunk) = tree.trunks.get(&at) {
+                    let center = mesh.tracing[trunk as usize].center;
+                    let end = point(mesh, at);
+                    path.points.push(PathPoint { center, ..end });
+                }
+                break;
+            };
             let others = children.iter().rev().filter(|&&child| child != main);
             starts.extend(others.map(|&child| (at, child)));
             at = main;
@@ -105,19 +115,26 @@ struct Tree {
     /// Children of all points, one after the other, and where those of each point begin.
     children: Vec<u32>,
     first: Vec<u32>,
+    /// A point of the trunk, by the inset that a path ends in.
+    trunks: BTreeMap<u32, u32>,
 }
 
 impl Tree {
     /// Lateral patches lead from the ring of a parent (corners 0 and 1) to that of a child (3 and 2),
-    /// lofts from a trunk's to an inset.
+    /// lofts from a trunk's to an inset that a path begins in.
     fn new(mesh: &CoarseMesh) -> Self {
         let count = mesh.tracing.len();
         let mut parents = vec![NONE; count];
+        let mut trunks = BTreeMap::new();
         let of = |corner: u32| mesh.vertices[corner as usize].tracing;
         for patch in &mesh.patches {
             let [near, _, _, far] = patch.corners.map(of);
             let leads = match patch.kind {
                 PatchKind::Lateral => true,
+                PatchKind::Loft if mesh.tracing[far as usize].collar < 0.0 => {
+                    trunks.insert(far, near);
+                    false
+                }
                 PatchKind::Loft => mesh.tracing[near as usize].role != Role::Soma,
                 PatchKind::Cap | PatchKind::Soma => false,
             };
@@ -145,6 +162,7 @@ impl Tree {
             parents,
             children,
             first,
+            trunks,
         }
     }
 
@@ -245,6 +263,28 @@ mod tests {
         assert_eq!(paths[1].points[0].center, Vec3::X);
         assert_eq!(paths[1].points[0].radius, 3.0);
         assert!(paths[0].starts_free && !paths[1].starts_free);
+    }
+
+    #[test]
+    fn a_path_ends_inside_the_trunk_across_it() {
+        let centers = [0.0, 1.0, 2.0].map(|x| Vec3::X * x);
+        let beside = [2.0, 1.0].map(|y| Vec3::new(1.0, y, 0.0));
+        let mut mesh = rings(
+            &[centers.as_slice(), &beside].concat(),
+            &[[0, 1], [1, 2], [3, 4]],
+        );
+        mesh.tracing[4].collar = -0.2;
+        mesh.patches.push(Patch {
+            corners: [4, 5, 17, 16],
+            kind: PatchKind::Loft,
+        });
+        let paths = tube_paths(&mesh);
+        assert_eq!(
+            paths.iter().map(ids).collect::<Vec<_>>(),
+            [[0, 1, 2], [3, 4, 4]]
+        );
+        assert_eq!(paths[1].points[2].center, Vec3::X);
+        assert!(paths[0].starts_free && paths[1].starts_free);
     }
 
     #[test]
