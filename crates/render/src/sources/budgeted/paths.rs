@@ -74,10 +74,13 @@ pub(crate) fn tube_paths(mesh: &CoarseMesh) -> Vec<TubePath> {
                 .max_by(|a, b| farthest(a).total_cmp(&farthest(b)).then(b.cmp(a)));
             let Some(&main) = main else {
                 // The parent of a trunk ends inside it, so that no gap shows.
-                if let Some(&trunk) = tree.trunks.get(&at) {
-                    let center = mesh.tracing[trunk as usize].center;
+                if let Some(trunk) = tree.trunks.get(&at) {
+                    let [a, b] = trunk.map(|ring| mesh.tracing[ring as usize].center);
                     let end = point(mesh, at);
-                    path.points.push(PathPoint { center, ..end });
+                    path.points.push(PathPoint {
+                        center: a.midpoint(b),
+                        ..end
+                    });
                 }
                 break;
             };
@@ -115,8 +118,8 @@ struct Tree {
     /// Children of all points, one after the other, and where those of each point begin.
     children: Vec<u32>,
     first: Vec<u32>,
-    /// A point of the trunk, by the inset that a path ends in.
-    trunks: BTreeMap<u32, u32>,
+    /// The trunk's rings before and after the inset that a path ends in, by that.
+    trunks: BTreeMap<u32, [u32; 2]>,
 }
 
 impl Tree {
@@ -128,11 +131,13 @@ impl Tree {
         let mut trunks = BTreeMap::new();
         let of = |corner: u32| mesh.vertices[corner as usize].tracing;
         for patch in &mesh.patches {
-            let [near, _, _, far] = patch.corners.map(of);
+            let [near, beside, _, far] = patch.corners.map(of);
             let leads = match patch.kind {
                 PatchKind::Lateral => true,
                 PatchKind::Loft if mesh.tracing[far as usize].collar < 0.0 => {
-                    trunks.insert(far, near);
+                    let [before, after] = trunks.entry(far).or_insert([near, near]);
+                    *before = near.min(beside).min(*before);
+                    *after = near.max(beside).max(*after);
                     false
                 }
                 PatchKind::Loft => mesh.tracing[near as usize].role != Role::Soma,
@@ -274,16 +279,16 @@ mod tests {
             &[[0, 1], [1, 2], [3, 4]],
         );
         mesh.tracing[4].collar = -0.2;
-        mesh.patches.push(Patch {
-            corners: [4, 5, 17, 16],
-            kind: PatchKind::Loft,
-        });
+        for corners in [[4, 5, 17, 16], [5, 9, 18, 17]] {
+            let kind = PatchKind::Loft;
+            mesh.patches.push(Patch { corners, kind });
+        }
         let paths = tube_paths(&mesh);
         assert_eq!(
             paths.iter().map(ids).collect::<Vec<_>>(),
             [[0, 1, 2], [3, 4, 4]]
         );
-        assert_eq!(paths[1].points[2].center, Vec3::X);
+        assert_eq!(paths[1].points[2].center, Vec3::X * 1.5);
         assert!(paths[0].starts_free && paths[1].starts_free);
     }
 
