@@ -212,7 +212,7 @@ fn the_parent_ends_on_children_that_are_straighter() {
 
 #[test]
 fn a_thick_parent_is_the_trunk() {
-    let mesh = meshed(&forks_across(0.9, 1));
+    let mesh = meshed(&forks_across(1.0, 1));
     assert_eq!(mesh.tracing.iter().filter(is_across).count(), 0);
 }
 

@@ -15,17 +15,17 @@ use super::cone::{RoundCone, distance};
 use super::leave::{AHEAD, CLEAR};
 use super::path::{End, PathInset, Planner, Start, Way};
 use super::shape::InsetShape;
-use super::trunk::MOST_THICK;
 use super::zone::Zone;
 use crate::skeleton::{NONE, Root, Skeleton};
 
-/// Cosine by which the children are straighter at least.
-const MARGIN: f64 = 0.0;
+/// A parent may be this much thicker than the children. Up to 1.05, as branches of parents, six forks of twelve cells
+/// have 3.7 % more of their area off the blended surface in the mean, and none less.
+const MOST_THICK: f64 = 1.2;
 /// Way that a parent needs between its inset and the fork before, in radii of either.
 const LEAST_WAY: f64 = 3.0;
 
 /// Whether a fork of two children is to have them as its trunk: they are straighter to one another than either is to
-/// the parent, and neither is thinner than that.
+/// the parent, and not much thinner than that.
 pub(crate) fn is_straight_across(skeleton: &Skeleton, fork: u32) -> bool {
     let &[a, b] = skeleton.children().of(fork) else {
         return false;
@@ -42,7 +42,7 @@ pub(crate) fn is_straight_across(skeleton: &Skeleton, fork: u32) -> bool {
     let [a, b, up] = [a, b, parent].map(|node| (node.center - here.center).normalize_or_zero());
     // Cosines of the angles by which a path through the fork bends.
     let bend = |from: DVec3, to: DVec3| -from.dot(to);
-    bend(a, b) > bend(up, a).max(bend(up, b)) + MARGIN
+    bend(a, b) > bend(up, a).max(bend(up, b))
 }
 
 impl Way {

@@ -6,7 +6,7 @@ use crate::fork;
 /// Weight of a child's direction beside its relative radius when the trunk's continuation is chosen.
 const STRAIGHTNESS: f64 = 0.5;
 /// A branch may be this much thicker than its trunk.
-pub(super) const MOST_THICK: f64 = 1.05;
+const MOST_THICK: f64 = 1.05;
 /// A fork of more children becomes joints: branches of one point need a side of the trunk each.
 const MOST_CHILDREN: usize = 4;
 /// A branch that forks again within this many of its radii is not clear of its trunk by then.
