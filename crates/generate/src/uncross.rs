@@ -42,7 +42,7 @@ pub(crate) fn uncross_rings(
     let children = skeleton.children();
     let may_join = |from: u32, to: u32| {
         let base = |n: u32| skeleton.node(n).marks.base;
-        // A trunk across a fork begins at an end of one of its children.
+        // Trunks across forks begin at an end: there the upper node, of the lower number, comes second.
         let [upper, lower] = [base(from).min(base(to)), base(from).max(base(to))];
         lower == NONE || may_join(upper, lower)
     };

@@ -23,6 +23,7 @@ mod arrange;
 mod cone;
 mod leave;
 mod path;
+mod path_insets;
 mod path_rings;
 mod polyline;
 mod shape;

@@ -6,10 +6,10 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::arrange::Group;
-use super::path_rings::{Ring, RingKind, nearest, rings};
+use super::path_insets::{PathInset, add_upright};
+use super::path_rings::{RingKind, nearest, rings};
 use super::polyline::Polyline;
-use super::shape::InsetShape;
-use super::zone::{Beginning, Zone};
+use super::zone::Beginning;
 use super::{ForkChoice, Inset, Layout};
 use crate::skeleton::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
 
@@ -26,53 +26,11 @@ pub(super) enum Start {
     Inset(Box<PathInset>),
 }
 
-/// An inset that a path begins or ends in.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PathInset {
-    pub(super) inset: u32,
-    pub(super) shape: InsetShape,
-    pub(super) fork: u32,
-    /// The path's next node, or at its end the last one before the inset.
-    pub(super) way: Beginning,
-    pub(super) radius: f64,
-    /// Way from the inset to where a branch is clear that leaves its trunk side by side with it (µm).
-    clear: Option<f64>,
-}
-
-impl PathInset {
-    /// A ring across the branch where it is clear of its trunk, `next`: way (µm) from the inset to the next ring. Leant
-    /// over its trunk, the inset's own ring is narrower across the branch than the branch is, which then stayed a ribbon
-    /// up to a far first point.
-    fn upright(&self, next: f64) -> Option<f64> {
-        self.clear.filter(|clear| next > clear + 2.0 * self.radius)
-    }
-}
-
-/// Adds the rings of branches that stand upright where they are clear of the trunks that they begin or end on.
-fn add_upright(rings: &mut Vec<Ring>, path: &Polyline, [start, end]: [Option<&PathInset>; 2]) {
-    let ring = |arc: f64| Ring {
-        arc,
-        what: RingKind::Zone(None, None),
-    };
-    let first = rings.first().map_or(0.0, |ring| ring.arc);
-    if let Some(arc) = start.and_then(|inset| inset.upright(first)) {
-        rings.insert(0, ring(arc));
-    }
-    let before = rings
-        .len()
-        .checked_sub(2)
-        .map_or(0.0, |before| rings[before].arc);
-    let length = path.length();
-    if let Some(arc) = end.and_then(|inset| inset.upright(length - before)) {
-        rings.insert(rings.len() - 1, ring(length - arc));
-    }
-}
-
 pub(crate) struct Planner<'a> {
     pub(super) base: &'a Skeleton,
     pub(super) children: &'a Children,
     pub(super) choices: Vec<ForkChoice>,
-    nodes: Vec<SkeletonNode>,
+    pub(super) nodes: Vec<SkeletonNode>,
     pub(super) insets: Vec<Inset>,
     zones: Vec<Vec<u32>>,
     pub(super) refused: Vec<u32>,
@@ -253,14 +211,6 @@ impl<'a> Planner<'a> {
         Polyline::new(centers, radii)
     }
 
-    /// The inset that a path ends in.
-    pub(super) fn end_of(&self, way: &Way) -> Option<&PathInset> {
-        match way.end {
-            End::Inset => self.ends.get(&way.nodes[way.nodes.len() - 1]),
-            End::Tip | End::Joint => None,
-        }
-    }
-
     /// Adds a path's nodes, and what starts from it to `starts`.
     pub(super) fn emit(
         &mut self,
@@ -336,45 +286,6 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn begin_inset(&mut self, zone: &Zone, path: &Polyline, starts: &mut Vec<Start>) -> u32 {
-        let inset = self.insets.len() as u32;
-        self.insets.push(Inset {
-            leaning: self.choices[zone.fork as usize].is_leaning(),
-            at_end: zone.upward,
-            fork: zone.fork,
-            exit: zone.exit,
-            direction: zone.direction,
-            radius: zone.radius,
-            lift: zone.lift,
-        });
-        let (shape, way) = zone
-            .onward
-            .or_else(|| self.goes_on(zone, path))
-            // Pushed along the trunk it may not be clear any more.
-            .unwrap_or_else(|| {
-                let cones = zone.cones(path);
-                (zone.site(path).shape(&cones), Beginning::At(zone.child))
-            });
-        let clear = match way {
-            Beginning::At(node) => self.clear_after(zone, &shape, node, path),
-            Beginning::Ends(_) => None,
-        };
-        let of_path = PathInset {
-            inset,
-            clear,
-            shape,
-            fork: zone.fork,
-            way,
-            radius: zone.radius,
-        };
-        if zone.upward {
-            self.ends.insert(zone.fork, of_path);
-        } else {
-            starts.push(Start::Inset(Box::new(of_path)));
-        }
-        inset
-    }
-
     /// Copies a node; forks remember which they are.
     pub(super) fn copy(&mut self, node: u32, parent: u32, root: Root) -> u32 {
         let fork = if self.children.of(node).len() > 1 {
@@ -395,58 +306,5 @@ impl<'a> Planner<'a> {
             ..*self.base.node(node)
         });
         self.nodes.len() as u32 - 1
-    }
-
-    fn inset_root(&mut self, start: &PathInset, first: u32) -> u32 {
-        self.nodes.push(SkeletonNode {
-            center: start.shape.center,
-            radius: start.radius,
-            parent: NONE,
-            root: Root::Inset(start.inset),
-            marks: Marks {
-                base: start.fork,
-                ..Marks::default()
-            },
-            ..*self.base.node(first)
-        });
-        self.nodes.len() as u32 - 1
-    }
-
-    /// The last node of a path that ends in an inset.
-    fn end_in_inset(&mut self, way: &Way, parent: u32) -> u32 {
-        let last = way.nodes.len() - 1;
-        let Some(end) = self.end_of(way) else {
-            return parent;
-        };
-        let node = SkeletonNode {
-            center: end.shape.center,
-            radius: end.radius,
-            parent,
-            root: Root::Free,
-            marks: Marks {
-                ends_in: end.inset,
-                base: end.fork,
-                ..Marks::default()
-            },
-            ..*self
-                .base
-                .node(way.nodes[if last > 1 { last - 1 } else { last }])
-        };
-        self.nodes.push(node);
-        self.nodes.len() as u32 - 1
-    }
-
-    /// A branch too short for a ring of its own beyond its inset: one right ahead of it.
-    fn end_ahead(&mut self, start: &PathInset, last: u32) {
-        let parent = self.inset_root(start, last);
-        let ahead = start.shape.reach + 0.6 * start.radius;
-        self.nodes.push(SkeletonNode {
-            center: start.shape.center + start.shape.direction * ahead,
-            radius: start.radius,
-            parent,
-            root: Root::Free,
-            marks: Marks::default(),
-            ..*self.base.node(last)
-        });
     }
 }
