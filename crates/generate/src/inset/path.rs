@@ -6,9 +6,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::arrange::Group;
-use super::path_insets::{PathInset, add_upright};
 use super::path_rings::{RingKind, nearest, rings};
 use super::polyline::Polyline;
+use super::shape::InsetShape;
 use super::zone::Beginning;
 use super::{ForkChoice, Inset, Layout};
 use crate::skeleton::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
@@ -24,6 +24,19 @@ pub(super) enum Start {
     Joint(u32, u32, u32),
     /// An inset.
     Inset(Box<PathInset>),
+}
+
+/// An inset that a path begins or ends in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathInset {
+    pub(super) inset: u32,
+    pub(super) shape: InsetShape,
+    pub(super) fork: u32,
+    /// The path's next node, or at its end the last one before the inset.
+    pub(super) way: Beginning,
+    pub(super) radius: f64,
+    /// Way from the inset to where a branch is clear that leaves its trunk side by side with it (µm).
+    pub(super) clear: Option<f64>,
 }
 
 pub(crate) struct Planner<'a> {
@@ -240,7 +253,7 @@ impl<'a> Planner<'a> {
             Start::Inset(inset) => Some(&**inset),
             Start::Root(_) | Start::Joint(..) => None,
         };
-        add_upright(&mut rings, path, [begins, self.end_of(way)]);
+        Self::add_upright(&mut rings, path, [begins, self.end_of(way)]);
         for ring in rings {
             parent = match ring.what {
                 RingKind::Point(index) if index == last && way.end == End::Inset => {

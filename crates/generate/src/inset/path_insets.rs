@@ -1,25 +1,11 @@
 //! Insets that paths begin or end in.
 
 use super::Inset;
-use super::path::{End, Planner, Start, Way};
+use super::path::{End, PathInset, Planner, Start, Way};
 use super::path_rings::{Ring, RingKind};
 use super::polyline::Polyline;
-use super::shape::InsetShape;
 use super::zone::{Beginning, Zone};
 use crate::skeleton::{Marks, NONE, Root, SkeletonNode};
-
-/// An inset that a path begins or ends in.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PathInset {
-    pub(super) inset: u32,
-    pub(super) shape: InsetShape,
-    pub(super) fork: u32,
-    /// The path's next node, or at its end the last one before the inset.
-    pub(super) way: Beginning,
-    pub(super) radius: f64,
-    /// Way from the inset to where a branch is clear that leaves its trunk side by side with it (µm).
-    clear: Option<f64>,
-}
 
 impl PathInset {
     /// Way (µm) from the inset to a ring across the branch, where that is clear of its trunk; `next`: to the next ring.
@@ -30,31 +16,31 @@ impl PathInset {
     }
 }
 
-/// Adds rings that stand upright where a path is clear of the trunks that it begins or ends on.
-pub(super) fn add_upright(
-    rings: &mut Vec<Ring>,
-    path: &Polyline,
-    [start, end]: [Option<&PathInset>; 2],
-) {
-    let ring = |arc: f64| Ring {
-        arc,
-        what: RingKind::Zone(None, None),
-    };
-    let first = rings.first().map_or(0.0, |ring| ring.arc);
-    if let Some(arc) = start.and_then(|inset| inset.upright(first)) {
-        rings.insert(0, ring(arc));
-    }
-    let before = rings
-        .len()
-        .checked_sub(2)
-        .map_or(0.0, |before| rings[before].arc);
-    let length = path.length();
-    if let Some(arc) = end.and_then(|inset| inset.upright(length - before)) {
-        rings.insert(rings.len() - 1, ring(length - arc));
-    }
-}
-
 impl Planner<'_> {
+    /// Adds rings that stand upright where a path is clear of the trunks that it begins or ends on.
+    pub(super) fn add_upright(
+        rings: &mut Vec<Ring>,
+        path: &Polyline,
+        [start, end]: [Option<&PathInset>; 2],
+    ) {
+        let ring = |arc: f64| Ring {
+            arc,
+            what: RingKind::Zone(None, None),
+        };
+        let first = rings.first().map_or(0.0, |ring| ring.arc);
+        if let Some(arc) = start.and_then(|inset| inset.upright(first)) {
+            rings.insert(0, ring(arc));
+        }
+        let before = rings
+            .len()
+            .checked_sub(2)
+            .map_or(0.0, |before| rings[before].arc);
+        let length = path.length();
+        if let Some(arc) = end.and_then(|inset| inset.upright(length - before)) {
+            rings.insert(rings.len() - 1, ring(length - arc));
+        }
+    }
+
     /// Adds a branch's inset; the path that begins there goes to `starts`.
     pub(super) fn begin_inset(
         &mut self,
