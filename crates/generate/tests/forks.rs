@@ -227,7 +227,7 @@ fn parents_end_on_trunks_whose_own_ends_are_such_forks() {
             .filter(|t| t.role == Role::Inset)
             .count();
         assert_eq!(insets, forks, "{depth}");
-        // Of two paths that meet in a trunk's inset one ends there, unless the trunk begins there.
+        // At the others' insets a trunk begins.
         assert!(
             mesh.tracing.iter().filter(is_across).count() > forks / 3,
             "{depth}"

@@ -96,8 +96,8 @@ fn no_back_face_shows_through_a_closed_surface() {
     let gpu = device();
     let (front, back) = count(&gpu, &Refiner::vertex_text, 6, 8);
     note!("112 pictures, {front} pixels of front faces, {back} of back faces");
-    // Measured on lavapipe: 2,252,368. Enough of each cell is in the pictures.
-    assert!(front > 2_000_000, "{front}");
+    // Measured on lavapipe: 2,729,582. Enough of each cell is in the pictures.
+    assert!(front > 2_400_000, "{front}");
     assert_eq!(back, 0);
 }
 
@@ -124,8 +124,8 @@ fn an_edge_whose_faces_disagree_is_found() {
         };
         let (_, back) = count(&gpu, &source, 3, 8);
         note!("{back} pixels of back faces");
-        // Measured on lavapipe: 39 of what draws tubes, which makes few sides; 2,740 of all else.
-        assert!(back > 25, "{honest}: {back}");
+        // Measured on lavapipe: 50 of what draws tubes, which makes few sides; 2,817 of all else.
+        assert!(back > 32, "{honest}: {back}");
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use neurotess::mesh::{CoarseMesh, PatchKind, Vertex};
+use neurotess::mesh::{CoarseMesh, PatchKind};
 use neurotess::render::Placement;
 use neurotess::render::outline::{HOVERED, PICKED, SELECTED};
 use neurotess::render::pick::{PickHit, PickId, PickTarget};
@@ -229,13 +229,11 @@ pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Op
             let sum: DVec3 = corners.iter().map(|v| v.position.as_dvec3()).sum();
             // A lateral patch belongs to the child's section, which has the larger number, whichever way its path
             // runs; a loft to the branch's, at corner 2.
-            let section = |v: &&&Vertex| mesh.tracing[v.tracing as usize].section;
-            let of_patch = match patch.kind {
-                PatchKind::Lateral => [corners[0], corners[2]].iter().max_by_key(section).copied(),
-                _ => None,
-            };
-            let corner = of_patch.unwrap_or(corners[2]);
-            (sum / 4.0, corner.tracing, patch.kind == PatchKind::Soma)
+            let [near, far] = [corners[0], corners[2]].map(|v| v.tracing);
+            let section = |tracing: u32| mesh.tracing[tracing as usize].section;
+            let runs_up = patch.kind == PatchKind::Lateral && section(near) > section(far);
+            let tracing = if runs_up { near } else { far };
+            (sum / 4.0, tracing, patch.kind == PatchKind::Soma)
         }
         PickTarget::Vertex(vertex) => {
             let vertex = mesh.vertices.get(vertex as usize)?;
@@ -265,6 +263,8 @@ pub(crate) fn seen(hit: PickHit, mesh: &CoarseMesh, placement: &Placement) -> Op
 
 #[cfg(test)]
 mod tests {
+    use neurotess::mesh::{Patch, SectionNumber, TracingPoint, Vertex};
+
     use super::*;
     use crate::model::document::{Neuron, SourceId};
 
@@ -287,6 +287,39 @@ mod tests {
             },
             |_| None,
         )
+    }
+
+    #[test]
+    fn a_patch_between_two_sections_is_the_child_s() {
+        // Two rings, on a parent (1) and on a child of it (2), with a patch from each to the other.
+        let point = |section| TracingPoint {
+            section: SectionNumber(section),
+            ..TracingPoint::default()
+        };
+        let vertex = |tracing| Vertex {
+            tracing,
+            ..Vertex::default()
+        };
+        let patch = |corners| Patch {
+            corners,
+            kind: PatchKind::Lateral,
+        };
+        let mesh = CoarseMesh {
+            tracing: [1, 2].map(point).to_vec(),
+            vertices: [0, 0, 1, 1].map(vertex).to_vec(),
+            patches: vec![patch([0, 1, 2, 3]), patch([3, 2, 1, 0])],
+            ..CoarseMesh::default()
+        };
+        for number in 0..2 {
+            let target = PickTarget::Patch(number);
+            let hit = PickHit {
+                instance: 0,
+                target,
+            };
+            let picked = seen(hit, &mesh, &Placement::default()).and_then(|hit| hit.picked());
+            let part = picked.map(|picked| picked.part);
+            assert_eq!(part, Some(CellPart::Section(1)), "{number}");
+        }
     }
 
     #[test]

@@ -222,8 +222,8 @@ impl Planner<'_> {
         let last = way.nodes.len() - 1;
         let low = match start {
             Start::Root(_) => 0.0,
-            Start::Joint(fork, _, child) => self.joint_reach(*fork, *child) + 0.35 * path.radii[1],
-            Start::Inset(inset) => inset.shape.reach + 0.35 * inset.radius,
+            Start::Joint(fork, _, child) => self.joint_reach(*fork, *child) + AHEAD * path.radii[1],
+            Start::Inset(inset) => inset.shape.reach + AHEAD * inset.radius,
         };
         let high = match way.end {
             End::Tip => 0.0,

@@ -74,6 +74,7 @@ pub(crate) enum NoZone {
 pub(crate) struct Branch<'a> {
     pub(crate) fork: u32,
     pub(crate) child: u32,
+    /// Whether that node is the fork's parent.
     pub(crate) upward: bool,
     /// From the fork along its main children, or up its parents, with the radius of its first point throughout.
     pub(crate) path: &'a Polyline,
