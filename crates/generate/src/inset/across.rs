@@ -21,7 +21,8 @@ use crate::skeleton::{NONE, Root, Skeleton};
 /// A parent may be this much thicker than the children. Up to 1.05, as branches of parents, six forks of twelve cells
 /// have 3.7 % more of their area off the blended surface in the mean, and none less.
 const MOST_THICK: f64 = 1.2;
-/// Way that a parent needs between its inset and the fork before, in radii of either.
+/// Way that a parent needs between its inset and the fork before, in radii of either. With half of it 29 files have as
+/// many pairs near forks, and at level 4 1 % more folds.
 const LEAST_WAY: f64 = 3.0;
 
 /// Whether a fork of two children is to have them as its trunk: they are straighter to one another than either is to
