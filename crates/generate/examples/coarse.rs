@@ -1,5 +1,5 @@
-//! How long coarse meshes take: the best of some runs, in milliseconds, on one thread, and a hash of the mesh by
-//! which two builds are compared.
+//! How long coarse meshes take: the best of some runs, in milliseconds, on one thread or as many as
+//! `RAYON_NUM_THREADS` says, and a hash of the mesh by which two builds are compared.
 //!
 //! ```text
 //! cargo run --release -p neurotess-generate --example coarse -- [RUNS] FILES…
@@ -21,8 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1).peekable();
     let runs = args.next_if(|arg| arg.parse::<u32>().is_ok());
     let runs = runs.map_or(Ok(5), |runs| runs.parse::<u32>())?.max(1);
+    let threads = std::env::var("RAYON_NUM_THREADS").map_or(Ok(1), |threads| threads.parse())?;
     rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
+        .num_threads(threads)
         .build_global()?;
     let mut sum = 0.0;
     println!("file points rings ms hash");

@@ -89,6 +89,14 @@ impl ForkFaults {
     }
 }
 
+/// What the choices of some forks made of them.
+pub(crate) struct Judged {
+    /// Forks that became joints for lack of room.
+    pub(crate) refused: Vec<u32>,
+    /// By fork.
+    pub(crate) faults: Vec<(u32, ForkFaults)>,
+}
+
 /// Choices as they are tried.
 pub(crate) struct ForkTrials {
     choices: Vec<ForkChoice>,
@@ -134,6 +142,12 @@ impl ForkTrials {
         open.map(|(&fork, _)| fork).collect()
     }
 
+    /// Whether a fork's choice is not settled.
+    pub(crate) fn is_open(&self, fork: u32) -> bool {
+        let trial = self.trials.get(&fork);
+        trial.is_some_and(|trial| !trial.settled)
+    }
+
     /// Whether a fork's present choice was judged and has no faults at level 2.
     pub(crate) fn is_sound(&self, fork: u32) -> bool {
         let trial = self.trials.get(&fork);
@@ -169,18 +183,20 @@ impl ForkTrials {
         }
     }
 
-    /// A fork became a joint for lack of room.
-    pub(crate) fn refuse(&mut self, fork: u32) {
-        if let Some(trial) = self.trials.get_mut(&fork).filter(|t| !t.settled) {
-            trial.refuse();
+    /// Goes on to what is tried next. `judged`: the present choices, in parts.
+    pub(crate) fn advance(&mut self, judged: impl IntoIterator<Item = Judged>) {
+        let mut all = BTreeMap::new();
+        for Judged { refused, faults } in judged {
+            for fork in refused {
+                if let Some(trial) = self.trials.get_mut(&fork).filter(|t| !t.settled) {
+                    trial.refuse();
+                }
+            }
+            all.extend(faults);
         }
-    }
-
-    /// Goes on to what is tried next. `faults`: by fork, of its present choice.
-    pub(crate) fn advance(&mut self, faults: &BTreeMap<u32, ForkFaults>) {
         for (fork, trial) in self.trials.iter_mut().filter(|(_, trial)| !trial.settled) {
             // A fork without patches was left out with its branch.
-            trial.faults[trial.current] = Some(faults.get(fork).copied().unwrap_or_default());
+            trial.faults[trial.current] = Some(all.get(fork).copied().unwrap_or_default());
             trial.next();
             self.choices[*fork as usize] = CHOICES[trial.current];
         }

@@ -13,7 +13,7 @@ use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
 use crate::assemble::Somata;
-use crate::fork_trials::{ForkFaults, ForkTrials};
+use crate::fork_trials::{ForkFaults, ForkTrials, Judged};
 use crate::inset::ForkChoice;
 use crate::made::{Made, MayJoin};
 use crate::neighborhood::Neighborhood;
@@ -34,22 +34,25 @@ pub(crate) fn mesh(
     let mut trials = ForkTrials::new(skeleton);
     let made = Made::new(skeleton, trials.choices(), Some(somata), may_join);
     let first = trials.choices().to_vec();
-    judge(&mut trials, &made, &|fork| fork, stop);
+    let judged = judge(&trials, &made, &|fork| fork, stop);
+    trials.advance([judged]);
     loop {
         let open = trials.open();
         if open.is_empty() || stop.asked() {
             break;
         }
-        let near = Neighborhood::new(skeleton, &open);
-        let old = |node: u32| near.nodes[node as usize];
-        let choices: Vec<ForkChoice> = near
-            .nodes
-            .iter()
-            .map(|&node| trials.choices()[node as usize])
-            .collect();
-        let may_join = |from: u32, to: u32| may_join(old(from), old(to));
-        let made = Made::new(&near.skeleton, &choices, None, &may_join);
-        judge(&mut trials, &made, &old, stop);
+        let parts = Neighborhood::parts(skeleton, &open);
+        let judged = parts.par_iter().map(|near| {
+            let old = |node: u32| near.nodes[node as usize];
+            let choices = near.nodes.iter();
+            let choices = choices.map(|&node| trials.choices()[node as usize]);
+            let choices: Vec<ForkChoice> = choices.collect();
+            let may_join = |from: u32, to: u32| may_join(old(from), old(to));
+            let made = Made::new(&near.skeleton, &choices, None, &may_join);
+            judge(&trials, &made, &old, stop)
+        });
+        let judged: Vec<Judged> = judged.collect();
+        trials.advance(judged);
     }
     passing::choose(&mut trials, skeleton, &made, may_join, stop);
     let made = if trials.choices() == first || stop.asked() {
@@ -74,31 +77,24 @@ pub(crate) fn mesh(
     mesh
 }
 
-/// Judges the forks that are not settled. `old`: a node of the skeleton by that of the mesh's.
-fn judge(trials: &mut ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: Stop<'_>) {
-    for &fork in &made.refused {
-        trials.refuse(old(fork));
-    }
-    let mut near: BTreeMap<u32, Vec<u32>> = trials
-        .open()
-        .into_iter()
-        .map(|fork| (fork, Vec::new()))
-        .collect();
+/// Judges the forks of a mesh that are not settled. `old`: a node of the skeleton by that of the mesh's.
+fn judge(trials: &ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: Stop<'_>) -> Judged {
+    let mut near: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (fork, range) in &made.patches {
-        if let Some(patches) = near.get_mut(&old(*fork)) {
-            patches.extend(range.clone());
+        if trials.is_open(old(*fork)) {
+            near.entry(old(*fork)).or_default().extend(range.clone());
         }
     }
     let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
-    let judged: Vec<(u32, ForkFaults)> = near
-        .par_iter()
-        .map(|(fork, patches)| match stop.asked() {
-            true => (*fork, ForkFaults::default()),
-            false => {
-                let patches = RefinedPatches::new(&made.mesh, patches.clone());
-                (*fork, ForkFaults::of(&patches))
-            }
-        })
-        .collect();
-    trials.advance(&judged.into_iter().collect());
+    let faults = near.par_iter().map(|(fork, patches)| match stop.asked() {
+        true => (*fork, ForkFaults::default()),
+        false => {
+            let patches = RefinedPatches::new(&made.mesh, patches.clone());
+            (*fork, ForkFaults::of(&patches))
+        }
+    });
+    Judged {
+        refused: made.refused.iter().map(|&fork| old(fork)).collect(),
+        faults: faults.collect(),
+    }
 }

@@ -63,43 +63,66 @@ pub(crate) fn choose(
         return;
     }
     let forks: Vec<u32> = passed.iter().map(|passed| passed.fork).collect();
-    let near = Neighborhood::new(skeleton, &forks);
-    let rounds = passed.iter().map(|passed| passed.alternatives.len()).max();
-    let rounds = (0..rounds.unwrap_or(0)).into_par_iter().with_max_len(1);
-    let rounds = rounds.map(|round| match stop.asked() {
-        true => vec![None; passed.len()],
-        false => crossings_of_round(&passed, round, trials, &near, may_join),
+    let parts = Neighborhood::parts(skeleton, &forks);
+    let found = parts.par_iter().map(|near| {
+        let here = passed.iter().filter(|passed| near.has(passed.fork));
+        least_crossed_near(&here.collect::<Vec<_>>(), trials, near, may_join, stop)
     });
-    let rounds: Vec<Vec<Option<Found>>> = rounds.collect();
+    let found: Vec<Vec<_>> = found.collect();
     if stop.asked() {
         return;
     }
-    for (number, passed) in passed.iter().enumerate() {
-        let found: Vec<Option<Found>> = rounds.iter().map(|round| round[number]).collect();
-        if let Some((choice, faults)) = least_crossed(passed, &found) {
-            trials.replace(passed.fork, choice, faults);
-        }
+    for (fork, choice, faults) in found.into_iter().flatten() {
+        trials.replace(fork, choice, faults);
     }
 }
 
-/// Another choice than the present one, if it is as sound and crossed less. `found`: of each alternative that is
-/// sound at level 2.
-fn least_crossed(passed: &Passed, found: &[Option<Found>]) -> Option<(ChoiceNumber, ForkFaults)> {
-    let (present, others) = found.split_first()?;
-    let present = (*present)?;
+/// Forks of one part that another choice is better for, with it and its faults.
+fn least_crossed_near(
+    passed: &[&Passed],
+    trials: &ForkTrials,
+    near: &Neighborhood,
+    may_join: &MayJoin<'_>,
+    stop: Stop<'_>,
+) -> Vec<(u32, ChoiceNumber, ForkFaults)> {
+    let round = |round: usize, present: &[Option<Found>]| match stop.asked() {
+        true => vec![None; passed.len()],
+        false => found_in_round(passed, round, present, trials, near, may_join),
+    };
+    let present = round(0, &[]);
+    let rounds = passed.iter().map(|passed| passed.alternatives.len()).max();
+    let others = (1..rounds.unwrap_or(0)).into_par_iter().with_max_len(1);
+    let others: Vec<Vec<_>> = others.map(|number| round(number, &present)).collect();
+    let forks = passed.iter().enumerate();
+    let best = forks.filter_map(|(index, passed)| {
+        let found: Vec<Option<Found>> = others.iter().map(|round| round[index]).collect();
+        let (choice, faults) = least_crossed(passed, present[index]?, &found)?;
+        Some((passed.fork, choice, faults))
+    });
+    best.collect()
+}
+
+/// Another choice than the present one, if it is as sound and crossed less. `others`: what was found of each of the
+/// other alternatives that is.
+fn least_crossed(
+    passed: &Passed,
+    present: Found,
+    others: &[Option<Found>],
+) -> Option<(ChoiceNumber, ForkFaults)> {
     let numbers = passed.alternatives[1..].iter().map(|(number, _)| *number);
     let others = others.iter().zip(numbers);
     let others = others.filter_map(|(found, number)| Some(((*found)?, number)));
     let as_sound = others.filter(|(found, _)| found.faults <= present.faults);
     let best = as_sound.min_by_key(|(found, _)| found.crossings);
-    best.filter(|(found, _)| found.crossings < present.crossings)
-        .map(|(found, number)| (number, found.faults))
+    best.map(|(found, number)| (number, found.faults))
 }
 
-/// Makes the same alternative of all forks at once. For each: what was found, if it is sound at level 2.
-fn crossings_of_round(
-    passed: &[Passed],
+/// Makes the same alternative of all forks at once. For each: what was found, if it is sound at level 2 and crossed
+/// less than what is `present`; that is not known in the first round.
+fn found_in_round(
+    passed: &[&Passed],
     round: usize,
+    present: &[Option<Found>],
     trials: &ForkTrials,
     near: &Neighborhood,
     may_join: &MayJoin<'_>,
@@ -111,9 +134,9 @@ fn crossings_of_round(
         let of_fork = &passed[number.ok()?].alternatives;
         of_fork.get(round).map(|(_, choice)| *choice)
     };
-    let present = |node: u32| trials.choices()[node as usize];
+    let choice_now = |node: u32| trials.choices()[node as usize];
     let choices = near.nodes.iter();
-    let choices = choices.map(|&node| alternative(node).unwrap_or_else(|| present(node)));
+    let choices = choices.map(|&node| alternative(node).unwrap_or_else(|| choice_now(node)));
     let choices: Vec<ForkChoice> = choices.collect();
     let made = Made::new(&near.skeleton, &choices, None, &may_join);
     let refused: BTreeSet<u32> = made.refused.iter().map(|&fork| old(fork)).collect();
@@ -121,18 +144,23 @@ fn crossings_of_round(
     for (fork, range) in &made.patches {
         own.entry(old(*fork)).or_default().extend(range.clone());
     }
-    let found = passed.par_iter().map(|passed| {
+    let found = passed.par_iter().enumerate().map(|(index, passed)| {
         passed.alternatives.get(round)?;
         if refused.contains(&passed.fork) {
             return None;
         }
+        let most = match present.get(index) {
+            Some(present) => (*present)?.crossings,
+            None => usize::MAX,
+        };
         let own = own.get(&passed.fork)?;
-        let own = RefinedPatches::new(&made.mesh, own.clone());
-        let faults = ForkFaults::of(&own);
-        faults.is_sound().then(|| Found {
-            crossings: crossings(own.part.mesh, &passed.passing),
-            faults,
-        })
+        // Whether it is sound takes longer to tell, and is of no use for most.
+        let crossings = crossings(Part::new(&made.mesh, own.clone()).mesh, &passed.passing);
+        if crossings >= most {
+            return None;
+        }
+        let faults = ForkFaults::of(&RefinedPatches::new(&made.mesh, own.clone()));
+        faults.is_sound().then_some(Found { crossings, faults })
     });
     found.collect()
 }
