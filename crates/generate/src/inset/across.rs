@@ -36,7 +36,7 @@ pub(crate) fn is_straight_across(skeleton: &Skeleton, fork: u32) -> bool {
         return false;
     };
     let [a, b] = [a, b].map(|child| skeleton.node(child));
-    let trunk = here.radius.min(a.radius).min(b.radius);
+    let trunk = here.radius.min(1.5 * a.radius.min(b.radius));
     if parent.radius >= MOST_THICK * trunk {
         return false;
     }
