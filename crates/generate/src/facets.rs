@@ -64,8 +64,11 @@ impl Facet {
         if !self.bounds.overlaps(&other.bounds) {
             return false;
         }
-        // Nearly all pairs end here: the line in which their planes meet lies in both, or they do not cross. With a common
-        // edge two heights are zero.
+        let common = self.corners.iter().filter(|c| other.corners.contains(c));
+        if common.count() > 1 {
+            return false;
+        }
+        // Nearly all pairs end here: the line in which their planes meet lies in both, or they do not cross.
         let others = self.heights(other);
         if is_one_sided(others) {
             return false;
