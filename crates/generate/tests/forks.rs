@@ -147,11 +147,11 @@ fn a_child_that_forks_again_at_once_is_the_trunk() {
     assert!(with_joints <= 25 && pairs <= 350, "{with_joints}, {pairs}");
 }
 
-/// A parent of this radius that rises to the origin, where its children leave to either side, with such a fork at each
-/// of their ends, and so on: an H in an H.
-fn forks_across(parent_radius: f32, depth: u32) -> Morphology {
+/// A parent that rises to the origin, where its children leave to either side, with such a fork at each of their ends,
+/// and so on: an H in an H. `radii`: of the parent and of the fork at the origin; all others are 0.8.
+fn forks_across(radii: [f32; 2], depth: u32) -> Morphology {
     let mut m = Morphology::default();
-    let radius = |i: i32| if i < 0 { parent_radius } else { 0.8 };
+    let radius = |i: i32| radii[usize::from(i == 0)];
     let rise = (-6..=0).map(|i| (vec3(0.0, 2.0 * i as f32, 0.0), radius(i)));
     add(&mut m, Attachment::Free, rise);
     let mut ends = vec![(SectionId(0), Vec3::ZERO, Vec3::Y)];
@@ -181,7 +181,7 @@ fn is_across(point: &&TracingPoint) -> bool {
 
 #[test]
 fn the_parent_ends_on_children_that_are_straighter() {
-    let mesh = meshed(&forks_across(0.6, 1));
+    let mesh = meshed(&forks_across([0.6, 0.8], 1));
     let of_role = |role: Role| mesh.tracing.iter().filter(move |t| t.role == role);
     assert_eq!(
         [Role::Joint, Role::Inset].map(|role| of_role(role).count()),
@@ -212,14 +212,24 @@ fn the_parent_ends_on_children_that_are_straighter() {
 
 #[test]
 fn a_thick_parent_is_the_trunk() {
-    let mesh = meshed(&forks_across(1.0, 1));
+    let mesh = meshed(&forks_across([1.0, 0.8], 1));
+    assert_eq!(mesh.tracing.iter().filter(is_across).count(), 0);
+}
+
+#[test]
+fn a_parent_as_thick_as_its_fork_ends_on_thinner_children() {
+    let mesh = meshed(&forks_across([1.0, 1.0], 1));
+    assert_eq!(mesh.tracing.iter().filter(is_across).count(), 1);
+    assert_eq!(crossings(&mesh), 0);
+    // Not if they are half as thick.
+    let mesh = meshed(&forks_across([1.6, 1.6], 1));
     assert_eq!(mesh.tracing.iter().filter(is_across).count(), 0);
 }
 
 #[test]
 fn parents_end_on_trunks_whose_own_ends_are_such_forks() {
     for depth in 2..=4 {
-        let mesh = meshed(&forks_across(0.6, depth));
+        let mesh = meshed(&forks_across([0.6, 0.8], depth));
         let forks = (1 << depth) - 1;
         let insets = mesh
             .tracing
