@@ -147,6 +147,41 @@ fn a_child_that_forks_again_at_once_is_the_trunk() {
     assert!(with_joints <= 25 && pairs <= 350, "{with_joints}, {pairs}");
 }
 
+/// A trunk of radius 1 that bends by 35° at the origin, where a thin branch leaves it in some direction.
+fn bent_trunk(branch: Vec3) -> Morphology {
+    let mut m = Morphology::default();
+    let before = (-4..=0).map(|i| vec3(2.5 * i as f32, 0.0, 0.0));
+    let after = (1..=4).map(|i| vec3(0.819, 0.574, 0.0) * 2.5 * i as f32);
+    let branch = (1..=4).map(|i| branch * 3.0 * i as f32);
+    let of_radius = |radius: f32| move |position: Vec3| (position, radius);
+    add(&mut m, Attachment::Free, before.map(of_radius(1.0)));
+    let fork = Attachment::Section(SectionId(0));
+    add(&mut m, fork, after.map(of_radius(1.0)));
+    add(&mut m, fork, branch.map(of_radius(0.4)));
+    m
+}
+
+#[test]
+fn no_bend_lies_between_rings_side_by_side() {
+    for degrees in (30..150).step_by(10) {
+        let (sin, cos) = (degrees as f32).to_radians().sin_cos();
+        for side in [-1.0, 1.0] {
+            let mesh = meshed(&bent_trunk(vec3(cos, side * sin, 0.0)));
+            let on_trunk = |t: &&TracingPoint| t.role == Role::Ordinary && t.radius > 0.9;
+            let rings: Vec<Vec3> = (mesh.tracing.iter().filter(on_trunk))
+                .map(|t| t.center)
+                .collect();
+            let at_bend = |ring: &&Vec3| ring.length() < 1e-3;
+            let beside = |ring: &&Vec3| (1e-3..0.7).contains(&ring.length());
+            let [at_bend, beside] = [
+                rings.iter().filter(at_bend).count(),
+                rings.iter().filter(beside).count(),
+            ];
+            assert!(at_bend == 0 || beside == 0, "{degrees} {side} {rings:?}");
+        }
+    }
+}
+
 /// A parent that rises to the origin, where its children leave to either side, with such a fork at each of their ends,
 /// and so on: an H in an H. `radii`: of the parent and of the fork at the origin; all others are 0.8.
 fn forks_across(radii: [f32; 2], depth: u32) -> Morphology {

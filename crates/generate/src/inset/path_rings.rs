@@ -1,10 +1,23 @@
 //! Rings along a path: its own points, and two for each zone.
 
+use glam::DVec3;
+
 use super::arrange::Group;
 use super::polyline::Polyline;
+use super::zone::Zone;
 
 /// Free way beside a zone's rings, in radii of the trunk.
 const BESIDE_ZONE: f64 = 0.35;
+/// A zone is extended to a bend of more than 15° (its cosine) that is at most this many radii of the trunk before or
+/// after it.
+const NEAR_BEND: f64 = 0.75;
+const BENT: f64 = 0.966;
+/// Only where the points before and after the bend are at least so many radii away: where they are nearer the bend is
+/// within a short way anyway, and two forks of the sample `motor` would begin with a cleft.
+const SPARSE: f64 = 2.0;
+/// Only for branches thinner than this share of the trunk: without a limit on it and on how sparse points are, 29 files
+/// have 2 % more pairs near forks and 5 % more folds than with this one alone.
+const THIN: f64 = 0.6;
 
 /// A ring on a path.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +59,8 @@ pub(super) fn rings(
     is_fixed: bool,
 ) -> Vec<Ring> {
     let last = path.arcs.len() - 1;
-    let mut zones = zone_rings(path, groups).into_iter().peekable();
+    let spans = spans(path, groups, room);
+    let mut zones = zone_rings(path, &spans).into_iter().peekable();
     let mut rings: Vec<Ring> = Vec::with_capacity(last + 2 * groups.len());
     for index in 1..=last {
         let arc = path.arcs[index];
@@ -58,8 +72,8 @@ pub(super) fn rings(
         if !end {
             let in_room = arc >= room[0] && arc <= room[1];
             let beside = BESIDE_ZONE * path.radius(arc);
-            let next = groups.partition_point(|g| g.high + beside <= arc);
-            let within = groups.get(next).is_some_and(|g| arc > g.low - beside);
+            let next = spans.partition_point(|[_, high]| high + beside <= arc);
+            let within = spans.get(next).is_some_and(|[low, _]| arc > low - beside);
             // Points of a path without zones stay as they are: later steps see to them.
             if !groups.is_empty() && (!in_room || within) {
                 continue;
@@ -75,25 +89,69 @@ pub(super) fn rings(
     rings
 }
 
+/// Arc lengths between which each group's zones are. A zone that ends soon before or after a bend is extended up to it:
+/// with a ring between them the bend would be within half a radius, a groove on its inner side.
+fn spans(path: &Polyline, groups: &[Group], room: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut spans: Vec<[f64; 2]> = groups.iter().map(|group| [group.low, group.high]).collect();
+    let is_thin = |zone: &Zone| zone.radius < THIN * zone.trunk_radius;
+    for g in (0..spans.len()).filter(|&g| groups[g].zones.iter().all(is_thin)) {
+        let [low, high] = spans[g];
+        let least = g.checked_sub(1).map_or(room[0], |before| spans[before][1]);
+        let most = spans.get(g + 1).map_or(room[1], |after| after[0]);
+        spans[g] = [
+            bend_within(
+                path,
+                [low - NEAR_BEND * path.radius(low), low],
+                [least, most],
+            )
+            .unwrap_or(low),
+            bend_within(
+                path,
+                [high, high + NEAR_BEND * path.radius(high)],
+                [least, most],
+            )
+            .unwrap_or(high),
+        ];
+    }
+    spans
+}
+
+/// A point of the path, its ends aside, within both ranges of arc lengths at which it bends.
+fn bend_within(path: &Polyline, near: [f64; 2], room: [f64; 2]) -> Option<f64> {
+    let [from, to] = [near[0].max(room[0]), near[1].min(room[1])];
+    let first = path.arcs.partition_point(|&arc| arc < from).max(1);
+    let end = path
+        .arcs
+        .partition_point(|&arc| arc <= to)
+        .min(path.arcs.len() - 1);
+    let bends = |&point: &usize| {
+        let ways = [point - 1, point].map(|a| path.centers[a + 1] - path.centers[a]);
+        let lengths = ways.map(DVec3::length);
+        let is_sparse = lengths[0].min(lengths[1]) > SPARSE * path.radii[point];
+        is_sparse && ways[0].dot(ways[1]) < BENT * lengths[0] * lengths[1]
+    };
+    (first..end).find(bends).map(|point| path.arcs[point])
+}
+
 /// Two rings for each group, or one where the next begins right behind it.
-fn zone_rings(path: &Polyline, groups: &[Group]) -> Vec<Ring> {
-    let mut rings: Vec<Ring> = Vec::with_capacity(2 * groups.len());
-    for (g, group) in groups.iter().enumerate() {
-        let near = 0.3 * path.radius(group.low);
+fn zone_rings(path: &Polyline, spans: &[[f64; 2]]) -> Vec<Ring> {
+    let mut rings: Vec<Ring> = Vec::with_capacity(2 * spans.len());
+    for (g, &[low, high]) in spans.iter().enumerate() {
+        let near = 0.3 * path.radius(low);
         match rings.last_mut() {
-            Some(before) if group.low - before.arc < near => {
-                before.arc = 0.5 * (before.arc + group.low);
+            Some(before) if low - before.arc < near => {
+                before.arc = 0.5 * (before.arc + low);
                 if let RingKind::Zone(begins, _) = &mut before.what {
                     *begins = Some(g);
                 }
             }
             _ => rings.push(Ring {
-                arc: group.low,
+                arc: low,
                 what: RingKind::Zone(Some(g), None),
             }),
         }
         rings.push(Ring {
-            arc: group.high,
+            arc: high,
             what: RingKind::Zone(None, Some(g)),
         });
     }
