@@ -19,7 +19,7 @@ const TURN_BACK: f32 = 0.34;
 /// Disks of rings that follow one another are clear by this factor, as in uncross.rs.
 const CLEAR: f32 = 1.05;
 /// Rings that are looked at by one task.
-const CHUNK: usize = 128;
+const CHUNK: usize = 512;
 
 /// Suspect tracing points.
 pub(super) struct Suspects {

@@ -96,21 +96,15 @@ fn spans(path: &Polyline, groups: &[Group], room: [f64; 2]) -> Vec<[f64; 2]> {
     let is_thin = |zone: &Zone| zone.radius < THIN * zone.trunk_radius;
     for g in (0..spans.len()).filter(|&g| groups[g].zones.iter().all(is_thin)) {
         let [low, high] = spans[g];
-        let least = g.checked_sub(1).map_or(room[0], |before| spans[before][1]);
-        let most = spans.get(g + 1).map_or(room[1], |after| after[0]);
+        let room = [
+            g.checked_sub(1).map_or(room[0], |before| spans[before][1]),
+            spans.get(g + 1).map_or(room[1], |after| after[0]),
+        ];
+        let before = [low - NEAR_BEND * path.radius(low), low];
+        let after = [high, high + NEAR_BEND * path.radius(high)];
         spans[g] = [
-            bend_within(
-                path,
-                [low - NEAR_BEND * path.radius(low), low],
-                [least, most],
-            )
-            .unwrap_or(low),
-            bend_within(
-                path,
-                [high, high + NEAR_BEND * path.radius(high)],
-                [least, most],
-            )
-            .unwrap_or(high),
+            bend_within(path, before, room).unwrap_or(low),
+            bend_within(path, after, room).unwrap_or(high),
         ];
     }
     spans
