@@ -7,7 +7,7 @@ use neurotess_morphology::{Morphology, Soma};
 
 use crate::prepare::SomaSphere;
 use crate::rings::{self, PlacedRing, RingRequests};
-use crate::skeleton::{Root, Skeleton, SkeletonNode};
+use crate::skeleton::{Root, Skeleton};
 use crate::soma::insertion_quads::Insertion;
 use crate::soma::{self, SomaRequest, SomaSurface};
 use crate::stop::Stop;
@@ -231,7 +231,7 @@ fn build_one(
 ) -> BuiltSoma {
     let insertions: Vec<Insertion> = nodes
         .iter()
-        .map(|&n| insertion(skeleton.node(n), &soma_sphere))
+        .map(|&n| insertion(skeleton, n, &soma_sphere))
         .collect();
     let request = SomaRequest {
         center: soma_sphere.center,
@@ -253,13 +253,20 @@ fn build_one(
     BuiltSoma { surface, report }
 }
 
-fn insertion(node: &SkeletonNode, soma_sphere: &SomaSphere) -> Insertion {
+fn insertion(skeleton: &Skeleton, ring: u32, soma_sphere: &SomaSphere) -> Insertion {
+    let node = skeleton.node(ring);
     let offset = node.center - soma_sphere.center;
+    let distance = offset.length();
+    let next = skeleton.children().of(ring).first();
+    let next = next.map_or(distance, |&next| {
+        skeleton.node(next).center.distance(soma_sphere.center)
+    });
     Insertion {
         direction: offset.try_normalize().unwrap_or(DVec3::Y),
-        distance: offset.length(),
+        distance,
         radius: node.radius,
         inset: node.marks.on_soma,
+        highest: distance.max(next - node.radius),
     }
 }
 

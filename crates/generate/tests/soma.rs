@@ -215,6 +215,39 @@ fn crowded_and_thick_neurites_fold_nothing() {
     }
 }
 
+/// Beside a thick dendrite the soma is pulled out: the ring of a thin neurite stands over that, not in a pit.
+#[test]
+fn a_thin_neurite_stands_over_what_its_neighbor_pulls_out() {
+    let (thick, thin) = (vec3(0.0, 1.0, 0.0), vec3(0.0, 0.89, 0.45));
+    let mut m = cell(&[thick, thin], 12.0, 0.3);
+    for point in &mut m.points[..4] {
+        point.radius = 1.6;
+    }
+    let mesh = generate(&m, &GenerateOptions::default())
+        .expect("meshed")
+        .mesh;
+    let is_ring = |v: u32| {
+        let tracing = mesh.vertices[v as usize].tracing;
+        mesh.tracing[tracing as usize].role == Role::Inset
+    };
+    let lofts = mesh.patches.iter().filter(|p| p.kind == PatchKind::Loft);
+    let corners: Vec<u32> = lofts.flat_map(|p| p.corners).collect();
+    let (ring, quad): (Vec<u32>, Vec<u32>) = corners.into_iter().partition(|&v| is_ring(v));
+    assert_eq!([ring.len(), quad.len()], [8, 8]);
+    let heights = |vertices: &[u32]| -> Vec<f32> {
+        let positions = vertices.iter().map(|&v| mesh.vertices[v as usize].position);
+        positions.map(Vec3::length).collect()
+    };
+    let mean = heights(&quad).iter().sum::<f32>() / 8.0;
+    assert!(mean > 5.3, "pulled out to {mean}");
+    for height in heights(&ring) {
+        assert!(
+            (0.1..0.6).contains(&(height - mean)),
+            "{height} over {mean}"
+        );
+    }
+}
+
 #[test]
 fn far_first_points_are_bridged_and_inner_ones_left_out() {
     let far = generate(&cell(&five(), 40.0, 0.5), &GenerateOptions::default()).expect("meshed");

@@ -12,6 +12,8 @@ pub(super) const LEAST_STEEP: f64 = 0.5;
 const COLLAR: f64 = 0.7;
 /// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
 const MOST_SHEAR: f64 = 2.2;
+/// Places along a branch where it is looked whether its trunk comes near it again.
+const TOP_STEPS: u32 = 8;
 
 /// Length (µm) over which lofts run along a branch that stands so high over its trunk; `steep`: cosine of
 /// the angle between the two's directions.
@@ -64,7 +66,8 @@ impl InsetSite {
         let radials = [-ahead - left, -ahead + left, ahead + left, ahead - left]
             .map(|side| side * FRAC_1_SQRT_2);
         let height = self.lift * self.radius;
-        let heights = radials.map(|side| self.height(trunk, side * self.radius, height));
+        let top = self.top(trunk, height);
+        let heights = radials.map(|side| self.height(trunk, side * self.radius, height, top));
         let mean = heights.iter().sum::<f64>() / 4.0;
         let most = MOST_SHEAR * self.radius;
         let mut corners = [DVec3::ZERO; 4];
@@ -85,10 +88,29 @@ impl InsetSite {
         }
     }
 
+    /// Way along the branch from the exit's plane to where it is well clear of the trunk, and not yet near another
+    /// part of it that bends back over the branch.
+    fn top(&self, trunk: &[RoundCone], height: f64) -> f64 {
+        let most = 4.0 * self.radius + 2.0 * height;
+        let (mut before, mut farthest, mut top) = (0.0, 0.0, most);
+        for step in 1..=TOP_STEPS {
+            let up = most * f64::from(step) / f64::from(TOP_STEPS);
+            let away = distance(trunk, self.exit + self.direction * up);
+            if away < before && away < self.radius + height {
+                return top;
+            }
+            if away > farthest {
+                (farthest, top) = (away, up);
+            }
+            before = away;
+        }
+        most
+    }
+
     /// Way along the branch from the exit's plane to where a line beside the axis is this high over the
-    /// trunk, by sphere tracing from outside.
-    fn height(&self, trunk: &[RoundCone], beside: DVec3, height: f64) -> f64 {
-        let mut up = 4.0 * self.radius + 2.0 * height;
+    /// trunk, by sphere tracing from outside: from this far along the branch.
+    fn height(&self, trunk: &[RoundCone], beside: DVec3, height: f64, top: f64) -> f64 {
+        let mut up = top;
         for _ in 0..80 {
             let above = distance(trunk, self.exit + beside + self.direction * up) - height;
             if above.abs() < 1e-6 * self.radius {
@@ -139,6 +161,28 @@ mod tests {
             assert!((b - a).cross(d - a).dot(site.direction) > 0.0);
             // The first two corners are those behind.
             assert!((a.x + b.x) < (shape.corners[2].x + d.x));
+        }
+    }
+    #[test]
+    fn ring_stands_below_what_bends_back_over_it() {
+        let along = [-20.0, 20.0].map(|x| DVec3::new(x, 0.0, 0.0));
+        let over = [-20.0, 20.0].map(|z| DVec3::new(0.0, 3.2, z));
+        let trunk = [
+            RoundCone::new(along, [1.0; 2]),
+            RoundCone::new(over, [0.8; 2]),
+        ];
+        let site = InsetSite {
+            exit: DVec3::new(0.0, 1.0, 0.0),
+            direction: DVec3::Y,
+            radius: 0.4,
+            lift: 0.4,
+            along: DVec3::X,
+        };
+        for corner in site.shape(&trunk).corners {
+            assert!(
+                (distance(&trunk[..1], corner) - 0.16).abs() < 1e-5,
+                "{corner}"
+            );
         }
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct Insertion {
     pub(crate) radius: f64,
     /// Whether the ring stands over its quad, which stays in the surface, instead of taking its corners.
     pub(crate) inset: bool,
+    /// Distance up to which such a ring may be raised, where others pull the surface out.
+    pub(crate) highest: f64,
 }
 
 /// Distance of the corners of an inset's quad from its neurite's axis, in radii of the neurite: half the
@@ -32,6 +34,20 @@ impl Insertion {
     /// Angle that an inset's quad takes.
     pub(crate) fn quad_angle(&self) -> f64 {
         (QUAD_REACH * self.radius / self.distance).atan()
+    }
+
+    /// Raises an inset's ring until its corners are `lift` over the surface, whose corners of the ring's quad are
+    /// at these distances from the soma's center, as far as it may.
+    pub(crate) fn raise(&mut self, quad: [f64; 4], lift: f64) {
+        let middle = quad.iter().sum::<f64>() / 4.0;
+        let slope = quad
+            .iter()
+            .fold(0.0, |most, height| f64::max(most, height - middle));
+        let corners = middle + slope / QUAD_REACH + lift;
+        let over = (corners * corners - self.radius * self.radius)
+            .max(0.0)
+            .sqrt();
+        self.distance = over.min(self.highest).max(self.distance);
     }
 
     /// Angle that nothing else may be in.
@@ -288,6 +304,7 @@ mod tests {
             distance: 1.2,
             radius,
             inset: false,
+            highest: 1.2,
         }
     }
 

@@ -23,6 +23,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{DMat3, DVec3};
 
+use crate::rings;
 use crate::{SomaMethod, SphereKind};
 use elasticity::Elasticity;
 use insertion_quads::{Insertion, InsertionQuads};
@@ -274,16 +275,20 @@ fn deform(
     // What stands off the surface: rings of insets.
     let mut lifted = Vec::new();
     let mut insets = vec![None; rings.len()];
+    let mut insertions = insertions.to_vec();
     for ((ring, goals), (insertion, inset)) in rings
         .iter_mut()
         .zip(&warp.rings)
-        .zip(insertions.iter().zip(&mut insets))
+        .zip(insertions.iter_mut().zip(&mut insets))
     {
         if insertion.inset {
+            let heights = ring.map(|v| nodes[v as usize].length() * request.radius);
+            insertion.raise(heights, rings::SOMA_LIFT * insertion.radius);
+            let reach = insertion.distance.hypot(insertion.radius);
             *inset = Some(*ring);
             let first = (sphere.surface + lifted.len()) as u32;
             *ring = [0, 1, 2, 3].map(|k| first + k);
-            lifted.extend_from_slice(goals);
+            lifted.extend(goals.map(|goal| goal.normalize_or_zero() * reach));
             continue;
         }
         for (&vertex, &goal) in ring.iter().zip(goals) {
@@ -322,7 +327,7 @@ fn deform(
         quads,
         rings,
         insets,
-        insertions: insertions.to_vec(),
+        insertions,
         shrunk: 0,
         turned: 0,
         misfits: usize::from(insertion_quads.worst > 1.5 * width),
