@@ -164,6 +164,11 @@ impl ForkTrials {
         sound.filter(|&fork| self.is_sound(fork))
     }
 
+    /// How many forks are judged.
+    pub(crate) fn forks(&self) -> usize {
+        self.trials.len()
+    }
+
     /// The present choice of a fork and all others that may be as sound.
     pub(crate) fn alternatives(&self, fork: u32) -> Vec<(ChoiceNumber, ForkChoice)> {
         let Some(trial) = self.trials.get(&fork) else {
