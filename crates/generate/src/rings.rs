@@ -32,6 +32,12 @@ pub(crate) const SOMA_LIFT: f64 = 0.4;
 /// A path that turns back towards the soma ends a ring's way: least cosine to the ray.
 const LEAST_OUTWARDS: f64 = 0.5;
 
+/// Distance of an inset's ring from the soma's center, whose corners stand over a surface at such a distance.
+pub(crate) fn over_surface(surface: f64, radius: f64) -> f64 {
+    let corners = surface + SOMA_LIFT * radius;
+    (corners * corners - radius * radius).max(0.0).sqrt()
+}
+
 /// Requested positions of first rings.
 pub(crate) struct RingRequests<'a> {
     /// Number of each section's neurite.
@@ -237,8 +243,7 @@ impl<'a> Stem<'a> {
         if radius >= THIN * soma {
             return None;
         }
-        let lifted = soma + SOMA_LIFT * radius;
-        let at = (lifted * lifted - radius * radius).sqrt();
+        let at = over_surface(soma, radius);
         if self.distance >= at + radius {
             let site = self.on_ray(at);
             return Some(Site {

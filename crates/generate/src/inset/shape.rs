@@ -163,6 +163,7 @@ mod tests {
             assert!((a.x + b.x) < (shape.corners[2].x + d.x));
         }
     }
+
     #[test]
     fn ring_stands_below_what_bends_back_over_it() {
         let along = [-20.0, 20.0].map(|x| DVec3::new(x, 0.0, 0.0));

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::{DMat3, DQuat, DVec3};
 
 use super::sphere::Sphere;
+use crate::rings;
 
 /// Where a neurite leaves the soma.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,17 +37,17 @@ impl Insertion {
         (QUAD_REACH * self.radius / self.distance).atan()
     }
 
-    /// Raises an inset's ring until its corners are `lift` over the surface, whose corners of the ring's quad are
-    /// at these distances from the soma's center, as far as it may.
-    pub(crate) fn raise(&mut self, quad: [f64; 4], lift: f64) {
+    /// Distance of the ring's corners from the soma's center.
+    pub(crate) fn reach(&self) -> f64 {
+        self.distance.hypot(self.radius)
+    }
+
+    /// Raises an inset's ring over the surface, as far as it may. `quad`: distances of the corners of its quad from the
+    /// soma's center.
+    pub(crate) fn raise(&mut self, quad: [f64; 4]) {
         let middle = quad.iter().sum::<f64>() / 4.0;
-        let slope = quad
-            .iter()
-            .fold(0.0, |most, height| f64::max(most, height - middle));
-        let corners = middle + slope / QUAD_REACH + lift;
-        let over = (corners * corners - self.radius * self.radius)
-            .max(0.0)
-            .sqrt();
+        let slope = quad.into_iter().fold(middle, f64::max) - middle;
+        let over = rings::over_surface(middle + slope / QUAD_REACH, self.radius);
         self.distance = over.min(self.highest).max(self.distance);
     }
 

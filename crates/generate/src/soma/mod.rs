@@ -13,6 +13,7 @@
 
 mod cholesky;
 pub(crate) mod elasticity;
+mod flow;
 pub(crate) mod insertion_quads;
 mod profile;
 pub(crate) mod sphere;
@@ -21,14 +22,13 @@ mod warp;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use crate::rings;
 use crate::{SomaMethod, SphereKind};
 use elasticity::Elasticity;
+use flow::Flow;
 use insertion_quads::{Insertion, InsertionQuads};
 use sphere::Sphere;
-use warp::Warp;
 
 /// A soma's surface in µm.
 pub(crate) struct SomaSurface {
@@ -283,16 +283,15 @@ fn deform(
     {
         if insertion.inset {
             let heights = ring.map(|v| nodes[v as usize].length() * request.radius);
-            insertion.raise(heights, rings::SOMA_LIFT * insertion.radius);
-            let reach = insertion.distance.hypot(insertion.radius);
+            insertion.raise(heights);
             *inset = Some(*ring);
             let first = (sphere.surface + lifted.len()) as u32;
             *ring = [0, 1, 2, 3].map(|k| first + k);
-            lifted.extend(goals.map(|goal| goal.normalize_or_zero() * reach));
+            lifted.extend(goals.map(|goal| goal * insertion.reach()));
             continue;
         }
         for (&vertex, &goal) in ring.iter().zip(goals) {
-            nodes[vertex as usize] = goal / request.radius;
+            nodes[vertex as usize] = goal * insertion.reach() / request.radius;
         }
     }
     let taken: Vec<bool> = {
@@ -359,7 +358,7 @@ fn pull(
     let mut prescribed = Vec::with_capacity(4 * insertions.len());
     let pulled = insertion_quads.quads.iter().zip(insertions);
     for (&quad, insertion) in pulled.filter(|(_, insertion)| !insertion.inset) {
-        let reach = insertion.distance.hypot(insertion.radius) / request.radius;
+        let reach = insertion.reach() / request.radius;
         for vertex in sphere.quads[quad] {
             prescribed.push((vertex, sphere.nodes[vertex as usize] * (reach - 1.0)));
         }
@@ -377,47 +376,4 @@ fn pull(
         .zip(displacement)
         .map(|(&x, u)| x + u)
         .collect()
-}
-
-/// Rotation and warp together, and the rings' corners in µm about the soma's center.
-struct Flow {
-    rotation: DMat3,
-    warp: Option<Warp>,
-    rings: Vec<[DVec3; 4]>,
-}
-
-/// Steps of the flow: more changes the result by less than a hundredth of a quad.
-const FLOW_STEPS: usize = 6;
-
-impl Flow {
-    fn new(sphere: &Sphere, insertion_quads: &InsertionQuads, insertions: &[Insertion]) -> Self {
-        let (mut from, mut to, mut rings) = (Vec::new(), Vec::new(), Vec::new());
-        for (&quad, insertion) in insertion_quads.quads.iter().zip(insertions) {
-            let corners = sphere.quads[quad].map(|v| sphere.nodes[v as usize]);
-            let corners = warp::rotate(insertion_quads.rotation, corners);
-            let goals = warp::ring_directions(insertion.direction, insertion.angle(), corners);
-            from.extend(corners);
-            to.extend(match insertion.inset {
-                true => warp::ring_directions(insertion.direction, insertion.quad_angle(), corners),
-                false => goals,
-            });
-            let reach = insertion.distance.hypot(insertion.radius);
-            rings.push(goals.map(|goal| goal * reach));
-        }
-        let width = 2.5 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
-        let warp = Warp::new(&from, &to, width, FLOW_STEPS);
-        Self {
-            rotation: insertion_quads.rotation,
-            warp,
-            rings,
-        }
-    }
-
-    fn apply(&self, point: DVec3) -> DVec3 {
-        let point = self.rotation * point;
-        match (&self.warp, point.try_normalize()) {
-            (Some(warp), Some(direction)) => warp.apply(direction) * point.length(),
-            _ => point,
-        }
-    }
 }
