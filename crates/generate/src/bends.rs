@@ -1,9 +1,9 @@
-//! Two rings instead of one where a path turns back.
+//! Two rings instead of one where a path turns sharply.
 //!
 //! ```text
-//!   ──────────►╮ a        One ring cannot turn a tube by more than 120° without a fold: the tube's outer
-//!              │          side is folded at the ring by as much as the path turns. Two rings, beside
-//!   ◄──────────╯ b        the traced point along the bisector's normal, take half of the turn each.
+//!   ──────────►╮ a        One ring, across the bisector, narrows the tube by the cosine of half the turn,
+//!              │          and beyond 120° folds it on the outer side. Two rings, beside the traced point
+//!   ◄──────────╯ b        along the bisector's normal, take half of the turn each.
 //! ```
 //!
 //! The tip stays where it was traced, and the rings are so far apart that they do not cross.
@@ -12,15 +12,14 @@ use glam::DVec3;
 
 use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 
-/// Turns sharper than this get two rings: cosine of 105°.
-const SHARP: f64 = -0.26;
-/// Both neighbors are at least this many radii away, so that there is room for two rings; or so many if
-/// they are sharp bends themselves: where a path goes to and fro, two rings would be in the way of the next
-/// two.
-const LEAST_WAY: f64 = 2.0;
-const LEAST_WAY_BETWEEN: f64 = 3.2;
+/// Turns sharper than this get two rings: cosine of 60°, where one ring would narrow the tube by 13 %.
+const SHARP: f64 = 0.5;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
+/// So many radii are left to a neighbor beside the rings that stand between, which count `LEAST_WAY_PER_REACH`
+/// times: where a path goes to and fro, the rings of two sharp bends would be in the way of each other.
+const LEAST_WAY: f64 = 1.0;
+const LEAST_WAY_PER_REACH: f64 = 1.4;
 
 /// Splits the nodes of sharp bends in two. `orientations`: one per node, before and after.
 pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<DVec3>) {
@@ -78,15 +77,16 @@ impl Bend {
         if node.root != Root::Free || node.marks.of_zone() {
             return None;
         }
-        let around = [node.parent, skeleton.children().of(index)[0]];
+        let own_reach = reach(incoming, outgoing);
         let near = |neighbor: u32| {
-            let least = match sharp_turn(skeleton, neighbor) {
-                Some(_) => LEAST_WAY_BETWEEN,
-                None => LEAST_WAY,
-            };
+            let other_reach = sharp_turn(skeleton, neighbor).map_or(0.0, |(a, b)| reach(a, b));
+            let least = LEAST_WAY + LEAST_WAY_PER_REACH * (own_reach + other_reach);
             node.center.distance(skeleton.node(neighbor).center) < least * node.radius
         };
-        if around.into_iter().any(near) {
+        if [node.parent, skeleton.children().of(index)[0]]
+            .into_iter()
+            .any(near)
+        {
             return None;
         }
         let tip = (incoming - outgoing).try_normalize()?;
@@ -96,19 +96,23 @@ impl Bend {
             false => orientations[index as usize],
         };
         let along = (along - tip * along.dot(tip)).try_normalize()?;
-        let turn = incoming.angle_between(outgoing);
-        // Rings r sin γ / cos(γ / 2) apart, γ = turn / 2 the angle between them, touch: uncross.rs.
-        let apart = CLEAR * node.radius * (0.5 * turn).sin() / (0.25 * turn).cos();
         let halfway = |a: DVec3, b: DVec3| (a + b).try_normalize().unwrap_or(along);
         Some(Self {
             node: index,
-            aside: along * (0.5 * apart),
+            aside: along * (own_reach * node.radius),
             orientations: [halfway(incoming, along), halfway(along, outgoing)],
         })
     }
 }
 
-/// Directions into and out of a node of a path that turns back there.
+/// How far each of a bend's two rings stands from the traced point, in radii. Rings r sin γ / cos(γ / 2) apart,
+/// where γ, half the turn, is the angle between them, touch: `uncross.rs`.
+fn reach(incoming: DVec3, outgoing: DVec3) -> f64 {
+    let between = 0.5 * incoming.angle_between(outgoing);
+    0.5 * CLEAR * between.sin() / (0.5 * between).cos()
+}
+
+/// Directions into and out of a node of a path that turns sharply there.
 fn sharp_turn(skeleton: &Skeleton, index: u32) -> Option<(DVec3, DVec3)> {
     let node = skeleton.node(index);
     let &[child] = skeleton.children().of(index) else {
