@@ -6,7 +6,9 @@
 //!   ◄──────────╯ b        along the bisector's normal, take half of the turn each.
 //! ```
 //!
-//! The tip stays where it was traced, and the rings are so far apart that they do not cross.
+//! The rings are so far apart that they do not cross. Halfway between them the tip stays where it was traced if the
+//! path turns back. If it turns by less, both rings stand aside of its two legs; they move inwards, as far as a
+//! perpendicular to the leg leads them, so that the tube is neither much thicker there nor cuts its corner.
 
 use glam::DVec3;
 
@@ -41,11 +43,11 @@ pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<
         match bends.next_if(|bend| bend.node == index) {
             Some(bend) => {
                 nodes.push(SkeletonNode {
-                    center: node.center - bend.aside,
+                    center: node.center + bend.inward - bend.aside,
                     ..node
                 });
                 nodes.push(SkeletonNode {
-                    center: node.center + bend.aside,
+                    center: node.center + bend.inward + bend.aside,
                     parent: nodes.len() as u32 - 1,
                     ..node
                 });
@@ -65,7 +67,9 @@ pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<
 
 struct Bend {
     node: u32,
-    /// From the traced point to the second ring, and back to the first.
+    /// From the traced point to halfway between both rings.
+    inward: DVec3,
+    /// From there to the second ring, and back to the first.
     aside: DVec3,
     orientations: [DVec3; 2],
 }
@@ -96,10 +100,14 @@ impl Bend {
             false => orientations[index as usize],
         };
         let along = (along - tip * along.dot(tip)).try_normalize()?;
+        let aside = own_reach * node.radius;
+        // With β, half the turn, the angle between `along` and the leg, the ring is sin β × `aside` off the leg.
+        let inward = 0.5 * incoming.angle_between(outgoing).sin() * aside;
         let halfway = |a: DVec3, b: DVec3| (a + b).try_normalize().unwrap_or(along);
         Some(Self {
             node: index,
-            aside: along * (own_reach * node.radius),
+            inward: tip * -inward,
+            aside: along * aside,
             orientations: [halfway(incoming, along), halfway(along, outgoing)],
         })
     }
