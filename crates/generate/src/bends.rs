@@ -10,6 +10,8 @@
 //! path turns back. If it turns by less, both rings stand aside of its two legs; they move inwards, as far as a
 //! perpendicular to the leg leads them, so that the tube is neither much thicker there nor cuts its corner.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
@@ -18,16 +20,17 @@ use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 const SHARP: f64 = 0.5;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
-/// So many radii are left to a neighbor beside the rings that stand between, which count `LEAST_WAY_PER_REACH`
-/// times: where a path goes to and fro, the rings of two sharp bends would be in the way of each other.
+/// A neighbor is at least this many radii away, and this many times as far as rings that stand between are from their
+/// traced points: where a path goes to and fro, the rings of two sharp bends would be in the way of each other.
 const LEAST_WAY: f64 = 1.0;
-const LEAST_WAY_PER_REACH: f64 = 1.4;
+const LEAST_WAY_PER_ASIDE: f64 = 1.4;
 
 /// Splits the nodes of sharp bends in two. `orientations`: one per node, before and after.
 pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<DVec3>) {
-    let bends: Vec<Bend> = (0..skeleton.nodes().len() as u32)
+    let bends = (0..skeleton.nodes().len() as u32)
         .filter_map(|node| Bend::new(skeleton, orientations, node))
         .collect();
+    let bends = with_room(skeleton, bends);
     if bends.is_empty() {
         return;
     }
@@ -65,8 +68,32 @@ pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<
     *orientations = turned;
 }
 
+/// The bends whose rings have room beside their neighbors and those of sharper bends, by node.
+fn with_room(skeleton: &Skeleton, mut bends: Vec<Bend>) -> Vec<Bend> {
+    bends.sort_by(|a, b| b.turn.total_cmp(&a.turn).then(a.node.cmp(&b.node)));
+    let mut asides: HashMap<u32, f64> = HashMap::new();
+    bends.retain(|bend| {
+        let node = skeleton.node(bend.node);
+        let own = bend.aside.length();
+        let near = |neighbor: u32| {
+            let asides = own + asides.get(&neighbor).unwrap_or(&0.0);
+            let least = LEAST_WAY * node.radius + LEAST_WAY_PER_ASIDE * asides;
+            node.center.distance(skeleton.node(neighbor).center) < least
+        };
+        let has_room = !near(node.parent) && !near(skeleton.children().of(bend.node)[0]);
+        if has_room {
+            asides.insert(bend.node, own);
+        }
+        has_room
+    });
+    bends.sort_by_key(|bend| bend.node);
+    bends
+}
+
 struct Bend {
     node: u32,
+    /// By which angle the path turns.
+    turn: f64,
     /// From the traced point to halfway between both rings.
     inward: DVec3,
     /// From there to the second ring, and back to the first.
@@ -81,18 +108,6 @@ impl Bend {
         if node.root != Root::Free || node.marks.of_zone() {
             return None;
         }
-        let own_reach = reach(incoming, outgoing);
-        let near = |neighbor: u32| {
-            let other_reach = sharp_turn(skeleton, neighbor).map_or(0.0, |(a, b)| reach(a, b));
-            let least = LEAST_WAY + LEAST_WAY_PER_REACH * (own_reach + other_reach);
-            node.center.distance(skeleton.node(neighbor).center) < least * node.radius
-        };
-        if [node.parent, skeleton.children().of(index)[0]]
-            .into_iter()
-            .any(near)
-        {
-            return None;
-        }
         let tip = (incoming - outgoing).try_normalize()?;
         let along = incoming + outgoing;
         let along = match along.length() > 0.1 {
@@ -100,24 +115,20 @@ impl Bend {
             false => orientations[index as usize],
         };
         let along = (along - tip * along.dot(tip)).try_normalize()?;
-        let aside = own_reach * node.radius;
+        let turn = incoming.angle_between(outgoing);
+        // Rings r sin γ / cos(γ / 2) apart, γ = turn / 2 the angle between them, touch: uncross.rs.
+        let aside = 0.5 * CLEAR * node.radius * (0.5 * turn).sin() / (0.25 * turn).cos();
         // With β, half the turn, the angle between `along` and the leg, the ring is sin β × `aside` off the leg.
-        let inward = 0.5 * incoming.angle_between(outgoing).sin() * aside;
+        let inward = 0.5 * turn.sin() * aside;
         let halfway = |a: DVec3, b: DVec3| (a + b).try_normalize().unwrap_or(along);
         Some(Self {
             node: index,
+            turn,
             inward: tip * -inward,
             aside: along * aside,
             orientations: [halfway(incoming, along), halfway(along, outgoing)],
         })
     }
-}
-
-/// How far each of a bend's two rings stands from the traced point, in radii. Rings r sin γ / cos(γ / 2) apart,
-/// where γ, half the turn, is the angle between them, touch: `uncross.rs`.
-fn reach(incoming: DVec3, outgoing: DVec3) -> f64 {
-    let between = 0.5 * incoming.angle_between(outgoing);
-    0.5 * CLEAR * between.sin() / (0.5 * between).cos()
 }
 
 /// Directions into and out of a node of a path that turns sharply there.
