@@ -18,6 +18,8 @@ use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 
 /// Turns sharper than this get two rings: cosine of 60°, where one ring would narrow the tube by 13 %.
 const SHARP: f64 = 0.5;
+/// One ring folds the tube where it turns by more than this: 105°.
+const FOLDED: f64 = 1.83;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
 /// A neighbor is at least this many radii away, and this many times as far as rings that stand between are from their
@@ -71,7 +73,11 @@ pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<
 /// The bends whose rings have room beside their neighbors and those of sharper bends, by node.
 fn with_room(skeleton: &Skeleton, mut bends: Vec<Bend>) -> Vec<Bend> {
     bends.sort_by(|a, b| b.turn.total_cmp(&a.turn).then(a.node.cmp(&b.node)));
-    let mut asides: HashMap<u32, f64> = HashMap::new();
+    // Of bends with two rings, and of those that are folded by one.
+    let folded = bends.iter().filter(|bend| bend.turn > FOLDED);
+    let mut asides: HashMap<u32, f64> = folded
+        .map(|bend| (bend.node, bend.aside.length()))
+        .collect();
     bends.retain(|bend| {
         let node = skeleton.node(bend.node);
         let own = bend.aside.length();

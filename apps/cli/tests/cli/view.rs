@@ -63,15 +63,16 @@ fn a_window_that_is_terminated_remembers_its_settings() {
         display.screenshot("ended") > 300
     });
     display.focus();
-    display.xdotool("key y");
-    let mut line = String::new();
     let mut errors = std::io::BufReader::new(child.stderr.take().expect("its errors"));
-    while !line.contains("SetYDown(true)") {
-        line.clear();
-        assert!(errors.read_line(&mut line).expect("text") > 0, "it goes on");
+    let mut line = String::new();
+    // A command is printed before it runs, and the next one after that.
+    for (key, command) in [("key y", "SetYDown(true)"), ("key o", "SetOrthographic")] {
+        display.xdotool(key);
+        while !line.contains(command) {
+            line.clear();
+            assert!(errors.read_line(&mut line).expect("text") > 0, "it goes on");
+        }
     }
-    // The command is printed before it runs: half a second is too short on a machine with other work.
-    sleep(Duration::from_millis(3000));
     let id = child.id().to_string();
     let mut kill = std::process::Command::new("kill");
     assert!(
