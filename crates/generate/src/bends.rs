@@ -18,7 +18,8 @@ use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 
 /// Turns sharper than this get two rings: cosine of 60°, where one ring would narrow the tube by 13 %.
 const SHARP: f64 = 0.5;
-/// One ring folds the tube where it turns by more than this: 105°.
+/// Turns by more than this, 105°, fold a tube with one ring. They are given room even if they have none for two rings:
+/// in a zigzag, every other bend with two rings would be in the way of the others.
 const FOLDED: f64 = 1.83;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
@@ -73,7 +74,7 @@ pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<
 /// The bends whose rings have room beside their neighbors and those of sharper bends, by node.
 fn with_room(skeleton: &Skeleton, mut bends: Vec<Bend>) -> Vec<Bend> {
     bends.sort_by(|a, b| b.turn.total_cmp(&a.turn).then(a.node.cmp(&b.node)));
-    // Of bends with two rings, and of those that are folded by one.
+    // How much room bends take: those that get two rings, and those that one ring folds.
     let folded = bends.iter().filter(|bend| bend.turn > FOLDED);
     let mut asides: HashMap<u32, f64> = folded
         .map(|bend| (bend.node, bend.aside.length()))
