@@ -6,9 +6,9 @@
 //!   ◄──────────╯ b        along the bisector's normal, take half of the turn each.
 //! ```
 //!
-//! The rings are so far apart that they do not cross. Halfway between them the tip stays where it was traced if the
-//! path turns back. If it turns by less, both rings stand aside of its two legs; they move inwards, as far as a
-//! perpendicular to the leg leads them, so that the tube is neither much thicker there nor cuts its corner.
+//! The rings are so far apart that they do not cross. Where the path turns back, the tip stays where it was traced.
+//! Where it turns by less, rings beside the traced point are outside of both legs, and the tube would be too thick
+//! there; on the legs they would cut the corner. So they move a part of the way inwards.
 
 use std::collections::HashMap;
 
@@ -18,9 +18,10 @@ use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 
 /// Turns sharper than this get two rings: cosine of 60°, where one ring would narrow the tube by 13 %.
 const SHARP: f64 = 0.5;
-/// Turns by more than this, 105°, fold a tube with one ring. They are given room even if they have none for two rings:
-/// in a zigzag, every other bend with two rings would be in the way of the others.
-const FOLDED: f64 = 1.83;
+/// At turns by more than this (radians; 105°) one ring narrows the tube by two fifths, and soon folds it. They are given
+/// room even if there is none for two rings: in a zigzag, every other bend with two rings would be in the way of the
+/// others.
+const VERY_SHARP: f64 = 1.83;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
 /// A neighbor is at least this many radii away, and this many times as far as rings that stand between are from their
@@ -74,9 +75,9 @@ pub(crate) fn split_sharp_bends(skeleton: &mut Skeleton, orientations: &mut Vec<
 /// The bends whose rings have room beside their neighbors and those of sharper bends, by node.
 fn with_room(skeleton: &Skeleton, mut bends: Vec<Bend>) -> Vec<Bend> {
     bends.sort_by(|a, b| b.turn.total_cmp(&a.turn).then(a.node.cmp(&b.node)));
-    // How much room bends take: those that get two rings, and those that one ring folds.
-    let folded = bends.iter().filter(|bend| bend.turn > FOLDED);
-    let mut asides: HashMap<u32, f64> = folded
+    // How much room bends take: those that get two rings, and the very sharp ones.
+    let very_sharp = bends.iter().filter(|bend| bend.turn > VERY_SHARP);
+    let mut asides: HashMap<u32, f64> = very_sharp
         .map(|bend| (bend.node, bend.aside.length()))
         .collect();
     bends.retain(|bend| {
@@ -99,7 +100,7 @@ fn with_room(skeleton: &Skeleton, mut bends: Vec<Bend>) -> Vec<Bend> {
 
 struct Bend {
     node: u32,
-    /// By which angle the path turns.
+    /// By which angle the path turns (radians).
     turn: f64,
     /// From the traced point to halfway between both rings.
     inward: DVec3,
@@ -125,7 +126,8 @@ impl Bend {
         let turn = incoming.angle_between(outgoing);
         // Rings r sin γ / cos(γ / 2) apart, γ = turn / 2 the angle between them, touch: uncross.rs.
         let aside = 0.5 * CLEAR * node.radius * (0.5 * turn).sin() / (0.25 * turn).cos();
-        // With β, half the turn, the angle between `along` and the leg, the ring is sin β × `aside` off the leg.
+        // With β, half the turn, the angle between `along` and the leg, the ring is `aside` sin β off the leg, of which
+        // cos β is inwards.
         let inward = 0.5 * turn.sin() * aside;
         let halfway = |a: DVec3, b: DVec3| (a + b).try_normalize().unwrap_or(along);
         Some(Self {

@@ -53,7 +53,7 @@ fn meshes_of_real_cells_have_no_handles() {
 
 #[neurotess_testing::test(needs(neurotess_testing::shared))]
 fn merging_cuts_nothing_off_where_a_neurite_turns_back() {
-    // Level and pieces that are joined again.
+    // Level, and whether pieces are joined again.
     let cases = [
         ("h5/Neuron.h5", 1, true),
         ("swc/172993.swc", 1, false),
@@ -81,6 +81,7 @@ fn merging_cuts_nothing_off_where_a_neurite_turns_back() {
         for piece in joined {
             let number = |key: &str| piece[key].as_f64().expect("a number");
             assert!(number("gap") > 0.0 && number("gap") < 16.0, "{piece}");
+            // A thousandth of the cell at most.
             let cell = mesh["volume"].as_f64().expect("a volume");
             assert!((0.0..1e-3 * cell).contains(&number("volume")), "{piece}");
         }
