@@ -33,10 +33,12 @@ def json_of(command):
 
 
 def verdict(mesh):
-    """What TetGen makes of a surface that must stay as it is."""
+    """What TetGen makes of a surface that must stay as it is. Files that it leaves go with the mesh's folder."""
     try:
         command = [sys.executable, "-c", FILL, str(mesh), "pYQ"]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=60, check=False, cwd=mesh.parent
+        )
     except subprocess.TimeoutExpired:
         return "no end in 60 s"
     last = done.stdout.strip().rsplit("\n", 1)[-1]
