@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -29,8 +30,6 @@ def circuit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def can_draw() -> bool:
     """Skips what draws where there is no adapter; with NEUROTESS_REQUIRE_GPU=1 that is a failure."""
-    import os
-
     import neurotess as nt
 
     try:
@@ -40,6 +39,19 @@ def can_draw() -> bool:
             raise
         pytest.skip(f"no graphics adapter ({error})")
     return True
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "full: run by `cargo xtask test --full` alone; CONTRIBUTING.md says why")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    if os.environ.get("NEUROTESS_FULL") == "1":
+        return
+    skipped = pytest.mark.skip(reason="full lane only: cargo xtask test --full")
+    for item in items:
+        if item.get_closest_marker("full"):
+            item.add_marker(skipped)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

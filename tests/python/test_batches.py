@@ -76,13 +76,11 @@ def test_other_threads_run_meanwhile() -> None:
 
     counter = threading.Thread(target=count)
     counter.start()
-    start = time.perf_counter()
     nt.mesh(cell, level=8)
-    took = time.perf_counter() - start
     done.set()
     counter.join()
     # A sleep is a millisecond and more; a lock held all the time would leave a count of about 1.
-    assert counted[0] > 3 or took < 0.02
+    assert counted[0] > 3
 
 
 def test_one_cell_is_shared_by_threads() -> None:

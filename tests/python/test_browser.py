@@ -18,6 +18,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.full
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 SOURCE = """import neurotess as nt

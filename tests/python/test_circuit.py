@@ -31,6 +31,7 @@ def test_nodes_are_a_table(circuit: nt.Circuit) -> None:
     assert (circuit.nodes.x == nodes.x).all()
 
 
+@pytest.mark.full
 def test_libsonata_has_the_same_nodes(circuit: nt.Circuit, circuit_folder: Path) -> None:
     libsonata = pytest.importorskip("libsonata")
     [file] = [path for path in circuit_folder.rglob("*.h5") if "nodes" in path.name]
@@ -97,6 +98,7 @@ def test_reports_are_read(circuit: nt.Circuit) -> None:
     assert pickle.loads(pickle.dumps(report)).units == report.units
 
 
+@pytest.mark.full
 def test_reports_agree_with_libsonata(circuit: nt.Circuit) -> None:
     libsonata = pytest.importorskip("libsonata")
     path = next(path for path in circuit.reports.values() if not nt.Report(path).is_of_spikes)

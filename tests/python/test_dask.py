@@ -9,6 +9,8 @@ from pathlib import Path
 import neurotess as nt
 import pytest
 
+pytestmark = pytest.mark.full
+
 OPTIONS = {"level": 6}
 
 

@@ -25,6 +25,7 @@ def same(a: nt.Morphology, b: nt.Morphology) -> None:
     assert nt.mesh(a, level=1).volume == pytest.approx(nt.mesh(b, level=1).volume, rel=1e-4)
 
 
+@pytest.mark.full
 def test_navis(cell: nt.Morphology) -> None:
     pytest.importorskip("navis")
     neuron = cell.to_navis()
@@ -34,6 +35,7 @@ def test_navis(cell: nt.Morphology) -> None:
     same(nt.Morphology.from_navis(neuron), cell)
 
 
+@pytest.mark.full
 def test_units_of_navis_are_taken_into_account(cell: nt.Morphology) -> None:
     navis = pytest.importorskip("navis")
     neuron = cell.to_navis()
@@ -47,6 +49,7 @@ def test_units_of_navis_are_taken_into_account(cell: nt.Morphology) -> None:
         same(nt.Morphology.from_navis(without), cell)
 
 
+@pytest.mark.full
 def test_morphio(cell: nt.Morphology) -> None:
     morphio = pytest.importorskip("morphio")
     theirs = cell.to_morphio()
@@ -55,6 +58,7 @@ def test_morphio(cell: nt.Morphology) -> None:
     same(nt.Morphology.from_morphio(morphio.mut.Morphology(theirs)), cell)
 
 
+@pytest.mark.full
 def test_neurom(cell: nt.Morphology) -> None:
     neurom = pytest.importorskip("neurom")
     theirs = cell.to_neurom()
@@ -66,6 +70,7 @@ def test_neurom(cell: nt.Morphology) -> None:
     same(nt.Morphology.from_neurom(theirs), cell)
 
 
+@pytest.mark.full
 def test_morphio_reads_the_same_file_alike(samples: Path) -> None:
     morphio = pytest.importorskip("morphio")
     path = samples / "granule.swc"
@@ -74,6 +79,7 @@ def test_morphio_reads_the_same_file_alike(samples: Path) -> None:
     assert np.allclose(made.points, ours.points, atol=1e-4)
 
 
+@pytest.mark.full
 def test_outlines_stay_outlines() -> None:
     pytest.importorskip("morphio")
     ring = [(np.cos(a) * 5, np.sin(a) * 5) for a in np.linspace(0, 2 * np.pi, 12, endpoint=False)]
@@ -86,6 +92,7 @@ def test_outlines_stay_outlines() -> None:
     assert again.soma.radius == pytest.approx(cell.soma.radius, rel=1e-4)
 
 
+@pytest.mark.full
 def test_meshes_go_to_navis() -> None:
     pytest.importorskip("navis")
     mesh = nt.mesh(nt.synth("granule", points=60), level=1)

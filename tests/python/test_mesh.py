@@ -211,6 +211,7 @@ def test_meshes_of_ones_own_are_checked() -> None:
         nt.Mesh.from_arrays("corners", faces, 3)  # type: ignore[misc]
 
 
+@pytest.mark.full
 def test_trimesh_agrees(mesh: nt.Mesh) -> None:
     pytest.importorskip("trimesh")
     theirs = mesh.to_trimesh()
@@ -221,6 +222,7 @@ def test_trimesh_agrees(mesh: nt.Mesh) -> None:
     assert (theirs.vertex_attributes["type"] == mesh.type).all()
 
 
+@pytest.mark.full
 def test_pyvista_agrees(mesh: nt.Mesh) -> None:
     pytest.importorskip("pyvista")
     theirs = mesh.to_pyvista()

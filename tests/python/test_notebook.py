@@ -6,6 +6,7 @@ import pytest
 
 
 @pytest.mark.usefixtures("can_draw")
+@pytest.mark.full
 def test_a_notebook_shows_pictures_and_views() -> None:
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")

@@ -80,6 +80,7 @@ def test_examples_run(example: Path, tmp_path: Path, can_draw: bool) -> None:
     assert any(tmp_path.iterdir())
 
 
+@pytest.mark.full
 def test_the_reference_is_made_without_a_warning(tmp_path: Path) -> None:
     for package in ("pdoc", "jupyter_rfb", "matplotlib", "dask"):
         pytest.importorskip(package)
@@ -92,6 +93,7 @@ def test_the_reference_is_made_without_a_warning(tmp_path: Path) -> None:
     assert "Plots" in (tmp_path / "neurotess/plot.html").read_text()
 
 
+@pytest.mark.full
 def test_types_hold() -> None:
     pytest.importorskip("mypy")
     settings = str(ROOT / "bindings/python/pyproject.toml")
@@ -102,6 +104,7 @@ def test_types_hold() -> None:
     assert checked.returncode == 0, checked.stdout
 
 
+@pytest.mark.full
 def test_the_stub_is_that_of_the_module() -> None:
     pytest.importorskip("mypy")
     checked = python("-m", "mypy.stubtest", "neurotess._neurotess", "--concise")

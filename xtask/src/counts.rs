@@ -15,9 +15,19 @@ pub(crate) struct Counts {
     failures: Vec<String>,
     /// Names of skipped tests by reason.
     reasons: BTreeMap<String, Vec<String>>,
+    /// Tests that took long: milliseconds, and the name after its program.
+    long: Vec<(u64, String)>,
 }
 
+/// How many of the slowest tests are told of.
+const SLOWEST: usize = 3;
+
 impl Counts {
+    /// Lines that follow are of this program.
+    pub(crate) fn begin(&mut self, program: &str) {
+        program.clone_into(&mut self.program);
+    }
+
     /// Takes a line of standard output or of standard error.
     pub(crate) fn hear(&mut self, line: &str) {
         let line = line.trim_end();
@@ -25,16 +35,23 @@ impl Counts {
             self.program = program;
         } else if let Some(numbers) = line.strip_prefix("test result: ") {
             self.add(numbers);
+        } else if let Some((milliseconds, name)) = took(line) {
+            self.long.push((milliseconds, self.of_program(name)));
         } else if let Some((name, outcome)) = outcome(line) {
-            let name = match &self.program {
-                program if program.is_empty() => name.to_owned(),
-                program => format!("{program}: {name}"),
-            };
+            let name = self.of_program(name);
             match skip_reason(outcome) {
                 Some(reason) => self.reasons.entry(reason.into()).or_default().push(name),
                 None if outcome == "FAILED" => self.failures.push(name),
                 None => {}
             }
+        }
+    }
+
+    /// The name of a test after its program.
+    fn of_program(&self, test: &str) -> String {
+        match &self.program {
+            program if program.is_empty() => test.to_owned(),
+            program => format!("{program}: {test}"),
         }
     }
 
@@ -61,6 +78,18 @@ impl Counts {
     /// The tests that failed, each after its program, in the order of their lines.
     pub(crate) fn failures(&self) -> &[String] {
         &self.failures
+    }
+
+    /// The slowest tests with their times, as lines.
+    pub(crate) fn slowest(&self) -> String {
+        let mut long = self.long.clone();
+        long.sort_by(|a, b| b.cmp(a));
+        let line = |(ms, name): &(u64, String)| format!("   {:.1} s: {name}\n", *ms as f64 / 1e3);
+        let lines: String = long.iter().take(SLOWEST).map(line).collect();
+        match lines.is_empty() {
+            true => lines,
+            false => format!("slowest tests\n{lines}"),
+        }
     }
 
     /// Every skipped test under its reason, as lines; nothing where none was skipped.
@@ -119,6 +148,13 @@ fn outcome(line: &str) -> Option<(&str, &str)> {
     Some((name.trim_end(), outcome))
 }
 
+/// Milliseconds and name in `took 3.214 s name`.
+fn took(line: &str) -> Option<(u64, &str)> {
+    let (seconds, name) = line.strip_prefix("took ")?.split_once(" s ")?;
+    let seconds: f64 = seconds.parse().ok()?;
+    Some(((1e3 * seconds) as u64, name))
+}
+
 /// The reason in `ignored, reason` (libtest) or `ignored (reason)` (ours).
 fn skip_reason(outcome: &str) -> Option<&str> {
     let rest = outcome.strip_prefix("ignored")?;
@@ -154,6 +190,23 @@ mod tests {
             counts.skipped_tests(),
             "1 skipped without a line of their own\n"
         );
+    }
+
+    #[test]
+    fn the_slowest_tests_are_named() {
+        let mut counts = Counts::default();
+        counts.begin("neurotess-render it");
+        assert_eq!(counts.slowest(), "");
+        for (seconds, name) in [(0.7, "a"), (11.5, "b"), (2.25, "c"), (0.5, "d")] {
+            counts.hear(&format!("took {seconds} s {name}"));
+        }
+        let text = "\
+slowest tests
+   11.5 s: neurotess-render it: b
+   2.2 s: neurotess-render it: c
+   0.7 s: neurotess-render it: a
+";
+        assert_eq!(counts.slowest(), text);
     }
 
     #[test]

@@ -8,17 +8,20 @@ use std::process::Command;
 use anyhow::{Context, bail};
 
 use crate::counts::Counts;
-use crate::python::{self, TESTS};
-use crate::steps::{cargo, root, run, run_listening, target_folder};
+use crate::lane::Lane;
+use crate::programs;
+use crate::python;
+use crate::steps::{root, run_listening, target_folder};
 
 /// The package's sources, into which the module is put, as `maturin develop` does.
 const PACKAGE: &str = "bindings/python/python";
 
 /// Sets up the environment and runs the package's tests alone.
-pub(crate) fn run_alone() -> anyhow::Result<()> {
-    println!("   {}", python::set_up(&TESTS)?);
+pub(crate) fn run_alone(lane: Lane) -> anyhow::Result<()> {
+    println!("   {}", python::set_up(python::of_tests(lane))?);
     let mut counts = Counts::default();
-    test(&mut counts)?;
+    programs::build(lane)?;
+    test(lane, &mut counts)?;
     print!("\n{}", counts.skipped_tests());
     println!("{counts}");
     match counts.failures() {
@@ -27,15 +30,15 @@ pub(crate) fn run_alone() -> anyhow::Result<()> {
     }
 }
 
-/// Builds the module and runs all tests of the package.
-pub(crate) fn test(counts: &mut Counts) -> anyhow::Result<String> {
-    let Some(python) = python::interpreter(&TESTS) else {
+/// Puts the module that was built into the package, and runs the package's tests of a lane.
+pub(crate) fn test(lane: Lane, counts: &mut Counts) -> anyhow::Result<String> {
+    let Some(python) = python::interpreter(python::of_tests(lane)) else {
         counts.hear("     Running tests/python (pytest-0)");
         counts.hear("test all ... ignored (no Python environment)");
         counts.hear("test result: ok. 0 passed; 0 failed; 1 ignored");
         return Ok("skipped: no Python environment".into());
     };
-    build()?;
+    place()?;
     let mut pytest = Command::new(python);
     pytest
         .args([
@@ -47,6 +50,7 @@ pub(crate) fn test(counts: &mut Counts) -> anyhow::Result<String> {
             "tests/python",
         ])
         .current_dir(root())
+        .envs(lane.variables())
         .env("PYTHONPATH", root().join(PACKAGE))
         // Beside the sources they would stay.
         .env("PYTHONDONTWRITEBYTECODE", "1")
@@ -60,9 +64,8 @@ pub(crate) fn test(counts: &mut Counts) -> anyhow::Result<String> {
     }
 }
 
-/// Builds the module with the features that all of the workspace has, so that nothing is built twice.
-fn build() -> anyhow::Result<()> {
-    run(&mut cargo("build --workspace --all-targets --locked"))?;
+/// Puts the extension module where Python looks for it.
+fn place() -> anyhow::Result<()> {
     let (built, named) = if cfg!(windows) {
         ("neurotess_python.dll", "_neurotess.pyd")
     } else if cfg!(target_os = "macos") {

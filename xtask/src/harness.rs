@@ -1,5 +1,5 @@
-//! Which harness runs the tests of a program: libtest, or that of `neurotess-testing`. A test of the other
-//! kind would compile and never run; this finds it.
+//! No test is left out. The programs below `tests/` are run by the harness of `neurotess-testing`: a test of
+//! libtest's would compile there and never run, as would a file that no module declares. This finds both.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,231 +9,155 @@ use anyhow::{Context, bail};
 
 use crate::steps::root;
 
-/// Registers a test with our harness.
-const OURS: &str = "#[neurotess_testing::test";
-/// Registers a test with libtest.
-const LIBTEST: &str = "#[test]";
-/// Runs our harness.
-const MAIN: &str = "neurotess_testing::main!";
-
-/// A program of tests: its root file, and whether Cargo has libtest run it.
-#[derive(Debug, PartialEq, Eq)]
-struct Program {
-    root: PathBuf,
-    libtest: bool,
-}
-
 /// An error that names each test that would never run.
 pub(crate) fn check() -> anyhow::Result<String> {
-    let mut faults = Vec::new();
-    let (mut programs, mut ours) = (0, 0);
+    let (mut faults, mut programs) = (Vec::new(), 0);
     for parent in ["crates", "apps"] {
         for package in fs::read_dir(root().join(parent)).context(parent)? {
             let package = package?.path();
             let manifest = package.join("Cargo.toml");
-            if !manifest.is_file() {
+            if !package.join("tests").is_dir() || !manifest.is_file() {
                 continue;
             }
-            let manifest = fs::read_to_string(manifest)?;
-            for program in programs_of(&package, &manifest)? {
-                programs += 1;
-                ours += u32::from(!program.libtest);
-                faults.extend(faults_of(&program)?);
-            }
+            let listed = listed(&fs::read_to_string(&manifest)?).context("a manifest")?;
+            programs += listed.len();
+            let files = files(&package.join("tests"))?;
+            let faults_here = faults_of(&files, &listed).into_iter();
+            faults.extend(faults_here.map(|fault| format!("{}: {fault}", package.display())));
         }
     }
     if !faults.is_empty() {
         faults.sort();
         bail!("{}", faults.join("\n"));
     }
-    Ok(format!(
-        "{programs} test programs, {ours} of them with our harness: no test is left out"
-    ))
+    Ok(format!("{programs} test programs leave no test out"))
 }
 
-/// The programs in the folder `tests` of a package.
-fn programs_of(package: &Path, manifest: &str) -> anyhow::Result<Vec<Program>> {
-    let manifest: toml::Table = manifest.parse().context("a manifest")?;
-    let tests = package.join("tests");
-    let mut programs = Vec::new();
-    let listed = manifest.get("test").and_then(toml::Value::as_array);
-    for test in listed.into_iter().flatten() {
-        let name = test.get("name").and_then(toml::Value::as_str);
-        let name = name.context("a [[test]] without a name")?;
-        let path = test.get("path").and_then(toml::Value::as_str);
-        let file = tests.join(name).with_extension("rs");
-        let root = match path {
-            Some(path) => package.join(path),
-            None if file.is_file() => file,
-            None => tests.join(name).join("main.rs"),
-        };
+/// A file below `tests`, from there, with its text.
+type File = (PathBuf, String);
+
+/// Names of the programs that a manifest gives to our harness.
+fn listed(manifest: &str) -> anyhow::Result<BTreeSet<String>> {
+    let manifest: toml::Table = manifest.parse()?;
+    let tests = manifest.get("test").and_then(toml::Value::as_array);
+    let ours = tests.into_iter().flatten().filter(|test| {
         let harness = test.get("harness").and_then(toml::Value::as_bool);
-        programs.push(Program {
-            root,
-            libtest: harness.unwrap_or(true),
-        });
-    }
-    // Those that Cargo finds by itself.
-    for entry in fs::read_dir(&tests).into_iter().flatten() {
-        let path = entry?.path();
-        let root = if path.is_dir() {
-            path.join("main.rs")
-        } else {
-            path
-        };
-        let is_root = root.is_file() && root.extension().is_some_and(|end| end == "rs");
-        if is_root && programs.iter().all(|program| program.root != root) {
-            let libtest = true;
-            programs.push(Program { root, libtest });
-        }
-    }
-    Ok(programs)
+        harness == Some(false)
+    });
+    let name = |test: &toml::Value| Some(test.get("name")?.as_str()?.to_owned());
+    Ok(ours.filter_map(name).collect())
 }
 
-fn faults_of(program: &Program) -> anyhow::Result<Vec<String>> {
-    let root_file = &program.root;
+/// All Rust files below a folder.
+fn files(tests: &Path) -> anyhow::Result<Vec<File>> {
+    let (mut files, mut open) = (Vec::new(), vec![tests.to_path_buf()]);
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder)? {
+            let path = entry?.path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|end| end == "rs") {
+                let text = fs::read_to_string(&path)?;
+                files.push((path.strip_prefix(tests)?.to_path_buf(), text));
+            }
+        }
+    }
+    Ok(files)
+}
+
+/// What would never run of these files, where these programs have our harness.
+fn faults_of(files: &[File], listed: &BTreeSet<String>) -> Vec<String> {
+    let lines = files.iter().flat_map(|(_, text)| text.lines());
+    let module = |line: &str| {
+        let declared = line.trim_start_matches("pub(crate) ").strip_prefix("mod ");
+        declared.and_then(|rest| Some(rest.strip_suffix(';')?.to_owned()))
+    };
+    let declared: BTreeSet<String> = lines.filter_map(|line| module(line.trim())).collect();
     let mut faults = Vec::new();
-    for file in files_of(root_file)? {
-        let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
-        let is_root = file == *root_file;
-        let place = file.strip_prefix(root()).unwrap_or(&file).display();
-        let faults_here = faults_in(&text, is_root, program.libtest);
-        faults.extend(faults_here.map(|fault| format!("{place}{fault}")));
-    }
-    Ok(faults)
-}
-
-/// Faults of one file, each after its line.
-fn faults_in(text: &str, is_root: bool, libtest: bool) -> impl Iterator<Item = String> {
-    let begins = |start: &'static str| {
-        let lines = (1..).zip(text.lines());
-        lines.filter(move |(_, line)| line.trim_start().starts_with(start))
-    };
-    let wrong = if libtest { OURS } else { LIBTEST };
-    let manifest = if libtest { "has no" } else { "has" };
-    let why = format!("would never run: the program's [[test]] {manifest} `harness = false`");
-    let left_out = begins(wrong).map(|(line, _)| format!(":{line}: {wrong} {why}"));
-    let has_main = begins(MAIN).next().is_some();
-    let main = match (libtest, has_main) {
-        (true, true) => Some(format!(": {MAIN} in a program that libtest runs")),
-        (false, false) if is_root => Some(format!(": no {MAIN}, so nothing runs its tests")),
-        _ => None,
-    };
-    left_out.chain(main).collect::<Vec<_>>().into_iter()
-}
-
-/// A root file and all modules of it that have files of their own.
-fn files_of(root_file: &Path) -> anyhow::Result<BTreeSet<PathBuf>> {
-    let mut found = BTreeSet::new();
-    let mut open = vec![root_file.to_path_buf()];
-    while let Some(file) = open.pop() {
-        let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
-        open.extend(modules(&file, &text, file == root_file));
-        found.insert(file);
-    }
-    Ok(found)
-}
-
-/// Files of the modules that a file declares.
-fn modules(file: &Path, text: &str, is_root: bool) -> Vec<PathBuf> {
-    let folder = file.parent().unwrap_or(file);
-    let own = if is_root || file.ends_with("mod.rs") {
-        folder.to_path_buf()
-    } else {
-        file.with_extension("")
-    };
-    let mut modules = Vec::new();
-    let mut path = None;
-    for line in text.lines().map(str::trim) {
-        let named = line.strip_prefix("#[path = \"");
-        if let Some(named) = named.and_then(|rest| rest.strip_suffix("\"]")) {
-            path = Some(folder.join(named));
-        } else if let Some(name) = declared(line) {
-            let flat = own.join(name).with_extension("rs");
-            let nested = own.join(name).join("mod.rs");
-            let usual = if flat.is_file() { flat } else { nested };
-            modules.push(path.take().unwrap_or(usual));
+    for (path, text) in files {
+        let place = path.display();
+        for (line, _) in (1..)
+            .zip(text.lines())
+            .filter(|(_, line)| line.trim() == "#[test]")
+        {
+            faults.push(format!(
+                "{place}:{line}: #[test] is libtest's: write #[neurotess_testing::test]"
+            ));
+        }
+        // A folder's file is known by the folder.
+        let is_folder = path.ends_with("main.rs") || path.ends_with("mod.rs");
+        let named = if is_folder {
+            path.parent()
+        } else {
+            Some(path.as_path())
+        };
+        let name = named
+            .and_then(Path::file_stem)
+            .unwrap_or_default()
+            .to_string_lossy();
+        let is_program = path.ends_with("main.rs") || path.parent() == Some(Path::new(""));
+        if is_program && !listed.contains(&*name) {
+            faults.push(format!(
+                "{place}: needs a [[test]] with `harness = false` in Cargo.toml"
+            ));
+        }
+        if !is_program && !declared.contains(&*name) {
+            faults.push(format!("{place}: no file declares `mod {name};`"));
         }
     }
-    modules
-}
-
-/// The name in `mod name;`.
-fn declared(line: &str) -> Option<&str> {
-    let (before, name) = line.strip_suffix(';')?.rsplit_once(' ')?;
-    ["mod", "pub mod", "pub(crate) mod"]
-        .contains(&before)
-        .then_some(name)
+    faults
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn faults(text: &str, libtest: bool) -> Vec<String> {
-        faults_in(text, true, libtest).collect()
+    fn faults(files: &[(&str, &str)], manifest: &str) -> Vec<String> {
+        let files: Vec<File> = files
+            .iter()
+            .map(|(path, text)| (path.into(), (*text).into()))
+            .collect();
+        faults_of(&files, &listed(manifest).expect("a manifest"))
     }
 
+    const OURS: &str = "[[test]]\nname = \"it\"\nharness = false\n";
+
     #[test]
-    fn a_test_that_its_harness_does_not_know_is_a_fault() {
-        let both =
-            "#[test]\nfn a() {}\n\nmod inner {\n    #[neurotess_testing::test(needs(gpu))]\n}\n";
-        let with_main = format!("{both}neurotess_testing::main!();\n");
-        let [fault] = &faults(&with_main, false)[..] else {
+    fn a_test_of_libtest_is_a_fault() {
+        let files = [
+            ("it/main.rs", "mod a;\n"),
+            ("it/a.rs", "fn b() {}\n    #[test]\n"),
+        ];
+        let [fault] = &faults(&files, OURS)[..] else {
             panic!("one fault");
         };
-        assert!(fault.starts_with(":1: #[test] would never run"), "{fault}");
-        let [fault] = &faults(both, true)[..] else {
-            panic!("one fault");
-        };
-        assert!(
-            fault.starts_with(":5: #[neurotess_testing::test"),
-            "{fault}"
-        );
-        assert_eq!(faults("#[test]\nfn a() {}\n", true), [""; 0]);
+        assert!(fault.starts_with("it/a.rs:2: #[test]"), "{fault}");
     }
 
     #[test]
-    fn main_stands_where_our_harness_runs() {
-        assert_eq!(faults("", false).len(), 1);
-        assert_eq!(faults("neurotess_testing::main!();", false).len(), 0);
-        assert_eq!(faults("neurotess_testing::main!();", true).len(), 1);
+    fn a_program_that_libtest_runs_is_a_fault() {
+        for manifest in ["", "[[test]]\nname = \"it\"\n"] {
+            assert_eq!(faults(&[("it/main.rs", "")], manifest).len(), 1);
+        }
+        assert_eq!(faults(&[("other.rs", "")], OURS).len(), 1);
     }
 
     #[test]
-    fn every_file_of_a_program_is_found() {
-        let here = Path::new("/tests/pictures.rs");
-        let text = "mod common;\n#[path = \"common/draw.rs\"]\nmod draw;\nmod inner {\n}\n";
-        let files = modules(here, text, true);
-        assert_eq!(
-            files,
-            [
-                Path::new("/tests/common/mod.rs"),
-                Path::new("/tests/common/draw.rs")
-            ]
-        );
-        let below = modules(
-            Path::new("/tests/cli/mesh.rs"),
-            "pub(crate) mod cell;",
-            false,
-        );
-        assert_eq!(below, [Path::new("/tests/cli/mesh/cell/mod.rs")]);
+    fn a_file_that_is_no_module_is_a_fault() {
+        let main = "#[cfg(unix)]\nmod kept;\npub(crate) mod folder;\n";
+        let files = [
+            ("it/main.rs", main),
+            ("it/kept.rs", ""),
+            ("it/folder/mod.rs", "mod inner;"),
+            ("it/folder/inner.rs", ""),
+        ];
+        assert_eq!(faults(&files, OURS), [""; 0]);
+        assert_eq!(faults(&[files[0], ("it/lost.rs", "")], OURS).len(), 1);
+        assert_eq!(faults(&[files[0], ("it/lost/mod.rs", "")], OURS).len(), 1);
     }
 
     #[test]
     fn this_workspace_leaves_no_test_out() {
         check().expect("no fault");
-    }
-
-    #[test]
-    fn manifests_say_which_harness_runs() {
-        let package = root().join("crates/testing");
-        let manifest = "[[test]]\nname = \"harness\"\nharness = false\n";
-        let programs = programs_of(&package, manifest).expect("programs");
-        let libtest: Vec<bool> = programs.iter().map(|program| program.libtest).collect();
-        assert_eq!(libtest, [false]);
-        assert!(programs[0].root.ends_with("tests/harness.rs"));
-        let programs = programs_of(&package, "").expect("programs");
-        assert!(programs[0].libtest);
     }
 }

@@ -13,11 +13,13 @@ mod counts;
 mod demo;
 mod extension;
 mod harness;
+mod lane;
 mod licenses;
 mod metadata;
 mod modules;
 mod packages;
 mod pictures;
+mod programs;
 mod python;
 mod scenery;
 mod setup;
@@ -29,40 +31,47 @@ mod wheel;
 
 use std::process::ExitCode;
 
+use lane::Lane;
+
 const USAGE: &str = "cargo xtask COMMAND
 
   demo      mesh and draw the built-in samples into out/, check the meshes, say where to look
-  test      set up, then every check: formatting, clippy, tests, docs, licenses, architecture,
-            each feature alone, packages
+  test      set up, then what every change must pass: formatting, clippy, tests, docs, licenses,
+            architecture, features; with --full everything: what takes long, other programs that read our
+            files, every feature alone, packages
   features  check each feature of the library and the command line alone
   package   pack every crate as for a registry
-  python    the Python package's tests alone
+  python    the Python package's tests alone; with --full those beside other packages, too
   wheel     the Python package as a wheel in out/wheel, with all licenses, and a trial of it in a fresh
             environment; with --from-source also `pip install bindings/python/` (builds all again)
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
             who knows whom among crates, folders and files
-  setup     a software Vulkan driver where there is none, and the Python environment in which other
-            readers check our files (where Python 3 is)
+  setup     a software Vulkan driver where there is none, a virtual display, and the Python environment
+            of the package's tests (where Python 3 is); with --full other programs that read our files
   pictures  draw the README's pictures; with --golden those that tests compare with
 ";
 
 fn main() -> ExitCode {
     let command = std::env::args().nth(1);
+    let lane = match std::env::args().any(|argument| argument == "--full") {
+        true => Lane::Full,
+        false => Lane::Quick,
+    };
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
-        Some("test") => tests::run(),
-        Some("features") => packages::features().map(|said| println!("{said}")),
+        Some("test") => tests::run(lane),
+        Some("features") => packages::features(Lane::Full).map(|said| println!("{said}")),
         Some("package") => packages::package().map(|said| println!("{said}")),
-        Some("python") => extension::run_alone(),
+        Some("python") => extension::run_alone(lane),
         Some("wheel") => {
             wheel::run_all(std::env::args().nth(2).as_deref() == Some("--from-source"))
         }
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("bench") => bench::run(),
         Some("architecture") => architecture(),
-        Some("setup") => setup::run().map(|said| println!("{said}")),
+        Some("setup") => setup::run(lane).map(|said| println!("{said}")),
         Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),
         _ => {
             println!("{USAGE}");

@@ -54,7 +54,7 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
     let mut steps = Steps::default();
     if golden {
         steps.step("golden", || {
-            let mut test = cargo("test --locked --package neurotess-render --test golden");
+            let mut test = cargo("test --locked --package neurotess-render --test it -- golden::");
             steps::run(test.env("NEUROTESS_GOLDEN", "renew"))?;
             Ok("look at the changes in crates/render/tests/golden before committing them".into())
         })?;

@@ -1,4 +1,5 @@
-//! Python environments: `.venv`, in which other people's readers check our files and our package is tested,
+//! Python environments: `.venv`, in which our package is tested and, in the full lane, other people's readers check
+//! our files,
 //! `.venv-bench`, in which other people's tools are timed beside ours, and `.venv-wheel`, which makes wheels.
 
 use std::fs;
@@ -7,6 +8,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::Context;
 
+use crate::lane::Lane;
 use crate::steps::{root, run};
 
 /// An environment: its folder, and the list of packages in it.
@@ -15,11 +17,25 @@ pub(crate) struct Environment {
     packages: &'static str,
 }
 
-/// Where tests find other people's readers.
-pub(crate) const TESTS: Environment = Environment {
+/// What the package's own tests need.
+const OWN_TESTS: Environment = Environment {
     folder: ".venv",
     packages: "tests/python/requirements.txt",
 };
+
+/// The same with other people's readers, generators, solvers.
+const ALL_TESTS: Environment = Environment {
+    folder: ".venv",
+    packages: "tests/python/requirements-full.txt",
+};
+
+/// The environment of a lane's tests.
+pub(crate) fn of_tests(lane: Lane) -> &'static Environment {
+    match lane {
+        Lane::Quick => &OWN_TESTS,
+        Lane::Full => &ALL_TESTS,
+    }
+}
 
 /// Where benchmarks find other people's tools.
 pub(crate) const BENCHMARKS: Environment = Environment {
@@ -37,7 +53,7 @@ pub(crate) const WHEEL: Environment = Environment {
 pub(crate) fn set_up(environment: &Environment) -> anyhow::Result<String> {
     let wanted = root().join(environment.packages);
     let wanted = fs::read_to_string(&wanted).context(environment.packages)?;
-    let stamp = root().join(environment.folder).join("requirements.stamp");
+    let stamp = stamp(environment);
     if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
         return Ok("the Python environment is there".into());
     }
@@ -59,10 +75,16 @@ pub(crate) fn set_up(environment: &Environment) -> anyhow::Result<String> {
 /// The environment's own interpreter, where the environment is complete.
 pub(crate) fn interpreter(environment: &Environment) -> Option<PathBuf> {
     let folder = root().join(environment.folder);
-    folder
-        .join("requirements.stamp")
+    stamp(environment)
         .exists()
         .then(|| own_interpreter(&folder))
+}
+
+/// A file that holds the list of packages once they are installed.
+fn stamp(environment: &Environment) -> PathBuf {
+    let list = Path::new(environment.packages).with_extension("stamp");
+    let name = list.file_name().unwrap_or_default();
+    root().join(environment.folder).join(name)
 }
 
 fn install(python: &str, environment: &Environment) -> anyhow::Result<()> {

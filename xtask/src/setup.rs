@@ -5,6 +5,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::lane::Lane;
 use crate::{python, steps};
 
 /// Folders in which the Vulkan loader looks for drivers on Linux.
@@ -63,15 +64,28 @@ const DISPLAY: Installed = Installed {
     is_there: has_display,
 };
 
-/// Sets up all that tests need. Returns a line about each.
-pub(crate) fn run() -> anyhow::Result<String> {
+/// What counts the instructions of work.
+const VALGRIND: Installed = Installed {
+    what: "Valgrind",
+    needed_to: "count instructions; tests of growth are skipped",
+    packages: &["valgrind"],
+    is_there: || starts("valgrind", "--version"),
+};
+
+/// Sets up all that the tests of a lane need. Returns a line about each.
+pub(crate) fn run(lane: Lane) -> anyhow::Result<String> {
+    let mut parts = vec![VULKAN, OPENGL, DISPLAY];
+    if lane == Lane::Full {
+        parts.push(VALGRIND);
+    }
     let graphics = match cfg!(target_os = "linux") {
-        true => [VULKAN, OPENGL, DISPLAY]
-            .map(|part| part.set_up())
-            .join("; "),
+        true => {
+            let parts: Vec<String> = parts.iter().map(Installed::set_up).collect();
+            parts.join("; ")
+        }
         false => "this system has graphics of its own; the window's test runs on Linux only".into(),
     };
-    let python = python::set_up(&python::TESTS)?;
+    let python = python::set_up(python::of_tests(lane))?;
     Ok(format!("{python}; {graphics}"))
 }
 

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use anyhow::Context;
 
+use crate::lane::Lane;
 use crate::steps;
 
 /// Crates with property tests or fuzzers that need no GPU.
@@ -31,7 +32,7 @@ pub(crate) fn run(minutes: Option<&str>) -> anyhow::Result<()> {
         .context("MINUTES is a number")?;
     let until = Instant::now() + Duration::from_secs(60 * minutes);
     let first = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
-    let trees = "test --release --locked -p neurotess-refine --test closed -- bushy";
+    let trees = "test --release --locked -p neurotess-refine --test it -- closed::bushy";
     let seed = first.to_string();
     run_with(
         trees,
@@ -61,5 +62,6 @@ fn run_with(arguments: &str, variables: &[(&str, &str)]) -> anyhow::Result<()> {
     for (name, value) in variables {
         println!("   {name}={value}");
     }
-    steps::run(steps::cargo(arguments).envs(variables.iter().copied()))
+    let variables = variables.iter().copied().chain(Lane::Full.variables());
+    steps::run(steps::cargo(arguments).envs(variables))
 }

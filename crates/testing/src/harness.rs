@@ -2,6 +2,8 @@
 
 use std::panic::resume_unwind;
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
 
@@ -31,6 +33,16 @@ impl Test {
     }
 
     fn attempt(&self) -> Result<Completion, Failed> {
+        let clock = Instant::now();
+        let ended = self.attempt_untimed();
+        let took = (clock.elapsed(), self.name());
+        TOOK.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(took);
+        ended
+    }
+
+    fn attempt_untimed(&self) -> Result<Completion, Failed> {
         for need in self.needs {
             let Some(reason) = need.missing() else {
                 continue;
@@ -42,6 +54,26 @@ impl Test {
         }
         failure::catch(self.run)?;
         Ok(Completion::Completed)
+    }
+}
+
+/// What the tests that ended took.
+static TOOK: Mutex<Vec<(Duration, &str)>> = Mutex::new(Vec::new());
+
+/// Tests that take less are not listed: most do, and what they take says little.
+const LISTED: Duration = Duration::from_millis(500);
+
+/// Prints what took longest, for `cargo xtask test`, which compares programs.
+#[expect(
+    clippy::print_stdout,
+    reason = "a test program reports on standard output"
+)]
+fn list_slow_tests() {
+    let mut took = std::mem::take(&mut *TOOK.lock().unwrap_or_else(PoisonError::into_inner));
+    took.retain(|(time, _)| *time >= LISTED);
+    took.sort_by(|a, b| b.cmp(a));
+    for (time, name) in took {
+        println!("took {:.3} s {name}", time.as_secs_f64());
     }
 }
 
@@ -66,5 +98,7 @@ pub fn run() -> ExitCode {
         let test = *test;
         Trial::ignorable_test(test.name(), move || joined(move || test.attempt()))
     });
-    libtest_mimic::run(&arguments, trials.collect()).exit_code()
+    let ended = libtest_mimic::run(&arguments, trials.collect());
+    list_slow_tests();
+    ended.exit_code()
 }

@@ -3,8 +3,8 @@
 //! return early and pass.
 //!
 //! Whether a test is skipped is decided when it runs, on the machine on which it runs. libtest cannot do
-//! that: `#[ignore]` is decided when the test is compiled. So a test program in which any test needs
-//! something has `harness = false` in its `Cargo.toml` and looks like this:
+//! that: `#[ignore]` is decided when the test is compiled. So each package has one test program,
+//! `tests/it/main.rs`, with `harness = false` in its `Cargo.toml`, which looks like this:
 //!
 //! ```text
 //! fn gpu() -> Result<(), String> {
@@ -24,17 +24,23 @@
 //! test that has it. With `NEUROTESS_REQUIRE_GPU=1` a test whose need `gpu` is missing fails; so with
 //! the other needs, each by its name.
 //!
-//! All other programs keep libtest. `cargo xtask test` checks that no program mixes the two.
+//! After its tests a program lists those that took longest (`took 3.214 s NAME`).
+//!
+//! Unit tests, beside the code, keep libtest. `cargo xtask test` checks that no program mixes the two.
 #![forbid(unsafe_code)]
 
 mod failure;
 mod harness;
+mod instructions;
+mod lane;
 mod need;
 mod python;
 mod shared;
 
 pub use failure::keep_note;
 pub use harness::{Test, run};
+pub use instructions::{counted_case, instructions, valgrind};
+pub use lane::{cases, full, is_full};
 pub use need::Need;
 pub use neurotess_testing_macros::test;
 pub use python::python_with;

@@ -159,7 +159,7 @@ fn radial_expansion_converges_to_lames_solution() {
 
 /// As above, a halving further: a quarter of a minute.
 #[test]
-#[ignore = "takes a quarter of a minute: cargo test -p neurotess-generate -- --ignored"]
+#[ignore = "full lane only: cargo xtask test --full"]
 fn radial_expansion_is_of_second_order() {
     let (coarse, fine) = (lame_error(3), lame_error(4));
     let order = (coarse / fine).log2();

@@ -1,0 +1,26 @@
+//! The command line as scripts see it: one test for each row of its contract.
+
+mod attacks;
+mod bench;
+mod cache;
+mod check;
+mod circuit;
+mod convert;
+mod display;
+mod help;
+mod info;
+mod inputs;
+mod kill;
+mod markers;
+mod mesh;
+mod meshes;
+mod palettes;
+mod render;
+mod resume;
+mod snudda;
+mod streams;
+mod synth;
+mod tables;
+mod values;
+mod view;
+mod view_keys;

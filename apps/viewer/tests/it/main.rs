@@ -1,0 +1,21 @@
+//! The window, driven by commands, keys and mouse.
+
+mod clamped;
+mod common;
+mod dropping;
+mod input;
+mod lists;
+mod measuring;
+mod meshes;
+mod palettes;
+mod panels;
+mod plots;
+mod rebuilds;
+mod recordings;
+mod saving;
+mod spines;
+mod static_mode;
+mod synapses;
+mod window;
+
+neurotess_testing::main!(finally: common::wait_for_threads());

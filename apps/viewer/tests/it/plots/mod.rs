@@ -1,0 +1,4 @@
+//! Plots in the window.
+
+mod measures;
+mod traces;

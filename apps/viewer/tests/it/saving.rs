@@ -1,0 +1,107 @@
+//! Saving goes on beside the window, says how far it is, and stops at once.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui_kittest::kittest::{NodeT, Queryable};
+use neurotess::synth::Kind;
+use neurotess_testing::note;
+use neurotess_viewer::Command;
+use neurotess_viewer::save::PictureFile;
+
+use crate::common::{Window, gpu, run, settle, state, viewer, with_samples};
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder").flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// The tiles that the line at the bottom says are done, and all.
+fn tiles(window: &Window) -> Option<[usize; 2]> {
+    let line = window.query_by_label_contains(" tiles")?;
+    let node = line.accesskit_node();
+    let text = node.value().or(node.label())?;
+    let numbers = text.split(' ').filter_map(|word| word.parse().ok());
+    let numbers: Vec<usize> = numbers.collect();
+    numbers.try_into().ok()
+}
+
+fn wait(window: &mut Window, what: &str, until: impl Fn(&mut Window) -> bool) {
+    let begun = Instant::now();
+    while !until(window) {
+        assert!(begun.elapsed() < Duration::from_secs(120), "never: {what}");
+        window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Stops what is saved.
+fn stop(window: &mut Window, at: &str) {
+    state(window).status.clear();
+    state(window).run(Command::Cancel);
+    let begun = Instant::now();
+    wait(window, "stopped", |w| state(w).status.contains("stopped"));
+    note!("stopped {at} after {:?}", begun.elapsed());
+    settle(window);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
+    let mut window = with_samples(&[Kind::Star]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = PictureFile {
+        out: folder.path().join("large.png"),
+        size: [6000, 6000],
+        samples: 16,
+        transparent: false,
+        replace: false,
+    };
+    state(&mut window).run(Command::SavePicture(picture.clone()));
+    wait(&mut window, "the first tile", |window| {
+        tiles(window).is_some_and(|[done, _]| done > 0)
+    });
+    let [before, all] = tiles(&window).expect("said");
+    assert!(all > 20, "{all}");
+    // The window goes on.
+    let turned = state(&mut window).view.orbited(0.3, 0.1, glam::DVec3::Y);
+    state(&mut window).view = turned;
+    wait(&mut window, "a draft", |window| {
+        viewer(window).stage.is_from(&turned.camera())
+    });
+    let session = folder.path().join("meanwhile.neurotess");
+    state(&mut window).run(Command::SaveSession(session));
+    window.step();
+    assert!(names(folder.path()).contains(&"meanwhile.neurotess".to_owned()));
+    let [done, _] = tiles(&window).expect("still drawing");
+    assert!(done < all && done >= before);
+    stop(&mut window, "in a tile");
+    assert_eq!(
+        names(folder.path()),
+        ["meanwhile.neurotess"],
+        "nothing half written"
+    );
+    // Before the first tile, while the device and the scene are made ready.
+    for wait in [0, 30, 150] {
+        let again = picture.clone();
+        state(&mut window).run(Command::SavePicture(again));
+        window.step();
+        std::thread::sleep(Duration::from_millis(wait));
+        stop(&mut window, "before the first tile");
+        assert_eq!(names(folder.path()), ["meanwhile.neurotess"]);
+    }
+    // And the next one is whole.
+    let small = PictureFile {
+        out: folder.path().join("small.png"),
+        size: [64, 48],
+        samples: 4,
+        transparent: false,
+        replace: false,
+    };
+    run(&mut window, Command::SavePicture(small));
+    assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
+}

@@ -1,0 +1,5 @@
+//! The cache from outside.
+
+mod cache;
+
+neurotess_testing::main!();

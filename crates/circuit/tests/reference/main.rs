@@ -1,7 +1,0 @@
-//! Circuits of others, and what other programs found in them: `../shared` beside the workspace.
-
-mod circuits;
-mod reports;
-mod sonata;
-
-neurotess_testing::main!();

@@ -1,0 +1,143 @@
+//! H5 files as they are found: headers that lie, containers, the stages of version 2.
+
+use std::path::{Path, PathBuf};
+
+use hdf5_pure::FileBuilder;
+use neurotess_formats::{Read, ReadOptions, h5, read};
+
+/// Files of 2 KB to 24 KB that declare forty million points or sections (made with h5py, which writes
+/// none of them, or one chunk), and an honest one that is compressed well.
+fn declared(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/declared");
+    folder.join(name)
+}
+
+#[neurotess_testing::test]
+fn headers_are_not_believed() {
+    let names = [
+        "contiguous.h5",
+        "chunked.h5",
+        "unlimited.h5",
+        "one_of_many_chunks.h5",
+        "sections.h5",
+    ];
+    for name in names {
+        let error = read(declared(name), &ReadOptions::default()).expect_err(name);
+        let message = error.to_string();
+        assert!(
+            message.contains("0000 bytes, but the file can hold"),
+            "{name}: {message}"
+        );
+    }
+    // One that the library refuses before it is asked how large it is.
+    assert!(read(declared("large_chunks.h5"), &ReadOptions::default()).is_err());
+    let straight = read(declared("straight.h5"), &ReadOptions::default()).expect("a cell");
+    assert_eq!(straight.morphology.points.len(), 20_000);
+}
+
+/// A soma and a neurite of two points, `radius` thick.
+fn tables(radius: f64) -> (Vec<f64>, Vec<i32>) {
+    let points = [
+        [0., 0., 0., 10.],
+        [9., 0., 0., 2.0 * radius],
+        [20., 0., 0., 2.0 * radius],
+    ];
+    (points.concat(), vec![0, 1, -1, 1, 3, 0])
+}
+
+fn version_2(group: &str, stages: &[(&str, f64)], structures: &[&str]) -> Vec<u8> {
+    let mut file = FileBuilder::new();
+    let mut neuron = file.create_group(group);
+    for &(stage, radius) in stages {
+        let mut inner = neuron.create_group(stage);
+        let points = tables(radius).0;
+        inner
+            .create_dataset("points")
+            .with_f64_data(&points)
+            .with_shape(&[3, 4]);
+        neuron.add_group(inner.finish());
+    }
+    let mut structure = neuron.create_group("structure");
+    for stage in structures {
+        structure
+            .create_dataset(stage)
+            .with_i32_data(&[0, -1, 1, 0])
+            .with_shape(&[2, 2]);
+    }
+    structure
+        .create_dataset("sectiontype")
+        .with_i32_data(&[1, 3])
+        .with_shape(&[2, 1]);
+    neuron.add_group(structure.finish());
+    file.add_group(neuron.finish());
+    file.finish().expect("bytes")
+}
+
+fn radius(read: &Read) -> f32 {
+    read.morphology.points[0].radius
+}
+
+#[neurotess_testing::test]
+fn of_version_2_the_best_stage_is_read() {
+    let read = |bytes| h5::read_bytes(bytes, "a.h5", &ReadOptions::default()).expect("a cell");
+    let raw = read(version_2("neuron1", &[("raw", 1.0)], &["raw"]));
+    assert_eq!((radius(&raw), raw.warnings.len()), (1.0, 0));
+    let repaired = read(version_2("neuron1", &[("repaired", 2.0)], &["repaired"]));
+    assert_eq!((radius(&repaired), repaired.warnings.len()), (2.0, 0));
+    // Unraveled points have the sections of the raw ones.
+    let all = [("raw", 1.0), ("unraveled", 3.0)];
+    let unraveled = read(version_2("any name", &all, &["raw"]));
+    assert_eq!(
+        (radius(&unraveled), unraveled.warnings[0].code),
+        (3.0, "stages")
+    );
+}
+
+#[neurotess_testing::test]
+fn of_a_container_one_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("merged.h5");
+    let mut file = FileBuilder::new();
+    let mut cells = file.create_group("cells");
+    for (name, thick) in [("a", 1.0), ("b", 2.0)] {
+        let mut cell = cells.create_group(name);
+        let (points, structure) = tables(thick);
+        cell.create_dataset("points")
+            .with_f64_data(&points)
+            .with_shape(&[3, 4]);
+        cell.create_dataset("structure")
+            .with_i32_data(&structure)
+            .with_shape(&[2, 3]);
+        cells.add_group(cell.finish());
+    }
+    file.add_group(cells.finish());
+    std::fs::write(&path, file.finish().expect("bytes")).expect("written");
+    let named = |member: &str| {
+        let path = format!("{}{member}", path.display());
+        read(path, &ReadOptions::default())
+    };
+    let refused = named("").expect_err("a container").to_string();
+    assert!(refused.ends_with("as in FILE#cells/a"), "{refused}");
+    let b = named("#cells/b").expect("a cell");
+    assert_eq!((radius(&b), b.morphology.name.as_str()), (2.0, "b"));
+    let missing = named("#cells/c").expect_err("none").to_string();
+    assert!(
+        missing.contains("no morphology 'cells/c' is in the file, which has 2"),
+        "{missing}"
+    );
+    assert!(!h5::is_other(&path));
+}
+
+#[neurotess_testing::test]
+fn reports_and_nodes_are_told_from_morphologies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("report.h5");
+    let mut file = FileBuilder::new();
+    file.create_dataset("data").with_f32_data(&[0.0; 4]);
+    std::fs::write(&path, file.finish().expect("bytes")).expect("written");
+    assert!(h5::is_other(&path));
+    assert!(!h5::is_other(declared("straight.h5")));
+    // A broken member is an error of the call that reads it.
+    std::fs::write(&path, "no HDF5").expect("written");
+    assert!(!h5::is_other(&path));
+}

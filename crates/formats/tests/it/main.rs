@@ -1,0 +1,22 @@
+//! Readers and writers of tracings.
+
+#[cfg(all(feature = "asc", feature = "h5"))]
+mod both_formats;
+mod faults;
+mod fuzz_swc;
+#[cfg(feature = "asc")]
+mod growth;
+#[cfg(feature = "h5")]
+mod h5_files;
+#[cfg(feature = "neuroml")]
+mod neuroml;
+#[cfg(all(feature = "asc", feature = "h5"))]
+mod outlined_round_trip;
+#[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]
+mod reference;
+mod round_trip;
+#[cfg(all(feature = "asc", feature = "h5"))]
+mod spines;
+mod variants;
+
+neurotess_testing::main!();

@@ -1,0 +1,162 @@
+//! NeuroML: shapes, kinds, faults, and any elements at all.
+
+use neurotess_formats::{ReadOptions, neuroml};
+use neurotess_morphology::{Measures, Morphology, SomaKind};
+use proptest::prelude::*;
+
+fn cell(inner: &str) -> String {
+    format!(
+        "<neuroml>\n<cell id=\"c\"><morphology id=\"m\">\n{inner}</morphology></cell></neuroml>"
+    )
+}
+
+fn morphology(inner: &str) -> Morphology {
+    let read = neuroml::read_bytes(cell(inner).as_bytes(), "c.nml", &ReadOptions::default());
+    read.expect("it is sound").morphology
+}
+
+fn fault(inner: &str) -> String {
+    let read = neuroml::read_bytes(cell(inner).as_bytes(), "c.nml", &ReadOptions::default());
+    read.expect_err("it is broken").to_string()
+}
+
+fn segment(id: i64, name: &str, parent: &str, ends: [Option<[f64; 4]>; 2]) -> String {
+    let end = |(name, end): (&str, Option<[f64; 4]>)| {
+        end.map_or(String::new(), |[x, y, z, d]| {
+            format!("<{name} x=\"{x}\" y=\"{y}\" z=\"{z}\" diameter=\"{d}\"/>")
+        })
+    };
+    let [proximal, distal] = ends;
+    format!(
+        "<segment id=\"{id}\" name=\"{name}\">{parent}{}{}</segment>\n",
+        end(("proximal", proximal)),
+        end(("distal", distal)),
+    )
+}
+
+const SPHERE: [Option<[f64; 4]>; 2] = [Some([0., 0., 0., 10.]), Some([0., 0., 0., 10.])];
+
+#[neurotess_testing::test]
+fn a_root_without_length_is_a_sphere() {
+    let m = morphology(
+        &(segment(0, "soma", "", SPHERE)
+            + &segment(
+                1,
+                "dend",
+                "<parent segment=\"0\"/>",
+                [Some([0., 5., 0., 2.]), Some([0., 25., 0., 1.])],
+            )),
+    );
+    let soma = m.soma().expect("a soma");
+    assert_eq!((soma.kind, soma.radius), (SomaKind::Point, 5.0));
+    let measures = Measures::of(&m);
+    assert_eq!((measures.n_points, measures.length), (2, 20.0));
+    assert_eq!(m.sections[0].kind.0, 3);
+}
+
+#[neurotess_testing::test]
+fn a_child_half_way_cuts_its_parent_without_changing_it() {
+    let straight = segment(
+        0,
+        "axon",
+        "",
+        [Some([0., 0., 0., 4.]), Some([8., 0., 0., 2.])],
+    );
+    let branch = segment(
+        7,
+        "axon",
+        "<parent segment=\"0\" fractionAlong=\"0.25\"/>",
+        [None, Some([2., 9., 0., 3.5])],
+    );
+    let (alone, both) = (morphology(&straight), morphology(&(straight + &branch)));
+    let (alone, both) = (Measures::of(&alone), Measures::of(&both));
+    assert_eq!((both.n_bifurcations, both.n_sections), (1, 3));
+    let branch = std::f64::consts::PI * 1.75 * 1.75 * 9.0;
+    assert!((both.volume - alone.volume - branch).abs() < 1e-4);
+    assert!((both.length - 17.0).abs() < 1e-6);
+}
+
+#[neurotess_testing::test]
+fn groups_tell_kinds_before_names_and_the_more_special_wins() {
+    let ends = |y: f64| [Some([0., y, 0., 1.]), Some([0., y + 1., 0., 1.])];
+    let parent = "<parent segment=\"0\" fractionAlong=\"0\"/>";
+    let m = morphology(
+        &(segment(0, "soma", "", SPHERE)
+            + &segment(1, "axon_x", parent, ends(6.0))
+            + &segment(2, "x", parent, ends(7.0))
+            + &segment(3, "y", parent, ends(8.0))
+            + "<segmentGroup id=\"a\" neuroLexId=\"GO:0030425\"><member segment=\"1\"/>\
+               <member segment=\"2\"/><include segmentGroup=\"b\"/></segmentGroup>\
+               <segmentGroup id=\"b\"><include segmentGroup=\"a\"/></segmentGroup>\
+               <segmentGroup id=\"apical_dends\"><member segment=\"2\"/></segmentGroup>"),
+    );
+    let kinds: Vec<i32> = m.sections.iter().map(|s| s.kind.0).collect();
+    assert_eq!(kinds, [3, 4, 0]);
+}
+
+#[neurotess_testing::test]
+fn faults_name_line_and_remedy() {
+    let line = segment(0, "a", "", [Some([0., 0., 0., 1.]), Some([1., 0., 0., 1.])]);
+    for (inner, expected) in [
+        (
+            segment(0, "a", "", [None, Some([1., 0., 0., 1.])]),
+            "c.nml:3: segment 0 has no <proximal>",
+        ),
+        (
+            segment(0, "a", "", [Some([1., 0., 0., 1.]), None]),
+            "c.nml:3: segment 0 has no <distal>",
+        ),
+        (
+            line.clone() + &line,
+            "c.nml:4: segment 0 stands in line 3 already",
+        ),
+        (
+            line.clone() + &segment(1, "a", "<parent segment=\"9\"/>", [None, Some([1.; 4])]),
+            "c.nml:4: segment 1 has parent 9, which is not in the cell",
+        ),
+        (
+            segment(5, "a", "<parent segment=\"5\"/>", [None, Some([1.; 4])]),
+            "c.nml:3: the point is its own ancestor",
+        ),
+        (
+            line.replace("y=\"0\"", "y=\"nan\""),
+            "c.nml:3: <proximal> has y=\"nan\"",
+        ),
+        (
+            line.replace("</segment>", "</egment>"),
+            "c.nml:3: the XML is broken",
+        ),
+        (String::new(), "c.nml:1: no <morphology> with a <segment>"),
+    ] {
+        let said = fault(&inner);
+        assert!(said.starts_with(expected), "{said}");
+        assert!(said.matches(": ").count() >= 2, "what to do: {said}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(neurotess_testing::cases(300, 1500)))]
+    #[neurotess_testing::test]
+    fn any_elements_are_read_or_refused(
+        parts in proptest::collection::vec(
+            prop_oneof![
+                Just("<morphology>".to_owned()), Just("</morphology>".to_owned()),
+                Just("</segment>".to_owned()), Just("<notes>x</notes>".to_owned()),
+                Just("<segmentGroup id=\"soma\">".to_owned()), Just("</segmentGroup>".to_owned()),
+                Just("<include segmentGroup=\"soma\"/>".to_owned()), Just("&x; <".to_owned()),
+                (0..6_i64).prop_map(|i| format!("<segment id=\"{i}\" name=\"soma\">")),
+                (0..6_i64, 0..3).prop_map(|(i, f)| format!(
+                    "<parent segment=\"{i}\" fractionAlong=\"{}\"/>", f64::from(f) / 2.0)),
+                (0..3, 0..3).prop_map(|(x, d)| format!(
+                    "<proximal x=\"{x}\" y=\"0\" z=\"0\" diameter=\"{d}\"/>")),
+                (0..3, 0..3).prop_map(|(x, d)| format!(
+                    "<distal x=\"{x}\" y=\"0\" z=\"0\" diameter=\"{d}\"/>")),
+                (0..6_i64).prop_map(|i| format!("<member segment=\"{i}\"/>")),
+            ],
+            0..40,
+        ),
+    ) {
+        let text = format!("<neuroml><morphology>{}", parts.concat());
+        let _ = neuroml::read_bytes(text.as_bytes(), "any.nml", &ReadOptions::default());
+    }
+}

@@ -1,0 +1,12 @@
+//! Coarse meshes of tracings.
+
+mod branches;
+mod forks;
+mod growth;
+mod limits;
+mod rings;
+mod soma;
+mod stop;
+mod tubes;
+
+neurotess_testing::main!();

@@ -1,0 +1,13 @@
+//! Meshes, their files and checks.
+
+mod fuzz;
+mod independent;
+mod intersect;
+mod readers;
+mod round_trip;
+mod scenes;
+mod shapes;
+mod simulators;
+mod topology;
+
+neurotess_testing::main!();

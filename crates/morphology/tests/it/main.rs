@@ -1,0 +1,7 @@
+//! Morphologies: edits, differences, spines.
+
+mod differences;
+mod edits;
+mod spines;
+
+neurotess_testing::main!();

@@ -1,0 +1,8 @@
+//! The library as its users call it.
+
+mod crossings;
+#[cfg(feature = "render")]
+mod examples;
+mod real_cells;
+
+neurotess_testing::main!();

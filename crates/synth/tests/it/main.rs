@@ -1,0 +1,7 @@
+//! Synthetic cells.
+
+mod cells;
+mod crossings;
+mod samples;
+
+neurotess_testing::main!();

@@ -1,0 +1,5 @@
+//! The harness, tested by itself.
+
+mod harness;
+
+neurotess_testing::main!();
