@@ -56,7 +56,7 @@ fn an_own_color_recolors_the_picture_at_rest() {
     assert!(has_orange(&mut window));
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn every_thing_has_a_picker_and_can_be_reset() {
     let mut window = with_samples(&[Kind::Pyramidal]);
     run(&mut window, Command::Show(Tab::Look));

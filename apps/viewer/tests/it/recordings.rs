@@ -81,7 +81,7 @@ fn neurons_of_one_tracing_have_their_own_colors() {
 }
 
 /// Issue 9, 2.8: values had the resolution of traced points, and this dendrite has two.
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn a_stick_of_two_points_shows_all_its_compartments() {
     let mut window = window();
     window.step();
@@ -287,7 +287,7 @@ fn reports_that_do_not_fit_are_reported_while_the_rest_shows() {
     assert_eq!(state(&mut window).document.look.color_by, ColorBy::Type);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn a_report_without_a_circuit_waits_for_it() {
     let mut window = window();
     window.step();

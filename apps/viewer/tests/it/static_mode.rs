@@ -52,7 +52,7 @@ fn at_rest_a_recording_recolors_the_fine_picture() {
     assert!(differ <= 60, "{differ} pixels: more than one of 10,000");
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn what_is_played_becomes_fine_when_the_camera_rests() {
     let (mut window, folder) = with_circuit();
     let report = folder.path().join("voltage.h5");
@@ -83,7 +83,7 @@ fn what_is_played_becomes_fine_when_the_camera_rests() {
     assert!(state(&mut window).problems.is_empty());
 }
 
-#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
+#[neurotess_testing::test(needs(gpu))]
 fn ghosts_and_what_is_hidden_are_another_picture() {
     let (mut window, _folder) = with_circuit();
     set_look(&mut window, |look| look.ghost_others = true);

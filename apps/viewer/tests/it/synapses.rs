@@ -79,7 +79,7 @@ fn legend_names(window: &mut Window) -> Vec<String> {
         .collect()
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn synapses_show_and_are_undone() {
     let (mut window, _folder) = with_synapses();
     rest(&mut window);

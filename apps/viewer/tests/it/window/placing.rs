@@ -190,7 +190,7 @@ fn numbers_place_a_cell_and_each_is_one_step_of_undo() {
     );
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn moved_cells_are_kept_in_sessions_and_drawn_there() {
     let mut window = with_samples(&[Kind::Star]);
     let away = Placement {
