@@ -93,8 +93,8 @@ fn no_back_face_shows_through_a_closed_surface() {
     let (cells, trials) = cases((2, 3), (6, 8));
     let (front, back) = count(&gpu, &Refiner::vertex_text, cells, trials);
     note!("{front} pixels of front faces, {back} of back faces");
-    // Measured on lavapipe: of 112 pictures 2,729,582 (18 pictures: QUICKCOUNT). Enough of each cell is in them.
-    assert!(front > cases(1_000, 2_400_000), "{front}");
+    // Measured on lavapipe: 289,885 in 18 pictures, 2,729,582 in 112. Enough of each cell is in them.
+    assert!(front > cases(250_000, 2_400_000), "{front}");
     assert_eq!(back, 0);
 }
 
