@@ -51,8 +51,7 @@ pub(crate) const WHEEL: Environment = Environment {
 
 /// Makes an environment with its packages, unless it is there; says how it is.
 pub(crate) fn set_up(environment: &Environment) -> anyhow::Result<String> {
-    let wanted = root().join(environment.packages);
-    let wanted = fs::read_to_string(&wanted).context(environment.packages)?;
+    let wanted = list(&root().join(environment.packages))?;
     let stamp = stamp(environment);
     if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
         return Ok("the Python environment is there".into());
@@ -78,6 +77,16 @@ pub(crate) fn interpreter(environment: &Environment) -> Option<PathBuf> {
     stamp(environment)
         .exists()
         .then(|| own_interpreter(&folder))
+}
+
+/// A list of packages, with those that it includes (`-r other.txt`): what changes in these is installed, too.
+fn list(file: &Path) -> anyhow::Result<String> {
+    let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
+    let mut whole = text.clone();
+    for other in text.lines().filter_map(|line| line.strip_prefix("-r ")) {
+        whole += &list(&file.with_file_name(other))?;
+    }
+    Ok(whole)
 }
 
 /// A file that holds the list of packages once they are installed.

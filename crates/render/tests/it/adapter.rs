@@ -2,10 +2,6 @@
 
 use neurotess_render::Gpu;
 
-/// The backend that is compared with the one that is used otherwise.
-#[allow(dead_code, reason = "one of the test programs uses OpenGL")]
-pub(crate) const OPENGL: &str = "gl";
-
 /// The need of tests that draw or compute on an adapter.
 pub(crate) fn gpu() -> Result<(), String> {
     Gpu::open(None).map(drop).map_err(|error| error.to_string())

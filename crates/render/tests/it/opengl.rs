@@ -6,10 +6,13 @@ use neurotess_mesh::CoarseMesh;
 use neurotess_render::pick::{PickHit, PickTarget};
 use neurotess_render::{Gpu, Image, Look, Occlusion, PictureOptions, Placement, Steps};
 
-use crate::adapter::{OPENGL, device, gpu};
+use crate::adapter::{device, gpu};
 use crate::compared::Difference;
 use crate::pictured::{CELL, camera, explored, mesh};
 use crate::renderer::{SIZE, picks, renderer, source, view};
+
+/// The backend.
+const OPENGL: &str = "gl";
 
 /// The need of these tests: OpenGL, and another adapter beside it.
 fn opengl() -> Result<(), String> {
