@@ -27,6 +27,7 @@ mod shader_tests;
 /// Adapters: their names, how one is selected, and what a device needs.
 pub mod adapter {
     pub use crate::gpu::adapter::{ADAPTER_VARIABLE, AdapterName, adapters, select_adapter};
+    pub use crate::gpu::capabilities::Capabilities;
     pub use crate::gpu::device::{device_descriptor, optional_features};
 }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod adapter;
 pub(crate) mod buffers;
+pub(crate) mod capabilities;
 pub(crate) mod device;
 pub(crate) mod error;
 pub(crate) mod growable;

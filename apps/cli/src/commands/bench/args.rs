@@ -25,6 +25,48 @@ pub(crate) enum Bench {
     Static(StaticArgs),
     /// A circuit from cold start to the first picture, with and without its cache
     Opening(OpeningArgs),
+    /// A flight past distinct neurons that do not fit the adapter's memory, beside the same with all there
+    Streaming(StreamingArgs),
+    /// What the adapter is able to do: nothing is timed
+    Adapter(AdapterArgs),
+}
+
+/// `neurotess bench adapter`
+#[derive(Args, Debug)]
+pub(crate) struct AdapterArgs {
+    /// Adapter: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+}
+
+/// `neurotess bench streaming`
+#[derive(Args, Debug)]
+pub(crate) struct StreamingArgs {
+    /// Neurons, all distinct
+    #[arg(long, value_name = "N", default_value_t = 1000,
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) neurons: u32,
+    /// Points of a neuron, about
+    #[arg(long, value_name = "N", default_value_t = 1000,
+          value_parser = clap::value_parser!(u32).range(50..=500_000))]
+    pub(crate) points: u32,
+    /// Share of the neurons' bytes that the adapter may hold
+    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = crate::options::numbers::positive)]
+    pub(crate) share: f64,
+    /// Most triangles of a frame
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+    pub(crate) budget: u32,
+    /// Width and height (pixels)
+    #[arg(long, value_name = "WxH", default_value = "1280x960")]
+    pub(crate) size: Size,
+    /// Frames of the flight
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) frames: u32,
+    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
 }
 
 /// `neurotess bench opening`

@@ -4,8 +4,9 @@
 //! 2017, figure 15): scenes of several sizes drawn with rising levels in three ways, and beyond it
 //! by the error in pixels and with thousands of neurons. `exploration` draws such scenes within a
 //! budget. `static` colors pictures of them anew instead of drawing them anew. `opening` opens a circuit with its
-//! cache and without.
+//! cache and without. `streaming` flies past neurons that do not fit. `adapter` says what all of that is drawn with.
 
+mod adapter;
 mod args;
 mod exploration;
 mod methods;
@@ -13,6 +14,7 @@ mod opening;
 mod plot;
 mod recoloring;
 mod scenes;
+mod streaming;
 mod verdict;
 
 use std::path::Path;
@@ -55,6 +57,8 @@ pub(crate) fn run(args: &BenchArgs, reporter: &Reporter) -> anyhow::Result<()> {
         Bench::Exploration(args) => exploration::run(args, reporter),
         Bench::Static(args) => recoloring::run(args, reporter),
         Bench::Opening(args) => opening::run(args, reporter),
+        Bench::Streaming(args) => streaming::run(args, reporter),
+        Bench::Adapter(args) => adapter::run(args, reporter),
     }
 }
 

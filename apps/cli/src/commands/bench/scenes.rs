@@ -10,9 +10,9 @@ use neurotess::synth::{Kind, Options, grow};
 use rayon::prelude::*;
 
 /// Distance (µm) of neighboring neurons: so near that their dendrites meet.
-const APART: f64 = 120.0;
+pub(super) const APART: f64 = 120.0;
 /// Field of view (radians): wide, so that some neurons are near and others far.
-const FOV: f64 = 60.0 * std::f64::consts::PI / 180.0;
+pub(super) const FOV: f64 = 60.0 * std::f64::consts::PI / 180.0;
 /// Number of types with a color of their own; others have the color of the last.
 const TYPES: i32 = 8;
 

@@ -132,3 +132,36 @@ fn the_second_opening_of_a_circuit_generates_nothing() {
         );
     }
 }
+
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
+fn a_flight_past_what_does_not_fit_uploads_what_it_passes() {
+    let work = Work::new();
+    let small = "bench streaming --neurons 40 --points 200 --frames 8 --size 96x64 --budget 3000";
+    let json = work.run(&format!("{small} --json")).exits(0).json();
+    let number = |value: &serde_json::Value| value.as_u64().expect("a number");
+    assert!(number(&json["memory"]) < number(&json["bytes"]), "{json}");
+    let [whole, streamed] = [&json["whole"], &json["streamed"]];
+    assert_eq!(
+        (number(&whole["uploaded"]), &whole["finer"]),
+        (0, &().into())
+    );
+    assert!(number(&streamed["uploaded"]) > 0, "{json}");
+    for flight in [whole, streamed] {
+        let [median, slowest] = ["median", "slowest"].map(|key| flight[key].as_f64());
+        assert!(median > Some(0.0) && slowest >= median, "{json}");
+    }
+    let table = work.run(small).exits(0).stdout();
+    assert!(table.contains("streamed / all there"), "{table}");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn the_adapter_tells_its_limits() {
+    let work = Work::new();
+    let json = work.run("bench adapter --json").exits(0).json();
+    for limit in ["largest_buffer", "largest_binding", "largest_texture"] {
+        assert!(json[limit].as_u64().is_some_and(|n| n > 1000), "{json}");
+    }
+    assert_eq!(json["software"], json["kind"] == "software");
+    work.run("bench adapter --adapter none-of-this-name")
+        .exits(1);
+}
