@@ -44,7 +44,7 @@ pub use lane::{cases, full, is_full};
 pub use need::Need;
 pub use neurotess_testing_macros::test;
 pub use python::python_with;
-pub use shared::{shared, shared_data};
+pub use shared::{shared, shared_data, workspace};
 
 /// What the attribute registers tests with.
 #[doc(hidden)]

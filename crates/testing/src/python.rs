@@ -1,7 +1,9 @@
 //! The Python environment, in which other people's readers check our files.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
+
+use crate::workspace;
 
 /// An interpreter that can import a module: the one that `NEUROTESS_PYTHON` names, or that of the
 /// workspace's environment.
@@ -27,8 +29,7 @@ fn interpreter() -> Result<PathBuf, String> {
     } else {
         "bin/python"
     };
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let own = workspace.join(".venv").join(inner);
+    let own = workspace().join(".venv").join(inner);
     let missing = "no Python environment (.venv): cargo xtask setup makes it";
     own.exists()
         .then_some(own)

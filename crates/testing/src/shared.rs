@@ -26,9 +26,16 @@ pub fn shared_data() -> PathBuf {
     folder()
 }
 
+/// The workspace's folder: `NEUROTESS_WORKSPACE`, for programs that run on another machine than they were built on, or
+/// where they were built.
+pub fn workspace() -> PathBuf {
+    let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    std::env::var_os("NEUROTESS_WORKSPACE").map_or_else(built, PathBuf::from)
+}
+
 /// `NEUROTESS_SHARED`, or `shared/data` beside the workspace.
 fn folder() -> PathBuf {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let workspace = workspace();
     let beside = || {
         let workspace = workspace.canonicalize().unwrap_or(workspace);
         workspace.with_file_name("shared").join("data")

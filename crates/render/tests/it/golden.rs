@@ -5,7 +5,7 @@
 //! the folder that the failure names.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::adapter::{device, gpu};
 use crate::compared::{Difference, MEAN};
@@ -15,11 +15,10 @@ use neurotess_mesh::CoarseMesh;
 use neurotess_render::color::{ColorMap, fraction};
 use neurotess_render::overlay::{Legend, Overlay, OverlayOptions};
 use neurotess_render::{Camera, Image, Light, Look, Occlusion, PictureOptions, PngWriter, Side};
+use neurotess_testing::workspace;
 
 fn sample(name: &str) -> CoarseMesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../samples")
-        .join(name);
+    let path = workspace().join("samples").join(name);
     mesh(&fs::read_to_string(path).expect("a sample"))
 }
 
@@ -132,7 +131,7 @@ fn a_scale_with_its_legend_on_nothing() {
 
 #[expect(clippy::print_stdout, reason = "whoever renews pictures looks at them")]
 fn compare(name: &str, image: &Image) {
-    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
+    let kept = workspace().join(format!("crates/render/tests/golden/{name}.png"));
     if std::env::var("NEUROTESS_GOLDEN").is_ok_and(|value| value == "renew") {
         write(&kept, image);
         println!("renewed {}", kept.display());
@@ -141,7 +140,8 @@ fn compare(name: &str, image: &Image) {
     let before = read(&kept);
     let difference = Difference::between(&before, image);
     if difference.is_seen() {
-        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+        let folder = std::env::temp_dir().join("neurotess-golden");
+        fs::create_dir_all(&folder).expect("a folder for temporary files");
         let shown = Image {
             pixels: difference
                 .steps
