@@ -12,6 +12,7 @@ mod bench;
 mod counts;
 mod demo;
 mod extension;
+mod gpu;
 mod harness;
 mod lane;
 mod licenses;
@@ -45,6 +46,10 @@ const USAGE: &str = "cargo xtask COMMAND
   wheel     the Python package as a wheel in out/wheel, with all licenses, and a trial of it in a fresh
             environment; with --from-source also `pip install bindings/python/` (builds all again)
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
+  gpu-bundle
+            a folder that tests and measures on a machine with graphics hardware and nothing but a driver:
+            out/gpu-bundle, to be started by its run.sh
+  gpu-page  put the figures of such a run, FILE.json, into benchmarks/gpu.md
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
             who knows whom among crates, folders and files
@@ -69,6 +74,10 @@ fn main() -> ExitCode {
             wheel::run_all(std::env::args().nth(2).as_deref() == Some("--from-source"))
         }
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
+        Some("gpu-bundle") => gpu::bundle::run(),
+        // In the bundle, where run.sh calls it.
+        Some("gpu-run") => gpu::run::run(std::env::args().skip(2)),
+        Some("gpu-page") => gpu::publish::run(std::env::args().skip(2)),
         Some("bench") => bench::run(),
         Some("architecture") => architecture(),
         Some("setup") => setup::run(lane).map(|said| println!("{said}")),

@@ -56,6 +56,20 @@ pub(crate) fn build(lane: Lane) -> anyhow::Result<Vec<Program>> {
     Ok(programs)
 }
 
+/// Builds a single program and says where it is.
+pub(crate) fn executable(build: &str) -> anyhow::Result<PathBuf> {
+    let mut build = cargo(build);
+    build.arg("--message-format=json-render-diagnostics");
+    println!("   $ {}", steps::typed(&build));
+    let messages = output(&mut build)?;
+    let executable = |message: &str| {
+        let message: Value = serde_json::from_str(message).ok()?;
+        message["executable"].as_str().map(PathBuf::from)
+    };
+    let found = messages.lines().rev().find_map(executable);
+    found.context("Cargo built no program")
+}
+
 /// The test program that a message of Cargo's tells of.
 fn program(message: &str) -> Option<Program> {
     let message: Value = serde_json::from_str(message).ok()?;

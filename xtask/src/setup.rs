@@ -136,7 +136,7 @@ fn any_has_files(folders: &[&str]) -> bool {
 }
 
 /// `apt-get` as the administrator, who is not asked for a password.
-fn apt(arguments: &[&str]) -> anyhow::Result<()> {
+pub(crate) fn apt(arguments: &[&str]) -> anyhow::Result<()> {
     let mut command = if starts("sudo", "--version") {
         let mut sudo = Command::new("sudo");
         sudo.args(["-n", "apt-get"]);

@@ -117,7 +117,7 @@ impl Steps {
 }
 
 /// Processor time, user and system, of all processes that ended and were waited for, with theirs. Linux tells.
-fn children_time() -> Option<Duration> {
+pub(crate) fn children_time() -> Option<Duration> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
     // The name, in parentheses, may hold blanks. Of what follows, fields 14 and 15 are of the children; their
     // unit is a hundredth of a second on every Linux (USER_HZ).
