@@ -29,6 +29,7 @@ mod skeleton;
 mod smooth;
 mod soma;
 mod somata;
+mod sound;
 mod stems;
 mod stop;
 mod thin;
@@ -52,6 +53,7 @@ use neurotess_morphology::{Morphology, Soma};
 use assemble::Somata;
 use rings::RingRequests;
 use skeleton::Skeleton;
+use sound::Simpler;
 use stop::Stop;
 use warning::Warnings;
 
@@ -193,7 +195,24 @@ pub fn generate_stoppable(
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
-    let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut warnings, stop);
+    let mut told = Warnings::default();
+    let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut told, stop);
+    for simpler in Simpler::ALL {
+        stop.check()?;
+        let faulty = sound::faulty_samples(&mesh);
+        if faulty.is_empty() {
+            break;
+        }
+        told = Warnings::default();
+        told.add(
+            "simplified",
+            None,
+            "path turns back within its own tube, which would be inside out: meshed without these turns",
+        );
+        let simpler = simpler.of(&skeleton, &faulty);
+        mesh = forks::mesh(&simpler, &somata, &|_, _| true, &mut told, stop);
+    }
+    warnings.extend(told);
     stop.check()?;
     mesh.origin = morphology.origin;
     if let Some(sides) = options.equal_area {

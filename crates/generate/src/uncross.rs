@@ -22,6 +22,9 @@ const MOST_MOVED: f64 = 2.0;
 /// way around the tightest bend and a bit. What lies farther off does not untangle a path that turns back.
 const FARTHEST: f64 = 4.0;
 
+/// A path that turns by more than 150° turns back: cosine of that.
+const TURNED_BACK: f64 = -0.866;
+
 /// Turns rings, or leaves points out, until consecutive rings do not cross. Returns the orientation
 /// of every node that is left, along the path. A point is left out only if the path `may_join` its two
 /// neighbors, upper and lower, by their nodes in the skeleton that was laid out.
@@ -72,9 +75,15 @@ pub(crate) fn uncross_rings(
             );
             continue;
         }
-        let (cost, node) = [i, j]
-            .map(|n| (work.cost(n, j), n))
+        // Where the path turns back twice, the turn beside these may be what is in the way.
+        let beside = [work.parent[i as usize], work.child[j as usize]];
+        let beside = beside
             .into_iter()
+            .filter(|&n| n != NONE && work.turns_back(n));
+        let (cost, node) = [i, j]
+            .into_iter()
+            .chain(beside)
+            .map(|n| (work.cost(n, j), n))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .unwrap_or((f64::INFINITY, i));
         if cost < MOST_MOVED * work.skeleton.node(node).radius {
@@ -207,7 +216,16 @@ impl<'a> Work<'a> {
         if sum.length() > 0.1 {
             return sum.try_normalize().unwrap_or(DVec3::Y);
         }
-        incoming.or(sum.try_normalize()).unwrap_or(DVec3::Y)
+        match incoming {
+            Some(incoming) if self.child[i as usize] == NONE => incoming,
+            // Straight back: across the path, to the side that is left between the two legs, or to any.
+            Some(incoming) => {
+                let side = sum - incoming * sum.dot(incoming);
+                side.try_normalize()
+                    .unwrap_or_else(|| incoming.any_orthonormal_vector())
+            }
+            None => sum.try_normalize().unwrap_or(DVec3::Y),
+        }
     }
 
     fn fork(&self, i: u32) -> bool {
@@ -259,13 +277,53 @@ impl<'a> Work<'a> {
         let fixed = parent == NONE || child == NONE || self.skeleton.node(n).marks.of_zone();
         let [first, last] = self.crossed[pair as usize];
         let along = self.along[n as usize];
-        let farthest = FARTHEST * self.skeleton.node(n).radius;
+        let turns_back = self.turns_back(n);
+        // Where a path turns back, it does so in the tube of the pair.
+        let radius = match turns_back {
+            true => self
+                .skeleton
+                .node(pair)
+                .radius
+                .max(self.skeleton.node(self.parent[pair as usize]).radius),
+            false => self.skeleton.node(n).radius,
+        };
+        let farthest = FARTHEST * radius.max(self.skeleton.node(n).radius);
         let far = along < first - farthest || along > last + farthest;
         if fixed || far || !(self.may_join)(parent, child) {
             return f64::INFINITY;
         }
         let center = |n: u32| self.skeleton.node(n).center;
-        crate::skeleton::off_segment(center(n), center(parent), center(child))
+        let off = crate::skeleton::off_segment(center(n), center(parent), center(child));
+        if !turns_back {
+            return off;
+        }
+        off.min(self.off_tube(n, self.parent[parent as usize], parent))
+            .min(self.off_tube(n, child, self.child[child as usize]))
+    }
+
+    /// Whether the path turns back at a node.
+    fn turns_back(&self, n: u32) -> bool {
+        let (parent, child) = (self.parent[n as usize], self.child[n as usize]);
+        if parent == NONE || child == NONE {
+            return false;
+        }
+        let directions = self.direction(parent, n).zip(self.direction(n, child));
+        directions.is_none_or(|(incoming, outgoing)| incoming.dot(outgoing) < TURNED_BACK)
+    }
+
+    /// How far (µm) a node is from a segment of its path, before or after it, and by how much it is thicker: where a path
+    /// turns back, what is left of it without the node passes by there once more. Infinite without such a segment.
+    fn off_tube(&self, n: u32, from: u32, to: u32) -> f64 {
+        if from == NONE || to == NONE {
+            return f64::INFINITY;
+        }
+        let [node, from, to] = [n, from, to].map(|n| self.skeleton.node(n));
+        let (way, offset) = (to.center - from.center, node.center - from.center);
+        let share = (offset.dot(way) / way.length_squared()).clamp(0.0, 1.0);
+        // Of a segment without a length.
+        let share = if share.is_nan() { 0.0 } else { share };
+        let radius = from.radius + share * (to.radius - from.radius);
+        offset.distance(way * share) + (node.radius - radius).max(0.0)
     }
 
     /// Leaves an ordinary node of a pair out; returns the nodes whose pair with their parent has changed.

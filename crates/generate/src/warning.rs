@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 31] = [
+pub(crate) const CODES: [&str; 32] = [
     "branches_separated",
     "branches_touch",
     "buried_twig",
@@ -31,6 +31,7 @@ pub(crate) const CODES: [&str; 31] = [
     "ring_unused",
     "rings_cross",
     "sharp_bend",
+    "simplified",
     "soma_folded",
     "soma_inverted",
     "soma_radius_mended",

@@ -25,10 +25,10 @@ use neurotess_mesh::PatchKind;
 
 use crate::{Caps, Path, RefineOptions};
 pub(crate) use edges::{
-    CenterLine, Corner, EdgeCurve, EdgeKind, EdgeNormals, Jet, MOST_SWAY, SOMA_FILLET, edge,
-    hermite_tangents, loft_controls, soma_controls,
+    CenterLine, Corner, EdgeCurve, EdgeKind, EdgeNormals, Jet, MOST_OFFSET, MOST_SWAY, SOMA_FILLET,
+    edge, hermite_tangents, loft_controls, soma_controls,
 };
-use edges::{OverLength, cubic, first_leg, mix};
+use edges::{OverLength, cubic, first_leg, mix, most_squared};
 
 /// A patch ready to be evaluated inside.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +58,7 @@ struct Tube {
     line: CenterLine,
     offset_y: [Vec3; 2],
     radial_y: [Vec3; 2],
+    most_squared: f32,
 }
 
 /// A tube at some y: its center, and the offsets and radials at x = 0 and 1.
@@ -115,6 +116,7 @@ impl Tube {
             line: CenterLine::new(a, d, path),
             offset_y: [d.offset - a.offset, c.offset - b.offset],
             radial_y: [d.radial - a.radial, c.radial - b.radial],
+            most_squared: most_squared(&[a.offset, b.offset, c.offset, d.offset]),
         }
     }
 }
@@ -136,8 +138,11 @@ impl TubeRow {
         let change = |[at_0, at_1]: [Vec3; 2]| at_1 - at_0;
         let (offset, radial) = (blend(self.offsets), blend(self.radials));
         let over = OverLength::of(radial);
+        let most = self.tube.most_squared;
         let around = over.jet(offset, change(self.offsets), change(self.radials));
+        let around = around.within(most);
         let along = over.jet(offset, blend(self.tube.offset_y), blend(self.tube.radial_y));
+        let along = along.within(most);
         let normal = around
             .derivative
             .cross(self.center.derivative + along.derivative)

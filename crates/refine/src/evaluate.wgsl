@@ -77,6 +77,21 @@ fn over_length(a: vec3<f32>, a_dot: vec3<f32>, b: vec3<f32>, b_dot: vec3<f32>) -
     return Jet(a * inverse, derivative);
 }
 
+// With its position shortened to a length where it is longer, by the square of that.
+fn within(jet: Jet, most_squared: f32) -> Jet {
+    let squared = dot(jet.position, jet.position);
+    if (squared <= most_squared) {
+        return jet;
+    }
+    let along = jet.position * (dot(jet.position, jet.derivative) / squared);
+    let share = sqrt(most_squared / squared);
+    return Jet(jet.position * share, (jet.derivative - along) * share);
+}
+
+fn square(a: vec3<f32>) -> f32 {
+    return dot(a, a);
+}
+
 fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
     return a * (1.0 - t) + b * t;
 }
@@ -107,8 +122,10 @@ fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: 
     let radial_x = blend(b.radial - a.radial, c.radial - d.radial, y);
     let radial_y = radial_far - radial_near;
     let center = center_line(a, d, path, y);
-    let around = over_length(offset, offset_x, radial, radial_x);
-    let along = over_length(offset, offset_y, radial, radial_y);
+    let most = MOST_OFFSET * MOST_OFFSET
+        * max(max(square(a.offset), square(b.offset)), max(square(c.offset), square(d.offset)));
+    let around = within(over_length(offset, offset_x, radial, radial_x), most);
+    let along = within(over_length(offset, offset_y, radial, radial_y), most);
     return TubePoint(
         center.position + around.position,
         around.derivative,

@@ -14,7 +14,7 @@ use crate::decode::{
     POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_SHAPED, POINTS_OF_SPHERE, POSITION_STEPS,
     RADIUS_BASE, SHAPED_INSET, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, SHAPED_U32S, SPHERE_U32S,
 };
-use crate::evaluate::{MOST_SWAY, SOMA_FILLET};
+use crate::evaluate::{MOST_OFFSET, MOST_SWAY, SOMA_FILLET};
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
 use crate::wgsl::{Constants, WgslFile};
 use crate::{Caps, LodCriterion, LodView, Path, RefineOptions};
@@ -104,6 +104,7 @@ pub fn constants() -> Constants {
     whole("LEVELS_PIXEL_SIZE", LEVELS_PIXEL_SIZE);
     whole("LEVELS_PIXEL_ERROR", LEVELS_PIXEL_ERROR);
     let mut real = |name: &str, value: f32| constants.f32(name, value);
+    real("MOST_OFFSET", MOST_OFFSET);
     real("MOST_SWAY", MOST_SWAY);
     real("SOMA_FILLET", SOMA_FILLET);
     real("SHARE", SHARE);

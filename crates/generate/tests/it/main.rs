@@ -8,5 +8,6 @@ mod rings;
 mod soma;
 mod stop;
 mod tubes;
+mod turned_back;
 
 neurotess_testing::main!();

@@ -185,6 +185,32 @@ impl OverLength {
     }
 }
 
+/// No point is farther from the center line than the longest offset of its corners, but for rounding. Where a path turns back within its own tube, the radials of two rings
+/// cancel: what is left of the offsets of a thick ring and a thin one, divided by next to nothing, would be anywhere.
+pub(crate) const MOST_OFFSET: f32 = 1.001;
+
+/// Square of the greatest distance from the center line between corners with these offsets.
+pub(super) fn most_squared(offsets: &[Vec3]) -> f32 {
+    let longest = offsets.iter().map(|offset| offset.length_squared());
+    MOST_OFFSET * MOST_OFFSET * longest.fold(0.0, f32::max)
+}
+
+impl Jet {
+    /// With its position shortened to a length where it is longer, by the square of that.
+    pub(super) fn within(self, most_squared: f32) -> Self {
+        let squared = self.position.length_squared();
+        if squared <= most_squared {
+            return self;
+        }
+        let along = self.position * (self.position.dot(self.derivative) / squared);
+        let share = (most_squared / squared).sqrt();
+        Self {
+            position: self.position * share,
+            derivative: (self.derivative - along) * share,
+        }
+    }
+}
+
 pub(super) fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
     a * (1.0 - t) + b * t
 }
@@ -246,11 +272,13 @@ impl<'c> EdgeCurve<'c> {
     /// From the center line.
     fn offset(&self, t: f32) -> Jet {
         let Self { a, b, .. } = self;
-        OverLength::of(mix(a.radial, b.radial, t)).jet(
-            mix(a.offset, b.offset, t),
-            b.offset - a.offset,
-            b.radial - a.radial,
-        )
+        OverLength::of(mix(a.radial, b.radial, t))
+            .jet(
+                mix(a.offset, b.offset, t),
+                b.offset - a.offset,
+                b.radial - a.radial,
+            )
+            .within(most_squared(&[a.offset, b.offset]))
     }
 }
 

@@ -1,0 +1,238 @@
+//! Whether a mesh is a surface around what was traced at all: no piece of it has a negative volume, and none is far outside
+//! of the tracing. Where a path turns back within its own tube and none of its rings can be turned or left out, the tube
+//! runs through itself inside out. Then the path is simplified until it does not: what is lost lies inside the tube.
+
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind, SurfaceMesh, SurfaceVertex};
+use neurotess_refine::{LodCriterion, RefineOptions, Refinement, patch_points};
+
+use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
+
+/// Levels at which a suspicious surface is looked at: the rings alone, what is between them, and that more finely.
+const LEVELS: [u32; 3] = [1, 2, 4];
+/// The surface is within the box around all traced points, each with so many radii around it. Finer levels reach up to a
+/// tenth farther, and nothing is to be beyond two radii.
+const MOST_RADII: f32 = 1.8;
+
+/// The file's own numbers of samples on pieces of the surface that are inside out, or where it is far from the tracing: none
+/// of a sound one. Only where a tube turns over, or a loft reaches far, is the whole surface looked at, which takes as long
+/// as making it.
+pub(crate) fn faulty_samples(mesh: &CoarseMesh) -> BTreeSet<i32> {
+    let reach = Reach::new(mesh);
+    let mut faulty = BTreeSet::new();
+    if !(0..mesh.patches.len()).any(|patch| is_suspicious(mesh, &reach, patch)) {
+        return faulty;
+    }
+    for level in LEVELS {
+        let lod = LodCriterion::Homogeneous(level);
+        let refined = Refinement::new(mesh, lod, &RefineOptions::default());
+        let surface = SurfaceMesh::collect(&refined);
+        let outside = surface
+            .vertices
+            .iter()
+            .filter(|vertex| !reach.holds(vertex.position));
+        faulty.extend(outside.map(|vertex| vertex.point));
+        faulty.extend(inside_out(&surface).map(|vertex| vertex.point));
+    }
+    faulty
+}
+
+/// How far the surface may reach: the box around all traced points with [`MOST_RADII`] around each.
+struct Reach {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Reach {
+    fn new(mesh: &CoarseMesh) -> Self {
+        let farthest = |sign: f32| {
+            let points = mesh.tracing.iter();
+            let reaches = points.map(|point| sign * point.center + MOST_RADII * point.radius);
+            reaches.reduce(Vec3::max).unwrap_or_default()
+        };
+        Self {
+            low: -farthest(-1.0),
+            high: farthest(1.0),
+        }
+    }
+
+    fn holds(&self, p: Vec3) -> bool {
+        p.cmpge(self.low).all() && p.cmple(self.high).all()
+    }
+}
+
+fn is_suspicious(mesh: &CoarseMesh, reach: &Reach, patch: usize) -> bool {
+    match mesh.patches[patch].kind {
+        PatchKind::Lateral => turns_over(mesh, &mesh.patches[patch]),
+        PatchKind::Loft => {
+            let mut points = Vec::with_capacity(25);
+            patch_points(mesh, patch, 4, &RefineOptions::default(), &mut points);
+            !points.into_iter().all(|point| reach.holds(point))
+        }
+        PatchKind::Soma | PatchKind::Cap => false,
+    }
+}
+
+/// Whether the two rings of a tube's patch look apart, or one of them away from the other.
+fn turns_over(mesh: &CoarseMesh, patch: &Patch) -> bool {
+    let point = |corner: u32| &mesh.tracing[mesh.vertices[corner as usize].tracing as usize];
+    let (near, far) = (point(patch.corners[0]), point(patch.corners[3]));
+    let way = far.center - near.center;
+    [
+        near.tangent.dot(far.tangent),
+        near.tangent.dot(way),
+        far.tangent.dot(way),
+    ]
+    .into_iter()
+    .any(|cosine| cosine < 0.0)
+}
+
+/// Least volume of a piece, as a share of that of tubes with its area and radii: half of one times the other. A tube that
+/// is partly inside out has a part of the volume at one level and less than nothing at the next.
+const LEAST_VOLUME: f64 = 0.1;
+
+/// The vertices of connected pieces of a closed surface that have hardly any volume, or less than none.
+fn inside_out(surface: &SurfaceMesh) -> impl Iterator<Item = &SurfaceVertex> {
+    let mut pieces = Pieces((0..surface.vertices.len() as u32).collect());
+    let faces = &surface.faces;
+    let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
+    let quads = faces.quads.iter().flat_map(halves);
+    let triangles = faces.triangles.iter().copied().chain(quads);
+    for [a, b, c] in triangles.clone() {
+        pieces.join(a, b);
+        pieces.join(a, c);
+    }
+    // By piece: its volume, and that of a tube.
+    let mut volumes = vec![[0.0; 2]; surface.vertices.len()];
+    for corners in triangles {
+        let piece = pieces.of(corners[0]);
+        let at = |corner: u32| surface.vertices[corner as usize].position.as_dvec3();
+        // From a corner of its own piece, so that places far from the origin cost no digits.
+        let [a, b, c] = corners.map(|corner| at(corner) - at(piece));
+        let radius = f64::from(surface.vertices[corners[0] as usize].radius);
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let [volume, of_tube] = &mut volumes[piece as usize];
+        *volume += a.dot(b.cross(c)) / 6.0;
+        *of_tube += 0.5 * area * radius;
+    }
+    (0..)
+        .zip(&surface.vertices)
+        .filter_map(move |(index, vertex)| {
+            let [volume, of_tube] = volumes[pieces.of(index) as usize];
+            (volume <= LEAST_VOLUME * of_tube).then_some(vertex)
+        })
+}
+
+/// Which piece each vertex belongs to: the vertex that stands for it, by way of others.
+struct Pieces(Vec<u32>);
+
+impl Pieces {
+    fn of(&mut self, vertex: u32) -> u32 {
+        let mut vertex = vertex;
+        while self.0[vertex as usize] != vertex {
+            let next = self.0[vertex as usize];
+            self.0[vertex as usize] = self.0[next as usize];
+            vertex = next;
+        }
+        vertex
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// How a skeleton becomes simpler, one after the other until the mesh is sound.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Simpler {
+    /// No path turns by more than a right angle.
+    WithoutTurns,
+    /// Between forks, roots and ends all is straight.
+    Straight,
+    /// Each tree is one straight tube from its root to the end that is farthest from there: of such a tube no piece can be
+    /// inside out.
+    Tubes,
+}
+
+impl Simpler {
+    pub(crate) const ALL: [Self; 3] = [Self::WithoutTurns, Self::Straight, Self::Tubes];
+
+    /// The skeleton, with those trees simpler that these samples belong to.
+    pub(crate) fn of(self, skeleton: &Skeleton, faulty: &BTreeSet<i32>) -> Skeleton {
+        let mut simpler = Skeleton::from_nodes(skeleton.nodes().to_vec());
+        match self {
+            Self::WithoutTurns => while straighten(&mut simpler, faulty, turns_back) {},
+            Self::Straight => {
+                straighten(&mut simpler, faulty, |_, _| true);
+            }
+            Self::Tubes => {
+                let keep = roots_and_farthest(&simpler, faulty);
+                simpler.retain(&keep);
+            }
+        }
+        simpler
+    }
+}
+
+/// The root of each node, and of each root whether samples of its tree are faulty.
+fn trees(skeleton: &Skeleton, faulty: &BTreeSet<i32>) -> (Vec<u32>, Vec<bool>) {
+    let mut roots: Vec<u32> = Vec::with_capacity(skeleton.nodes().len());
+    let mut is_faulty = vec![false; skeleton.nodes().len()];
+    for (index, node) in (0..).zip(skeleton.nodes()) {
+        let root = match node.parent {
+            NONE => index,
+            parent => roots[parent as usize],
+        };
+        roots.push(root);
+        is_faulty[root as usize] |= faulty.contains(&(node.sample as i32));
+    }
+    (roots, is_faulty)
+}
+
+/// Leaves out ordinary points of faulty trees of which this is true; whether there were any.
+fn straighten(
+    skeleton: &mut Skeleton,
+    faulty: &BTreeSet<i32>,
+    leave_out: fn(&Skeleton, u32) -> bool,
+) -> bool {
+    let (roots, is_faulty) = trees(skeleton, faulty);
+    let is_kept = |(index, root): (u32, &u32)| {
+        let node = skeleton.node(index);
+        let is_ordinary = node.parent != NONE
+            && node.root == Root::Free
+            && skeleton.children().of(index).len() == 1;
+        !(is_faulty[*root as usize] && is_ordinary && leave_out(skeleton, index))
+    };
+    let keep: Vec<bool> = (0..).zip(&roots).map(is_kept).collect();
+    skeleton.retain(&keep);
+    keep.contains(&false)
+}
+
+fn turns_back(skeleton: &Skeleton, node: u32) -> bool {
+    let center = |node: u32| skeleton.node(node).center;
+    let (before, after) = (skeleton.node(node).parent, skeleton.children().of(node)[0]);
+    (center(node) - center(before)).dot(center(after) - center(node)) <= 0.0
+}
+
+/// Of faulty trees their roots, and the end that is farthest from there; all of the others.
+fn roots_and_farthest(skeleton: &Skeleton, faulty: &BTreeSet<i32>) -> Vec<bool> {
+    let (roots, is_faulty) = trees(skeleton, faulty);
+    let mut farthest: Vec<(f64, u32)> = vec![(-1.0, NONE); roots.len()];
+    for (index, &root) in (0..).zip(&roots) {
+        let way = skeleton
+            .node(index)
+            .center
+            .distance(skeleton.node(root).center);
+        let far = &mut farthest[root as usize];
+        if index != root && way > far.0 {
+            *far = (way, index);
+        }
+    }
+    let is_kept = |(index, &root): (u32, &u32)| {
+        !is_faulty[root as usize] || index == root || farthest[root as usize].1 == index
+    };
+    (0..).zip(&roots).map(is_kept).collect()
+}
