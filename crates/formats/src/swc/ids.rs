@@ -48,11 +48,7 @@ pub(super) fn resolve(records: &mut Records, warnings: &mut Warnings) -> Located
         let id = node.id;
         if parent < 0 {
             if parent != -1 {
-                warnings.add(
-                    line(i),
-                    "root_parent",
-                    "a root's parent is negative but not -1",
-                );
+                warnings.add(line(i), "root_parent", "a root's parent is not -1");
             }
             continue;
         }
@@ -60,6 +56,11 @@ pub(super) fn resolve(records: &mut Records, warnings: &mut Warnings) -> Located
             return Err((line(i), Fault::SelfParent { id }));
         }
         let found = index.get(parent, n);
+        if found.is_none() && parent == 0 {
+            // Vaa3D and others number from 1 on and give roots the parent 0.
+            warnings.add(line(i), "root_parent", "a root's parent is not -1");
+            continue;
+        }
         let unknown = || (line(i), Fault::UnknownParent { id, parent });
         node.parent = Some(found.ok_or_else(unknown)?);
         if found > Some(i as u32) {

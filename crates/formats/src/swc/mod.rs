@@ -8,6 +8,7 @@
 //! ```text
 //! bytes ──rows──▶ records: nodes, parents by number, lines
 //!       ──ids───▶ nodes, parents by index
+//!       ──units, conventions──▶ what programs mean that write SWC in ways of their own
 //!       ──Morphology::from_nodes──▶ morphology + notes
 //! ```
 //!
@@ -16,9 +17,11 @@
 //! footer with synapses, are not), `+1`, `.5`, `1e3`, gaps between numbers, any type.
 //! **Taken with a warning**: see the codes in [`crate::Warning`]; **refused**: [`crate::Fault`].
 
+mod conventions;
 mod ids;
 mod number;
 mod rows;
+mod units;
 mod write;
 
 use std::path::Path;
@@ -68,6 +71,10 @@ fn interpret(
         return Err((1, Fault::NoSample));
     }
     ids::resolve(&mut records, warnings)?;
+    units::apply(&mut records, warnings);
+    conventions::fork_and_end_types(&mut records, warnings);
+    conventions::coincident_somata(&mut records, warnings);
+    conventions::roots_in_somata(&mut records, warnings);
     let Records {
         nodes,
         lines,

@@ -2,6 +2,7 @@
 
 #[cfg(all(feature = "asc", feature = "h5"))]
 mod both_formats;
+mod conventions;
 mod faults;
 mod fuzz_swc;
 #[cfg(feature = "asc")]

@@ -9,9 +9,9 @@ use super::Node;
 const POSSIBLE: f64 = 50_000.0;
 /// A side (µm) that is possible even where neurites are thick. A cell of 5 µm in nanometers is as large.
 const POSSIBLE_IF_THICK: f64 = 5_000.0;
-/// The median radius (µm) of a thick neurite: in nanometers the thinnest ones have more, in micrometers only
-/// giant axons do.
-const THICK: f64 = 20.0;
+/// The median radius (µm) of a thick neurite: in nanometers the thinnest ones have more, in voxels of 8 nm most do, in
+/// micrometers only giant axons, which are shorter.
+const THICK: f64 = 5.0;
 
 /// Whether the unit is likely not the micrometer. The limits are chosen by eye, between cells as they are and the
 /// same a thousand times larger; skeletons in voxels of 8 nm are found too.
@@ -62,6 +62,7 @@ mod tests {
         assert!(noted(20_000.0, 60.0), "a cell of a fly in nanometers");
         assert!(noted(80_000.0, 1.0), "in nanometers, without good radii");
         assert!(noted(61_811.0, 32.0), "in voxels of 8 nm");
+        assert!(noted(24_000.0, 17.0), "a thin one in voxels of 8 nm");
         assert!(
             !noted(15_000.0, 0.4),
             "an axon through the brain of a mouse"

@@ -152,7 +152,8 @@ fn malformed_files_give_an_error_or_a_warning_that_says_so() {
         ("cycle.swc", "cycle.swc:2: sample 2 is its own ancestor"),
         ("empty.swc", "empty"),
         ("html_error_page.swc", "web page"),
-        ("multiple_soma.swc", "several_somata"),
+        // Both stand in the same place.
+        ("multiple_soma.swc", "coincident_somata"),
         ("nan_coords.swc", "nan_coords.swc:2: x is nan"),
         ("negative_radius.swc", "line 2: negative radius"),
         ("only_header.swc", "no sample"),

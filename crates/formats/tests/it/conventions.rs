@@ -1,0 +1,139 @@
+//! SWC as programs write it in ways of their own: what is read is what they mean.
+
+use neurotess_formats::{Read, ReadOptions, swc};
+use neurotess_morphology::{Attachment, NeuriteKind};
+
+fn read(text: &str) -> Read {
+    swc::read_bytes(text.as_bytes(), "cell.swc", &ReadOptions::default()).expect("read")
+}
+
+fn codes(read: &Read) -> Vec<&'static str> {
+    read.warnings.iter().map(|warning| warning.code).collect()
+}
+
+/// Length (µm) of all neurites, to the soma's surface or not: between their own points.
+fn radii(read: &Read) -> Vec<f32> {
+    read.morphology
+        .points
+        .iter()
+        .map(|point| point.radius)
+        .collect()
+}
+
+#[neurotess_testing::test]
+fn parent_0_is_that_of_roots_where_no_sample_has_that_number() {
+    let of_vaa3d = read("1 2 0 0 0 1 0\n2 2 0 9 0 1 1\n3 2 5 20 0 1 2\n");
+    assert_eq!(of_vaa3d.morphology.sections.len(), 1);
+    assert_eq!(of_vaa3d.morphology.points.len(), 3);
+    assert!(codes(&of_vaa3d).contains(&"root_parent"));
+    // Where there is one it is the parent.
+    let from_0 = read("0 1 0 0 0 5 -1\n1 2 0 9 0 1 0\n2 2 0 19 0 1 1\n");
+    assert!(codes(&from_0).is_empty(), "{:?}", from_0.warnings);
+    let other = swc::read_bytes(b"1 2 0 0 0 1 7\n", "cell.swc", &ReadOptions::default());
+    assert!(other.is_err(), "7 is nobody's number");
+}
+
+#[neurotess_testing::test]
+fn types_of_forks_and_ends_are_those_of_their_parents() {
+    let text = "1 0 0 0 0 1 -1\n2 3 0 10 0 1 1\n3 5 0 20 0 1 2\n4 3 10 30 0 1 3\n5 6 20 40 0 1 4\n\
+                6 3 -10 30 0 1 3\n7 6 -20 40 0 1 6\n";
+    let labeled = read(text);
+    let sections = &labeled.morphology.sections;
+    let kinds: Vec<i32> = sections.iter().map(|section| section.kind.0).collect();
+    // The root of type 0, and three of dendrite: before the fork and after it.
+    assert_eq!(kinds, [0, 3, 3, 3]);
+    assert!(codes(&labeled).contains(&"fork_and_end_types"));
+    // A type 6 that is not at an end is somebody's own type, and so are all.
+    let own = read(&text.replace("4 3 10", "4 6 10"));
+    assert!(!codes(&own).contains(&"fork_and_end_types"));
+    assert!(
+        own.morphology
+            .sections
+            .iter()
+            .any(|s| s.kind == NeuriteKind(6))
+    );
+    // On the soma a fork is a neurite's.
+    let on_soma = read("1 1 0 0 0 5 -1\n2 5 0 9 0 1 1\n3 2 3 19 0 1 2\n4 2 -3 19 0 1 2\n");
+    assert_eq!(on_soma.morphology.sections[0].kind, NeuriteKind::UNDEFINED);
+}
+
+#[neurotess_testing::test]
+fn a_soma_that_is_written_for_each_neurite_is_one() {
+    let text = "1 1 0 0 0 8 -1\n2 3 10 0 0 1 1\n3 3 60 0 0 1 2\n4 1 0 0 0 8 -1\n5 2 -10 0 0 1 4\n\
+                6 1 0.5 0 0 7 -1\n7 4 0 10 0 1 6\n";
+    let cell = read(text);
+    assert_eq!(cell.morphology.somata.len(), 1);
+    assert_eq!(cell.morphology.somata[0].samples.len(), 1);
+    let is_on_soma = |s: &&neurotess_morphology::Section| {
+        matches!(s.attachment, Attachment::Soma { soma: 0, .. })
+    };
+    assert_eq!(
+        cell.morphology.sections.iter().filter(is_on_soma).count(),
+        3
+    );
+    let told = cell
+        .warnings
+        .iter()
+        .find(|w| w.code == "coincident_somata")
+        .expect("told");
+    assert_eq!((told.count, told.line), (2, Some(4)));
+    // Three points each.
+    let points = |first: u32, child: &str| {
+        format!(
+            "{first} 1 0 0 0 8 -1\n{} 1 0 -8 0 8 {first}\n{} 1 0 8 0 8 {first}\n{} 3 {child} 1 {first}\n",
+            first + 1,
+            first + 2,
+            first + 3
+        )
+    };
+    let twice = read(&(points(1, "20 0 0") + &points(5, "-20 0 0")));
+    assert_eq!(twice.morphology.somata.len(), 1);
+    assert_eq!(twice.morphology.somata[0].samples.len(), 3);
+    assert_eq!(twice.morphology.sections.len(), 2);
+    // Cells side by side are several.
+    let apart = read("1 1 0 0 0 8 -1\n2 3 10 0 0 1 1\n3 1 12 0 0 8 -1\n4 3 30 0 0 1 3\n");
+    assert_eq!(apart.morphology.somata.len(), 2);
+}
+
+#[neurotess_testing::test]
+fn what_begins_in_the_soma_hangs_on_it() {
+    let cell = read(
+        "1 1 0 0 0 5 -1\n2 3 0 0 0 1 -1\n3 3 0 20 0 1 2\n4 2 3 3 0 1 -1\n5 2 30 3 0 1 4\n6 2 50 0 0 1 -1\n7 2 60 0 0 1 6\n",
+    );
+    let free = |s: &&neurotess_morphology::Section| s.attachment == Attachment::Free;
+    assert_eq!(cell.morphology.sections.iter().filter(free).count(), 1);
+    let told = cell
+        .warnings
+        .iter()
+        .find(|w| w.code == "root_in_soma")
+        .expect("told");
+    assert_eq!((told.count, told.line), (2, Some(2)));
+}
+
+#[neurotess_testing::test]
+fn a_header_s_unit_is_read() {
+    let rows = "1 1 10000 20000 15000 375 -1\n2 3 10400 20000 15000 20 1\n";
+    let of_navis = format!("# Meta: {{\"id\": \"1\", \"units\": \"8 nanometer\"}}\n{rows}");
+    let cell = read(&of_navis);
+    assert!((cell.morphology.somata[0].radius - 3.0).abs() < 1e-5);
+    assert!((radii(&cell)[0] - 0.16).abs() < 1e-6);
+    assert_eq!(codes(&cell), ["units_in_header"]);
+    // A copy is in micrometers and says so.
+    let mut copy = Vec::new();
+    swc::write(&cell.morphology, &mut copy).expect("memory takes it");
+    let copy = String::from_utf8(copy).expect("text");
+    assert!(copy.contains("\"units\": \"1 micrometer\""), "{copy}");
+    let again = read(&copy);
+    assert!(codes(&again).is_empty());
+    assert_eq!(radii(&again), radii(&cell));
+    // What cannot be applied is told.
+    assert!(codes(&read(&format!("# units: nm\n{rows}"))).contains(&"unit_not_applied"));
+    assert!(!codes(&read(&format!("# units: um\n{rows}"))).contains(&"unit_not_applied"));
+    for none in [
+        "\"units\": \"dimensionless\"",
+        "\"units\": \"",
+        "\"units\": 8",
+    ] {
+        assert!(!codes(&read(&format!("# Meta: {{{none}}}\n{rows}"))).contains(&"units_in_header"));
+    }
+}
