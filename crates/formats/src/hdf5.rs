@@ -10,6 +10,9 @@ pub(crate) struct Store {
     file: hdf5_pure::File,
     /// Bytes of the file.
     size: u64,
+    /// A group that most is asked of, with its path and a slash: to find it among thousands takes long, so it is done
+    /// once.
+    focus: Option<(String, hdf5_pure::Group)>,
 }
 
 /// A table of numbers.
@@ -31,24 +34,58 @@ impl Store {
     pub(crate) fn from_bytes(bytes: Vec<u8>) -> Result<Self, Fault> {
         let size = bytes.len() as u64;
         let file = hdf5_pure::File::from_bytes(bytes).map_err(|e| hdf5("the file", &e))?;
-        Ok(Self { file, size })
+        Ok(Self {
+            file,
+            size,
+            focus: None,
+        })
     }
 
     /// Opens a file that is read where its parts lie.
     pub(crate) fn open(path: &Path) -> Result<Self, Fault> {
         let file = hdf5_pure::File::open_streaming(path).map_err(|e| hdf5("the file", &e))?;
         let size = file.file_size();
-        Ok(Self { file, size })
+        Ok(Self {
+            file,
+            size,
+            focus: None,
+        })
+    }
+
+    /// Prepares for questions about what is in a group.
+    pub(crate) fn focus(&mut self, group: &str) {
+        let found = self.file.group(group).ok();
+        self.focus = found.map(|found| (format!("{group}/"), found));
+    }
+
+    fn dataset(&self, path: &str) -> Result<hdf5_pure::Dataset, hdf5_pure::Error> {
+        match self.focused(path) {
+            Some((group, rest)) => group.dataset(rest),
+            None => self.file.dataset(path),
+        }
+    }
+
+    fn group(&self, path: &str) -> Result<hdf5_pure::Group, hdf5_pure::Error> {
+        match self.focused(path) {
+            Some((group, rest)) => group.group(rest),
+            None => self.file.group(path),
+        }
+    }
+
+    /// The group in focus, and the path within it.
+    fn focused<'p>(&self, path: &'p str) -> Option<(&hdf5_pure::Group, &'p str)> {
+        let (before, group) = self.focus.as_ref()?;
+        Some((group, path.strip_prefix(before.as_str())?))
     }
 
     /// Whether there is a dataset of this path.
     pub(crate) fn has(&self, path: &str) -> bool {
-        self.file.dataset(path).is_ok()
+        self.dataset(path).is_ok()
     }
 
     /// Whether there is a group of this path.
     pub(crate) fn has_group(&self, path: &str) -> bool {
-        self.file.group(path).is_ok()
+        self.group(path).is_ok()
     }
 
     /// Names of the groups in the group of this path; none where there is no such group.
@@ -56,7 +93,7 @@ impl Store {
         let group = if path.is_empty() {
             Ok(self.file.root())
         } else {
-            self.file.group(path)
+            self.group(path)
         };
         group.and_then(|g| g.groups()).unwrap_or_default()
     }
@@ -64,7 +101,7 @@ impl Store {
     /// An attribute of a group as whole numbers; empty where there is none.
     pub(crate) fn whole_attribute(&self, group: &str, name: &str) -> Vec<i64> {
         use hdf5_pure::AttrValue as A;
-        let attributes = self.file.group(group).and_then(|g| g.attrs());
+        let attributes = self.group(group).and_then(|g| g.attrs());
         let Ok(Some(value)) = attributes.map(|mut all| all.remove(name)) else {
             return Vec::new();
         };
@@ -99,7 +136,7 @@ impl Store {
         columns: usize,
         read: impl FnOnce(&hdf5_pure::Dataset) -> Result<Vec<T>, hdf5_pure::Error>,
     ) -> Result<Table<T>, Fault> {
-        let dataset = self.file.dataset(path).map_err(|e| hdf5(path, &e))?;
+        let dataset = self.dataset(path).map_err(|e| hdf5(path, &e))?;
         let shape = dataset.shape().map_err(|e| hdf5(path, &e))?;
         let rows = match *shape {
             [rows, found] if found == columns as u64 => rows,

@@ -94,6 +94,10 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
     let path = path.as_ref();
     let name = path.display().to_string();
     let (file, member) = member(path);
+    #[cfg(feature = "h5")]
+    if let Some(member) = member.filter(|_| !packed::is_packed(file)) {
+        return h5::read_member_of(file, &name, member, options);
+    }
     let bytes = match read_regular(file) {
         Ok(bytes) => bytes,
         Err(e) => return Err(ReadError::of_file(&name, Fault::Io(e))),
@@ -144,17 +148,20 @@ pub fn read_bytes(
 
 /// The file, and the morphology within it that a path names as in `merged.h5#cells/a`.
 pub fn member(path: &Path) -> (&Path, Option<&str>) {
-    let parts = path.to_str().and_then(|text| text.split_once('#'));
-    match parts {
-        Some((file, member)) if !member.is_empty() && !path.exists() => {
-            let file = Path::new(file);
-            match file.is_file() {
-                true => (file, Some(member)),
-                false => (path, None),
-            }
-        }
-        _ => (path, None),
+    let whole = (path, None);
+    let Some(text) = path.to_str().filter(|text| text.contains('#')) else {
+        return whole;
+    };
+    if path.exists() {
+        return whole;
     }
+    // Folders and names may have a # of their own: the first that ends the path of a file counts.
+    let mut parts = text.match_indices('#');
+    let parts = parts.find_map(|(at, _)| {
+        let (file, member) = (Path::new(&text[..at]), &text[at + 1..]);
+        (!member.is_empty() && file.is_file()).then_some((file, Some(member)))
+    });
+    parts.unwrap_or(whole)
 }
 
 /// Reads a format that has lines: `interpret` gets the cell's name and collects warnings.

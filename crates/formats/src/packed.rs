@@ -32,6 +32,15 @@ pub(crate) fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, Fault> {
     }
 }
 
+/// Whether a file begins as those of gzip do.
+#[cfg(feature = "h5")]
+pub(crate) fn is_packed(path: &Path) -> bool {
+    let mut begin = [0; 2];
+    let read = crate::regular(path).and_then(|()| std::fs::File::open(path));
+    let read = read.and_then(|mut file| file.read_exact(&mut begin));
+    read.is_ok() && begin == GZIP
+}
+
 /// The name of a file without the ending `.gz`, if it has it.
 pub fn unpacked_name(path: &Path) -> &Path {
     let packed = path

@@ -48,13 +48,39 @@ pub fn read_member(
     member: &str,
     options: &ReadOptions,
 ) -> Result<Read, ReadError> {
+    if bytes.is_empty() {
+        return Err(ReadError::of_file(name, Fault::Empty));
+    }
+    read_store(Store::from_bytes(bytes), name, member, options)
+}
+
+/// Reads one morphology of a container that is a file: its own parts only, since a container may be larger than
+/// memory and is read once for each of its morphologies.
+pub(crate) fn read_member_of(
+    file: &Path,
+    name: &str,
+    member: &str,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
+    if let Err(e) = regular(file) {
+        return Err(ReadError::of_file(name, Fault::Io(e)));
+    }
+    read_store(Store::open(file), name, member, options)
+}
+
+fn read_store(
+    store: Result<Store, Fault>,
+    name: &str,
+    member: &str,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
     let mut warnings = Warnings::default();
     let own = match member.rsplit('/').next().unwrap_or_default() {
         "" => stem(name, Format::H5.extensions()),
         last => last,
     };
-    let morphology = interpret(bytes, own, member, &mut warnings)
-        .map_err(|fault| ReadError::of_file(name, fault))?;
+    let morphology = store.and_then(|mut store| interpret(&mut store, own, member, &mut warnings));
+    let morphology = morphology.map_err(|fault| ReadError::of_file(name, fault))?;
     let mut warnings = warnings.finish(name, options)?;
     // Rows of tables are no lines.
     warnings.iter_mut().for_each(|w| w.line = None);
@@ -79,26 +105,26 @@ pub fn is_other(path: impl AsRef<Path>) -> bool {
 }
 
 fn interpret(
-    bytes: Vec<u8>,
+    store: &mut Store,
     name: &str,
     member: &str,
     warnings: &mut Warnings,
 ) -> Result<Morphology, Fault> {
-    if bytes.is_empty() {
-        return Err(Fault::Empty);
-    }
-    let store = Store::from_bytes(bytes)?;
-    let tables = match member {
-        "" => Tables::find(&store, warnings)?,
-        member => Tables::of_member(&store, member)?,
-    };
-    tell_what_is_left_out(&store, warnings);
-    let mut tracing = tables.tracing(warnings)?;
-    let path = match member.trim_matches('/') {
+    let group = member.trim_matches('/');
+    let path = match group {
         "" => String::new(),
-        member => format!("{member}/"),
+        group => format!("{group}/"),
     };
-    tracing.spines = spines::spines(&store, &path, &tables, warnings)?;
+    if !group.is_empty() {
+        store.focus(group);
+    }
+    let tables = match member {
+        "" => Tables::find(store, warnings)?,
+        member => Tables::of_member(store, member)?,
+    };
+    tell_what_is_left_out(store, &path, warnings);
+    let mut tracing = tables.tracing(warnings)?;
+    tracing.spines = spines::spines(store, &path, &tables, warnings)?;
     tracing
         .build(name, warnings)
         .map_err(|(row, fault)| match fault {
@@ -342,14 +368,16 @@ fn morphologies(store: &Store) -> (usize, String) {
     (count, first.trim_end_matches('/').to_owned())
 }
 
-fn tell_what_is_left_out(store: &Store, warnings: &mut Warnings) {
-    if spines::has_other_organelles(store) {
+/// `path`: of the cell's group with a slash at its end; empty for the root.
+fn tell_what_is_left_out(store: &Store, path: &str, warnings: &mut Warnings) {
+    if spines::has_other_organelles(store, path) {
         warnings.add(1, "organelles_left_out", "organelles: left out");
     }
-    if store.has("perimeters") {
+    if store.has(&format!("{path}perimeters")) {
         warnings.add(1, "perimeters_left_out", "perimeters: left out");
     }
-    match store.whole_attribute("metadata", "cell_family").first() {
+    let family = store.whole_attribute(&format!("{path}metadata"), "cell_family");
+    match family.first() {
         Some(1) => warnings.add(
             1,
             "glia",

@@ -34,11 +34,12 @@ pub(super) fn spines(
     Ok(spines)
 }
 
-/// Whether a file has organelles of which nothing is read.
-pub(super) fn has_other_organelles(store: &Store) -> bool {
-    let groups = store.groups("organelles");
-    let is_read = groups == ["postsynaptic_density"] && !is_spine(store, "");
-    store.has_group("organelles") && !is_read
+/// Whether a cell has organelles of which nothing is read.
+pub(super) fn has_other_organelles(store: &Store, member: &str) -> bool {
+    let organelles = format!("{member}organelles");
+    let groups = store.groups(&organelles);
+    let is_read = groups == ["postsynaptic_density"] && !is_spine(store, member);
+    store.has_group(&organelles) && !is_read
 }
 
 fn is_spine(store: &Store, member: &str) -> bool {
