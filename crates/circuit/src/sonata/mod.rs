@@ -4,6 +4,7 @@
 //! and its developer guide; what the Allen Institute's and Blue Brain's tools make of it where the two
 //! differ, see `docs/circuits.md`.
 
+mod blanks;
 mod config;
 mod nodes;
 pub(crate) mod orientation;
@@ -146,7 +147,7 @@ impl Reading {
         source: &NodeSource,
     ) -> Result<Population, CircuitError> {
         let types = match &source.types {
-            Some(file) => types::Types::open(file, name)?,
+            Some(file) => types::Types::open(file, name, &mut self.warnings)?,
             None => types::Types::default(),
         };
         let table = nodes::Table::open(store, name, &types, &mut self.warnings)?;

@@ -1,5 +1,6 @@
 //! Circuits, their reports and spikes, from outside.
 
+mod dialects;
 mod faults;
 mod fuzz;
 mod reference;
