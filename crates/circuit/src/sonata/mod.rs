@@ -7,7 +7,9 @@
 mod blanks;
 mod config;
 mod nodes;
+mod notes;
 pub(crate) mod orientation;
+mod places;
 mod population;
 mod types;
 
@@ -158,7 +160,7 @@ impl Reading {
                 TemplateId(templates.len() as u32 - 1)
             })
         };
-        let mut notes = population::Notes {
+        let mut notes = notes::Notes {
             warnings: &mut self.warnings,
             failures: &mut self.failures,
             template: &mut template,

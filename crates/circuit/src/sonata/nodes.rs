@@ -34,6 +34,14 @@ struct Group {
     rows: Option<Vec<(u32, u64)>>,
 }
 
+/// A dataset of vectors.
+pub(crate) struct Vectors {
+    /// Its path.
+    pub(crate) path: String,
+    /// Row in the population, and the vector.
+    pub(crate) rows: Vec<(u32, [f64; 3])>,
+}
+
 impl<'a> Table<'a> {
     /// Reads what rows there are.
     pub(crate) fn open(
@@ -115,6 +123,61 @@ impl<'a> Table<'a> {
             .map(|g| format!("{}/{attribute}", g.path));
         let own = paths.find(|path| self.store.has(path));
         own.unwrap_or_else(|| format!("{}: column {attribute}", self.path))
+    }
+
+    /// Whether each node is in a group that has the dataset.
+    pub(crate) fn rows_with(&self, dataset: &str) -> Vec<bool> {
+        let mut with = vec![false; self.len()];
+        for group in &self.groups {
+            if self.store.has(&format!("{}/{dataset}", group.path)) {
+                match &group.rows {
+                    None => with.fill(true),
+                    Some(rows) => rows
+                        .iter()
+                        .for_each(|&(node, _)| with[node as usize] = true),
+                }
+            }
+        }
+        with
+    }
+
+    /// Datasets of this name with a row of up to three numbers a node: for each, its path, and of each node of its
+    /// group row and numbers, 0 for those that are not there. Others of this name, of one dimension, are attributes.
+    pub(crate) fn vectors(&self, name: &str) -> Result<Vec<Vectors>, CircuitError> {
+        let mut all = Vec::new();
+        for group in &self.groups {
+            let path = format!("{}/{name}", group.path);
+            if !self.store.has(&path) {
+                continue;
+            }
+            let shape = self.store.shape(&path)?;
+            let [available, width] = shape[..] else {
+                continue;
+            };
+            let rows = match &group.rows {
+                Some(rows) => rows.clone(),
+                None => (0..self.len() as u32).map(|r| (r, u64::from(r))).collect(),
+            };
+            let needed = rows.iter().map(|&(_, row)| row + 1).max().unwrap_or(0);
+            if !(1..=3).contains(&width) || available < needed {
+                let expected = format!("at least [{needed}, 3]");
+                let found = shape;
+                return Err(self.store.fault(&path, Fault::Shape { found, expected }));
+            }
+            let numbers = self.store.matrix(&path, available, width)?;
+            let width = width as usize;
+            let vector = |(node, row): (u32, u64)| {
+                let own = &numbers[row as usize * width..][..width];
+                let mut vector = [0.0; 3];
+                vector[..width].copy_from_slice(own);
+                (node, vector)
+            };
+            all.push(Vectors {
+                rows: rows.into_iter().map(vector).collect(),
+                path,
+            });
+        }
+        Ok(all)
     }
 
     /// Names of all attributes, sorted.
@@ -258,9 +321,14 @@ fn rows_of(store: &Store, path: &str) -> Result<u64, CircuitError> {
     if let Some(dataset) = store.first_of(&own) {
         return store.rows(&dataset);
     }
-    match store.datasets(&format!("{path}/0")).first() {
-        Some(attribute) => store.rows(&format!("{path}/0/{attribute}")),
-        None => Err(store.fault(&own[0], Fault::Missing)),
+    let Some(attribute) = store.datasets(&format!("{path}/0")).into_iter().next() else {
+        return Err(store.fault(&own[0], Fault::Missing));
+    };
+    let attribute = format!("{path}/0/{attribute}");
+    match store.shape(&attribute)?[..] {
+        // Like `positions`.
+        [rows, _] if rows <= u64::from(u32::MAX) => store.believe(&attribute).map(|()| rows),
+        _ => store.rows(&attribute),
     }
 }
 

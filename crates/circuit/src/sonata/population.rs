@@ -7,11 +7,12 @@ use rayon::prelude::*;
 
 use crate::sonata::config::{NodeSource, PopulationSource};
 use crate::sonata::nodes::Table;
+use crate::sonata::notes::{Broken, Notes};
 use crate::sonata::orientation;
+use crate::sonata::places::{self, Placed};
 use crate::template::{Finder, TemplateId};
 use crate::{Attribute, CircuitError, Fault, Population, Warning};
 
-const PLACES: [&str; 3] = ["x", "y", "z"];
 const QUATERNION: [&str; 4] = [
     "orientation_w",
     "orientation_x",
@@ -23,14 +24,6 @@ const ANGLES: [&str; 3] = [
     "rotation_angle_yaxis",
     "rotation_angle_zaxis",
 ];
-
-/// What else than the population a reader makes.
-pub(crate) struct Notes<'a> {
-    pub(crate) warnings: &'a mut Vec<Warning>,
-    pub(crate) failures: &'a mut Vec<CircuitError>,
-    /// Gives a morphology file its template.
-    pub(crate) template: &'a mut dyn FnMut(std::path::PathBuf) -> TemplateId,
-}
 
 /// Reads a population from its table. `file` is the nodes' file.
 pub(crate) fn read(
@@ -59,13 +52,13 @@ pub(crate) fn read(
         file,
         rows: vec![false; table.len()],
     };
-    places(table, &mut population, &mut broken, notes)?;
+    let placed = places::read(table, &mut population, &mut broken, notes)?;
     rotations(table, &mut population, &mut broken, notes)?;
     recentering(table, &mut population)?;
     let names: Vec<String> = table
         .attributes()
         .into_iter()
-        .filter(|name| !is_place(name))
+        .filter(|name| !is_rotation(name) && !placed.read_from.contains(&name.as_str()))
         .collect();
     let columns: Vec<_> = names.par_iter().map(|name| table.attribute(name)).collect();
     for (name, column) in names.into_iter().zip(columns) {
@@ -82,80 +75,13 @@ pub(crate) fn read(
             Err(e) => return Err(e),
         }
     }
-    morphologies(table, &mut population, settings, &broken, notes);
+    morphologies(table, &mut population, settings, (&broken, &placed), notes);
     Ok(population)
 }
 
-/// Whether an attribute is read as a place or a rotation.
-fn is_place(name: &str) -> bool {
-    PLACES.contains(&name) || QUATERNION.contains(&name) || ANGLES.contains(&name)
-}
-
-/// Nodes whose place or rotation makes no sense.
-struct Broken<'a> {
-    file: &'a str,
-    rows: Vec<bool>,
-}
-
-impl Broken<'_> {
-    /// Marks nodes, and tells of them as one failure.
-    fn mark(&mut self, key: String, faulty: &[(usize, f64)], zero: bool, notes: &mut Notes) {
-        for &(row, _) in faulty {
-            self.rows[row] = true;
-        }
-        if let Some(&(row, value)) = faulty.first() {
-            let (row, count) = (row as u64, faulty.len() as u64);
-            let fault = if zero {
-                Fault::ZeroQuaternion { row, count }
-            } else {
-                Fault::NotFinite { row, value, count }
-            };
-            notes
-                .failures
-                .push(CircuitError::new(self.file, key, fault));
-        }
-    }
-}
-
-fn places(
-    table: &Table,
-    population: &mut Population,
-    broken: &mut Broken,
-    notes: &mut Notes,
-) -> Result<(), CircuitError> {
-    let columns = PLACES.map(|axis| table.numbers(axis));
-    let [x, y, z] = columns;
-    let [x, y, z] = [x?, y?, z?];
-    if x.is_none() && y.is_none() && z.is_none() {
-        return Ok(());
-    }
-    let n = population.len();
-    // A node with some coordinates has none that is missing; one with none, as in a group of virtual
-    // nodes, has no place.
-    let axes = [x, y, z].map(|axis| axis.unwrap_or_else(|| vec![0.0; n]));
-    for (row, place) in population.positions.iter_mut().enumerate() {
-        *place = DVec3::from_array([0, 1, 2].map(|axis: usize| axes[axis][row]));
-    }
-    for axis in 0..3 {
-        let wrong = |&(row, value): &(usize, f64)| {
-            let all_nan = population.positions[row]
-                .to_array()
-                .iter()
-                .all(|c| c.is_nan());
-            !(value.is_finite() || value.is_nan() && all_nan)
-        };
-        let faulty: Vec<(usize, f64)> = axes[axis]
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(wrong)
-            .collect();
-        broken.mark(table.key(PLACES[axis]), &faulty, false, notes);
-    }
-    for (row, _) in broken.rows.iter().enumerate().filter(|&(_, &b)| b) {
-        population.positions[row] = DVec3::NAN;
-    }
-    Ok(())
+/// Whether an attribute is read as a rotation.
+fn is_rotation(name: &str) -> bool {
+    QUATERNION.contains(&name) || ANGLES.contains(&name)
 }
 
 fn rotations(
@@ -237,7 +163,7 @@ fn morphologies(
     table: &Table,
     population: &mut Population,
     settings: &PopulationSource,
-    broken: &Broken,
+    (broken, placed): (&Broken, &Placed),
     notes: &mut Notes,
 ) {
     let Some(Attribute::Text { library, indices }) = population.attributes.get("morphology") else {
@@ -272,23 +198,39 @@ fn morphologies(
             None => missing.push((name, count)),
         }
     }
-    let mut unplaced = 0;
+    let (mut unplaced, mut at_origin) = (0, 0);
     for (row, &index) in indices.iter().enumerate() {
         let template = templates.get(index as usize).copied().flatten();
-        if template.is_some() && population.position(row).is_none() && !broken.rows[row] {
+        if template.is_none() || broken.rows[row] {
+            continue;
+        }
+        if population.positions[row].is_finite() {
+            population.templates[row] = template;
+        } else if placed.has_place[row] {
             unplaced += 1;
-        } else if !broken.rows[row] {
+        } else {
+            at_origin += 1;
+            population.positions[row] = DVec3::ZERO;
             population.templates[row] = template;
         }
     }
-    tell(table, broken.file, &missing, unplaced, settings, notes);
+    tell_missing(table, broken.file, &missing, settings, notes);
+    let mut tell = |count: u64, code, what: &str| {
+        if count > 0 {
+            let message = format!("{count} nodes have a morphology but no place: {what}");
+            let warning = Warning::new(broken.file, table.path(), code, message);
+            notes.warnings.push(warning.times(count));
+        }
+    };
+    tell(unplaced, "position_missing", "they are not shown");
+    let at = "they are shown at the origin";
+    tell(at_origin, "placed_at_origin", at);
 }
 
-fn tell(
+fn tell_missing(
     table: &Table,
     file: &str,
     missing: &[(&str, u64)],
-    unplaced: u64,
     settings: &PopulationSource,
     notes: &mut Notes,
 ) {
@@ -313,11 +255,5 @@ fn tell(
         let key = table.key("morphology");
         let warning = Warning::new(file, key, "morphology_missing", message);
         notes.warnings.push(warning.times(nodes));
-    }
-    if unplaced > 0 {
-        let message =
-            format!("{unplaced} nodes have a morphology but no place: they are not shown");
-        let warning = Warning::new(file, table.path(), "position_missing", message);
-        notes.warnings.push(warning.times(unplaced));
     }
 }

@@ -2,11 +2,14 @@
 
 use std::fs;
 
+use glam::DVec3;
 use hdf5_pure::{FileBuilder, GroupBuilder};
-use neurotess_circuit::Circuit;
+use neurotess_circuit::{Circuit, Population};
 use tempfile::TempDir;
 
 const CELL: &str = "1 1 0 0 0 5 -1\n2 3 9 0 0 1 1\n3 3 30 0 0 1 2\n";
+const TYPES: &str =
+    "node_type_id model_type morphology\n100 biophysical cell.swc\n7 virtual NULL\n";
 const SWC: &str = r#""morphologies_dir": "m""#;
 
 /// A group of nodes of type 100.
@@ -65,10 +68,141 @@ fn warned(circuit: &Circuit) -> Vec<(&str, u64)> {
     warnings.map(|w| (w.code, w.count)).collect()
 }
 
+fn places(population: &Population) -> Vec<[f64; 3]> {
+    population.positions.iter().map(DVec3::to_array).collect()
+}
+
+fn table(group: &mut GroupBuilder, name: &str, columns: u64, values: &[f64]) {
+    let rows = values.len() as u64 / columns;
+    group
+        .create_dataset(name)
+        .with_f64_data(values)
+        .with_shape(&[rows, columns]);
+}
+
 fn axes(group: &mut GroupBuilder, names: &[&str]) {
     for name in names {
         group.create_dataset(name).with_f64_data(&[7.0, 8.0]);
     }
+}
+
+#[neurotess_testing::test]
+fn positions_are_places_and_come_before_x_y_and_z() {
+    let groups: [Group; 5] = [
+        |group| table(group, "positions", 3, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+        |group| {
+            table(group, "positions", 2, &[1.0, 2.0, 3.0, 4.0]);
+            axes(group, &["x", "y", "z"]);
+        },
+        |group| axes(group, &["x", "y", "z"]),
+        |group| table(group, "position", 3, &[9.0; 6]),
+        |group| {
+            // More rows than are used; of one dimension it is an attribute.
+            table(group, "positions", 3, &[0.5; 12]);
+            axes(group, &["position"]);
+        },
+    ];
+    let folder = folder(SWC, TYPES, &[100; 10], &groups);
+    let circuit = open(&folder);
+    let population = &circuit.populations[0];
+    let expected = [
+        [1.0, 2.0, 3.0],
+        [4.0, 5.0, 6.0],
+        [1.0, 2.0, 0.0],
+        [3.0, 4.0, 0.0],
+        [7.0; 3],
+        [8.0; 3],
+        [9.0; 3],
+        [9.0; 3],
+        [0.5; 3],
+        [0.5; 3],
+    ];
+    assert_eq!(places(population), expected);
+    assert_eq!((circuit.n_shown(), warned(&circuit)), (10, vec![]));
+    let names: Vec<&str> = population.attributes.keys().map(String::as_str).collect();
+    assert_eq!(names, ["model_type", "morphology"]);
+}
+
+#[neurotess_testing::test]
+fn broken_positions_leave_the_other_cells() {
+    let groups: [Group; 2] = [
+        |group| table(group, "positions", 3, &[1.0, f64::NAN, 3.0, 4.0, 5.0, 6.0]),
+        |group| {
+            table(
+                group,
+                "positions",
+                3,
+                &[f64::NAN, f64::NAN, f64::NAN, 1.0, 1.0, 1.0],
+            );
+        },
+    ];
+    let folder_of = |groups: &[Group]| folder(SWC, TYPES, &vec![100; 2 * groups.len()], groups);
+    let folder = folder_of(&groups);
+    let circuit = Circuit::open(folder.path()).expect("a circuit");
+    assert_eq!(circuit.n_shown(), 2);
+    let failure = circuit.failures[0].to_string();
+    let expected = "nodes.h5: 'nodes/p/0/positions': row 0 is NaN, as are 1 in all";
+    assert!(failure.contains(expected), "{failure}");
+    // A place that the file has, but not of this node.
+    assert_eq!(warned(&circuit), [("position_missing", 1)]);
+    for (group, shape) in [
+        (
+            (|group| table(group, "positions", 4, &[0.0; 8])) as Group,
+            "[2, 4]",
+        ),
+        (|group| table(group, "positions", 3, &[0.0; 3]), "[1, 3]"),
+    ] {
+        let folder = folder_of(&[group]);
+        let error = Circuit::open(folder.path()).expect_err(shape).to_string();
+        let expected =
+            format!("'nodes/p/0/positions': has shape {shape} instead of at least [2, 3]");
+        assert!(error.contains(&expected), "{error}");
+    }
+}
+
+#[neurotess_testing::test]
+fn nodes_of_groups_without_places_are_at_the_origin() {
+    let none: Group = |group| axes(group, &["depth"]);
+    let circuit = open(&folder(SWC, TYPES, &[100, 100], &[none]));
+    assert_eq!(circuit.n_shown(), 2);
+    assert_eq!(places(&circuit.populations[0]), [[0.0; 3]; 2]);
+    assert_eq!(warned(&circuit), [("placed_at_origin", 2)]);
+    let said = circuit.warnings[0].to_string();
+    assert!(said.contains("2 nodes have a morphology but no place: they are shown at the origin"));
+
+    // Each group for itself; a coordinate that a group lacks is 0; virtual nodes have no place, and need none.
+    let groups: [Group; 4] = [
+        |group| axes(group, &["x", "y", "z"]),
+        |group| axes(group, &["x", "y"]),
+        none,
+        none,
+    ];
+    let types = [100, 100, 100, 100, 100, 100, 7, 7];
+    let circuit = open(&folder(SWC, TYPES, &types, &groups));
+    let population = &circuit.populations[0];
+    let expected = [
+        [7.0; 3],
+        [8.0; 3],
+        [7.0, 7.0, 0.0],
+        [8.0, 8.0, 0.0],
+        [0.0; 3],
+        [0.0; 3],
+    ];
+    assert_eq!(places(population)[..6], expected);
+    assert_eq!(
+        (population.position(6), population.position(7)),
+        (None, None)
+    );
+    assert_eq!(
+        (circuit.n_shown(), warned(&circuit)),
+        (6, vec![("placed_at_origin", 2)])
+    );
+
+    // Places of the type are places.
+    let types = "node_type_id morphology x y z\n100 cell 1 2 3\n101 cell   \n";
+    let circuit = open(&folder(SWC, types, &[100, 101], &[none]));
+    assert_eq!(places(&circuit.populations[0]), [[1.0, 2.0, 3.0], [0.0; 3]]);
+    assert_eq!(warned(&circuit), [("placed_at_origin", 1)]);
 }
 
 #[neurotess_testing::test]
