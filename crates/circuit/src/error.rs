@@ -141,6 +141,15 @@ pub enum Fault {
         /// What the library says.
         reason: String,
     },
+    /// A file where a folder of morphologies, or a container of them, is expected.
+    #[error(
+        "neither a folder of morphologies nor an HDF5 file that has each in a group with 'points' and \
+         'structure' ({reason}): correct the configuration, or fetch the file again"
+    )]
+    NotAContainer {
+        /// What it is instead.
+        reason: String,
+    },
     /// A dataset of another shape.
     #[error("has shape {found:?} instead of {expected}: export the file again")]
     Shape {

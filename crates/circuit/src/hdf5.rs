@@ -2,7 +2,7 @@
 //!
 //! Reports are larger than memory: of them only parts are read, where they lie.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOptions};
@@ -92,6 +92,32 @@ impl Store {
             .unwrap_or_default();
         names.sort();
         names
+    }
+
+    /// Paths of all groups that have these datasets, in groups up to so many deep. One pass over the file: to look
+    /// for thousands of paths one by one takes seconds.
+    pub(crate) fn groups_with(&self, datasets: &[&str], depth: u32) -> BTreeSet<String> {
+        let mut found = BTreeSet::new();
+        let mut to_see = vec![(String::new(), self.file.root(), 0)];
+        // Links may lead around in circles.
+        let mut left: u32 = 1 << 22;
+        while let Some((path, group, deep)) = to_see.pop() {
+            left -= 1;
+            if left == 0 {
+                break;
+            }
+            let own = group.datasets().unwrap_or_default();
+            if datasets.iter().all(|name| own.iter().any(|o| o == name)) {
+                found.insert(path);
+            } else if deep < depth {
+                let inner = group.iter_groups().into_iter().flatten();
+                to_see.extend(inner.map(|(name, group)| match &*path {
+                    "" => (name, group, deep + 1),
+                    path => (format!("{path}/{name}"), group, deep + 1),
+                }));
+            }
+        }
+        found
     }
 
     /// Names of the datasets in a group, sorted; none where there is no such group.

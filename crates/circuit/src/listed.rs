@@ -40,7 +40,8 @@ pub(crate) fn circuit(
     for cell in cells {
         let template = cell.file.as_ref().and_then(|path| {
             *known.entry(path).or_insert_with(|| {
-                if path.is_file() {
+                // Of a container, FILE#NAME.
+                if neurotess_formats::member(path).0.is_file() {
                     templates.push(Template::new(path.clone()));
                     Some(TemplateId(templates.len() as u32 - 1))
                 } else {

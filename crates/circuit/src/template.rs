@@ -1,6 +1,6 @@
 //! Morphologies that nodes share: found by name, read once, when first asked for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use glam::DVec3;
@@ -22,7 +22,7 @@ impl TemplateId {
 /// A morphology file.
 #[derive(Debug)]
 pub struct Template {
-    /// Where it lies.
+    /// Where it lies; of one in a container `FILE#NAME`, which [`neurotess_formats::read`] takes.
     pub path: PathBuf,
     read: OnceLock<Result<Read, ReadError>>,
 }
@@ -69,31 +69,4 @@ pub fn soma_center(morphology: &Morphology) -> DVec3 {
     morphology.soma().map_or(DVec3::ZERO, |soma| {
         morphology.origin + soma.center.as_dvec3()
     })
-}
-
-/// Files of morphologies by name.
-pub(crate) struct Finder<'a> {
-    /// Folder and extension, in the order of preference.
-    pub(crate) folders: Vec<(&'a Path, &'a str)>,
-}
-
-impl Finder<'_> {
-    /// The file of a name, with or without its extension.
-    pub(crate) fn find(&self, name: &str) -> Option<PathBuf> {
-        let candidates = self.folders.iter().flat_map(|&(folder, extension)| {
-            let named = folder.join(format!("{name}.{extension}"));
-            let bare = folder.join(name);
-            let known = bare
-                .extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case(extension));
-            if known { [bare, named] } else { [named, bare] }
-        });
-        // A name like `morph.swc` in a circuit whose files are all ASC.
-        let stem = Path::new(name).with_extension("");
-        let others = self
-            .folders
-            .iter()
-            .map(|&(folder, extension)| folder.join(format!("{}.{extension}", stem.display())));
-        candidates.chain(others).find(|path| path.is_file())
-    }
 }

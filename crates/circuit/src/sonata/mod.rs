@@ -6,6 +6,7 @@
 
 mod blanks;
 mod config;
+mod finder;
 mod nodes;
 mod notes;
 pub(crate) mod orientation;

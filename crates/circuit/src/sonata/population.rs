@@ -6,11 +6,12 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
 use crate::sonata::config::{NodeSource, PopulationSource};
+use crate::sonata::finder::Finder;
 use crate::sonata::nodes::Table;
 use crate::sonata::notes::{Broken, Notes};
 use crate::sonata::orientation;
 use crate::sonata::places::{self, Placed};
-use crate::template::{Finder, TemplateId};
+use crate::template::TemplateId;
 use crate::{Attribute, CircuitError, Fault, Population, Warning};
 
 const QUATERNION: [&str; 4] = [
@@ -177,9 +178,7 @@ fn morphologies(
         .swc
         .iter()
         .flat_map(|folder| [(&**folder, "asc"), (&**folder, "h5")]);
-    let finder = Finder {
-        folders: swc.chain(others).chain(mixed).collect(),
-    };
+    let finder = Finder::new(swc.chain(others).chain(mixed), notes.failures);
     let mut uses: BTreeMap<u32, u64> = BTreeMap::new();
     for &index in indices {
         *uses.entry(index).or_default() += 1;

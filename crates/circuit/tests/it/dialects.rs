@@ -1,6 +1,7 @@
 //! SONATA as bmtk and bluepysnap have it, where the guide says less: places, tables of types, containers.
 
 use std::fs;
+use std::path::Path;
 
 use glam::DVec3;
 use hdf5_pure::{FileBuilder, GroupBuilder};
@@ -220,5 +221,95 @@ fn empty_fields_of_types_are_no_values() {
         let text = |name: &str| attributes.get(name).and_then(|a| a.text(0));
         assert_eq!(text("dynamics_params"), None);
         assert_eq!(text("morphology"), Some("cell.swc"));
+    }
+}
+
+/// A container with morphologies of these names, each a soma and a dendrite.
+fn container(path: &Path, names: &[&str]) {
+    let mut file = FileBuilder::new();
+    for name in names {
+        match name.split_once('/') {
+            Some((folder, name)) => {
+                let mut outer = file.create_group(folder);
+                let group = morphology(outer.create_group(name));
+                outer.add_group(group);
+                file.add_group(outer.finish());
+            }
+            None => {
+                let group = morphology(file.create_group(name));
+                file.add_group(group);
+            }
+        }
+    }
+    fs::write(path, file.finish().expect("bytes")).expect("written");
+}
+
+fn morphology(mut group: GroupBuilder) -> hdf5_pure::FinishedGroup {
+    let points: [f64; 20] = [
+        5.0, 0.0, 0.0, 0.1, -3.0, 4.0, 0.0, 0.1, -3.0, -4.0, 0.0, 0.1, 5.0, 0.0, 0.0, 2.0, 30.0,
+        0.0, 0.0, 2.0,
+    ];
+    table(&mut group, "points", 4, &points);
+    group
+        .create_dataset("structure")
+        .with_i64_data(&[0, 1, -1, 3, 3, 0])
+        .with_shape(&[2, 3]);
+    group.finish()
+}
+
+#[neurotess_testing::test]
+fn a_container_is_taken_for_a_folder() {
+    let group: Group = |group| axes(group, &["x", "y", "z"]);
+    let types = "node_type_id morphology\n100 a\n101 cells/b.h5\n102 c.swc\n103 gone\n";
+    let two: [Group; 2] = [group, group];
+    for components in [
+        r#""alternate_morphologies": {"h5v1": "m/merged.h5"}"#,
+        r#""morphologies_dir": "m/merged.h5""#,
+        r#""morphologies_dir": "nowhere", "alternate_morphologies": {"h5v1": "./m/../m/merged.h5"}"#,
+    ] {
+        let folder = folder(components, types, &[100, 101, 102, 103], &two);
+        container(&folder.path().join("m/merged.h5"), &["a", "cells/b", "c"]);
+        let circuit = open(&folder);
+        assert_eq!((circuit.templates.len(), circuit.n_shown()), (3, 3));
+        assert_eq!(warned(&circuit), [("morphology_missing", 1)]);
+        let mut names = Vec::new();
+        for template in &circuit.templates {
+            let read = template.read().expect("a morphology");
+            assert_eq!(read.morphology.points.len(), 2);
+            names.push(read.morphology.name.clone());
+        }
+        names.sort();
+        assert_eq!(names, ["a", "b", "c"]);
+        let path = circuit.templates[0].path.to_string_lossy();
+        assert!(path.ends_with("merged.h5#a"), "{path}");
+    }
+}
+
+#[neurotess_testing::test]
+fn files_that_are_no_containers_are_errors_said_once() {
+    let group: Group = |group| axes(group, &["x", "y", "z"]);
+    let types = "node_type_id morphology\n100 a\n";
+    let cases = [
+        ("m/empty.h5", "(none is in it): correct the configuration"),
+        ("m/single.h5", "(it is one morphology itself)"),
+        ("m/cell.swc", "(not HDF5: "),
+    ];
+    for (file, expected) in cases {
+        let components = format!(r#""morphologies_dir": "{file}""#);
+        let folder = folder(&components, types, &[100; 2], &[group]);
+        container(&folder.path().join("m/empty.h5"), &[]);
+        let mut single = FileBuilder::new();
+        for (name, columns) in [("points", 4), ("structure", 3)] {
+            let rows = single.create_dataset(name);
+            rows.with_f64_data(&vec![0.0; columns as usize])
+                .with_shape(&[1, columns]);
+        }
+        let bytes = single.finish().expect("bytes");
+        fs::write(folder.path().join("m/single.h5"), bytes).expect("written");
+        let circuit = Circuit::open(folder.path()).expect("a circuit");
+        assert_eq!((circuit.n_shown(), circuit.failures.len()), (0, 1));
+        let said = circuit.failures[0].to_string();
+        assert!(said.contains(expected) && said.contains(file), "{said}");
+        assert_eq!(warned(&circuit), [("morphology_missing", 2)]);
     }
 }
