@@ -89,7 +89,7 @@ impl Config {
         // bmtk's config.json, which names both, and simulations.
         let network = match root.get("network") {
             Some(network) => manifest.path(&network)?,
-            None if root.get("run").is_some() => folder_of(path).join("circuit_config.json"),
+            None if root.get("run").is_some() => circuit_beside(path),
             None => return Err(CircuitError::of_file(&name(path), Fault::NotACircuit)),
         };
         let inner = Document::open(&network)?;
@@ -162,20 +162,15 @@ impl Config {
     fn simulation(&mut self, root: &Json, manifest: &Manifest) -> Result<(), CircuitError> {
         self.take_node_sets(root, manifest)?;
         let output = root.get("output");
-        let folder = match output.as_ref().and_then(|o| o.get("output_dir")) {
-            Some(folder) => manifest.path(&folder)?,
-            None => folder_of(Path::new(root.file)).join("output"),
-        };
+        let folder = output.as_ref().and_then(|o| o.get("output_dir"));
+        let folder = folder.as_ref();
         if let Some(output) = output {
             let file = match output.get("spikes_file") {
                 Some(file) => manifest.expand(&file)?,
                 None => "out.h5".into(),
             };
-            let named = (
-                root.file.into(),
-                "output.spikes_file".into(),
-                folder.join(file),
-            );
+            let path = manifest.path_in(folder, &file)?;
+            let named = (root.file.into(), "output.spikes_file".into(), path);
             self.reports.insert("spikes".into(), named);
         }
         for (name, report) in root.get("reports").map_or(Ok(vec![]), |r| r.entries())? {
@@ -189,7 +184,8 @@ impl Config {
             if Path::new(&file).extension().is_none_or(|e| e != "h5") {
                 file.push_str(".h5");
             }
-            let named = (root.file.into(), report.key, folder.join(file));
+            let path = manifest.path_in(folder, &file)?;
+            let named = (root.file.into(), report.key, path);
             self.reports.insert(name.into(), named);
         }
         Ok(())
@@ -271,6 +267,17 @@ fn populations(
         Ok((name.to_owned(), source))
     };
     list.entries()?.into_iter().map(one).collect()
+}
+
+/// The circuit of a simulation that names none: `circuit_config.json` by SONATA's guide, or the one that is there.
+fn circuit_beside(simulation: &Path) -> PathBuf {
+    let folder = folder_of(simulation);
+    let usual = folder.join("circuit_config.json");
+    let other = || find(folder).ok().filter(|path| path != simulation);
+    match usual.is_file() {
+        true => usual,
+        false => other().unwrap_or(usual),
+    }
 }
 
 /// The configuration that a folder is about.

@@ -313,3 +313,26 @@ fn files_that_are_no_containers_are_errors_said_once() {
         assert_eq!(warned(&circuit), [("morphology_missing", 2)]);
     }
 }
+
+#[neurotess_testing::test]
+fn a_simulation_without_a_circuit_is_of_the_one_beside_it() {
+    let folder = folder(
+        SWC,
+        TYPES,
+        &[100, 100],
+        &[|group| axes(group, &["x", "y", "z"])],
+    );
+    let simulation = folder.path().join("mine.json");
+    fs::write(&simulation, r#"{"run": {"tstop": 1, "dt": 0.1}}"#).expect("written");
+    let shown = || Circuit::open(&simulation).map(|circuit| circuit.n_shown());
+    assert_eq!(shown().expect("a circuit"), 2);
+    let [from, to] = ["circuit_config.json", "circuit_sonata.json"];
+    fs::rename(folder.path().join(from), folder.path().join(to)).expect("renamed");
+    assert_eq!(shown().expect("a circuit"), 2);
+    fs::remove_file(folder.path().join(to)).expect("removed");
+    let error = shown().expect_err("none is there").to_string();
+    assert!(
+        error.contains("circuit_config.json: cannot be read"),
+        "{error}"
+    );
+}

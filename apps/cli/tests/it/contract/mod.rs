@@ -7,6 +7,7 @@ mod check;
 mod circuit;
 mod convert;
 mod display;
+mod foreign_circuits;
 mod help;
 mod info;
 mod inputs;
